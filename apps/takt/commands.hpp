@@ -1,0 +1,10 @@
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace takt {
+
+/// Each verb of the tool adds itself to the command line and, when chosen, runs and sets the exit
+/// code (see README, "Exit codes").
+using AddCommand = void (*)(CLI::App& app, int& exit_code);
+
+}  // namespace takt

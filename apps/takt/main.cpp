@@ -1,0 +1,14 @@
+#include "apps/takt/commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"takt - CANopen from the command line", "takt"};
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  int exit_code = 0;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return exit_code;
+}

@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "eds_parser/source.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/run_options.hpp"
+
+namespace takt {
+
+/// A network file and its EDS files, compiled. Usable only where `findings` holds no error.
+struct LoadedNetwork {
+  BusPlan plan;
+  std::vector<DeviceTable> devices;  ///< one a node, for the simulation; same order as plan.nodes
+  RealtimeOptions realtime;
+  LcmOptions lcm;
+  Findings findings;  ///< of the network file and of the device files it names
+};
+
+/// Reads, checks and compiles a network file. All errors are listed at once.
+LoadedNetwork load_network(const std::filesystem::path& path);
+
+}  // namespace takt

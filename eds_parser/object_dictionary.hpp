@@ -1,0 +1,116 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "eds_parser/source.hpp"
+#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// A value of the dictionary: signed types as int64, unsigned types and BOOLEAN as uint64, reals as
+/// double, strings and byte types as the bytes themselves.
+using Value = std::variant<std::int64_t, std::uint64_t, double, std::string>;
+
+/// Object codes. CiA 306, 4.6.3.2.
+enum class ObjectType : std::uint8_t {
+  null = 0x00,
+  domain = 0x02,
+  deftype = 0x05,
+  defstruct = 0x06,
+  var = 0x07,
+  array = 0x08,
+  record = 0x09,
+};
+
+/// Which list of the file names the object; `unlisted` objects are read all the same.
+enum class ObjectList : std::uint8_t { mandatory, optional, manufacturer, unlisted };
+
+/// An object that holds a value: a VAR, or one entry of an ARRAY or RECORD.
+struct SubObject {
+  std::uint8_t sub = 0;
+  std::string name;  ///< UTF-8
+  DataType type = DataType::unknown;
+  std::uint16_t type_code = 0;  ///< as the file says, also where takt does not know it
+  Access access = Access::rw;
+  bool pdo_mappable = false;
+  std::uint32_t flags = 0;  ///< ObjFlags: bit 0 refuse write on download, bit 1 refuse read on scan
+  std::optional<Value> low_limit;
+  std::optional<Value> high_limit;
+  std::optional<Value> default_value;    ///< $NODEID resolved; none where the node id is unknown
+  std::optional<Value> parameter_value;  ///< of a DCF
+  std::string default_text;              ///< as written
+  std::string parameter_text;
+  std::string denotation;
+  SourcePos pos;          ///< of its section
+  SourcePos default_pos;  ///< of DefaultValue, or of the section
+
+  /// ParameterValue of the DCF, else the default.
+  const std::optional<Value>& value() const noexcept {
+    return parameter_value ? parameter_value : default_value;
+  }
+};
+
+struct Object {
+  std::uint16_t index = 0;
+  std::string name;
+  ObjectType type = ObjectType::var;
+  ObjectList list = ObjectList::unlisted;
+  std::vector<SubObject> subs;  ///< ascending; a VAR has exactly sub 0
+  SourcePos pos;
+};
+
+/// [DeviceInfo]. CiA 306, 4.5.
+struct DeviceInfo {
+  std::string vendor_name;
+  std::uint32_t vendor_number = 0;
+  std::string product_name;
+  std::uint32_t product_number = 0;
+  std::uint32_t revision_number = 0;
+  std::string order_code;
+  std::vector<std::uint16_t> baud_rates_kbit;  ///< ascending
+  bool simple_boot_up_master = false;
+  bool simple_boot_up_slave = false;
+  std::uint8_t granularity = 8;
+  std::uint8_t dynamic_channels = 0;
+  bool group_messaging = false;
+  std::uint16_t nr_rx_pdo = 0;
+  std::uint16_t nr_tx_pdo = 0;
+  bool lss_supported = false;
+  std::uint8_t compact_pdo = 0;
+};
+
+/// [DeviceComissioning] of a DCF. CiA 306, 5.3.
+struct Commissioning {
+  std::optional<NodeId> node_id;
+  std::string node_name;
+  std::uint16_t baudrate_kbit = 0;
+  std::string network_name;
+};
+
+/// What an EDS or DCF says of a device.
+struct ObjectDictionary {
+  std::string file;
+  bool is_dcf = false;
+  std::optional<NodeId> node_id;  ///< given by the caller, else the file's own
+  DeviceInfo device;
+  Commissioning commissioning;
+  std::array<bool, 8> dummy_usage{};  ///< [n]: data type n may be mapped as a dummy
+  std::vector<Object> objects;        ///< ascending index
+
+  const Object* find(std::uint16_t index) const noexcept;
+  const SubObject* find(ObjectKey key) const noexcept;
+};
+
+/// Integer of a value, where it is one (reals and strings are not).
+std::optional<std::int64_t> as_integer(const Value& value) noexcept;
+/// A value as its bytes on the wire: little endian, as wide as `type` (strings as they are).
+std::vector<std::byte> to_bytes(const Value& value, DataType type);
+
+}  // namespace takt

@@ -1,0 +1,37 @@
+#include "eds_parser/source.hpp"
+
+#include <algorithm>
+
+namespace takt {
+
+std::string_view name(Severity severity) noexcept {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "error";
+}
+
+std::string to_string(const Finding& finding) {
+  std::string text = finding.file;
+  if (finding.pos.line != 0) {
+    text += ':' + std::to_string(finding.pos.line) + ':' + std::to_string(finding.pos.column);
+  }
+  text += ": ";
+  text += name(finding.severity);
+  text += ": " + finding.message + " [";
+  text += finding.rule;
+  text += ']';
+  return text;
+}
+
+bool has_error(const Findings& findings) noexcept {
+  return std::ranges::any_of(
+      findings, [](const Finding& finding) { return finding.severity == Severity::error; });
+}
+
+}  // namespace takt

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// SDO access of an object. CiA 306, 4.6.3.2.
+enum class Access : std::uint8_t { ro, wo, rw, rwr, rww, constant };
+
+/// One object or sub-object of a device as the simulation holds it.
+struct DeviceObject {
+  ObjectKey key;
+  DataType type = DataType::unknown;
+  Access access = Access::rw;
+  bool pdo_mappable = false;
+  std::vector<std::byte> value;  ///< power-on value, little endian; strings without terminator
+  std::optional<std::int64_t> low_limit;
+  std::optional<std::int64_t> high_limit;
+};
+
+/// An EDS or DCF turned into what a simulated device starts with; $NODEID is resolved.
+struct DeviceTable {
+  NodeId node;
+  std::string name;
+  std::vector<DeviceObject> objects;  ///< ascending key
+  std::uint8_t granularity = 8;       ///< 0: mapping is fixed
+  std::uint8_t dummy_usage = 0;       ///< bit n: data type n may be mapped as a dummy
+  std::string model;                  ///< "drive402", "io401", "encoder406", "plain"
+  std::vector<std::string> quirks;    ///< "late_bootup", ...
+};
+
+}  // namespace takt

@@ -1,0 +1,66 @@
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace takt {
+
+/// Address of one device on the bus, 1..127. There is no invalid NodeId. CiA 301, 7.3.3.
+class NodeId {
+ public:
+  static constexpr std::optional<NodeId> from(unsigned value) noexcept {
+    if (value < 1 || value > 127) return std::nullopt;
+    return NodeId{static_cast<std::uint8_t>(value)};
+  }
+  constexpr std::uint8_t value() const noexcept { return value_; }
+  constexpr auto operator<=>(const NodeId&) const noexcept = default;
+
+  /// `5_node`; a literal outside 1..127 does not compile.
+  friend consteval NodeId operator""_node(unsigned long long value);
+
+ private:
+  explicit constexpr NodeId(std::uint8_t value) noexcept : value_{value} {}
+  std::uint8_t value_;
+};
+
+consteval NodeId operator""_node(unsigned long long value) {
+  if (value < 1 || value > 127) throw "a node id is 1..127";
+  return NodeId{static_cast<std::uint8_t>(value)};
+}
+
+/// A CAN identifier, 11 or 29 bits. CiA 301, 7.2.2.
+class CobId {
+ public:
+  constexpr CobId() noexcept = default;
+  /// 11-bit identifier; higher bits are cut.
+  static constexpr CobId base(std::uint32_t id) noexcept { return CobId{id & 0x7FF}; }
+  /// 29-bit identifier; higher bits are cut.
+  static constexpr CobId extended(std::uint32_t id) noexcept {
+    return CobId{(id & 0x1FFF'FFFF) | extended_flag};
+  }
+  constexpr std::uint32_t id() const noexcept { return raw_ & ~extended_flag; }
+  constexpr bool is_extended() const noexcept { return (raw_ & extended_flag) != 0; }
+  constexpr auto operator<=>(const CobId&) const noexcept = default;
+
+ private:
+  static constexpr std::uint32_t extended_flag = 0x8000'0000;
+  explicit constexpr CobId(std::uint32_t raw) noexcept : raw_{raw} {}
+  std::uint32_t raw_ = 0;
+};
+
+/// Index and sub-index of an object. CiA 301, 7.4.
+struct ObjectKey {
+  std::uint16_t index = 0;
+  std::uint8_t sub = 0;
+  constexpr auto operator<=>(const ObjectKey&) const noexcept = default;
+};
+
+/// `0x6041`, four digits or more.
+std::string hex(std::uint32_t value, int digits = 4);
+/// `6041:00`.
+std::string to_string(ObjectKey key);
+/// `0x185`, or `0x00012345` for 29 bits.
+std::string to_string(CobId id);
+
+}  // namespace takt

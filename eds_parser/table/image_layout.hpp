@@ -1,0 +1,54 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eds_parser/table/data_type.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/pdo_table.hpp"
+
+namespace takt {
+
+/// What becomes of an output when its command has outlived its time to live.
+enum class Fallback : std::uint8_t {
+  hold,   ///< keep the last commanded value
+  value,  ///< send Signal::fallback_value (zero, a safe value, the quick stop controlword)
+};
+
+/// One value of the process image: its place, its meaning and its unit.
+struct Signal {
+  std::string
+      name;  ///< snake_case of the EDS name, unique within its node: "position_actual_value"
+  NodeId node;
+  std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
+  ObjectKey object;
+  DataType type = DataType::unknown;
+  std::uint8_t bits = 0;
+  bool output = false;    ///< mapped into an RPDO: the master sends it
+  std::uint16_t row = 0;  ///< its PDO: row of PdoTable::tpdos or ::rpdos
+
+  double scale = 1.0;  ///< SI value = raw * scale + offset
+  double offset = 0.0;
+  std::string unit;  ///< "rad", "rad/s"; empty: a raw count
+
+  // outputs only
+  Fallback fallback = Fallback::hold;
+  std::int64_t fallback_value = 0;
+  std::uint32_t fallback_cycles = 0;       ///< time to live of a command in cycles; 0 = no limit
+  std::optional<std::int64_t> safe_value;  ///< sent before the first command
+  std::optional<SignalIndex> seeded_from;  ///< input that gives the first value (6064 -> 607A)
+};
+
+/// Order and meaning of all values of a bus: inputs first, then outputs; within each by object,
+/// then by node, so that the same object of all axes is one contiguous column.
+struct ImageLayout {
+  std::vector<Signal> signals;
+  std::size_t inputs = 0;  ///< signals [0, inputs) are inputs, the rest outputs
+  std::uint64_t hash = 0;  ///< of names, objects, types, units and order; repeated by image_t
+
+  std::size_t outputs() const noexcept { return signals.size() - inputs; }
+};
+
+}  // namespace takt

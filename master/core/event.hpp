@@ -1,0 +1,97 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/core/node_status.hpp"
+
+namespace takt {
+
+/// Why an SDO transfer ended without its data. CiA 301, 7.2.4.
+enum class SdoFault : std::uint8_t {
+  none,
+  aborted_by_device,  ///< abort_code says why
+  aborted_by_master,  ///< protocol error of the device; abort_code is what was sent
+  timeout,            ///< the device fell silent; 0504 0000 was sent
+  too_long,           ///< the answer does not fit into the buffer; 0504 0005 was sent
+  cancelled,          ///< the node was reset or the master stops
+};
+
+/// The one record of a failed boot: all that is needed to explain it. boot_report turns it into
+/// text on the front side. Bytes are as on the wire.
+struct BootFailure {
+  std::uint16_t step = 0;  ///< index into BootPlan::steps
+  BootAction action = BootAction::write;
+  char letter = 'J';
+  SdoFault fault = SdoFault::none;  ///< none: the value was read but is another one
+  bool downloading = false;         ///< the failing transfer was a download
+  std::uint32_t abort_code = 0;
+  ObjectKey object;
+  std::uint8_t received_size = 0;
+  std::array<std::uint8_t, 8> received{};
+  std::uint8_t sent_size = 0;
+  std::array<std::uint8_t, 8> sent{};
+  Time elapsed{};  ///< since the boot began
+};
+
+enum class EventKind : std::uint8_t {
+  // nodes
+  boot_started,
+  boot_done,       ///< `boot_done_skipped` in value: node was already operational
+  boot_failed,     ///< failure
+  node_state,      ///< value: new NmtState
+  heartbeat_lost,  ///< value: ns of silence
+  bootup_again,    ///< a boot-up message of a node that was ready
+  emcy,            ///< bytes: the eight bytes of the EMCY frame
+  // the cycle
+  pdo_missing,      ///< value: TPDO number; told when it begins
+  pdo_back,         ///< value: TPDO number
+  pdo_length,       ///< value: TPDO number, detail: received length
+  cycles_missed,    ///< value: how many periods were skipped
+  receive_overrun,  ///< value: frames lost by the kernel
+  // outputs
+  command_refused,  ///< value: signal, detail: RefusedBecause
+  fallback_begun,   ///< value: signal whose command outlived its time to live
+  fallback_ended,   ///< value: signal
+  outputs_held,     ///< value: RPDO number that lacks a commanded, safe or seeded value
+  // the bus
+  bus_error_passive,
+  bus_error_active,
+  bus_off,
+  bus_recovered,
+  send_buffer_full,  ///< ENOBUFS; value: frames not sent
+  interface_down,    ///< detail: errno
+  interface_up,
+  foreign_sync,
+  foreign_nmt,       ///< bytes: the command
+  duplicate_cob_id,  ///< value: COB-ID seen from somebody else
+  // the master
+  stopping,
+  stopped,
+};
+
+enum class RefusedBecause : std::uint8_t {
+  not_an_output,
+  other_session,  ///< the node's outputs belong to another sender
+  stale_session,  ///< a daemon session that has ended: a replayed log
+  node_not_ready,
+  out_of_range,
+  observing,
+};
+
+/// One thing worth telling. Trivially copyable: made by the bus thread, told by the front thread.
+struct Event {
+  Time when{};
+  std::uint64_t cycle = 0;
+  EventKind kind = EventKind::node_state;
+  std::uint8_t node = 0;  ///< 0: the bus itself
+  std::uint32_t detail = 0;
+  std::int64_t value = 0;
+  std::array<std::uint8_t, 8> bytes{};
+  BootFailure failure{};
+};
+static_assert(std::is_trivially_copyable_v<Event>);
+
+}  // namespace takt

@@ -1,0 +1,41 @@
+#pragma once
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <span>
+
+#include "eds_parser/table/time.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Frames that machines want to send, in order; fixed room. Bus thread only.
+class Outbox {
+ public:
+  static constexpr std::size_t capacity = 256;
+
+  /// False: full; the frame is not taken and the machine has to come back.
+  bool push(const Frame& frame) noexcept {
+    if (size_ == capacity) return false;
+    frames_[size_++] = frame;
+    return true;
+  }
+  std::span<const Frame> frames() const noexcept { return {frames_.data(), size_}; }
+  bool empty() const noexcept { return size_ == 0; }
+  void clear() noexcept { size_ = 0; }
+
+ private:
+  std::array<Frame, capacity> frames_{};
+  std::size_t size_ = 0;
+};
+
+/// A protocol machine: takes frames and time, gives frames and the time it wants to be called
+/// next. Reads no clock, allocates nothing.
+template <class M>
+concept Machine = requires(M machine, const M constant, const Frame& frame, Time now, Outbox& out) {
+  { machine.on_frame(frame, now, out) } noexcept;
+  { machine.on_time(now, out) } noexcept;
+  { constant.deadline() } noexcept -> std::same_as<Time>;
+};
+
+}  // namespace takt

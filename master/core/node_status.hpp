@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// NMT state as the heartbeat codes it. CiA 301, table 107; `unknown` before the first sign of
+/// life.
+enum class NmtState : std::uint8_t {
+  bootup = 0,
+  stopped = 4,
+  operational = 5,
+  preoperational = 127,
+  unknown = 255,
+};
+
+/// Where a node stands in its boot. Every node is always in one of these.
+enum class BootState : std::uint8_t {
+  idle,     ///< nothing asked of it (watched only, or observe mode)
+  booting,  ///< its plan is running
+  ready,    ///< its plan has succeeded; its PDOs are exchanged
+  failed,   ///< its plan has failed; tried again after a pause or with the next boot-up message
+  lost,     ///< it was ready and its heartbeat has ended
+};
+
+/// What is known of one node. Trivially copyable: it crosses threads.
+struct NodeStatus {
+  NmtState nmt = NmtState::unknown;
+  BootState boot = BootState::idle;
+  std::uint16_t boot_step = 0;  ///< of the plan, counted from 0
+  std::uint8_t error_register = 0;
+  std::uint16_t last_emcy = 0;  ///< error code of the newest EMCY
+  std::uint32_t emcy_count = 0;
+  std::uint32_t boot_count = 0;      ///< boots that ended well
+  std::uint32_t heartbeat_lost = 0;  ///< times
+  std::uint32_t sdo_aborts = 0;
+  Time last_heartbeat{};  ///< 0: never
+};
+static_assert(std::is_trivially_copyable_v<NodeStatus>);
+
+}  // namespace takt

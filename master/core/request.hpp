@@ -1,0 +1,42 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/core/event.hpp"
+
+namespace takt {
+
+/// Largest SDO value that a request or reply carries, in bytes.
+inline constexpr std::size_t request_bytes = 1024;
+
+enum class RequestKind : std::uint8_t { sdo_upload, sdo_download, nmt };
+
+/// A service asked of the bus thread by the front thread. Trivially copyable.
+struct Request {
+  std::uint64_t id = 0;  ///< repeated by the reply
+  RequestKind kind = RequestKind::sdo_upload;
+  std::uint8_t node = 0;  ///< NMT: 0 = all nodes
+  ObjectKey object;
+  NmtCommand command = NmtCommand::start;
+  Time timeout{};  ///< of the SDO transfer; 0 = the node's own
+  std::uint16_t size = 0;
+  std::array<std::byte, request_bytes> data{};
+};
+static_assert(std::is_trivially_copyable_v<Request>);
+
+/// Every request is answered exactly once.
+struct Reply {
+  std::uint64_t id = 0;
+  SdoFault fault = SdoFault::none;
+  std::uint32_t abort_code = 0;
+  std::uint16_t size = 0;
+  std::array<std::byte, request_bytes> data{};
+};
+static_assert(std::is_trivially_copyable_v<Reply>);
+
+}  // namespace takt
