@@ -1,0 +1,43 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <span>
+#include <thread>
+
+#include "eds_parser/table/device_table.hpp"
+#include "master/sim/frame_channel.hpp"
+#include "master/sim/world.hpp"
+
+namespace takt::sim {
+
+/// The devices of a World in real time: a thread that advances it with the monotonic clock and
+/// carries frames between it and a channel. The virtual bus between them delays frames as a wire of
+/// the configured bit rate would.
+class RealtimeWorld {
+ public:
+  /// The channel must outlive this.
+  RealtimeWorld(std::span<const DeviceTable> devices, WorldOptions options, FrameChannel& channel);
+  ~RealtimeWorld();
+  RealtimeWorld(const RealtimeWorld&) = delete;
+  RealtimeWorld& operator=(const RealtimeWorld&) = delete;
+
+  void start();
+  /// Ends the thread within about 10 ms. Also done by the destructor.
+  void stop() noexcept;
+  /// The channel is gone (interface removed, peer closed) and the thread has ended.
+  bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
+
+ private:
+  void run() noexcept;
+  bool carry_in() noexcept;
+  bool carry_out() noexcept;
+
+  World world_;
+  RemotePort& port_;
+  FrameChannel& channel_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> failed_{false};
+  std::thread thread_;
+};
+
+}  // namespace takt::sim
