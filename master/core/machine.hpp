@@ -14,9 +14,13 @@ class Outbox {
  public:
   static constexpr std::size_t capacity = 256;
 
+  /// From now on at most `frames` frames in all; the budget of a cycle.
+  void set_limit(std::size_t frames) noexcept { limit_ = frames < capacity ? frames : capacity; }
+  std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
+
   /// False: full; the frame is not taken and the machine has to come back.
   bool push(const Frame& frame) noexcept {
-    if (size_ == capacity) return false;
+    if (room() == 0) return false;
     frames_[size_++] = frame;
     return true;
   }
@@ -27,6 +31,7 @@ class Outbox {
  private:
   std::array<Frame, capacity> frames_{};
   std::size_t size_ = 0;
+  std::size_t limit_ = capacity;
 };
 
 /// A protocol machine: takes frames and time, gives frames and the time it wants to be called
