@@ -30,6 +30,13 @@ class SpscRing {
     return true;
   }
 
+  /// Producer. True: the next push would be refused.
+  bool full() noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (head - tail_seen_ == N) tail_seen_ = tail_.load(std::memory_order_acquire);
+    return head - tail_seen_ == N;
+  }
+
   /// Consumer. False: empty.
   bool pop(T& item) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);

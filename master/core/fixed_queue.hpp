@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace takt {
+
+/// Queue of fixed room within one thread. A full queue refuses and counts.
+template <class T, std::size_t N>
+class FixedQueue {
+  static_assert(N >= 2 && (N & (N - 1)) == 0);
+
+ public:
+  bool push(const T& item) noexcept {
+    if (head_ - tail_ == N) {
+      ++lost_;
+      return false;
+    }
+    items_[head_++ & (N - 1)] = item;
+    return true;
+  }
+  bool pop(T& item) noexcept {
+    if (head_ == tail_) return false;
+    item = items_[tail_++ & (N - 1)];
+    return true;
+  }
+  bool empty() const noexcept { return head_ == tail_; }
+  std::uint64_t lost() const noexcept { return lost_; }
+
+ private:
+  std::array<T, N> items_{};
+  std::size_t head_ = 0;
+  std::size_t tail_ = 0;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace takt

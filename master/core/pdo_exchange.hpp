@@ -1,0 +1,29 @@
+#pragma once
+#include "master/core/pdo_inputs.hpp"
+#include "master/core/pdo_outputs.hpp"
+
+namespace takt {
+
+/// The process data of a bus: TPDOs in, RPDOs out, one image between. Bus thread only; nothing
+/// allocates after construction.
+class PdoExchange {
+ public:
+  /// Keeps references to both.
+  PdoExchange(const BusPlan& plan, EventQueue& events)
+      : image_{plan.layout.signals.size()},
+        inputs_{plan, image_, events},
+        outputs_{plan, image_, inputs_, events} {}
+  PdoExchange(const PdoExchange&) = delete;
+  PdoExchange& operator=(const PdoExchange&) = delete;
+
+  PdoInputs& inputs() noexcept { return inputs_; }
+  PdoOutputs& outputs() noexcept { return outputs_; }
+  const WorkingImage& image() const noexcept { return image_; }
+
+ private:
+  WorkingImage image_;
+  PdoInputs inputs_;
+  PdoOutputs outputs_;
+};
+
+}  // namespace takt

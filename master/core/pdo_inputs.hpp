@@ -1,0 +1,100 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/pdo_fields.hpp"
+#include "master/core/pdo_status.hpp"
+#include "master/core/working_image.hpp"
+
+namespace takt {
+
+/// How the TPDOs of a node are taken.
+enum class Reception : std::uint8_t {
+  off,        ///< mapping not verified: frames are not ours to read
+  listening,  ///< taken, watched, but no cycle waits for them
+  full,       ///< taken, and cycles wait for those that are due
+};
+
+/// Received TPDOs -> working image, and the set that is expected in each cycle. A "beat" is one
+/// SYNC that was sent; missed periods are no beats. O(1) per frame. Bus thread only.
+class PdoInputs {
+ public:
+  /// Keeps references to the three.
+  PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& events);
+
+  void set_reception(std::size_t node_index, Reception reception, Time now) noexcept;
+  Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
+
+  /// A SYNC went out at `sync`: what is expected now? `heard` is false where it could not be sent.
+  void begin(std::uint64_t cycle, Time sync, bool heard = true) noexcept;
+
+  /// False: no TPDO of this bus.
+  bool receive(const StampedFrame& stamped) noexcept;
+
+  /// Nothing that is worth waiting for is outstanding.
+  bool complete() const noexcept { return outstanding_ == 0; }
+  /// PDOs that this beat waits for, or waited for.
+  std::uint32_t expected() const noexcept { return expected_; }
+  /// Arrival of the newest PDO of this beat that was expected.
+  Time last_arrival() const noexcept { return last_arrival_; }
+
+  /// The window of this beat is over: what has not come is missing. Returns how many.
+  std::uint32_t close(Time now) noexcept;
+
+  /// A PDO of this node has arrived since its reception began, and none is overdue.
+  bool fresh(SignalIndex signal) const noexcept { return !image_.is_stale(signal); }
+
+  std::size_t size() const noexcept { return rows_.size(); }
+  PdoStatus status(std::size_t row) const noexcept;
+
+ private:
+  static constexpr std::uint64_t not_due = ~0ULL;
+  static constexpr std::uint8_t patience = 3;  ///< misses in a row after which nobody waits
+
+  struct Row {
+    std::uint64_t due = not_due;  ///< beat in which it is expected next
+    std::uint64_t last_beat = 0;
+    Time last_time{};
+    std::uint16_t first = 0;
+    std::uint16_t count = 0;
+    std::uint16_t number = 0;
+    std::uint8_t length = 0;
+    std::uint8_t node_index = 0;
+    std::uint8_t every = 0;  ///< beats between two frames; 0: not cyclic
+    std::uint8_t misses = 0;
+    bool known = false;   ///< its phase has been seen
+    bool waited = false;  ///< the running beat waits for it
+    bool stale = true;
+    bool odd_length = false;  ///< told once, until a frame of right length comes
+    std::uint32_t received = 0;
+    std::uint32_t missing = 0;
+    std::uint32_t length_errors = 0;
+    Time deadline{};
+  };
+
+  std::uint16_t find(CobId id) const noexcept;
+  void accept(Row& row, const StampedFrame& stamped) noexcept;
+  bool check_length(Row& row, const StampedFrame& stamped) noexcept;
+  void mark(Row& row, bool stale) noexcept;
+  void miss(Row& row, Time now) noexcept;
+  void tell(EventKind kind, const Row& row, Time now, std::uint32_t detail = 0) noexcept;
+
+  const BusPlan& plan_;
+  WorkingImage& image_;
+  EventQueue& events_;
+  std::vector<FieldProgram> fields_;
+  std::vector<Row> rows_;
+  std::vector<Reception> receptions_;
+  std::uint64_t beat_ = 0;
+  std::uint64_t cycle_ = 0;
+  Time sync_{};
+  Time last_arrival_{};
+  std::uint32_t expected_ = 0;
+  std::uint32_t outstanding_ = 0;
+};
+
+}  // namespace takt

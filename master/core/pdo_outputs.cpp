@@ -1,0 +1,207 @@
+#include "master/core/pdo_outputs.hpp"
+
+#include <algorithm>
+
+namespace takt {
+
+PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs,
+                       EventQueue& events)
+    : plan_{plan},
+      image_{image},
+      inputs_{inputs},
+      events_{events},
+      inputs_count_{plan.layout.inputs},
+      outputs_(plan.layout.outputs()),
+      rows_(plan.pdos.rpdos.size()),
+      begun_(plan.nodes.size(), 0),
+      frames_(plan.pdos.rpdos.size()),
+      packed_(plan.pdos.rpdos.size()),
+      words_(plan.pdos.rpdos.size()) {
+  fields_.reserve(plan.pdos.fields.size());
+  for (const PdoField& field : plan.pdos.fields) fields_.push_back(compile(field));
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const Signal& signal = plan.layout.signals[inputs_count_ + i];
+    if (signal.safe_value) image_.values[inputs_count_ + i] = *signal.safe_value;
+  }
+}
+
+void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (plan_.pdos.rpdos[i].node_index != node_index) continue;
+    rows_[i] = Row{.open = true};
+  }
+  begun_[node_index] = 0;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const Signal& signal = plan_.layout.signals[inputs_count_ + i];
+    if (signal.node_index != node_index) continue;
+    outputs_[i] = Output{.generation = set_points[i].generation};
+  }
+}
+
+void PdoOutputs::shut(std::size_t node_index) noexcept {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (plan_.pdos.rpdos[i].node_index == node_index) rows_[i] = Row{};
+  }
+}
+
+void PdoOutputs::tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
+                      std::uint32_t detail) noexcept {
+  events_.push({.when = moment.now,
+                .cycle = moment.cycle,
+                .kind = kind,
+                .node = plan_.pdos.rpdos[row].node.value(),
+                .detail = detail,
+                .value = value});
+}
+
+void PdoOutputs::take(Output& output, SignalIndex signal, const SetPoint& set_point,
+                      std::uint64_t cycle) noexcept {
+  const std::uint32_t configured = plan_.layout.signals[signal].fallback_cycles;
+  std::uint32_t limit = set_point.time_to_live;
+  if (limit == 0 || (configured != 0 && configured < limit)) limit = configured;
+  output.generation = set_point.generation;
+  output.expires = limit == 0 ? no_end : cycle + limit;
+  output.known = true;
+  output.commanded = true;
+  output.fallen = false;
+  image_.values[signal] = set_point.value;
+}
+
+void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {
+  const Signal& what = plan_.layout.signals[signal];
+  output.fallen = true;
+  if (what.fallback == Fallback::value) image_.values[signal] = what.fallback_value;
+}
+
+void PdoOutputs::seed(Output& output, SignalIndex signal) noexcept {
+  const Signal& what = plan_.layout.signals[signal];
+  if (what.safe_value) {
+    image_.values[signal] = *what.safe_value;
+    output.known = true;
+  } else if (what.seeded_from && inputs_.fresh(*what.seeded_from)) {
+    image_.values[signal] = image_.values[*what.seeded_from];
+    output.known = true;
+  }
+}
+
+PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoint> set_points,
+                                    OutputMoment moment) noexcept {
+  const PdoRow& pdo = plan_.pdos.rpdos[position];
+  Row& row = rows_[position];
+  std::uint8_t& begun = begun_[pdo.node_index];
+  Built built;
+  row.fallen = 0;
+  row.risen = 0;
+  for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
+    const FieldProgram& field = fields_[pdo.first_field + i];
+    Output& output = outputs_[output_of(field.signal)];
+    const SetPoint& set_point = set_points[output_of(field.signal)];
+    if (set_point.generation != output.generation && !stopping_ && !output.forced) {
+      if (output.fallen && row.risen++ == 0) row.first_risen = field.signal;
+      take(output, field.signal, set_point, moment.cycle);
+      ++fresh_commands_;
+    } else if (moment.cycle >= output.expires && !output.fallen && !output.forced) [[unlikely]] {
+      fall(output, field.signal);
+      if (row.fallen++ == 0) row.first_fallen = field.signal;
+    }
+    if (!output.commanded && !(begun != 0 && output.known)) [[unlikely]] {
+      seed(output, field.signal);
+    }
+    begun |= static_cast<std::uint8_t>(output.commanded);
+    built.lacking |= !output.known;
+    built.word |= put_field(image_.values[field.signal], field);
+  }
+  return built;
+}
+
+void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment moment) noexcept {
+  Row& row = rows_[position];
+  const PdoRow& pdo = plan_.pdos.rpdos[position];
+  if (row.fallen != 0) {
+    tell(EventKind::fallback_begun, position, row.first_fallen, moment, row.fallen);
+  }
+  if (row.risen != 0) {
+    tell(EventKind::fallback_ended, position, row.first_risen, moment, row.risen);
+  }
+  if (!lacking || begun_[pdo.node_index] == 0 || row.held_told) return;
+  if (++row.partial < partial_limit) return;
+  tell(EventKind::outputs_held, position, pdo.number, moment);
+  row.held_told = true;
+}
+
+bool PdoOutputs::due(std::size_t position, std::uint64_t word, Time now) const noexcept {
+  const PdoRow& pdo = plan_.pdos.rpdos[position];
+  const Row& row = rows_[position];
+  if (pdo.cyclic()) return stopping_ || (row.packs - 1) % pdo.transmission == 0;
+  if (!row.ever_sent) return true;
+  const Time since = now - row.last_sent;
+  if (since < pdo.inhibit) return false;
+  return word != row.last_word || (pdo.event_timer > Time{0} && since >= pdo.event_timer);
+}
+
+std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
+                                        OutputMoment moment) noexcept {
+  packed_count_ = 0;
+  fresh_commands_ = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Row& row = rows_[i];
+    if (!row.open) continue;
+    const Built built = build(i, set_points, moment);
+    row.ready = !built.lacking;
+    if (built.lacking || row.fallen != 0 || row.risen != 0) [[unlikely]] {
+      tell_changes(i, built.lacking, moment);
+    }
+    if (built.lacking) continue;
+    ++row.packs;
+    if (!due(i, built.word, moment.now)) continue;
+    const PdoRow& pdo = plan_.pdos.rpdos[i];
+    Frame& frame = frames_[packed_count_];
+    frame.id = pdo.cob_id;
+    frame.length = pdo.length;
+    frame.rtr = false;
+    store(built.word, frame);
+    words_[packed_count_] = built.word;
+    packed_[packed_count_++] = static_cast<std::uint16_t>(i);
+  }
+  return {frames_.data(), packed_count_};
+}
+
+void PdoOutputs::sent(std::size_t count, Time now) noexcept {
+  for (std::size_t i = 0; i < std::min(count, packed_count_); ++i) {
+    Row& row = rows_[packed_[i]];
+    row.last_word = words_[i];
+    row.last_sent = now;
+    row.ever_sent = true;
+  }
+  for (std::size_t i = count; i < packed_count_; ++i) --rows_[packed_[i]].packs;
+  packed_count_ = 0;
+}
+
+void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
+                         std::uint64_t cycle) noexcept {
+  if (signal < inputs_count_ || output_of(signal) >= outputs_.size()) return;
+  Output& output = outputs_[output_of(signal)];
+  if (stopping_ || output.forced) return;
+  take(output, signal,
+       {.value = value, .generation = output.generation, .time_to_live = time_to_live}, cycle);
+}
+
+void PdoOutputs::fall_back() noexcept {
+  stopping_ = true;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    Output& output = outputs_[i];
+    if (output.commanded && !output.fallen) {
+      fall(output, static_cast<SignalIndex>(inputs_count_ + i));
+    }
+  }
+}
+
+void PdoOutputs::force(SignalIndex signal, std::int64_t value) noexcept {
+  Output& output = outputs_[output_of(signal)];
+  output.forced = true;
+  output.known = true;
+  output.commanded = true;
+  image_.values[signal] = value;
+}
+
+}  // namespace takt

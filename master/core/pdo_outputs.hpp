@@ -1,0 +1,112 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/pdo_fields.hpp"
+#include "master/core/pdo_inputs.hpp"
+#include "master/core/set_point.hpp"
+#include "master/core/working_image.hpp"
+
+namespace takt {
+
+/// When a set of outputs is packed.
+struct OutputMoment {
+  std::uint64_t cycle = 0;
+  Time now{};
+};
+
+/// Set-points -> RPDO frames. An RPDO goes out only when its node exchanges PDOs and each of its
+/// signals has been commanded, has a safe value or is seeded by its feedback. Bus thread only.
+class PdoOutputs {
+ public:
+  /// Keeps references to all four.
+  PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs, EventQueue& events);
+
+  /// From now on the node's RPDOs may go out; commands given before are forgotten.
+  void open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept;
+  void shut(std::size_t node_index) noexcept;
+
+  /// The frames that are due, in the order of the table; valid until the next call. `set_points`
+  /// holds one per output signal.
+  std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// The first `count` of the packed frames went out; the others are tried again.
+  void sent(std::size_t count, Time now) noexcept;
+
+  /// A command from within the bus thread; `signal` counts in the whole layout.
+  void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
+               std::uint64_t cycle) noexcept;
+
+  /// Ordered stop: every commanded output takes its fallback and commands are no longer heard.
+  void fall_back() noexcept;
+  /// Ordered stop: this value from now on, whatever is commanded.
+  void force(SignalIndex signal, std::int64_t value) noexcept;
+
+  /// Commands that the last pack() saw for the first time.
+  std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
+  /// Every signal of this RPDO has a value worth sending.
+  bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
+
+ private:
+  static constexpr std::uint64_t no_end = ~0ULL;
+  static constexpr std::uint8_t partial_limit = 10;  ///< cycles until `outputs_held` is told
+
+  struct Output {
+    std::uint64_t expires = no_end;  ///< cycle in which the command is too old
+    std::uint32_t generation = 0;
+    bool known = false;      ///< has a value worth sending
+    bool commanded = false;  ///< and that value was commanded
+    bool fallen = false;     ///< its fallback is in force
+    bool forced = false;
+  };
+  struct Row {
+    std::uint64_t last_word = 0;
+    Time last_sent{};
+    std::uint64_t packs = 0;  ///< since it was ready
+    bool open = false;
+    bool ready = false;
+    bool ever_sent = false;
+    bool held_told = false;
+    std::uint8_t partial = 0;
+    SignalIndex first_fallen = 0;
+    SignalIndex first_risen = 0;
+    std::uint16_t fallen = 0;  ///< signals that fell back in this pack
+    std::uint16_t risen = 0;   ///< signals that left their fallback in this pack
+  };
+  struct Built {
+    std::uint64_t word = 0;
+    bool lacking = false;
+  };
+
+  Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  void take(Output& output, SignalIndex signal, const SetPoint& set_point,
+            std::uint64_t cycle) noexcept;
+  void fall(Output& output, SignalIndex signal) noexcept;
+  void seed(Output& output, SignalIndex signal) noexcept;
+  bool due(std::size_t row, std::uint64_t word, Time now) const noexcept;
+  void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
+  void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
+            std::uint32_t detail = 0) noexcept;
+  std::size_t output_of(SignalIndex signal) const noexcept { return signal - inputs_count_; }
+
+  const BusPlan& plan_;
+  WorkingImage& image_;
+  const PdoInputs& inputs_;
+  EventQueue& events_;
+  std::size_t inputs_count_;
+  std::vector<FieldProgram> fields_;
+  std::vector<Output> outputs_;
+  std::vector<Row> rows_;
+  std::vector<std::uint8_t> begun_;  ///< per node: an output is commanded, seeds no longer follow
+  std::vector<Frame> frames_;
+  std::vector<std::uint16_t> packed_;
+  std::vector<std::uint64_t> words_;
+  std::size_t packed_count_ = 0;
+  std::uint32_t fresh_commands_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace takt

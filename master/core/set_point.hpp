@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+namespace takt {
+
+/// The newest command for one output, as the front thread left it.
+struct SetPoint {
+  std::int64_t value = 0;          ///< raw
+  std::uint32_t generation = 0;    ///< another number with each command; 0: never commanded
+  std::uint32_t time_to_live = 0;  ///< cycles; 0: the configured one
+};
+static_assert(sizeof(SetPoint) == 16 && std::is_trivially_copyable_v<SetPoint>);
+
+}  // namespace takt

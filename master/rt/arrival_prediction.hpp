@@ -1,0 +1,44 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Learns when the last expected PDO is usually there, so that one drain at that time finds them
+/// all. Times count from SYNC. Bounded by the receive window.
+class ArrivalPrediction {
+ public:
+  explicit ArrivalPrediction(Time window) noexcept : window_{window}, predicted_{window} {}
+
+  Time predicted() const noexcept { return predicted_; }
+
+  /// All expected PDOs were there at the first drain; the last one came at `arrival`.
+  void in_time(Time arrival) noexcept {
+    if (seen_ < learning) {
+      latest_ = std::max(latest_, arrival);
+      if (++seen_ == learning) predicted_ = std::min(window_, latest_ + margin);
+      return;
+    }
+    predicted_ -= (predicted_ - std::min(predicted_, arrival + margin)) / slowness;
+  }
+
+  /// The last one came at `arrival`, after the first drain; where it stayed away nothing is
+  /// learned.
+  void late(Time arrival) noexcept {
+    predicted_ = std::min(window_, std::max(predicted_, arrival) + margin);
+  }
+
+ private:
+  static constexpr std::uint32_t learning = 16;  ///< cycles that wait for the whole window
+  static constexpr std::int64_t slowness = 256;  ///< cycles that a late PDO is remembered
+  static constexpr Time margin = std::chrono::microseconds{5};
+
+  Time window_;
+  Time predicted_;
+  Time latest_{};
+  std::uint32_t seen_ = 0;
+};
+
+}  // namespace takt

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Absolute deadlines of the cycles: start + k * period, so that nothing drifts. Missed periods
+/// are left out, never caught up; the phase is kept.
+class BeatClock {
+ public:
+  explicit BeatClock(Time period) noexcept : period_{period} {}
+
+  void start(Time first) noexcept {
+    deadline_ = first;
+    cycle_ = 1;
+  }
+  Time deadline() const noexcept { return deadline_; }
+  std::uint64_t cycle() const noexcept { return cycle_; }  ///< number of the period, from 1
+  Time period() const noexcept { return period_; }
+
+  /// At `now`, is the deadline so long gone that a SYNC would come too close to the next one? Then
+  /// goes to the next deadline in the future. Returns the periods left out.
+  std::uint64_t skip_missed(Time now) noexcept {
+    const Time late = now - deadline_;
+    if (late <= period_ / 2) return 0;
+    const std::int64_t missed = (late.count() + period_.count() - 1) / period_.count();
+    deadline_ += missed * period_;
+    cycle_ += static_cast<std::uint64_t>(missed);
+    return static_cast<std::uint64_t>(missed);
+  }
+  void next() noexcept {
+    deadline_ += period_;
+    ++cycle_;
+  }
+
+ private:
+  Time period_;
+  Time deadline_{};
+  std::uint64_t cycle_ = 0;
+};
+
+/// The counter of SYNC: 1..overflow, counting only what was sent. CiA 301, 7.2.5.
+class SyncCounter {
+ public:
+  /// `overflow` as in 0x1019; below 2: SYNC has no counter.
+  explicit SyncCounter(std::uint8_t overflow) noexcept : overflow_{overflow} {}
+  bool used() const noexcept { return overflow_ >= 2; }
+  std::uint8_t next() const noexcept { return next_; }
+  void sent() noexcept { next_ = next_ >= overflow_ ? 1 : static_cast<std::uint8_t>(next_ + 1); }
+
+ private:
+  std::uint8_t overflow_;
+  std::uint8_t next_ = 1;
+};
+
+}  // namespace takt

@@ -1,0 +1,317 @@
+#pragma once
+// Member functions of BusLoop, in the order of a cycle.
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+
+template <Port P>
+BusLoop<P>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options)
+    : plan_{plan},
+      port_{port},
+      exchange_{exchange},
+      options_{options},
+      pdos_{plan, events_},
+      network_{plan, {.observe = options.observe}},
+      stop_{plan},
+      port_watch_{events_},
+      clock_{plan.cycle.period},
+      counter_{plan.cycle.sync_overflow},
+      prediction_{plan.cycle.sync ? plan.cycle.receive_window : Time{0}},
+      wire_{plan.bitrate},
+      received_(batch) {}
+
+template <Port P>
+void BusLoop<P>::start() noexcept {
+  const Time now = port_.now();
+  clock_.start(now + clock_.period());
+  network_.start(now);
+  predict_next_publish();
+}
+
+template <Port P>
+void BusLoop<P>::cycle() noexcept {
+  follow_nodes();
+  wait_for_beat();
+  send_sync();
+  receive();
+  publish();
+  serve();
+  send_outputs();
+  give_events();
+  write_status();
+  clock_.next();
+}
+
+/// Which nodes exchange PDOs in this cycle.
+template <Port P>
+void BusLoop<P>::follow_nodes() noexcept {
+  for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+    const bool exchanging = network_.exchanges_pdos(i);
+    if (exchanging != exchanging_[i]) {
+      exchanging_[i] = exchanging;
+      if (exchanging) {
+        pdos_.outputs().open(i, exchange_.set_points.newest().points);
+      } else {
+        pdos_.outputs().shut(i);
+      }
+    }
+    const bool watched = options_.observe || !plan_.nodes[i].boot;
+    pdos_.inputs().set_reception(
+        i, exchanging ? Reception::full : (watched ? Reception::listening : Reception::off),
+        sync_sent_);
+  }
+}
+
+template <Port P>
+void BusLoop<P>::wait_for_beat() noexcept {
+  port_.sleep_precisely_until(clock_.deadline());
+  Time now = port_.now();
+  if (const std::uint64_t missed = clock_.skip_missed(now); missed != 0) {
+    status_.cycles_missed += missed;
+    tell(EventKind::cycles_missed, now, static_cast<std::int64_t>(missed));
+    port_.sleep_precisely_until(clock_.deadline());
+    now = port_.now();
+  }
+  sync_sent_ = now;
+}
+
+template <Port P>
+void BusLoop<P>::send_sync() noexcept {
+  const Time late = sync_sent_ - clock_.deadline();
+  exchange_.timing.sync_lateness.record(late);
+  if (late > clock_.period() / 10) ++status_.cycles_late;
+  bool heard = true;
+  if (plan_.cycle.sync && !options_.observe) {
+    Frame sync{.id = plan_.cycle.sync_cob_id};
+    if (counter_.used()) {
+      sync.length = 1;
+      sync.data[0] = counter_.next();
+    }
+    heard = send({&sync, 1}) == 1;
+    if (heard) counter_.sent();
+  }
+  pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
+  status_.beats += heard;
+}
+
+template <Port P>
+void BusLoop<P>::receive() noexcept {
+  const Time end = std::min(sync_sent_ + plan_.cycle.receive_window,
+                            clock_.deadline() + plan_.cycle.output_deadline);
+  if (plan_.cycle.sync) port_.sleep_until(std::min(sync_sent_ + prediction_.predicted(), end));
+  drain();
+  const bool in_time = pdos_.inputs().complete();
+  if (!in_time) {
+    port_.sleep_until(end);
+    drain();
+  }
+  learn(in_time);
+}
+
+template <Port P>
+void BusLoop<P>::drain() noexcept {
+  for (;;) {
+    const std::size_t count = port_.receive(received_);
+    for (std::size_t i = 0; i < count; ++i) {
+      const StampedFrame& stamped = received_[i];
+      status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(stamped.frame));
+      if (!pdos_.inputs().receive(stamped)) {
+        network_.on_frame(stamped.frame, stamped.when, services_.inbox());
+      }
+    }
+    status_.frames_received += count;
+    if (count < received_.size()) return;
+  }
+}
+
+template <Port P>
+void BusLoop<P>::learn(bool in_time) noexcept {
+  if (pdos_.inputs().expected() == 0) return;
+  const Time arrival = pdos_.inputs().last_arrival() - sync_sent_;
+  if (in_time) {
+    prediction_.in_time(arrival);
+  } else if (pdos_.inputs().complete()) {
+    prediction_.late(arrival);
+  }
+  exchange_.timing.sync_to_last_pdo.record(arrival);
+}
+
+template <Port P>
+void BusLoop<P>::publish() noexcept {
+  const PortNews news = port_.news();
+  status_.port = news;
+  sync_time_ = news.last_sync_echo >= sync_sent_ ? news.last_sync_echo : sync_sent_;
+  if (news.last_sync_echo >= sync_sent_) {
+    exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
+  }
+  const Time now = port_.now();
+  const std::uint32_t missing = pdos_.inputs().close(now);
+  status_.images_incomplete += missing != 0;
+  const ImageStamp stamp{.cycle = clock_.cycle(),
+                         .beat = status_.beats,
+                         .sync_time = sync_time_,
+                         .publish_time = now,
+                         .missing = missing};
+  const WorkingImage& image = pdos_.image();
+  exchange_.images.publish(stamp, image.values, image.stale);
+  exchange_.timing.sync_to_publish.record(now - sync_time_);
+  predict_next_publish();
+  port_watch_.on_news(news, now);
+  if (options_.controller != nullptr) {
+    OutputWriter writer{pdos_.outputs(), clock_.cycle()};
+    options_.controller->update({.cycle = stamp.cycle,
+                                 .beat = stamp.beat,
+                                 .sync_time = stamp.sync_time,
+                                 .publish_time = stamp.publish_time,
+                                 .missing = stamp.missing,
+                                 .values = image.values,
+                                 .stale_bits = image.stale},
+                                writer);
+  }
+}
+
+template <Port P>
+void BusLoop<P>::predict_next_publish() noexcept {
+  const Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
+  exchange_.next_publish.store(next.count(), std::memory_order_relaxed);
+}
+
+/// Slack: machines and requests. Their frames and the answers to them end before the outputs.
+template <Port P>
+void BusLoop<P>::serve() noexcept {
+  take_requests();
+  const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
+  std::size_t budget = plan_.cycle.service_frames;
+  for (;;) {
+    if (services_.size() < budget) network_.on_time(port_.now(), services_.inbox());
+    if (options_.observe) services_.clear();
+    if (!send_services(budget) || budget == 0 || !port_.wait_frame(end)) break;
+    drain();
+  }
+  give_replies();
+  step_stop();
+}
+
+/// False: nothing was sent that will be answered soon.
+template <Port P>
+bool BusLoop<P>::send_services(std::size_t& budget) noexcept {
+  if (services_.empty()) return false;
+  const Time end = clock_.deadline() + plan_.cycle.output_deadline;
+  const Time room = end - port_.now();
+  const auto fitting =
+      static_cast<std::size_t>(std::max<std::int64_t>(0, room / wire_.worst_dialogue()));
+  const std::span<const Frame> frames = services_.first(std::min(budget, fitting));
+  if (frames.empty()) return false;
+  const bool answered = std::ranges::any_of(
+      frames, [](const Frame& frame) { return (frame.id.id() & 0x780) == 0x600; });
+  const std::size_t count = send(frames);
+  services_.drop(count);
+  budget -= count;
+  return answered && count != 0;
+}
+
+template <Port P>
+void BusLoop<P>::take_requests() noexcept {
+  if (reply_waits_ || !exchange_.requests.pop(request_)) return;
+  if (!options_.observe && network_.submit(request_, port_.now())) return;
+  reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
+  reply_waits_ = true;
+}
+
+template <Port P>
+void BusLoop<P>::give_replies() noexcept {
+  for (;;) {
+    if (!reply_waits_ && !network_.take(reply_)) return;
+    reply_waits_ = exchange_.replies.full() || !exchange_.replies.push(reply_);
+    if (reply_waits_) return;
+  }
+}
+
+template <Port P>
+void BusLoop<P>::send_outputs() noexcept {
+  port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
+  if (options_.observe) return;
+  const Time now = port_.now();
+  const SetPointFrame& commands = exchange_.set_points.newest();
+  const std::span<const Frame> frames =
+      pdos_.outputs().pack(commands.points, {.cycle = clock_.cycle(), .now = now});
+  if (pdos_.outputs().fresh_commands() != 0) {
+    exchange_.timing.command_age.record(now - commands.when);
+  }
+  if (frames.empty()) return;
+  // SYNC comes first: outputs that could not end before it wait for the next cycle.
+  const bool fits = now + wire_.worst(frames) <= clock_.deadline() + clock_.period();
+  pdos_.outputs().sent(fits ? send(frames) : 0, now);
+  status_.outputs_skipped += !fits;
+}
+
+/// Begins and follows the ordered stop.
+template <Port P>
+void BusLoop<P>::step_stop() noexcept {
+  const Time now = port_.now();
+  if (stop_.stage() == StopStage::running) {
+    if (!exchange_.stop_requested.load(std::memory_order_relaxed)) return;
+    tell(EventKind::stopping, now);
+    stop_.begin(now);
+    pdos_.outputs().fall_back();
+  }
+  const StopStage before = stop_.stage();
+  stop_.step(now,
+             {.values = pdos_.image().values,
+              .exchanging = exchanging_,
+              .network_stopped = options_.observe || (network_.stopped() && services_.empty())});
+  if (const auto word = stop_.controlword()) {
+    for (const StopAxis& axis : stop_.axes()) pdos_.outputs().force(axis.controlword, *word);
+  }
+  if (before != StopStage::nmt && stop_.stage() == StopStage::nmt) network_.begin_stop(now);
+  done_ = stop_.stage() == StopStage::done;
+  if (done_) tell(EventKind::stopped, now);
+}
+
+template <Port P>
+void BusLoop<P>::give_events() noexcept {
+  Event event;
+  while (network_.take(event)) {
+    event.cycle = clock_.cycle();
+    exchange_.events.push(event);
+  }
+  while (events_.pop(event)) {
+    event.cycle = clock_.cycle();
+    exchange_.events.push(event);
+  }
+}
+
+template <Port P>
+void BusLoop<P>::write_status() noexcept {
+  status_.cycle = clock_.cycle();
+  status_.stop = stop_.stage();
+  status_.events_lost = events_.lost();
+  if (sync_sent_ - last_status_ < status_interval && !done_) return;
+  last_status_ = sync_sent_;
+  status_.when = sync_sent_;
+  const PdoInputs& inputs = pdos_.inputs();
+  exchange_.status.write(status_, network_.nodes(),
+                         [&](std::size_t row) { return inputs.status(row); });
+  if (done_) exchange_.finished.store(true, std::memory_order_release);
+}
+
+template <Port P>
+std::size_t BusLoop<P>::send(std::span<const Frame> frames) noexcept {
+  const SendResult result = port_.send(frames);
+  for (const Frame& frame : frames.first(result.sent)) {
+    status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(frame));
+  }
+  status_.frames_sent += result.sent;
+  if (result.sent != frames.size()) {
+    status_.send_failures += frames.size() - result.sent;
+    port_watch_.on_send(frames.size() - result.sent, result.error, sync_sent_);
+  }
+  return result.sent;
+}
+
+template <Port P>
+void BusLoop<P>::tell(EventKind kind, Time now, std::int64_t value) noexcept {
+  events_.push({.when = now, .cycle = clock_.cycle(), .kind = kind, .value = value});
+}
+
+}  // namespace takt

@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Counts of a Histogram at one moment; the difference of two is the time between them.
+struct HistogramSnapshot {
+  static constexpr unsigned fine = 8;      ///< bins per octave
+  static constexpr unsigned octaves = 27;  ///< 125 ns * 2^27 = 16.8 s
+  static constexpr std::size_t bins = fine * (octaves + 1);
+
+  std::array<std::uint64_t, bins> counts{};
+
+  std::uint64_t total() const noexcept;
+  /// Upper edge of the bin below which the fraction `p` of all times lies; 0 when empty.
+  Time percentile(double p) const noexcept;
+  Time minimum() const noexcept { return percentile(0.0); }
+  Time maximum() const noexcept { return percentile(1.0); }
+  /// Counts per octave: number i is of times in [2^i, 2^(i+1)) * 125 ns, as timing_t has them.
+  std::array<std::uint64_t, octaves> by_octave() const noexcept;
+
+  HistogramSnapshot operator-(const HistogramSnapshot& earlier) const noexcept;
+};
+
+/// Times with a resolution of an eighth octave from 125 ns on. One thread records, others take
+/// snapshots; no lock.
+class Histogram {
+ public:
+  /// Negative times count as zero.
+  void record(Time time) noexcept {
+    std::atomic<std::uint64_t>& bin = counts_[bin_of(time)];
+    bin.store(bin.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+  HistogramSnapshot snapshot() const noexcept;
+
+  /// Bins 0..7 are linear in 125 ns / 8; from there eight bins an octave.
+  static constexpr std::size_t bin_of(Time time) noexcept {
+    if (time <= Time{0}) return 0;
+    const std::uint64_t units = static_cast<std::uint64_t>(time.count()) * 8 / 125;
+    if (units < 8) return static_cast<std::size_t>(units);
+    const auto octave = static_cast<unsigned>(std::bit_width(units)) - 4;  // 0: [8, 16)
+    if (octave >= HistogramSnapshot::octaves) return HistogramSnapshot::bins - 1;
+    return (octave + 1) * 8 + ((units >> octave) & 7);
+  }
+  /// First time that no longer belongs to the bin.
+  static constexpr Time upper_edge(std::size_t bin) noexcept {
+    const std::uint64_t octave = bin / 8;
+    const std::uint64_t step = bin % 8 + 1;
+    const std::uint64_t units = octave == 0 ? step : (8 + step) << (octave - 1);
+    return Time{static_cast<std::int64_t>(units * 125 / 8)};
+  }
+
+ private:
+  std::array<std::atomic<std::uint64_t>, HistogramSnapshot::bins> counts_{};
+};
+
+}  // namespace takt

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+
+#include "master/core/event_queue.hpp"
+#include "master/rt/port.hpp"
+
+namespace takt {
+
+/// Why the interface took no more frames: Event::detail of `send_buffer_full`.
+enum class SendTrouble : std::uint32_t {
+  queue_too_short,      ///< healthy bus, txqueuelen below what one cycle sends
+  nobody_acknowledges,  ///< error passive: cable, bit rate, or no other node
+  bus_off,
+};
+
+/// Turns changes of PortNews and failed sends into events, each told once. Bus thread only.
+class PortWatch {
+ public:
+  explicit PortWatch(EventQueue& events) noexcept : events_{events} {}
+
+  void on_news(const PortNews& news, Time now) noexcept;
+  /// `unsent` frames were refused with `error`; 0: all went out.
+  void on_send(std::size_t unsent, int error, Time now) noexcept;
+
+ private:
+  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+  void on_interface(const PortNews& news, Time now) noexcept;
+
+  EventQueue& events_;
+  PortNews seen_;
+  Time last_full_{};
+  bool full_told_ = false;
+};
+
+}  // namespace takt

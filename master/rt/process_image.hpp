@@ -1,0 +1,67 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// When an image was taken.
+struct ImageStamp {
+  std::uint64_t cycle = 0;  ///< jumps by the number of missed periods
+  std::uint64_t beat = 0;   ///< SYNCs sent so far
+  Time sync_time{};         ///< of SYNC: by its echo where there is one
+  Time publish_time{};
+  std::uint32_t missing = 0;  ///< expected PDOs that did not arrive
+};
+
+/// One image as the front thread sees it; valid until the next take().
+struct ImageView {
+  std::uint64_t cycle = 0;
+  std::uint64_t beat = 0;
+  Time sync_time{};
+  Time publish_time{};
+  std::uint32_t missing = 0;
+  std::span<const std::int64_t> values;       ///< all signals: inputs, then outputs as last sent
+  std::span<const std::uint64_t> stale_bits;  ///< bit n % 64 of word n / 64: signal n
+};
+
+/// Images on their way from the bus thread to the front thread: 64 slots, one producer, one
+/// consumer, wait-free. A full ring drops the newest image and counts it.
+class ImageRing {
+ public:
+  static constexpr std::size_t slots = 64;
+
+  explicit ImageRing(std::size_t signals);
+
+  /// Bus thread. False: the front thread is 64 images behind.
+  bool publish(const ImageStamp& stamp, std::span<const std::int64_t> values,
+               std::span<const std::uint64_t> stale_bits) noexcept;
+
+  /// Front thread: the next image in order; false: none. Frees the one taken before.
+  bool take(ImageView& view) noexcept;
+  /// Front thread: the newest image, skipping older ones; false: none.
+  bool take_newest(ImageView& view) noexcept;
+
+  /// Images lost because the front thread was too slow. Any thread.
+  std::uint64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
+
+ private:
+  ImageView view_of(std::size_t position) const noexcept;
+  void release() noexcept;
+
+  std::size_t signals_;
+  std::size_t words_;  ///< of stale bits
+  std::vector<ImageStamp> stamps_;
+  std::vector<std::int64_t> values_;
+  std::vector<std::uint64_t> stale_;
+  alignas(64) std::atomic<std::size_t> head_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};
+  bool holding_ = false;  // front thread's
+  alignas(64) std::atomic<std::uint64_t> overruns_{0};
+};
+
+}  // namespace takt

@@ -1,0 +1,37 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "master/core/machine.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Service frames of the machines that wait for their turn in the slack. Bus thread only.
+class ServiceQueue {
+ public:
+  /// Machines write here; what does not fit they offer again.
+  Outbox& inbox() noexcept { return outbox_; }
+  bool empty() const noexcept { return outbox_.empty(); }
+  std::size_t size() const noexcept { return outbox_.frames().size(); }
+
+  std::span<const Frame> first(std::size_t count) const noexcept {
+    return outbox_.frames().first(std::min(count, size()));
+  }
+  /// The first `count` went out.
+  void drop(std::size_t count) noexcept {
+    const std::size_t kept = size() - count;
+    std::copy_n(outbox_.frames().begin() + static_cast<std::ptrdiff_t>(count), kept, rest_.begin());
+    outbox_.clear();
+    for (std::size_t i = 0; i < kept; ++i) outbox_.push(rest_[i]);
+  }
+  void clear() noexcept { outbox_.clear(); }
+
+ private:
+  Outbox outbox_;
+  std::array<Frame, Outbox::capacity> rest_{};
+};
+
+}  // namespace takt

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "master/core/node_status.hpp"
+#include "master/core/ordered_stop.hpp"
+#include "master/core/pdo_status.hpp"
+#include "master/rt/port.hpp"
+#include "master/rt/seqlock.hpp"
+
+namespace takt {
+
+/// Counters of the bus thread, since the start. Trivially copyable: it crosses threads.
+struct BusStatus {
+  Time when{};
+  std::uint64_t cycle = 0;            ///< number of the newest cycle
+  std::uint64_t beats = 0;            ///< SYNCs sent (cycles run where there is no SYNC)
+  std::uint64_t cycles_missed = 0;    ///< periods that were skipped
+  std::uint64_t cycles_late = 0;      ///< SYNCs later than a tenth of the period
+  std::uint64_t outputs_skipped = 0;  ///< cycles whose outputs could not end before the next SYNC
+  std::uint64_t images_incomplete = 0;
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_sent = 0;
+  std::uint64_t send_failures = 0;  ///< frames that the interface did not take
+  std::uint64_t wire_bits = 0;      ///< of both, with mean stuffing: for the bus load
+  std::uint64_t events_lost = 0;
+  StopStage stop = StopStage::running;
+  PortNews port;
+};
+static_assert(std::is_trivially_copyable_v<BusStatus>);
+
+/// All that status_t wants, consistent in itself. Front side.
+struct StatusSnapshot {
+  BusStatus bus;
+  std::vector<NodeStatus> nodes;  ///< order of BusPlan::nodes
+  std::vector<PdoStatus> tpdos;   ///< order of PdoTable::tpdos
+};
+
+/// State of the bus for the front thread: written every few cycles, read at any time.
+class StatusBoard {
+ public:
+  StatusBoard(std::size_t nodes, std::size_t tpdos);
+
+  /// Bus thread. `tpdo(row)` gives the status of one TPDO.
+  template <class F>
+  void write(const BusStatus& bus, std::span<const NodeStatus> nodes, F&& tpdo) noexcept {
+    lock_.begin();
+    lock_.put(0, bus);
+    for (std::size_t i = 0; i < nodes.size() && i < nodes_; ++i) lock_.put(node_at(i), nodes[i]);
+    for (std::size_t i = 0; i < tpdos_; ++i) lock_.put(tpdo_at(i), tpdo(i));
+    lock_.end();
+  }
+
+  /// Front thread.
+  void read(StatusSnapshot& snapshot) const;
+
+ private:
+  static constexpr std::size_t node_at(std::size_t i) noexcept {
+    return seqlock_words<BusStatus> + i * seqlock_words<NodeStatus>;
+  }
+  std::size_t tpdo_at(std::size_t i) const noexcept {
+    return node_at(nodes_) + i * seqlock_words<PdoStatus>;
+  }
+
+  std::size_t nodes_;
+  std::size_t tpdos_;
+  Seqlock lock_;
+};
+
+}  // namespace takt

@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "eds_parser/table/time.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// How long frames are on the wire.
+class WireTime {
+ public:
+  explicit WireTime(std::uint32_t bitrate) noexcept
+      : bit_{1'000'000'000 / (bitrate == 0 ? 1'000'000 : bitrate)} {}
+
+  /// Bits with the most stuff bits and the space to the next frame. CiA 301 says nothing of it;
+  /// ISO 11898-1 stuffs after five equal bits.
+  static constexpr std::int64_t worst_bits(const Frame& frame) noexcept {
+    const std::int64_t data = 8 * std::int64_t{frame.length};
+    return frame.id.is_extended() ? 67 + data + (54 + data - 1) / 4
+                                  : 47 + data + (34 + data - 1) / 4;
+  }
+  /// The same with the stuff bits of random data.
+  static constexpr std::int64_t mean_bits(const Frame& frame) noexcept {
+    const std::int64_t data = 8 * std::int64_t{frame.length};
+    return (frame.id.is_extended() ? 69 : 48) + data + data / 32;
+  }
+  Time worst(std::span<const Frame> frames) const noexcept {
+    std::int64_t bits = 0;
+    for (const Frame& frame : frames) bits += worst_bits(frame);
+    return bit_ * bits;
+  }
+  /// One request of eight bytes and its answer.
+  Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
+
+ private:
+  Time bit_;
+};
+
+}  // namespace takt
