@@ -1,0 +1,205 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "eds_parser/table/ids.hpp"
+#include "master/wire/bytes.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// SDO on the default channel, expedited and segmented. CiA 301, 7.2.4.3. All frames have eight
+/// bytes; unused ones are sent as zero and ignored on reception.
+constexpr CobId sdo_request_cob_id(NodeId server) noexcept {
+  return CobId::base(0x600U + server.value());
+}
+constexpr CobId sdo_answer_cob_id(NodeId server) noexcept {
+  return CobId::base(0x580U + server.value());
+}
+
+/// What the client asks: its command specifier, bits 7..5 of byte 0.
+enum class SdoRequest : std::uint8_t {
+  download_segment = 0,
+  download_initiate = 1,
+  upload_initiate = 2,
+  upload_segment = 3,
+  abort = 4,
+  block_upload = 5,
+  block_download = 6,
+  reserved = 7,
+};
+
+/// What the server answers: its command specifier, bits 7..5 of byte 0.
+enum class SdoAnswer : std::uint8_t {
+  upload_segment = 0,
+  download_segment = 1,
+  upload_initiate = 2,
+  download_initiate = 3,
+  abort = 4,
+  block_download = 5,
+  block_upload = 6,
+  reserved = 7,
+};
+
+constexpr SdoRequest sdo_request(const Frame& frame) noexcept {
+  return static_cast<SdoRequest>(frame.data[0] >> 5);
+}
+constexpr SdoAnswer sdo_answer(const Frame& frame) noexcept {
+  return static_cast<SdoAnswer>(frame.data[0] >> 5);
+}
+
+/// Object of an initiate frame or of an abort.
+constexpr ObjectKey sdo_object(const Frame& frame) noexcept {
+  return {load_le<std::uint16_t>(std::span{frame.data}.subspan(1)), frame.data[3]};
+}
+
+/// Beginning of a transfer as the side with the data sends it: the client in a download, the server
+/// in an upload. Four bytes or fewer travel in it (expedited), of more only the size.
+struct SdoInitiate {
+  ObjectKey object;
+  bool expedited = false;
+  std::optional<std::uint32_t> size{};  ///< none: not indicated
+  std::array<std::uint8_t, 4> data{};   ///< expedited only
+
+  /// Expedited data; all four bytes where the size is not indicated.
+  constexpr std::span<const std::uint8_t> payload() const noexcept {
+    return std::span{data}.first(std::min<std::size_t>(size.value_or(4), 4));
+  }
+};
+
+/// One segment of up to seven bytes.
+struct SdoSegment {
+  bool toggle = false;
+  bool last = false;
+  std::uint8_t size = 0;  ///< 0..7
+  std::array<std::uint8_t, 7> data{};
+
+  constexpr std::span<const std::uint8_t> payload() const noexcept {
+    return std::span{data}.first(size);
+  }
+};
+
+namespace sdo_detail {
+
+constexpr Frame frame(CobId id, std::uint8_t command, ObjectKey object) noexcept {
+  Frame out{.id = id, .length = 8};
+  out.data[0] = command;
+  store_le(std::span{out.data}.subspan(1), object.index);
+  out.data[3] = object.sub;
+  return out;
+}
+
+constexpr Frame initiate(CobId id, std::uint8_t specifier, const SdoInitiate& begin) noexcept {
+  unsigned command = specifier | (begin.expedited ? 2U : 0U) | (begin.size ? 1U : 0U);
+  if (begin.expedited && begin.size) command |= (4U - (*begin.size & 7U)) << 2;
+  Frame out = frame(id, static_cast<std::uint8_t>(command), begin.object);
+  if (begin.expedited) {
+    std::ranges::copy(begin.payload(), out.data.begin() + 4);
+  } else {
+    store_le(std::span{out.data}.subspan(4), begin.size.value_or(0));
+  }
+  return out;
+}
+
+constexpr Frame segment(CobId id, const SdoSegment& part) noexcept {
+  Frame out{.id = id, .length = 8};
+  out.data[0] = static_cast<std::uint8_t>((part.toggle ? 0x10U : 0U) | (7U - part.size) << 1 |
+                                          (part.last ? 1U : 0U));
+  std::ranges::copy(part.payload(), out.data.begin() + 1);
+  return out;
+}
+
+}  // namespace sdo_detail
+
+/// Bytes of either kind as the beginning of a transfer.
+template <WireByte B>
+constexpr SdoInitiate sdo_initiate(ObjectKey object, std::span<B> value) noexcept {
+  SdoInitiate begin{.object = object,
+                    .expedited = !value.empty() && value.size() <= 4,
+                    .size = static_cast<std::uint32_t>(value.size())};
+  for (std::size_t i = 0; begin.expedited && i < value.size(); ++i) {
+    begin.data[i] = static_cast<std::uint8_t>(value[i]);
+  }
+  return begin;
+}
+
+/// The next segment of what is left of a value.
+template <WireByte B>
+constexpr SdoSegment sdo_segment(std::span<B> left, bool toggle) noexcept {
+  SdoSegment part{.toggle = toggle,
+                  .last = left.size() <= 7,
+                  .size = static_cast<std::uint8_t>(std::min<std::size_t>(left.size(), 7))};
+  for (std::size_t i = 0; i < part.size; ++i) part.data[i] = static_cast<std::uint8_t>(left[i]);
+  return part;
+}
+
+// client to server
+
+constexpr Frame upload_request(NodeId server, ObjectKey object) noexcept {
+  return sdo_detail::frame(sdo_request_cob_id(server), 0x40, object);
+}
+constexpr Frame upload_segment_request(NodeId server, bool toggle) noexcept {
+  return sdo_detail::frame(sdo_request_cob_id(server), toggle ? 0x70 : 0x60, {});
+}
+constexpr Frame download_request(NodeId server, const SdoInitiate& begin) noexcept {
+  return sdo_detail::initiate(sdo_request_cob_id(server), 0x20, begin);
+}
+constexpr Frame download_segment_request(NodeId server, const SdoSegment& part) noexcept {
+  return sdo_detail::segment(sdo_request_cob_id(server), part);
+}
+
+// server to client
+
+constexpr Frame upload_answer(NodeId server, const SdoInitiate& begin) noexcept {
+  return sdo_detail::initiate(sdo_answer_cob_id(server), 0x40, begin);
+}
+constexpr Frame upload_segment_answer(NodeId server, const SdoSegment& part) noexcept {
+  return sdo_detail::segment(sdo_answer_cob_id(server), part);
+}
+constexpr Frame download_answer(NodeId server, ObjectKey object) noexcept {
+  return sdo_detail::frame(sdo_answer_cob_id(server), 0x60, object);
+}
+constexpr Frame download_segment_answer(NodeId server, bool toggle) noexcept {
+  return sdo_detail::frame(sdo_answer_cob_id(server), toggle ? 0x30 : 0x20, {});
+}
+
+// both ways
+
+/// `channel`: sdo_request_cob_id when the client aborts, sdo_answer_cob_id when the server does.
+constexpr Frame sdo_abort(CobId channel, ObjectKey object, std::uint32_t code) noexcept {
+  Frame out = sdo_detail::frame(channel, 0x80, object);
+  store_le(std::span{out.data}.subspan(4), code);
+  return out;
+}
+constexpr std::uint32_t sdo_abort_code(const Frame& frame) noexcept {
+  return load_le<std::uint32_t>(std::span{frame.data}.subspan(4));
+}
+
+/// Of a download request or an upload answer.
+constexpr SdoInitiate decode_initiate(const Frame& frame) noexcept {
+  SdoInitiate begin{.object = sdo_object(frame), .expedited = (frame.data[0] & 2) != 0};
+  std::ranges::copy(std::span{frame.data}.subspan(4), begin.data.begin());
+  if ((frame.data[0] & 1) != 0) {
+    begin.size = begin.expedited ? 4U - (frame.data[0] >> 2 & 3U)
+                                 : load_le<std::uint32_t>(std::span{begin.data});
+  }
+  return begin;
+}
+
+/// Of a download segment request or an upload segment answer.
+constexpr SdoSegment decode_segment(const Frame& frame) noexcept {
+  SdoSegment part{.toggle = (frame.data[0] & 0x10) != 0,
+                  .last = (frame.data[0] & 1) != 0,
+                  .size = static_cast<std::uint8_t>(7 - (frame.data[0] >> 1 & 7))};
+  std::ranges::copy(std::span{frame.data}.subspan(1), part.data.begin());
+  return part;
+}
+
+/// Toggle bit of any segment frame, request or answer.
+constexpr bool sdo_toggle(const Frame& frame) noexcept { return (frame.data[0] & 0x10) != 0; }
+
+}  // namespace takt
