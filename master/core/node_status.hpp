@@ -4,18 +4,9 @@
 
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
+#include "master/wire/nmt.hpp"
 
 namespace takt {
-
-/// NMT state as the heartbeat codes it. CiA 301, table 107; `unknown` before the first sign of
-/// life.
-enum class NmtState : std::uint8_t {
-  bootup = 0,
-  stopped = 4,
-  operational = 5,
-  preoperational = 127,
-  unknown = 255,
-};
 
 /// Where a node stands in its boot. Every node is always in one of these.
 enum class BootState : std::uint8_t {

@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "master/wire/bytes.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Emergency message on 0x080 + node. CiA 301, 7.2.7.
+struct Emcy {
+  NodeId node;
+  std::uint16_t code = 0;           ///< 0x0000: error reset or no error
+  std::uint8_t error_register = 0;  ///< 0x1001
+  std::array<std::uint8_t, 5> manufacturer{};
+};
+
+constexpr CobId emcy_cob_id(NodeId node) noexcept { return CobId::base(0x080U + node.value()); }
+
+constexpr Frame encode(const Emcy& emcy) noexcept {
+  Frame frame{.id = emcy_cob_id(emcy.node), .length = 8};
+  store_le(std::span{frame.data}, emcy.code);
+  frame.data[2] = emcy.error_register;
+  for (std::size_t i = 0; i < emcy.manufacturer.size(); ++i) {
+    frame.data[3 + i] = emcy.manufacturer[i];
+  }
+  return frame;
+}
+
+/// Any length is taken, missing bytes are zero. None: another frame.
+constexpr std::optional<Emcy> decode_emcy(const Frame& frame) noexcept {
+  if (frame.id.is_extended() || frame.rtr || (frame.id.id() & ~0x7FU) != 0x080) return {};
+  const auto node = NodeId::from(frame.id.id() & 0x7F);
+  if (!node) return {};
+  std::array<std::uint8_t, 8> bytes{};
+  for (std::size_t i = 0; i < frame.length && i < bytes.size(); ++i) bytes[i] = frame.data[i];
+  return Emcy{.node = *node,
+              .code = load_le<std::uint16_t>(std::span{bytes}),
+              .error_register = bytes[2],
+              .manufacturer = {bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]}};
+}
+
+}  // namespace takt

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "master/wire/frame.hpp"
+#include "master/wire/nmt.hpp"
+
+namespace takt {
+
+/// Heartbeat, guarding answer or boot-up message on 0x700 + node. CiA 301, 7.2.8.3.2 and 7.2.8.3.3.
+struct Heartbeat {
+  NodeId node;
+  NmtState state = NmtState::unknown;  ///< bootup: this is the boot-up message
+};
+
+constexpr CobId heartbeat_cob_id(NodeId node) noexcept {
+  return CobId::base(0x700U + node.value());
+}
+
+constexpr Frame encode(const Heartbeat& heartbeat) noexcept {
+  return make_frame(heartbeat_cob_id(heartbeat.node), {static_cast<std::uint8_t>(heartbeat.state)});
+}
+
+/// Bit 7 is the toggle bit of guarding and is masked; codes that the standard doesn't know give
+/// `unknown`, which is a sign of life all the same. None: another frame, or one without a state.
+constexpr std::optional<Heartbeat> decode_heartbeat(const Frame& frame) noexcept {
+  if (frame.id.is_extended() || frame.rtr || frame.length == 0) return {};
+  if ((frame.id.id() & ~0x7FU) != 0x700) return {};
+  const auto node = NodeId::from(frame.id.id() & 0x7F);
+  if (!node) return {};
+  const auto state = static_cast<NmtState>(frame.data[0] & 0x7F);
+  switch (state) {
+    case NmtState::bootup:
+    case NmtState::stopped:
+    case NmtState::operational:
+    case NmtState::preoperational:
+      return Heartbeat{*node, state};
+    case NmtState::unknown:
+      break;
+  }
+  return Heartbeat{*node, NmtState::unknown};
+}
+
+}  // namespace takt

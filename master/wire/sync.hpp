@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// SYNC without counter: 0x1019 is 0. CiA 301, 7.2.5.
+constexpr Frame sync_frame(CobId id) noexcept { return Frame{.id = id}; }
+
+/// SYNC with counter, 1..240.
+constexpr Frame sync_frame(CobId id, std::uint8_t counter) noexcept {
+  return make_frame(id, {counter});
+}
+
+/// Counter of a received SYNC; 0: it has none.
+constexpr std::uint8_t sync_counter(const Frame& frame) noexcept {
+  return frame.length == 0 ? std::uint8_t{0} : frame.data[0];
+}
+
+}  // namespace takt
