@@ -1,0 +1,120 @@
+#include "apps/axis/drive_sequence.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint16_t disable_voltage = 0x0000;
+constexpr std::uint16_t quick_stop = 0x0002;
+constexpr std::uint16_t shutdown = 0x0006;
+constexpr std::uint16_t switch_on = 0x0007;  // in Operation enabled: disable operation
+constexpr std::uint16_t enable_operation = 0x000F;
+constexpr std::uint16_t fault_reset = 0x0080;
+
+std::uint16_t word_to_enable(State402 state) noexcept {
+  switch (state) {
+    case State402::switch_on_disabled:
+      return shutdown;
+    case State402::ready_to_switch_on:
+      return switch_on;
+    case State402::switched_on:
+    case State402::operation_enabled:
+      return enable_operation;
+    case State402::not_ready_to_switch_on:
+    case State402::quick_stop_active:
+    case State402::fault_reaction_active:
+    case State402::fault:
+      break;
+  }
+  return disable_voltage;
+}
+
+std::uint16_t word_to_disable(State402 state) noexcept {
+  switch (state) {
+    case State402::operation_enabled:
+      return switch_on;
+    case State402::switched_on:
+      return shutdown;
+    case State402::not_ready_to_switch_on:
+    case State402::switch_on_disabled:
+    case State402::ready_to_switch_on:
+    case State402::quick_stop_active:
+    case State402::fault_reaction_active:
+    case State402::fault:
+      break;
+  }
+  return disable_voltage;
+}
+
+std::uint16_t word_to_quick_stop(State402 state) noexcept {
+  const bool moving = state == State402::operation_enabled || state == State402::quick_stop_active;
+  return moving ? quick_stop : word_to_disable(state);
+}
+
+}  // namespace
+
+void DriveSequence::set_goal(DriveGoal goal) noexcept {
+  if (goal == goal_) return;
+  goal_ = goal;
+  was_enabled_ = false;
+  waited_ = 0;
+}
+
+void DriveSequence::reset_fault() noexcept {
+  resetting_ = in_fault();
+  reset_steps_ = 0;
+  waited_ = 0;
+}
+
+std::uint16_t DriveSequence::step(std::uint16_t statusword) noexcept {
+  const auto state = decode_statusword(statusword);
+  unknown_ = !state;
+  notice(state.value_or(state_));
+  return resetting_ ? reset_word() : word_for_goal();
+}
+
+void DriveSequence::notice(State402 state) noexcept {
+  waited_ = state != state_ || (reached() && !resetting_) ? 0 : waited_ + 1;
+  state_ = state;
+  if (enabled()) was_enabled_ = true;
+  const bool left_by_itself = goal_ == DriveGoal::enabled && was_enabled_ && !enabled();
+  if (left_by_itself || (in_fault() && !resetting_)) set_goal(DriveGoal::disabled);
+  if (!in_fault() || stuck()) resetting_ = false;
+}
+
+std::uint16_t DriveSequence::reset_word() noexcept {
+  if (state_ != State402::fault) return disable_voltage;  // the reaction has to end first
+  if (reset_steps_ == limits_.reset_low_steps) return fault_reset;
+  ++reset_steps_;
+  return disable_voltage;
+}
+
+std::uint16_t DriveSequence::word_for_goal() const noexcept {
+  switch (goal_) {
+    case DriveGoal::enabled:
+      return word_to_enable(state_);
+    case DriveGoal::quick_stopped:
+      return word_to_quick_stop(state_);
+    case DriveGoal::disabled:
+      break;
+  }
+  return word_to_disable(state_);
+}
+
+bool DriveSequence::in_fault() const noexcept {
+  return state_ == State402::fault || state_ == State402::fault_reaction_active;
+}
+
+bool DriveSequence::reached() const noexcept {
+  switch (goal_) {
+    case DriveGoal::enabled:
+      return enabled();
+    case DriveGoal::quick_stopped:
+      return state_ == State402::quick_stop_active || state_ == State402::switch_on_disabled;
+    case DriveGoal::disabled:
+      break;
+  }
+  return state_ == State402::switch_on_disabled || state_ == State402::not_ready_to_switch_on ||
+         state_ == State402::fault;
+}
+
+}  // namespace takt

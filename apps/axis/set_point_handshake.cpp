@@ -1,0 +1,34 @@
+#include "apps/axis/set_point_handshake.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint16_t new_set_point = 0x0010;
+constexpr std::uint16_t at_once = 0x0020;
+constexpr std::uint16_t acknowledged = 0x1000;
+
+}  // namespace
+
+void SetPointHandshake::begin() noexcept {
+  if (phase_ == Phase::idle) {
+    phase_ = Phase::before;
+  } else {
+    again_ = true;
+  }
+}
+
+std::uint16_t SetPointHandshake::step(std::uint16_t statusword) noexcept {
+  const bool seen = (statusword & acknowledged) != 0;
+  if (phase_ == Phase::lowered && !seen) {
+    phase_ = again_ ? Phase::before : Phase::idle;
+    again_ = false;
+  }
+  if (phase_ == Phase::before && !seen) {
+    phase_ = Phase::raised;  // the drive has room: raise the edge
+  } else if (phase_ == Phase::raised && seen) {
+    phase_ = Phase::lowered;
+  }
+  return phase_ == Phase::raised ? new_set_point | at_once : at_once;
+}
+
+}  // namespace takt

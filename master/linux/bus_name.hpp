@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace takt {
+
+/// What stands behind `--bus` and `interface:`.
+struct BusName {
+  enum class Kind : unsigned char { simulated, can_interface, unix_path };
+  Kind kind = Kind::simulated;
+  std::string name{};  ///< interface or path
+
+  /// `sim` and nothing at all: simulated; `unix:PATH`; else the name of a CAN interface.
+  static BusName parse(std::string_view text) {
+    constexpr std::string_view prefix = "unix:";
+    if (text.empty() || text == "sim") return {};
+    if (text.starts_with(prefix)) {
+      return {.kind = Kind::unix_path, .name = std::string{text.substr(prefix.size())}};
+    }
+    return {.kind = Kind::can_interface, .name = std::string{text}};
+  }
+};
+
+}  // namespace takt

@@ -1,0 +1,42 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <expected>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "master/linux/bus_error.hpp"
+#include "master/linux/socket_can.hpp"
+#include "master/linux/unix_bus.hpp"
+
+namespace takt {
+
+/// Frames in and out for programs without real time: devices, dumps, tools. Hears everything that
+/// others send, nothing of its own. One thread.
+class FrameChannel {
+ public:
+  /// `can0`, `vcan0`, `unix:PATH`.
+  static std::expected<FrameChannel, BusError> open(std::string_view bus);
+  /// The devices' end of make_socket_pair_bus().
+  explicit FrameChannel(UnixBusPort port) : port_{std::move(port)} {}
+  explicit FrameChannel(SocketCanPort port) : port_{std::move(port)} {}
+
+  /// False: the interface is down or its buffers are full; the frame is lost.
+  bool send(const Frame& frame) noexcept { return send(std::span{&frame, 1}).sent == 1; }
+  SendResult send(std::span<const Frame> frames) noexcept;
+
+  /// The next frame; waits for at most `timeout` (0: does not wait). False: none came.
+  bool receive(StampedFrame& frame, Time timeout) noexcept;
+
+  PortNews news() const noexcept;
+
+ private:
+  std::variant<SocketCanPort, UnixBusPort> port_;
+  std::array<StampedFrame, 64> waiting_{};
+  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace takt

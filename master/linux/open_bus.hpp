@@ -1,0 +1,17 @@
+#pragma once
+#include <expected>
+#include <string_view>
+#include <variant>
+
+#include "master/linux/socket_can.hpp"
+#include "master/linux/unix_bus.hpp"
+
+namespace takt {
+
+using AnyPort = std::variant<SocketCanPort, UnixBusPort>;
+
+/// The bus of the bus thread: `can0` with the filters and the SYNC of the plan, or `unix:PATH`. A
+/// simulated bus is not opened here (make_socket_pair_bus).
+std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& plan, Time spin);
+
+}  // namespace takt

@@ -1,0 +1,163 @@
+#include "master/linux/rt_thread.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <future>
+#include <linux/capability.h>
+#include <malloc.h>
+#include <memory>
+#include <pthread.h>
+#include <sched.h>
+#include <string_view>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+namespace takt {
+namespace {
+
+std::string error_text(int error) { return std::strerror(error); }
+
+bool kernel_is_preempt_rt() {
+  std::ifstream file{"/sys/kernel/realtime"};
+  int value = 0;
+  if (file >> value) return value == 1;
+  utsname name{};
+  uname(&name);
+  return std::string_view{name.version}.find("PREEMPT_RT") != std::string_view::npos;
+}
+
+bool has_capability(unsigned capability) {
+  __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
+  __user_cap_data_struct data[2]{};
+  if (syscall(SYS_capget, &header, data) != 0) return false;
+  return (data[capability / 32].effective >> (capability % 32) & 1) != 0;
+}
+
+/// Raises the soft limit to the hard one; gives the limit then in force.
+rlim_t raise_limit(__rlimit_resource resource) {
+  rlimit limit{};
+  getrlimit(resource, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(resource, &limit);
+  getrlimit(resource, &limit);
+  return limit.rlim_cur;
+}
+
+void set_priority(int priority, RtReport& report) {
+  const rlim_t limit = raise_limit(RLIMIT_RTPRIO);
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0) {
+    report.priority = priority;
+    return;
+  }
+  report.missing.push_back("SCHED_FIFO " + std::to_string(priority) + ": " + error_text(errno) +
+                           " (RLIMIT_RTPRIO is " + std::to_string(limit) +
+                           "; systemd: LimitRTPRIO=99, else a line '@realtime - rtprio 99' in "
+                           "/etc/security/limits.d or CAP_SYS_NICE)");
+}
+
+void pin(int cpu, RtReport& report) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (cpu < 0 || cpu >= CPU_SETSIZE) {
+    report.missing.push_back("cpu " + std::to_string(cpu) + ": no such processor");
+    return;
+  }
+  CPU_SET(cpu, &set);
+  if (sched_setaffinity(0, sizeof set, &set) == 0) {
+    report.cpu = cpu;
+    return;
+  }
+  report.missing.push_back("cpu " + std::to_string(cpu) + ": " + error_text(errno) +
+                           " (not one of this machine's, or not in this process's cpuset)");
+}
+
+/// MCL_FUTURE under a finite limit would turn a later allocation into a failure, so it is asked for
+/// only where nothing limits it.
+void lock_memory(RtReport& report) {
+  const rlim_t limit = raise_limit(RLIMIT_MEMLOCK);
+  if (limit == RLIM_INFINITY || has_capability(CAP_IPC_LOCK)) {
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+      report.memory_locked = true;
+      return;
+    }
+    report.missing.push_back("locked memory: " + error_text(errno));
+    return;
+  }
+  report.missing.push_back("locked memory: RLIMIT_MEMLOCK is " + std::to_string(limit / 1024) +
+                           " KiB (systemd: LimitMEMLOCK=infinity, else a line '@realtime - memlock "
+                           "unlimited' in /etc/security/limits.d or CAP_IPC_LOCK)");
+}
+
+[[gnu::noinline]] void prefault_stack() {
+  constexpr std::size_t bytes = 256 * 1024;
+  char room[bytes];
+  volatile char* touched = room;
+  for (std::size_t i = 0; i < bytes; i += 4096) touched[i] = 0;
+}
+
+}  // namespace
+
+RtReport apply_realtime(const RealtimeOptions& options) {
+  RtReport report;
+  report.mode = options.mode;
+  report.preempt_rt = kernel_is_preempt_rt();
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  prefault_stack();
+  if (options.mode == RtMode::off) return report;
+  lock_memory(report);
+  if (options.cpu) pin(*options.cpu, report);
+  set_priority(options.priority, report);
+  return report;
+}
+
+void prefault_heap(std::size_t bytes) {
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_MAX, 0);
+  const std::unique_ptr<char, decltype(&std::free)> block{static_cast<char*>(std::malloc(bytes)),
+                                                          &std::free};
+  if (!block) return;
+  for (std::size_t i = 0; i < bytes; i += 4096) *const_cast<volatile char*>(block.get() + i) = 0;
+}
+
+std::string to_string(const RtReport& report) {
+  std::string text;
+  if (report.mode == RtMode::off) {
+    text = "real time off";
+  } else {
+    text = report.priority > 0 ? "SCHED_FIFO " + std::to_string(report.priority)
+                               : std::string{"ordinary scheduling"};
+    text += report.cpu ? " on cpu " + std::to_string(*report.cpu) : std::string{" on any cpu"};
+    text += report.memory_locked ? ", memory locked" : ", memory not locked";
+  }
+  text += report.preempt_rt ? ", kernel PREEMPT_RT: yes" : ", kernel PREEMPT_RT: no";
+  const char* separator = "; missing: ";
+  for (const std::string& item : report.missing) {
+    text += separator + item;
+    separator = "; ";
+  }
+  return text;
+}
+
+RtThread::RtThread(const RealtimeOptions& options, const char* name, std::function<void()> body) {
+  std::promise<RtReport> granted;
+  std::future<RtReport> answer = granted.get_future();
+  thread_ = std::jthread{[options, name = std::string{name}.substr(0, 15), body = std::move(body),
+                          granted = std::move(granted)]() mutable {
+    pthread_setname_np(pthread_self(), name.c_str());
+    RtReport report = apply_realtime(options);
+    const bool run = report.may_run();
+    granted.set_value(std::move(report));
+    if (run) body();
+  }};
+  report_ = answer.get();
+}
+
+}  // namespace takt

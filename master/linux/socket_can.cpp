@@ -1,0 +1,263 @@
+#include "master/linux/socket_can.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <utility>
+
+#include "master/linux/can_error_frame.hpp"
+#include "master/linux/can_filters.hpp"
+#include "master/linux/can_frame.hpp"
+#include "master/linux/message_batch.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t batch_frames = 256;
+constexpr std::size_t control_bytes = CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(__u32));
+constexpr Time look_again = std::chrono::milliseconds{50};
+
+BusError error_of(const std::string& interface, const std::string& what, int error) {
+  return {interface + ": " + what + ": " + std::strerror(error), error};
+}
+
+bool set_option(int fd, int level, int option, int value) noexcept {
+  return setsockopt(fd, level, option, &value, sizeof value) == 0;
+}
+
+/// The interface itself is missing, down or was replaced: nothing works until it is back.
+constexpr bool means_down(int error) noexcept {
+  return error == ENETDOWN || error == ENODEV || error == ENXIO || error == ENETUNREACH;
+}
+
+}  // namespace
+
+struct SocketCanPort::State {
+  ~State() {
+    if (fd >= 0) close(fd);
+  }
+
+  int fd = -1;
+  ifreq request{};  // the interface's name
+  std::vector<can_filter> filters;
+  std::optional<canid_t> sync_id;
+  Time spin{};
+  Time next_look{};
+  PortNews news;
+  MessageBatch<can_frame, batch_frames, control_bytes> in;
+  MessageBatch<can_frame, batch_frames, 0> out;
+
+  bool bind_interface() noexcept;
+  void note(int error) noexcept;
+  void look_for_interface() noexcept;
+  bool take(std::size_t i, Time offset, Time now, StampedFrame& frame) noexcept;
+};
+
+/// Filters and binding; both are lost when the interface is deleted, and both may be repeated.
+bool SocketCanPort::State::bind_interface() noexcept {
+  ifreq index = request;
+  if (ioctl(fd, SIOCGIFINDEX, &index) != 0) return false;
+  const auto bytes = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
+  if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), bytes) != 0) return false;
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = index.ifr_ifindex;
+  return bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+void SocketCanPort::State::note(int error) noexcept {
+  news.last_error = error;
+  if (!means_down(error)) return;
+  if (!news.interface_down) next_look = monotonic_now() + look_again;
+  news.interface_down = true;
+}
+
+void SocketCanPort::State::look_for_interface() noexcept {
+  const Time now = monotonic_now();
+  if (now < next_look) return;
+  next_look = now + look_again;
+  ifreq flags = request;
+  if (ioctl(fd, SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
+  if (!bind_interface()) return;
+  int stale = 0;  // the error of going down, where no call has fetched it yet
+  socklen_t size = sizeof stale;
+  getsockopt(fd, SOL_SOCKET, SO_ERROR, &stale, &size);
+  news.interface_down = false;
+  news.bus_off = false;  // a controller starts error-active
+  news.error_passive = false;
+}
+
+namespace {
+
+/// The kernel's stamp and its count of dropped frames, from the control messages.
+struct Control {
+  Time realtime{};
+  std::optional<__u32> dropped;
+};
+
+Control control_of(msghdr& header) noexcept {
+  Control control;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c)) {
+    if (c->cmsg_level != SOL_SOCKET) continue;
+    if (c->cmsg_type == SCM_TIMESTAMPNS) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+      control.realtime = std::chrono::seconds{stamp.tv_sec} + Time{stamp.tv_nsec};
+    } else if (c->cmsg_type == SO_RXQ_OVFL) {
+      __u32 dropped = 0;
+      std::memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
+      control.dropped = dropped;
+    }
+  }
+  return control;
+}
+
+/// A stamp that a step of the wall clock has made impossible counts as now.
+Time monotonic_stamp(Time realtime, Time offset, Time now) noexcept {
+  constexpr Time oldest = std::chrono::seconds{1};
+  const Time when = realtime - offset;
+  return when > now || when < now - oldest ? now : when;
+}
+
+}  // namespace
+
+/// Message i of the batch: false where it is for the port alone (error frames, own frames).
+bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
+                                StampedFrame& frame) noexcept {
+  if (in.bytes(i) != CAN_MTU) return false;
+  const can_frame& raw = in.record(i);
+  msghdr& header = in.header(i);
+  const Control control = control_of(header);
+  if (control.dropped) news.receive_overruns = *control.dropped;
+  if ((raw.can_id & CAN_ERR_FLAG) != 0) {
+    apply_error_frame(raw, news);
+    return false;
+  }
+  const Time when = monotonic_stamp(control.realtime, offset, now);
+  if (header.msg_flags & MSG_CONFIRM) {
+    if (sync_id == raw.can_id) news.last_sync_echo = when;
+    news.bus_off = false;  // what was on the wire was not sent by a controller that is off
+    return false;
+  }
+  frame = {.frame = from_kernel(raw.can_id, raw.can_dlc, raw.data), .when = when};
+  return true;
+}
+
+SocketCanPort::SocketCanPort(std::unique_ptr<State> state) noexcept : state_{std::move(state)} {}
+SocketCanPort::SocketCanPort(SocketCanPort&&) noexcept = default;
+SocketCanPort& SocketCanPort::operator=(SocketCanPort&&) noexcept = default;
+SocketCanPort::~SocketCanPort() = default;
+
+std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOptions& options) {
+  const std::string& name = options.interface;
+  auto state = std::make_unique<State>();
+  if (name.empty() || name.size() >= IFNAMSIZ) {
+    return std::unexpected{BusError{name + ": not an interface name", EINVAL}};
+  }
+  std::memcpy(state->request.ifr_name, name.c_str(), name.size() + 1);
+  state->filters = options.filters;
+  state->spin = options.spin;
+  if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
+
+  state->fd = socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+  if (state->fd < 0) {
+    return std::unexpected{error_of(
+        name, "this kernel has no CAN (try: modprobe can-raw, or --bus unix:/tmp/bus)", errno)};
+  }
+  const int fd = state->fd;
+  const can_err_mask_t errors = state_error_classes;
+  if (!set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1) ||
+      !set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1) ||
+      !set_option(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, options.sync_cob_id ? 1 : 0) ||
+      setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0) {
+    return std::unexpected{error_of(name, "socket option", errno)};
+  }
+  // Room for the burst after a stall; only privilege gets beyond net.core.rmem_max.
+  if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, 1 << 20)) {
+    set_option(fd, SOL_SOCKET, SO_RCVBUF, 1 << 20);
+  }
+  ifreq flags = state->request;
+  if (ioctl(fd, SIOCGIFFLAGS, &flags) != 0) {
+    return std::unexpected{error_of(name, "no such interface (ip -br link lists them)", errno)};
+  }
+  if (!state->bind_interface())
+    return std::unexpected{error_of(name, "not a CAN interface", errno)};
+  if ((flags.ifr_flags & IFF_UP) == 0) {
+    return std::unexpected{error_of(
+        name, "is down (ip link set " + name + " up, for hardware with type can bitrate ...)",
+        ENETDOWN)};
+  }
+  return SocketCanPort{std::move(state)};
+}
+
+std::expected<SocketCanPort, BusError> SocketCanPort::open(const std::string& interface,
+                                                           const BusPlan& plan, Time spin) {
+  SocketCanOptions options{.interface = interface, .filters = filters_for(plan), .spin = spin};
+  if (plan.cycle.sync) options.sync_cob_id = plan.cycle.sync_cob_id;
+  return open(options);
+}
+
+void SocketCanPort::sleep_precisely_until(Time until) noexcept {
+  takt::sleep_precisely_until(until, state_->spin);
+}
+
+bool SocketCanPort::wait_frame(Time until) noexcept {
+  if (state_->news.interface_down) {
+    const Time pause = std::min(until, monotonic_now() + look_again);
+    takt::sleep_until(pause);
+    return pause < until;  // receive() looks for the interface
+  }
+  pollfd wanted{.fd = state_->fd, .events = POLLIN, .revents = 0};
+  const timespec timeout = to_timespec(std::max(Time{0}, until - monotonic_now()));
+  return ppoll(&wanted, 1, &timeout, nullptr) > 0;
+}
+
+std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
+  State& state = *state_;
+  if (state.news.interface_down) state.look_for_interface();
+  const int got = state.in.receive(state.fd, in.size());
+  if (got <= 0) {
+    if (got < 0 && errno != EAGAIN && errno != EINTR) state.note(errno);
+    return 0;
+  }
+  const Time offset = realtime_offset();
+  const Time now = monotonic_now();
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i) {
+    if (state.take(i, offset, now, in[taken])) ++taken;
+  }
+  return taken;
+}
+
+SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
+  State& state = *state_;
+  SendResult result;
+  if (state.news.interface_down) return {.sent = 0, .error = state.news.last_error};
+  while (result.sent < out.size() && result.error == 0) {
+    const std::size_t count = std::min(out.size() - result.sent, batch_frames);
+    for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_kernel(out[result.sent + i]);
+    for (std::size_t done = 0; done < count;) {
+      const int sent = state.out.send(state.fd, done, count - done);
+      if (sent <= 0) {
+        result.error = errno == EAGAIN ? ENOBUFS : errno;
+        state.note(result.error);
+        break;
+      }
+      done += static_cast<std::size_t>(sent);
+      result.sent += static_cast<std::size_t>(sent);
+    }
+  }
+  return result;
+}
+
+PortNews SocketCanPort::news() const noexcept { return state_->news; }
+
+static_assert(Port<SocketCanPort>);
+
+}  // namespace takt

@@ -1,0 +1,199 @@
+#include "master/linux/unix_bus.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <poll.h>
+#include <sys/socket.h>
+#include <system_error>
+
+#include "master/linux/file_descriptor.hpp"
+#include "master/linux/message_batch.hpp"
+#include "master/linux/unix_address.hpp"
+#include "master/linux/unix_bus_hub.hpp"
+#include "master/linux/unix_bus_record.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t batch_frames = 256;
+constexpr Time look_again = std::chrono::milliseconds{10};
+constexpr Time open_limit = std::chrono::seconds{2};
+
+FileDescriptor connect_to(const sockaddr_un& address) noexcept {
+  FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const auto* target = reinterpret_cast<const sockaddr*>(&address);
+  if (!socket || connect(socket.get(), target, sizeof address) != 0) return {};
+  return socket;
+}
+
+}  // namespace
+
+struct UnixBusPort::State {
+  FileDescriptor socket;
+  std::optional<UnixBusHub> hub;       // none: an end of a socket pair
+  std::optional<sockaddr_un> address;  // none: an end of a socket pair
+  std::optional<canid_t> sync_id;
+  bool echoes = false;
+  Time spin{};
+  Time next_look{};
+  std::uint32_t lost_before = 0;  // on earlier connections
+  PortNews news;
+  MessageBatch<UnixBusRecord, batch_frames, 0> in;
+  MessageBatch<UnixBusRecord, batch_frames, 0> out;
+
+  void note(int error) noexcept;
+  void disconnected() noexcept;
+  void look_for_hub() noexcept;
+  void echo(std::size_t count) noexcept;
+  bool take(std::size_t i, StampedFrame& frame) noexcept;
+};
+
+void UnixBusPort::State::disconnected() noexcept {
+  socket.reset();
+  lost_before = news.receive_overruns;
+  news.interface_down = true;
+  next_look = monotonic_now() + look_again;
+}
+
+void UnixBusPort::State::note(int error) noexcept {
+  const bool full = error == EAGAIN || error == ENOBUFS;
+  news.last_error = full ? ENOBUFS : ENETDOWN;
+  if (!full) disconnected();
+}
+
+void UnixBusPort::State::look_for_hub() noexcept {
+  const Time now = monotonic_now();
+  if (!address || now < next_look) return;
+  next_look = now + look_again;
+  socket = connect_to(*address);
+  news.interface_down = !socket;
+}
+
+/// What was received goes back to its sender as his own. Lost echoes are nobody's loss.
+void UnixBusPort::State::echo(std::size_t count) noexcept {
+  const std::int64_t now = monotonic_now().count();
+  for (std::size_t i = 0; i < count; ++i) {
+    in.record(i).when = now;
+    out.record(i) = in.record(i);
+    out.record(i).own = 1;
+  }
+  out.send(socket.get(), 0, count);
+}
+
+/// Message i of the batch: false where it is for the port alone (an echo) or not a frame.
+bool UnixBusPort::State::take(std::size_t i, StampedFrame& frame) noexcept {
+  const UnixBusRecord& record = in.record(i);
+  if (in.bytes(i) != sizeof(UnixBusRecord) || !valid(record)) return false;
+  news.receive_overruns = lost_before + record.lost;
+  const Time when = record.when != 0 ? Time{record.when} : monotonic_now();
+  if (record.own != 0) {
+    if (sync_id == record.can_id) news.last_sync_echo = when;
+    return false;
+  }
+  frame = {.frame = from_kernel(record.can_id, record.length, record.data), .when = when};
+  return true;
+}
+
+UnixBusPort::UnixBusPort(std::unique_ptr<State> state) noexcept : state_{std::move(state)} {}
+UnixBusPort::UnixBusPort(UnixBusPort&&) noexcept = default;
+UnixBusPort& UnixBusPort::operator=(UnixBusPort&&) noexcept = default;
+UnixBusPort::~UnixBusPort() = default;
+
+std::expected<UnixBusPort, BusError> UnixBusPort::open(const UnixBusOptions& options) {
+  auto hub = UnixBusHub::join(options.path);
+  if (!hub) return std::unexpected{hub.error()};
+  auto state = std::make_unique<State>();
+  state->hub = std::move(*hub);
+  state->address = unix_address(options.path);
+  state->spin = options.spin;
+  if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
+  // Another process may hold the lock and not listen yet.
+  const Time limit = monotonic_now() + open_limit;
+  while (!(state->socket = connect_to(*state->address))) {
+    const int error = errno;
+    if (monotonic_now() > limit) {
+      return std::unexpected{
+          BusError{"unix:" + options.path + ": cannot connect: " + std::strerror(error), error}};
+    }
+    takt::sleep_until(monotonic_now() + std::chrono::milliseconds{1});
+  }
+  return UnixBusPort{std::move(state)};
+}
+
+std::pair<UnixBusPort, UnixBusPort> make_socket_pair_bus(std::optional<CobId> sync_cob_id,
+                                                         Time spin) {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw std::system_error{errno, std::generic_category(), "socketpair"};
+  }
+  auto master = std::make_unique<UnixBusPort::State>();
+  auto devices = std::make_unique<UnixBusPort::State>();
+  master->socket.reset(ends[0]);
+  devices->socket.reset(ends[1]);
+  master->spin = spin;
+  if (sync_cob_id) master->sync_id = kernel_id(Frame{.id = *sync_cob_id});
+  devices->echoes = true;
+  return {UnixBusPort{std::move(master)}, UnixBusPort{std::move(devices)}};
+}
+
+void UnixBusPort::sleep_precisely_until(Time until) noexcept {
+  takt::sleep_precisely_until(until, state_->spin);
+}
+
+bool UnixBusPort::wait_frame(Time until) noexcept {
+  if (state_->news.interface_down) {
+    const Time pause = std::min(until, monotonic_now() + look_again);
+    takt::sleep_until(pause);
+    return pause < until;  // receive() looks for the hub
+  }
+  pollfd wanted{.fd = state_->socket.get(), .events = POLLIN, .revents = 0};
+  const timespec timeout = to_timespec(std::max(Time{0}, until - monotonic_now()));
+  return ppoll(&wanted, 1, &timeout, nullptr) > 0;
+}
+
+std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
+  State& state = *state_;
+  if (state.news.interface_down) state.look_for_hub();
+  if (state.news.interface_down || in.empty()) return 0;
+  const int got = state.in.receive(state.socket.get(), in.size());
+  if (got < 0) {
+    if (errno != EAGAIN && errno != EINTR) state.note(errno);
+    return 0;
+  }
+  const auto count = static_cast<std::size_t>(got);
+  if (state.echoes) state.echo(count);
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (state.take(i, in[taken])) ++taken;
+  }
+  if (count > 0 && state.in.bytes(count - 1) == 0) state.note(ECONNRESET);  // end of file
+  return taken;
+}
+
+SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
+  State& state = *state_;
+  SendResult result;
+  while (result.sent < out.size() && result.error == 0) {
+    if (state.news.interface_down) return {.sent = result.sent, .error = ENETDOWN};
+    const std::size_t count = std::min(out.size() - result.sent, batch_frames);
+    for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_record(out[result.sent + i]);
+    for (std::size_t done = 0; done < count;) {
+      const int sent = state.out.send(state.socket.get(), done, count - done);
+      if (sent <= 0) {
+        state.note(errno);
+        result.error = state.news.last_error;
+        break;
+      }
+      done += static_cast<std::size_t>(sent);
+      result.sent += static_cast<std::size_t>(sent);
+    }
+  }
+  return result;
+}
+
+PortNews UnixBusPort::news() const noexcept { return state_->news; }
+
+static_assert(Port<UnixBusPort>);
+
+}  // namespace takt

@@ -1,0 +1,191 @@
+#include "master/linux/unix_bus_hub.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <thread>
+#include <vector>
+
+#include "master/linux/clock.hpp"
+#include "master/linux/file_descriptor.hpp"
+#include "master/linux/message_batch.hpp"
+#include "master/linux/unix_address.hpp"
+#include "master/linux/unix_bus_record.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t max_clients = 64;
+constexpr std::size_t batch_frames = 64;
+constexpr int takeover_poll_ms = 20;
+
+struct Client {
+  FileDescriptor socket;
+  std::uint32_t lost = 0;
+  bool gone = false;
+};
+
+void enlarge_send_buffer(int fd) noexcept {
+  const int bytes = 4 << 20;
+  if (setsockopt(fd, SOL_SOCKET, SO_SNDBUFFORCE, &bytes, sizeof bytes) != 0) {
+    setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+  }
+}
+
+}  // namespace
+
+class UnixBusHub::Impl {
+ public:
+  Impl(FileDescriptor lock, FileDescriptor stop, sockaddr_un address)
+      : lock_{std::move(lock)}, stop_{std::move(stop)}, address_{address} {}
+  ~Impl() {
+    if (!thread_.joinable()) return;
+    const std::uint64_t one = 1;
+    if (write(stop_.get(), &one, sizeof one) == sizeof one) thread_.join();
+  }
+
+  /// False: somebody else hosts. An error is that of listening.
+  std::expected<bool, int> try_to_host();
+  void start() {
+    thread_ = std::thread{[this] { run(); }};
+  }
+  bool hosting() const noexcept { return hosting_.load(std::memory_order_relaxed); }
+
+ private:
+  void run();
+  bool stopping(int timeout_ms);
+  void serve();
+  void accept_client();
+  void forward_from(Client& sender);
+  void deliver(Client& receiver, bool own, std::size_t count);
+
+  FileDescriptor lock_;
+  FileDescriptor stop_;
+  FileDescriptor listener_;
+  sockaddr_un address_;
+  std::vector<Client> clients_;
+  MessageBatch<UnixBusRecord, batch_frames, 0> in_;
+  MessageBatch<UnixBusRecord, batch_frames, 0> out_;
+  std::atomic<bool> hosting_{false};
+  std::thread thread_;
+};
+
+std::expected<bool, int> UnixBusHub::Impl::try_to_host() {
+  if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) return false;
+  FileDescriptor listener{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  unlink(address_.sun_path);  // of a host that is gone: the lock is ours
+  const auto* address = reinterpret_cast<const sockaddr*>(&address_);
+  if (!listener || bind(listener.get(), address, sizeof address_) != 0 ||
+      listen(listener.get(), static_cast<int>(max_clients)) != 0) {
+    const int error = errno;
+    flock(lock_.get(), LOCK_UN);
+    return std::unexpected{error};
+  }
+  listener_ = std::move(listener);
+  hosting_.store(true, std::memory_order_relaxed);
+  return true;
+}
+
+bool UnixBusHub::Impl::stopping(int timeout_ms) {
+  pollfd stop{.fd = stop_.get(), .events = POLLIN, .revents = 0};
+  return poll(&stop, 1, timeout_ms) > 0;
+}
+
+void UnixBusHub::Impl::run() {
+  pthread_setname_np(pthread_self(), "takt-hub");
+  while (!hosting()) {
+    if (stopping(takeover_poll_ms)) return;
+    if (!try_to_host()) return;
+  }
+  serve();
+}
+
+void UnixBusHub::Impl::serve() {
+  std::vector<pollfd> polled;
+  for (;;) {
+    polled.clear();
+    polled.push_back({.fd = stop_.get(), .events = POLLIN, .revents = 0});
+    polled.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+    for (const Client& client : clients_) {
+      polled.push_back({.fd = client.socket.get(), .events = POLLIN, .revents = 0});
+    }
+    if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) return;
+    if (polled[0].revents != 0) return;
+    for (std::size_t i = 0; i < clients_.size(); ++i) {
+      if (polled[i + 2].revents != 0) forward_from(clients_[i]);
+    }
+    if (polled[1].revents != 0) accept_client();
+    std::erase_if(clients_, [](const Client& client) { return client.gone; });
+  }
+}
+
+void UnixBusHub::Impl::accept_client() {
+  FileDescriptor socket{accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+  if (!socket || clients_.size() == max_clients) return;
+  enlarge_send_buffer(socket.get());
+  clients_.push_back({.socket = std::move(socket)});
+}
+
+void UnixBusHub::Impl::forward_from(Client& sender) {
+  const int got = in_.receive(sender.socket.get(), batch_frames);
+  if (got < 0) {
+    sender.gone = errno != EAGAIN && errno != EINTR;
+    return;
+  }
+  const std::int64_t now = monotonic_now().count();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i) {
+    if (in_.bytes(i) == 0) sender.gone = true;  // end of file
+    if (in_.bytes(i) != sizeof(UnixBusRecord) || !valid(in_.record(i))) continue;
+    UnixBusRecord& record = out_.record(count++);
+    record = in_.record(i);
+    record.when = now;
+  }
+  for (Client& receiver : clients_) {
+    if (!receiver.gone || &receiver == &sender) deliver(receiver, &receiver == &sender, count);
+  }
+}
+
+void UnixBusHub::Impl::deliver(Client& receiver, bool own, std::size_t count) {
+  if (count == 0) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    out_.record(i).own = own ? 1 : 0;
+    out_.record(i).lost = receiver.lost;
+  }
+  const int sent = out_.send(receiver.socket.get(), 0, count);
+  const bool full = errno == EAGAIN || errno == ENOBUFS;
+  if (sent < 0 && !full) receiver.gone = true;
+  receiver.lost += static_cast<std::uint32_t>(count - static_cast<std::size_t>(std::max(sent, 0)));
+}
+
+UnixBusHub::UnixBusHub(std::unique_ptr<Impl> impl) noexcept : impl_{std::move(impl)} {}
+UnixBusHub::UnixBusHub(UnixBusHub&&) noexcept = default;
+UnixBusHub& UnixBusHub::operator=(UnixBusHub&&) noexcept = default;
+UnixBusHub::~UnixBusHub() = default;
+
+bool UnixBusHub::hosting() const noexcept { return impl_->hosting(); }
+
+std::expected<UnixBusHub, BusError> UnixBusHub::join(const std::string& path) {
+  const auto refuse = [&path](const std::string& what, int error) {
+    return std::unexpected{
+        BusError{"unix:" + path + ": " + what + ": " + std::strerror(error), error}};
+  };
+  const auto address = unix_address(path);
+  if (!address) return refuse("a path of 1 to 107 bytes is needed", ENAMETOOLONG);
+  FileDescriptor lock{::open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
+  if (!lock) return refuse("cannot create the lock file beside it", errno);
+  FileDescriptor stop{eventfd(0, EFD_CLOEXEC)};
+  if (!stop) return refuse("eventfd", errno);
+  auto impl = std::make_unique<Impl>(std::move(lock), std::move(stop), *address);
+  if (const auto hosts = impl->try_to_host(); !hosts) return refuse("cannot listen", hosts.error());
+  impl->start();
+  return UnixBusHub{std::move(impl)};
+}
+
+}  // namespace takt

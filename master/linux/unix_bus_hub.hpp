@@ -1,0 +1,33 @@
+#pragma once
+#include <expected>
+#include <memory>
+#include <string>
+
+#include "master/linux/bus_error.hpp"
+
+namespace takt {
+
+/// The wire of `unix:PATH`. Every process that uses the bus owns one; exactly one of them, the
+/// holder of the lock file PATH.lock, listens on PATH and hands each frame to all others, and back
+/// to its sender as an echo. When that process ends, however it ends, another one takes over within
+/// 20 ms.
+///
+/// A client that does not read loses frames (each later frame tells it how many); it never blocks
+/// the bus. At most 64 clients.
+class UnixBusHub {
+ public:
+  /// Hosts at once where nobody else does; else stands by. One thread of ordinary priority.
+  static std::expected<UnixBusHub, BusError> join(const std::string& path);
+  UnixBusHub(UnixBusHub&&) noexcept;
+  UnixBusHub& operator=(UnixBusHub&&) noexcept;
+  ~UnixBusHub();
+
+  bool hosting() const noexcept;
+
+ private:
+  class Impl;
+  explicit UnixBusHub(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace takt

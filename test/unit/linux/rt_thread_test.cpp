@@ -1,0 +1,67 @@
+#include "master/linux/rt_thread.hpp"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+namespace takt {
+namespace {
+
+TEST(RtThread, OffAsksForNothingAndIsComplete) {
+  bool ran = false;
+  int policy = -1;
+
+  RtThread thread{{.mode = RtMode::off, .cpu = {}}, "takt-test", [&] {
+                    ran = true;
+                    policy = sched_getscheduler(0);
+                  }};
+  thread.join();
+
+  EXPECT_TRUE(ran);
+  EXPECT_EQ(policy, SCHED_OTHER);
+  EXPECT_TRUE(thread.report().complete());
+  EXPECT_TRUE(to_string(thread.report()).starts_with("real time off, kernel PREEMPT_RT: "));
+}
+
+TEST(RtThread, EnforceDoesNotRunTheBodyOnAProcessorThatIsNotThere) {
+  bool ran = false;
+
+  RtThread thread{{.mode = RtMode::enforce, .cpu = 1000}, "takt-test", [&] { ran = true; }};
+  thread.join();
+
+  EXPECT_FALSE(ran);
+  EXPECT_FALSE(thread.report().may_run());
+  EXPECT_NE(to_string(thread.report()).find("cpu 1000: "), std::string::npos);
+}
+
+TEST(RtThread, TryRunsTheBodyWhateverIsMissing) {
+  bool ran = false;
+
+  RtThread thread{{.mode = RtMode::attempt, .cpu = 1000}, "takt-test", [&] { ran = true; }};
+  thread.join();
+
+  EXPECT_TRUE(ran);
+  EXPECT_FALSE(thread.report().complete());
+}
+
+TEST(RtThread, TheReportNamesWhatWasGranted) {
+  const RtReport report{.mode = RtMode::attempt,
+                        .priority = 80,
+                        .cpu = 1,
+                        .memory_locked = true,
+                        .preempt_rt = false,
+                        .missing = {}};
+
+  EXPECT_EQ(to_string(report), "SCHED_FIFO 80 on cpu 1, memory locked, kernel PREEMPT_RT: no");
+}
+
+TEST(RtThread, TheReportNamesWhatIsMissingAndWhatGrantsIt) {
+  RtReport report;
+  report.missing = {"SCHED_FIFO 80: Operation not permitted (RLIMIT_RTPRIO is 0)"};
+
+  EXPECT_EQ(to_string(report),
+            "ordinary scheduling on any cpu, memory not locked, kernel PREEMPT_RT: no; missing: "
+            "SCHED_FIFO 80: Operation not permitted (RLIMIT_RTPRIO is 0)");
+}
+
+}  // namespace
+}  // namespace takt
