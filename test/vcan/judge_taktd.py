@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""judge_taktd.py BIN: taktd on vcan0 against devices made with python-canopen.
+
+Nobody of this project wrote the devices, the LCM binding, candump or the dissector that judge here.
+Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
+"""
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+NODES = (5, 6)
+PERIOD = 0.010
+SYNC, NMT = 0x080, 0x000
+failures = []
+
+
+def check(good, what):
+    print(("ok    " if good else "FAIL  ") + what, flush=True)
+    if not good:
+        failures.append(what)
+
+
+def next_controlword(statusword):
+    """The word that brings a CiA 402 drive one step nearer to Operation enabled."""
+    if statusword & 0x4F == 0x40:
+        return 0x06
+    return 0x07 if statusword & 0x6F == 0x21 else 0x0F
+
+
+class Application:
+    """Enables both axes over LCM and moves them along a ramp, one step an image."""
+
+    def __init__(self, folder):
+        subprocess.run(["lcm-gen", "--python", "--ppath", folder, *map(str, (ROOT / "share/lcm").glob("*.lcm"))], check=True)
+        sys.path.insert(0, folder)
+        import lcm
+        import takt
+        self.takt, self.bus = takt, lcm.LCM()
+        self.layout, self.images, self.targets, self.positions = None, 0, {}, {}
+        self.bus.subscribe("JUDGE_LAYOUT", self.on_layout)
+        self.bus.subscribe("JUDGE_IMAGE", self.on_image)
+
+    def on_layout(self, _, data):
+        layout = self.takt.layout_t.decode(data)
+        self.layout = {(s.node_id, s.index, s.output): layout.first_signal + i for i, s in enumerate(layout.signals)}
+
+    def on_image(self, _, data):
+        image = self.takt.image_t.decode(data)
+        self.images += 1
+        if self.layout is None:
+            return
+        command = self.takt.command_t()
+        command.schema, command.session, command.sender, command.cycle = 1, image.session, "judge", image.cycle
+        command.time_to_live = 20
+        for node in NODES:
+            at = {index: self.layout[node, index, False] for index in (0x6041, 0x6064)}
+            statusword, position = image.values[at[0x6041]], image.values[at[0x6064]]
+            self.positions[node] = position
+            if statusword & 0x6F == 0x27 and self.targets.get(node, 0) < 5000:
+                self.targets[node] = self.targets.get(node, position) + 50
+            word, target = next_controlword(statusword), self.targets.get(node, position)
+            command.signals += [self.layout[node, 0x6040, True], self.layout[node, 0x607A, True]]
+            command.values += [word, target]
+        command.num_values = len(command.signals)
+        self.bus.publish("JUDGE_COMMAND", command.encode())
+
+    def run_while(self, process):
+        while process.poll() is None:
+            self.bus.handle_timeout(50)
+
+
+def read_log(path):
+    """[(time, identifier, payload)] of a candump log."""
+    frames = []
+    for line in path.read_text().splitlines():
+        stamp, _, text = line.split()[:3]
+        identifier, payload = text.split("#")
+        frames.append((float(stamp.strip("()")), int(identifier, 16), bytes.fromhex(payload)))
+    return frames
+
+
+def judge_boot(frames):
+    for node in NODES:
+        requests = [f for f in frames if f[1] == 0x600 + node]
+        check(len(requests) > 10, f"node {node} was configured by SDO ({len(requests)} requests)")
+        pending, refused = None, []
+        for _, identifier, payload in frames:
+            if identifier == 0x600 + node:
+                pending = payload
+            elif identifier == 0x580 + node and payload[0] == 0x80 and pending and pending[0] >> 5 == 1:
+                refused.append(pending.hex())
+        check(not refused, f"node {node} refused no download {refused}")
+        starts = [f for f in frames if f[1] == NMT and f[2][0] == 1 and f[2][1] in (0, node)]
+        check(bool(starts), f"node {node} was started")
+    syncs = [f[0] for f in frames if f[1] == SYNC]
+    starts = [f[0] for f in frames if f[1] == NMT and f[2][0] == 1]
+    check(bool(syncs and starts) and syncs[0] < starts[0], "SYNC beats before the first NMT start")
+
+
+def judge_cycles(frames):
+    syncs = [f[0] for f in frames if f[1] == SYNC]
+    steps = [b - a for a, b in zip(syncs, syncs[1:])]
+    median = statistics.median(steps)
+    check(abs(median - PERIOD) < 0.0005, f"median SYNC period {median * 1e3:.3f} ms of {len(syncs)}")
+    mean = (syncs[-1] - syncs[0]) / round((syncs[-1] - syncs[0]) / PERIOD)
+    check(abs(mean - PERIOD) < 20e-6, f"SYNC does not drift: mean period {mean * 1e3:.4f} ms")
+    order, cycle = [], []
+    for _, identifier, _ in frames:
+        if identifier == SYNC:
+            order.append(cycle)
+            cycle = []
+        elif identifier in (0x185, 0x186, 0x205, 0x206):
+            cycle.append(identifier)
+    full = [c for c in order if len(c) == 4]
+    check(len(full) > 200, f"{len(full)} cycles with all four PDOs")
+    good = [c for c in full if set(c[:2]) == {0x185, 0x186} and set(c[2:]) == {0x205, 0x206}]
+    check(len(good) >= 0.98 * len(full), f"{len(good)} of them: TPDOs after SYNC, RPDOs before the next")
+
+
+def judge_dissector(log, folder):
+    pcap = pathlib.Path(folder) / "bus.pcap"
+    subprocess.run([sys.executable, HERE / "candump_to_pcap.py", log, pcap], check=True)
+    told = subprocess.run(["tshark", "-r", pcap, "-d", "can.subdissector,canopen"], capture_output=True, text=True, check=True)
+    lines = told.stdout.splitlines()
+    strange = [line for line in lines if "CANopen" not in line or "alformed" in line]
+    check(len(lines) > 1000 and not strange, f"tshark reads {len(lines)} frames as CANopen, strange: {strange[:3]}")
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log, events = pathlib.Path(folder) / "bus.log", pathlib.Path(folder) / "events.jsonl"
+        application = Application(folder)
+        with open(log, "w") as out:
+            candump = subprocess.Popen(["candump", "-L", "vcan0"], stdout=out)
+        eds = ROOT / "share/eds/takt_drive402.eds"
+        nodes = subprocess.Popen([sys.executable, HERE / "python_nodes.py", "vcan0", eds, *map(str, NODES)],
+                                 stdout=subprocess.PIPE, text=True)
+        nodes.stdout.readline()
+        taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", HERE / "python_axes.yaml", "--for", "10s", "--events", events])
+        application.run_while(taktd)
+        time.sleep(0.2)
+        for process in (nodes, candump):
+            process.terminate()
+            process.wait()
+        check(taktd.returncode == 0, f"taktd ended with exit code {taktd.returncode}")
+        kinds = [json.loads(line)["kind"] for line in events.read_text().splitlines()]
+        check(kinds.count("boot_done") == len(NODES), f"each node booted once: {kinds}")
+        frames = read_log(log)
+        judge_boot(frames)
+        judge_cycles(frames)
+        judge_dissector(log, folder)
+        check(application.images > 400, f"LCM's Python binding decoded {application.images} images")
+        moved = {n: application.positions.get(n, 0) for n in NODES}
+        check(all(position >= 5000 for position in moved.values()), f"the axes followed: {moved}")
+        words = {n: [f[2][0] | f[2][1] << 8 for f in frames if f[1] == 0x200 + n] for n in NODES}
+        check(all(w and not w[-1] & 0x08 for w in words.values()), "the last controlwords do not enable operation")
+    print(f"{len(failures)} checks failed" if failures else "all checks passed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
