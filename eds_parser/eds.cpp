@@ -1,0 +1,226 @@
+#include "eds_parser/eds.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "eds_parser/compact.hpp"
+#include "eds_parser/eds_info.hpp"
+#include "eds_parser/eds_lists.hpp"
+#include "eds_parser/eds_objects.hpp"
+#include "eds_parser/eds_section.hpp"
+#include "eds_parser/ini.hpp"
+#include "eds_parser/text.hpp"
+#include "eds_parser/value_reader.hpp"
+
+namespace takt {
+namespace {
+
+/// A file larger than this is not read: no dictionary of 65,536 objects needs so much.
+constexpr std::uintmax_t largest_file = 512ULL << 20;
+
+/// Where each kind of section is.
+struct Outline {
+  const IniSection* device_info = nullptr;
+  const IniSection* dummy_usage = nullptr;
+  const IniSection* commissioning = nullptr;
+  std::array<const IniSection*, 3> lists{};  ///< by ObjectList
+  std::vector<ObjectSection> objects;        ///< ascending index and role, no duplicates
+};
+
+class EdsReader {
+ public:
+  EdsReader(const IniFile& file, Report& report) noexcept : file_{file}, report_{report} {}
+
+  EdsFile read(std::string file_name, std::optional<NodeId> node) {
+    outline();
+    EdsFile result;
+    auto& dictionary = result.dictionary;
+    dictionary.file = std::move(file_name);
+    dictionary.is_dcf = is_dcf(dictionary.file);
+    read_headers(dictionary, node);
+    read_objects(dictionary);
+    expand_compact_pdos(dictionary);
+    result.readable = !dictionary.objects.empty();
+    if (!result.readable) {
+      report_.error({}, "not-an-eds",
+                    "there is no section of an object, [1000] for example: this is no EDS or DCF");
+    }
+    return result;
+  }
+
+ private:
+  void outline() {
+    outline_.objects.reserve(file_.sections.size());
+    for (std::uint32_t at = 0; at < file_.sections.size(); ++at) {
+      place(classify_section(file_.sections[at].name), at);
+    }
+    auto& objects = outline_.objects;
+    if (!std::ranges::is_sorted(objects, {}, &ObjectSection::order)) {
+      std::ranges::stable_sort(objects, {}, &ObjectSection::order);
+    }
+    const auto same = [this](const ObjectSection& first, const ObjectSection& second) {
+      if (first.order != second.order) return false;
+      tell_duplicate(file_.sections[first.section], file_.sections[second.section]);
+      return true;
+    };
+    objects.erase(std::unique(objects.begin(), objects.end(), same), objects.end());
+  }
+
+  void place(const SectionName& name, std::uint32_t at) {
+    const auto& section = file_.sections[at];
+    if (name.odd_form) {
+      report_.note(section.pos, "section-name-form",
+                   "section " + quoted(section.name) +
+                       ": CiA 306 writes indices without 0x and sub-indices without leading zero");
+    }
+    switch (name.kind) {
+      case SectionKind::object:
+      case SectionKind::sub_object:
+      case SectionKind::name_list:
+      case SectionKind::value_list:
+      case SectionKind::denotation_list:
+        outline_.objects.push_back(ObjectSection::of(name, at));
+        return;
+      case SectionKind::device_info:
+        return keep(outline_.device_info, section);
+      case SectionKind::dummy_usage:
+        return keep(outline_.dummy_usage, section);
+      case SectionKind::mandatory_objects:
+        return keep(outline_.lists[0], section);
+      case SectionKind::optional_objects:
+        return keep(outline_.lists[1], section);
+      case SectionKind::manufacturer_objects:
+        return keep(outline_.lists[2], section);
+      case SectionKind::commissioning_two_m:
+        report_.warning(section.pos, "section-spelling",
+                        "CiA 306 spells it [DeviceComissioning], with one m; it was read");
+        return keep(outline_.commissioning, section);
+      case SectionKind::commissioning:
+        return keep(outline_.commissioning, section);
+      case SectionKind::unknown:
+        if (report_.wants("unknown-section")) {
+          report_.warning(
+              section.pos, "unknown-section",
+              "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
+        }
+        return;
+      case SectionKind::short_object:
+      case SectionKind::object_links:
+      case SectionKind::file_info:
+      case SectionKind::comments:
+      case SectionKind::tools:
+      case SectionKind::dynamic_channels:
+      case SectionKind::supported_modules:
+      case SectionKind::connected_modules:
+      case SectionKind::module:
+        return;
+    }
+  }
+
+  void keep(const IniSection*& slot, const IniSection& section) {
+    if (slot != nullptr) return tell_duplicate(*slot, section);
+    slot = &section;
+  }
+
+  void tell_duplicate(const IniSection& first, const IniSection& second) {
+    if (!report_.wants("duplicate-section")) return;
+    report_.warning(second.pos, "duplicate-section",
+                    "section " + quoted(second.name) + " appears again; the first one, line " +
+                        std::to_string(first.pos.line) + ", counts");
+  }
+
+  /// The name decides; where it does not tell, the section that only a DCF should have.
+  bool is_dcf(std::string_view name) const noexcept {
+    if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".dcf")) return true;
+    if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".eds")) return false;
+    return outline_.commissioning != nullptr;
+  }
+
+  std::span<const IniEntry> entries(const IniSection* section) const noexcept {
+    return section == nullptr ? std::span<const IniEntry>{} : file_.entries(*section);
+  }
+
+  void read_headers(ObjectDictionary& dictionary, std::optional<NodeId> node) {
+    ValueReader values{report_, std::nullopt};
+    read_commissioning(dictionary.commissioning, entries(outline_.commissioning), values, report_);
+    dictionary.node_id = node ? node : dictionary.commissioning.node_id;
+    if (outline_.device_info != nullptr) {
+      read_device_info(dictionary.device, *outline_.device_info, entries(outline_.device_info),
+                       values, report_);
+    } else {
+      report_.warning({}, "device-info-missing", "the file has no section [DeviceInfo]");
+    }
+    read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values);
+  }
+
+  void read_objects(ObjectDictionary& dictionary) {
+    const auto described = std::make_unique<IndexSet>();
+    for (const auto& section : outline_.objects) described->set(section.index());
+    dictionary.objects.reserve(described->count());
+    ObjectLists lists{*described, report_};
+    for (const auto list :
+         {ObjectList::mandatory, ObjectList::optional, ObjectList::manufacturer}) {
+      const auto* section = outline_.lists[static_cast<std::size_t>(list)];
+      if (section != nullptr) lists.read(list, *section, entries(section));
+    }
+    if (!lists.any() && described->any()) {
+      report_.warning({}, "lists-missing",
+                      "the file has no [MandatoryObjects], [OptionalObjects] or "
+                      "[ManufacturerObjects]; all sections of objects were read");
+    }
+    ValueReader values{report_, dictionary.node_id};
+    ObjectReader reader{file_, values, report_};
+    const std::span all{outline_.objects};
+    for (std::size_t at = 0; at < all.size();) {
+      std::size_t end = at + 1;
+      while (end < all.size() && all[end].index() == all[at].index()) ++end;
+      auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
+      object.list = lists.list_of(object.index);
+      lists.tell_unlisted(object);
+      at = end;
+    }
+  }
+
+  const IniFile& file_;
+  Report& report_;
+  Outline outline_;
+};
+
+EdsFile unreadable(std::string file_name, std::string_view message) {
+  EdsFile result;
+  result.dictionary.file = file_name;
+  result.findings.push_back(
+      {std::move(file_name), {}, Severity::error, "file-unreadable", std::string{message}});
+  return result;
+}
+
+}  // namespace
+
+EdsFile read_eds(std::string_view text, std::string file_name, std::optional<NodeId> node) {
+  Report report{file_name};
+  if (text.size() > largest_file) return unreadable(std::move(file_name), "larger than 512 MB");
+  const auto file = read_ini(text, report);
+  auto result = EdsReader{file, report}.read(std::move(file_name), node);
+  result.findings = report.take();
+  return result;
+}
+
+EdsFile read_eds_file(const std::filesystem::path& path, std::optional<NodeId> node) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return unreadable(path.string(), error ? error.message() : "is not a regular file");
+  }
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return unreadable(path.string(), error.message());
+  if (size > largest_file) return unreadable(path.string(), "larger than 512 MB");
+  std::ifstream stream{path, std::ios::binary};
+  std::string text(static_cast<std::size_t>(size), '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (!stream && !stream.eof()) return unreadable(path.string(), "cannot be read");
+  return read_eds(text, path.string(), node);
+}
+
+}  // namespace takt

@@ -1,0 +1,38 @@
+#pragma once
+#include <bitset>
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/ini.hpp"
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/report.hpp"
+
+namespace takt {
+
+using IndexSet = std::bitset<65536>;
+
+/// [MandatoryObjects], [OptionalObjects], [ManufacturerObjects] against the sections of the file.
+/// The sections are the truth; the lists only say where an object belongs. CiA 306, 4.6.3.1.
+class ObjectLists {
+ public:
+  /// `described`: indices that have a section.
+  ObjectLists(const IndexSet& described, Report& report);
+
+  void read(ObjectList list, const IniSection& section, std::span<const IniEntry> entries);
+  ObjectList list_of(std::uint16_t index) const noexcept { return membership_[index]; }
+  /// Tells of an object that no list names.
+  void tell_unlisted(const Object& object) const;
+  bool any() const noexcept { return any_; }
+
+ private:
+  void add(ObjectList list, const IniEntry& entry);
+  std::uint16_t read_index(const IniEntry& entry, std::uint16_t decimal);
+  void check_place(ObjectList list, std::uint16_t index, const IniEntry& entry);
+
+  const IndexSet& described_;
+  Report& report_;
+  std::vector<ObjectList> membership_;
+  bool any_ = false;
+};
+
+}  // namespace takt

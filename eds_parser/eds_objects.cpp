@@ -1,0 +1,329 @@
+#include "eds_parser/eds_objects.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/number.hpp"
+#include "eds_parser/standard_types.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+bool is_structured(ObjectType type) noexcept {
+  return type == ObjectType::array || type == ObjectType::record || type == ObjectType::defstruct;
+}
+
+std::string section_text(const IniSection& section) { return '[' + to_utf8(section.name) + ']'; }
+
+/// Type with the given code, unknown where takt does not know it.
+DataType data_type_of(std::uint32_t code) noexcept {
+  const auto type = static_cast<DataType>(code);
+  return code <= 0x1B && name(type) != "unknown" ? type : DataType::unknown;
+}
+
+std::optional<Access> access_of(std::string_view text) noexcept {
+  struct Known {
+    std::string_view text;
+    Access access;
+  };
+  constexpr Known known[] = {{"ro", Access::ro},   {"wo", Access::wo},
+                             {"rw", Access::rw},   {"rwr", Access::rwr},
+                             {"rww", Access::rww}, {"const", Access::constant}};
+  for (const auto& candidate : known) {
+    if (same_word(text, candidate.text)) return candidate.access;
+  }
+  return std::nullopt;
+}
+
+std::uint32_t role_of(const SectionName& name) noexcept {
+  switch (name.kind) {
+    case SectionKind::sub_object:
+      return ObjectSection::first_sub_role + name.sub;
+    case SectionKind::name_list:
+      return ObjectSection::first_list_role;
+    case SectionKind::value_list:
+      return ObjectSection::first_list_role + 1;
+    case SectionKind::denotation_list:
+      return ObjectSection::first_list_role + 2;
+    default:
+      return ObjectSection::main_role;
+  }
+}
+
+bool inverted(const Value& low, const Value& high) noexcept {
+  if (low.index() != high.index() || std::holds_alternative<std::string>(low)) return false;
+  return high < low;
+}
+
+}  // namespace
+
+ObjectSection ObjectSection::of(const SectionName& name, std::uint32_t section) noexcept {
+  return {.order = static_cast<std::uint32_t>(name.index) << 9 | role_of(name), .section = section};
+}
+
+/// The sections of one object by role.
+struct ObjectReader::Parts {
+  std::uint16_t index = 0;
+  const IniSection* main = nullptr;
+  std::span<const ObjectSection> subs;
+  std::array<const IniSection*, 3> lists{};  ///< by CompactList
+};
+
+ObjectReader::Parts ObjectReader::split(std::span<const ObjectSection> group) {
+  Parts parts;
+  parts.index = group.front().index();
+  std::size_t at = 0;
+  if (group[0].role() == ObjectSection::main_role)
+    parts.main = &file_.sections[group[at++].section];
+  const auto first_sub = at;
+  while (at < group.size() && group[at].is_sub()) ++at;
+  parts.subs = group.subspan(first_sub, at - first_sub);
+  for (; at < group.size(); ++at) {
+    parts.lists[group[at].role() - ObjectSection::first_list_role] =
+        &file_.sections[group[at].section];
+  }
+  return parts;
+}
+
+Object ObjectReader::read(std::span<const ObjectSection> group) {
+  const auto parts = split(group);
+  Object object;
+  object.index = parts.index;
+  object.type = ObjectType::record;
+  object.pos = file_.sections[group.front().section].pos;
+  if (parts.main == nullptr) {
+    report_.warning(object.pos, "object-section-missing",
+                    "object " + hex(object.index) +
+                        " has sub-objects but no section of its own; taken for a RECORD");
+    read_subs(object, parts);
+  } else {
+    read_main(object, parts);
+  }
+  apply_lists(object, parts);
+  return object;
+}
+
+void ObjectReader::read_main(Object& object, const Parts& parts) {
+  const auto& section = *parts.main;
+  const ObjectFields fields{file_.entries(section), section.name, report_};
+  object.name = to_utf8(fields.text(Keyword::parameter_name));
+  if (object.name.empty()) {
+    report_.warning(section.pos, "parameter-name-missing",
+                    section_text(section) + " has no ParameterName");
+  }
+  object.type = read_object_type(fields, section, object.index, !parts.subs.empty());
+  const auto compact =
+      values_.read_count(fields.text(Keyword::compact_sub_obj), 0xFF, "CompactSubObj",
+                         fields.pos(Keyword::compact_sub_obj, section.pos));
+  if (compact.value_or(0) == 0 && !is_structured(object.type)) {
+    read_single(object, fields, section);
+    return;
+  }
+  read_subs(object, parts);
+  if (compact.value_or(0) != 0) {
+    expand(object, fields, section, parts);
+  } else {
+    check_sub_number(object, fields, section);
+  }
+}
+
+void ObjectReader::read_single(Object& object, const ObjectFields& fields,
+                               const IniSection& section) {
+  object.subs.push_back(read_sub(fields, {object.index, 0}, section));
+  auto& sub = object.subs.back();
+  if (object.type == ObjectType::domain && !fields.has(Keyword::data_type)) {
+    sub.type = DataType::domain;
+    sub.type_code = 0x000F;
+  }
+}
+
+void ObjectReader::read_subs(Object& object, const Parts& parts) {
+  object.subs.reserve(parts.subs.size());
+  for (const auto& part : parts.subs) {
+    const auto& section = file_.sections[part.section];
+    const ObjectFields fields{file_.entries(section), section.name, report_};
+    if (!fields.has(Keyword::parameter_name)) {
+      report_.warning(section.pos, "parameter-name-missing",
+                      section_text(section) + " has no ParameterName");
+    }
+    object.subs.push_back(read_sub(fields, {part.index(), part.sub()}, section));
+  }
+}
+
+void ObjectReader::expand(Object& object, const ObjectFields& fields, const IniSection& section,
+                          const Parts& parts) {
+  const auto pos = fields.pos(Keyword::compact_sub_obj, section.pos);
+  auto count = values_.read_count(fields.text(Keyword::compact_sub_obj), 0xFF, "CompactSubObj", pos)
+                   .value_or(0);
+  if (!fields.has(Keyword::data_type) && standard_type({object.index, 1}) == DataType::unknown) {
+    report_.error(pos, "compact-without-type",
+                  section_text(section) +
+                      " has CompactSubObj but no DataType; its sub-objects were left out");
+    return;
+  }
+  if (count > 0xFE) {
+    report_.warning(pos, "compact-too-many", "CompactSubObj is at most 254; read as 254");
+    count = 0xFE;
+  }
+  if (!budget_.take(count + 1U)) {
+    report_.error(pos, "too-many-sub-objects",
+                  "more than " + std::to_string(ExpansionBudget::most) +
+                      " sub-objects by CompactSubObj; those of " + section_text(section) +
+                      " were left out");
+    return;
+  }
+  if (!parts.subs.empty()) {
+    report_.warning(pos, "compact-and-sections",
+                    section_text(section) +
+                        " has CompactSubObj and sections of sub-objects; the sections count");
+  } else if (values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", section.pos)
+                 .value_or(0) != 0) {
+    report_.warning(fields.pos(Keyword::sub_number, section.pos), "compact-and-sub-number",
+                    "SubNumber is 0 or missing beside CompactSubObj; it was left out");
+  }
+  const SubObject pattern = read_sub(fields, {object.index, 1}, section);
+  expand_compact_subs(object, pattern, static_cast<std::uint8_t>(count));
+}
+
+void ObjectReader::check_sub_number(const Object& object, const ObjectFields& fields,
+                                    const IniSection& section) {
+  const auto found = static_cast<std::size_t>(
+      std::ranges::count_if(object.subs, [](const SubObject& sub) { return sub.sub != 0xFF; }));
+  const auto pos = fields.pos(Keyword::sub_number, section.pos);
+  if (object.subs.empty()) {
+    report_.warning(section.pos, "no-sub-objects",
+                    section_text(section) + " is an ARRAY or RECORD without sub-objects");
+    return;
+  }
+  const auto said = values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", pos);
+  if (!said) {
+    report_.warning(pos, "sub-number-missing",
+                    section_text(section) + " has no SubNumber; " + std::to_string(found) +
+                        " sub-objects were found");
+  } else if (*said != found) {
+    report_.warning(pos, "sub-number-wrong",
+                    "SubNumber of " + section_text(section) + " is " + std::to_string(*said) +
+                        ", but there are sections of " + std::to_string(found) +
+                        " sub-objects (sub FF not counted); all were read");
+  }
+}
+
+ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniSection& section,
+                                          std::uint16_t index, bool has_subs) {
+  const auto pos = fields.pos(Keyword::object_type, section.pos);
+  const auto code = values_.read_count(fields.text(Keyword::object_type), 0xFF, "ObjectType", pos);
+  const bool known = code && (*code == 0 || *code == 2 || (*code >= 5 && *code <= 9));
+  if (code && !known) {
+    report_.warning(pos, "object-type-unknown",
+                    "ObjectType " + hex(*code, 2) + " of " + section_text(section) +
+                        " does not exist; taken for a " + (has_subs ? "RECORD" : "VAR"));
+  }
+  const auto type = known ? static_cast<ObjectType>(*code) : ObjectType::var;
+  if (!has_subs || is_structured(type)) return type;
+  report_.warning(pos, "sub-objects-of-var",
+                  "object " + hex(index) +
+                      (known ? " is no ARRAY or RECORD" : " has no ObjectType") +
+                      " but has sub-objects; taken for a RECORD");
+  return ObjectType::record;
+}
+
+SubObject ObjectReader::read_sub(const ObjectFields& fields, ObjectKey key,
+                                 const IniSection& section) {
+  SubObject sub;
+  sub.sub = key.sub;
+  sub.name = to_utf8(fields.text(Keyword::parameter_name));
+  sub.pos = section.pos;
+  sub.default_pos = fields.pos(Keyword::default_value, section.pos);
+  read_type(sub, fields, key, section);
+  sub.access = read_access(fields, key, section, sub.type == DataType::domain);
+  if (const auto* mapping = fields.get(Keyword::pdo_mapping)) {
+    sub.pdo_mappable = values_.read_flag(mapping->value, "PDOMapping", mapping->pos());
+  }
+  if (const auto* flags = fields.get(Keyword::obj_flags)) {
+    sub.flags = values_.read_count(flags->value, 0xFFFF'FFFF, "ObjFlags", flags->pos()).value_or(0);
+  }
+  read_values(sub, fields, key, section);
+  return sub;
+}
+
+void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                             const IniSection& section) {
+  const auto pos = fields.pos(Keyword::data_type, section.pos);
+  const auto code = values_.read_count(fields.text(Keyword::data_type), 0xFFFF, "DataType", pos);
+  if (code) {
+    sub.type_code = static_cast<std::uint16_t>(*code);
+    sub.type = data_type_of(*code);
+    if (sub.type == DataType::unknown && report_.wants("data-type-unknown")) {
+      report_.warning(pos, "data-type-unknown",
+                      to_string(key) + ": DataType " + hex(*code) +
+                          " is not one of CiA 301; values are kept as text");
+    }
+    return;
+  }
+  const auto object_type =
+      values_.read_count(fields.text(Keyword::object_type), 0xFF, "ObjectType", section.pos);
+  const bool is_domain = object_type == 2U;
+  sub.type = is_domain ? DataType::domain : standard_type(key);
+  sub.type_code = static_cast<std::uint16_t>(sub.type);
+  if (is_domain) return;
+  report_.warning(section.pos, "data-type-missing",
+                  section_text(section) + " has no DataType; " +
+                      (sub.type == DataType::unknown
+                           ? "the object is kept without a type"
+                           : "taken for " + std::string{name(sub.type)} + ", as CiA 301 has it"));
+}
+
+Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
+                                 const IniSection& section, bool is_domain) {
+  const auto text = fields.text(Keyword::access_type);
+  if (const auto access = access_of(text)) return *access;
+  const auto pos = fields.pos(Keyword::access_type, section.pos);
+  const auto bare = without_comment(text);
+  if (const auto access = access_of(bare)) {
+    report_.note(pos, "inline-comment",
+                 to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
+    return *access;
+  }
+  if (!(is_domain && bare.empty())) {
+    report_.warning(pos, bare.empty() ? "access-type-missing" : "access-type-unknown",
+                    to_string(key) + ": AccessType " +
+                        (bare.empty() ? std::string{"is missing"} : quoted(bare) + " is unknown") +
+                        "; read as rw");
+  }
+  return Access::rw;
+}
+
+void ObjectReader::read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                               const IniSection& section) {
+  const auto read = [&](Keyword keyword, std::string_view what, Severity misfit) {
+    const auto* entry = fields.get(keyword);
+    if (entry == nullptr || entry->value.empty()) return std::optional<Value>{};
+    return values_.read(entry->value, sub.type, {key, what, entry->pos(), misfit});
+  };
+  sub.default_value = read(Keyword::default_value, "DefaultValue", Severity::error);
+  sub.default_text = to_utf8(fields.text(Keyword::default_value));
+  if (fields.has(Keyword::parameter_value)) {
+    sub.parameter_value = read(Keyword::parameter_value, "ParameterValue", Severity::error);
+    sub.parameter_text = to_utf8(fields.text(Keyword::parameter_value));
+  }
+  if (fields.has(Keyword::denotation)) sub.denotation = to_utf8(fields.text(Keyword::denotation));
+  sub.low_limit = read(Keyword::low_limit, "LowLimit", Severity::warning);
+  sub.high_limit = read(Keyword::high_limit, "HighLimit", Severity::warning);
+  if (!sub.low_limit || !sub.high_limit || !inverted(*sub.low_limit, *sub.high_limit)) return;
+  report_.warning(fields.pos(Keyword::low_limit, section.pos), "limits-inverted",
+                  to_string(key) + ": LowLimit " + quoted(fields.text(Keyword::low_limit)) +
+                      " is above HighLimit " + quoted(fields.text(Keyword::high_limit)) + " in " +
+                      std::string{name(sub.type)} + "; both were left out");
+  sub.low_limit.reset();
+  sub.high_limit.reset();
+}
+
+void ObjectReader::apply_lists(Object& object, const Parts& parts) {
+  for (const auto list : {CompactList::names, CompactList::values, CompactList::denotations}) {
+    const auto* section = parts.lists[static_cast<std::size_t>(list)];
+    if (section == nullptr) continue;
+    apply_compact_list(object, list, file_.entries(*section), values_, report_);
+  }
+}
+
+}  // namespace takt

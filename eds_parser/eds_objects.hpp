@@ -1,0 +1,69 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/compact.hpp"
+#include "eds_parser/eds_section.hpp"
+#include "eds_parser/ini.hpp"
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/value_reader.hpp"
+
+namespace takt {
+
+/// One section that belongs to an object: its index, its role there, and its place in the file.
+struct ObjectSection {
+  static constexpr std::uint32_t main_role = 0;
+  static constexpr std::uint32_t first_sub_role = 1;  ///< + sub-index
+  static constexpr std::uint32_t first_list_role = 0x101;
+
+  static ObjectSection of(const SectionName& name, std::uint32_t section) noexcept;
+
+  std::uint32_t order = 0;  ///< index x 512 + role
+  std::uint32_t section = 0;
+
+  std::uint16_t index() const noexcept { return static_cast<std::uint16_t>(order >> 9); }
+  std::uint32_t role() const noexcept { return order & 0x1FF; }
+  bool is_sub() const noexcept { return role() >= first_sub_role && role() < first_list_role; }
+  std::uint8_t sub() const noexcept { return static_cast<std::uint8_t>(role() - first_sub_role); }
+};
+
+/// Builds objects from their sections.
+class ObjectReader {
+ public:
+  ObjectReader(const IniFile& file, ValueReader& values, Report& report) noexcept
+      : file_{file}, values_{values}, report_{report} {}
+
+  /// `group`: all sections of one index in ascending order. A false `Object::subs.empty()` is not
+  /// promised: a record without sub-objects stays in the dictionary.
+  Object read(std::span<const ObjectSection> group);
+
+ private:
+  struct Parts;
+
+  Parts split(std::span<const ObjectSection> group);
+  void read_main(Object& object, const Parts& parts);
+  void read_single(Object& object, const ObjectFields& fields, const IniSection& section);
+  void read_subs(Object& object, const Parts& parts);
+  void expand(Object& object, const ObjectFields& fields, const IniSection& section,
+              const Parts& parts);
+  void check_sub_number(const Object& object, const ObjectFields& fields,
+                        const IniSection& section);
+  ObjectType read_object_type(const ObjectFields& fields, const IniSection& section,
+                              std::uint16_t index, bool has_subs);
+  SubObject read_sub(const ObjectFields& fields, ObjectKey key, const IniSection& section);
+  void read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                 const IniSection& section);
+  Access read_access(const ObjectFields& fields, ObjectKey key, const IniSection& section,
+                     bool is_domain);
+  void read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                   const IniSection& section);
+  void apply_lists(Object& object, const Parts& parts);
+
+  const IniFile& file_;
+  ValueReader& values_;
+  Report& report_;
+  ExpansionBudget budget_;
+};
+
+}  // namespace takt

@@ -1,0 +1,98 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "eds_parser/ini.hpp"
+#include "eds_parser/report.hpp"
+
+namespace takt {
+
+/// What a section of an EDS or DCF is about. CiA 306, 4.4 to 6.
+enum class SectionKind : std::uint8_t {
+  object,
+  sub_object,
+  name_list,        ///< [xxxxName]
+  value_list,       ///< [xxxxValue]
+  denotation_list,  ///< [xxxxDenotation]
+  object_links,     ///< [xxxxObjectLinks]
+  short_object,     ///< [A0]: a data type of CANFestival, of no use here
+  file_info,
+  device_info,
+  dummy_usage,
+  comments,
+  tools,
+  mandatory_objects,
+  optional_objects,
+  manufacturer_objects,
+  commissioning,
+  commissioning_two_m,  ///< [DeviceCommissioning]; the standard has one m
+  dynamic_channels,
+  supported_modules,
+  connected_modules,
+  module,  ///< [M1ModuleInfo], [M1Fixed6000] ...
+  unknown,
+};
+
+/// A section name taken apart.
+struct SectionName {
+  SectionKind kind = SectionKind::unknown;
+  std::uint16_t index = 0;
+  std::uint8_t sub = 0;
+  std::uint16_t module = 0;        ///< x of [Mx...]
+  std::string_view module_part{};  ///< "Fixed6000sub1" of [M1Fixed6000sub1]
+  bool odd_form = false;           ///< [0x2000], [2000sub01]
+};
+
+SectionName classify_section(std::string_view name) noexcept;
+
+/// Keys of an object's section. CiA 306, 4.6.3.2 and 5.3.3.
+enum class Keyword : std::uint8_t {
+  parameter_name,
+  object_type,
+  data_type,
+  low_limit,
+  high_limit,
+  access_type,
+  default_value,
+  pdo_mapping,
+  sub_number,
+  obj_flags,
+  compact_sub_obj,
+  parameter_value,
+  denotation,
+  upload_file,
+  download_file,
+  module_count,   ///< Count, of [MxSubExtxxxx]
+  module_extend,  ///< ObjExtend, of [MxSubExtxxxx]
+  other_known,    ///< ParamRefd, SRDOMapping, Unit ...: allowed, not used
+  unknown,
+};
+
+Keyword classify_key(std::string_view key) noexcept;
+
+/// The entries of one object's section by keyword; of a repeated key the first counts.
+class ObjectFields {
+ public:
+  ObjectFields(std::span<const IniEntry> entries, std::string_view section, Report& report);
+
+  bool has(Keyword keyword) const noexcept { return get(keyword) != nullptr; }
+  const IniEntry* get(Keyword keyword) const noexcept {
+    return slots_[static_cast<std::size_t>(keyword)];
+  }
+  /// The value as written, empty where the key is missing.
+  std::string_view text(Keyword keyword) const noexcept {
+    const auto* entry = get(keyword);
+    return entry == nullptr ? std::string_view{} : entry->value;
+  }
+  /// Place of a value, or `otherwise` where the key is missing.
+  SourcePos pos(Keyword keyword, SourcePos otherwise) const noexcept {
+    const auto* entry = get(keyword);
+    return entry == nullptr ? otherwise : entry->pos();
+  }
+
+ private:
+  std::array<const IniEntry*, static_cast<std::size_t>(Keyword::other_known)> slots_{};
+};
+
+}  // namespace takt

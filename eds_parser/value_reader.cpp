@@ -1,0 +1,346 @@
+#include "eds_parser/value_reader.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "eds_parser/number.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+struct QuirkText {
+  NumberQuirk quirk;
+  Severity severity;
+  std::string_view rule;
+  std::string_view message;
+};
+
+constexpr QuirkText quirk_texts[] = {
+    {NumberQuirk::octal, Severity::warning, "octal-number",
+     "leading zero: read as octal, as CiA 306 says; write 0x... or no leading zero"},
+    {NumberQuirk::decimal_zero, Severity::warning, "leading-zero",
+     "leading zero would mean octal, but has an 8 or 9: read as decimal; drop the zero"},
+    {NumberQuirk::suffix, Severity::warning, "number-suffix",
+     "suffix of a programming language was left out; drop it"},
+    {NumberQuirk::node_id_not_first, Severity::warning, "nodeid-not-first",
+     "$NODEID must come first by CiA 306, other tools drop it here; write $NODEID+number"},
+    {NumberQuirk::node_id_no_dollar, Severity::warning, "nodeid-without-dollar",
+     "NODEID was taken for $NODEID; write $NODEID+number"},
+    {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",
+     "read as hexadecimal; write 0x in front"},
+    {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
+     "decimal point in an integer value; write it without"},
+    {NumberQuirk::comment, Severity::note, "inline-comment",
+     "text behind ';' or '#' was taken for a comment; CiA 306 has no comments behind values"},
+    {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},
+};
+
+void say(Report& report, Severity severity, SourcePos pos, std::string_view rule,
+         std::string message) {
+  switch (severity) {
+    case Severity::note:
+      return report.note(pos, rule, std::move(message));
+    case Severity::warning:
+      return report.warning(pos, rule, std::move(message));
+    case Severity::error:
+      return report.error(pos, rule, std::move(message));
+  }
+}
+
+std::uint64_t highest_unsigned(unsigned bits) noexcept {
+  return bits >= 64 ? std::numeric_limits<std::uint64_t>::max() : (std::uint64_t{1} << bits) - 1;
+}
+
+/// A bit pattern of `bits` bits as the signed number it stands for.
+std::int64_t sign_extend(std::uint64_t pattern, unsigned bits) noexcept {
+  const unsigned shift = 64 - bits;
+  return std::bit_cast<std::int64_t>(pattern << shift) >> shift;
+}
+
+struct Fitted {
+  std::optional<Value> value;
+  bool wrapped = false;  ///< a bit pattern for a signed type, or a negative number for an unsigned
+};
+
+Fitted fit_signed(const ParsedNumber& number, unsigned bits) noexcept {
+  const std::uint64_t half = std::uint64_t{1} << (bits - 1);
+  if (number.negative) {
+    if (number.magnitude > half) return {};
+    return {static_cast<std::int64_t>(~number.magnitude + 1), false};
+  }
+  if (number.magnitude < half) return {static_cast<std::int64_t>(number.magnitude), false};
+  if (number.magnitude > highest_unsigned(bits)) return {};
+  return {sign_extend(number.magnitude, bits), true};
+}
+
+Fitted fit_unsigned(const ParsedNumber& number, unsigned bits) noexcept {
+  const std::uint64_t highest = highest_unsigned(bits);
+  if (!number.negative) {
+    if (number.magnitude > highest) return {};
+    return {number.magnitude, false};
+  }
+  if (number.magnitude > (std::uint64_t{1} << (bits - 1))) return {};
+  return {(~number.magnitude + 1) & highest, true};
+}
+
+/// `true` and its relatives, in files made by hand.
+std::optional<bool> boolean_word(std::string_view text) noexcept {
+  for (const auto* word : {"true", "yes", "on"}) {
+    if (same_word(text, word)) return true;
+  }
+  for (const auto* word : {"false", "no", "off"}) {
+    if (same_word(text, word)) return false;
+  }
+  return std::nullopt;
+}
+
+std::string_view describe(NumberFault fault) noexcept {
+  switch (fault) {
+    case NumberFault::empty:
+    case NumberFault::not_a_number:
+      return "is not a number";
+    case NumberFault::unknown_name:
+      return "holds a name other than $NODEID";
+    case NumberFault::too_big:
+      return "needs more than 64 bits";
+  }
+  return "is not a number";
+}
+
+/// Adds node_ids x node; false where the node id is needed and unknown.
+bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept {
+  if (!number.relative()) return true;
+  if (!node) return false;
+  const std::uint64_t offset = std::uint64_t{node->value()} * number.node_ids;
+  if (!number.negative) {
+    if (number.magnitude > std::numeric_limits<std::uint64_t>::max() - offset) return false;
+    number.magnitude += offset;
+  } else if (number.magnitude >= offset) {
+    number.magnitude -= offset;
+  } else {
+    number.magnitude = offset - number.magnitude;
+    number.negative = false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string to_string(const ValuePlace& place) {
+  return to_string(place.key) + ' ' + std::string{place.what};
+}
+
+std::optional<Value> ValueReader::read(std::string_view text, DataType type,
+                                       const ValuePlace& place) {
+  if (text.empty()) return std::nullopt;
+  switch (type) {
+    case DataType::visible_string:
+      return std::string{text};
+    case DataType::unicode_string:
+      return to_utf8(text);
+    case DataType::octet_string:
+    case DataType::domain:
+      return read_bytes(text, place);
+    case DataType::real32:
+    case DataType::real64:
+      return read_real(text, type, place);
+    case DataType::time_of_day:
+    case DataType::time_difference:
+      return read_time(text, type, place);
+    case DataType::unknown:
+      return read_untyped(text);
+    default:
+      return read_integer(text, type, place);
+  }
+}
+
+std::optional<Value> ValueReader::read_integer(std::string_view text, DataType type,
+                                               const ValuePlace& place) {
+  auto number = parse_number(text);
+  if (!number && type == DataType::boolean) {
+    if (const auto word = boolean_word(without_comment(text))) {
+      number = ParsedNumber{.magnitude = *word ? 1U : 0U};
+      number->quirks = static_cast<std::uint16_t>(NumberQuirk::word);
+    }
+  }
+  if (!number) {
+    if (number.error() == NumberFault::empty) return std::nullopt;
+    if (number.error() == NumberFault::not_a_number) {
+      unreadable(text, name(type), place);
+    } else {
+      report_.error(place.pos, "value-unreadable",
+                    to_string(place) + ": " + quoted(text) + ' ' +
+                        std::string{describe(number.error())} + "; it has no value now");
+    }
+    return std::nullopt;
+  }
+  if (number->quirks != 0) tell_quirks(number->quirks, text, place);
+  if (!resolve(*number, node_)) return std::nullopt;
+  const unsigned bits = bit_width(type);
+  auto fitted = is_signed(type) ? fit_signed(*number, bits) : fit_unsigned(*number, bits);
+  if (!fitted.value) exceeds(text, type, place);
+  if (fitted.wrapped) tell_wrapped(text, type, *fitted.value, place);
+  return fitted.value;
+}
+
+std::optional<Value> ValueReader::read_real(std::string_view text, DataType type,
+                                            const ValuePlace& place) {
+  const auto bare = without_comment(text);
+  if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
+    const auto pattern = parse_number(bare);
+    const bool fits = pattern && pattern->magnitude <= highest_unsigned(bit_width(type));
+    if (!fits) {
+      unreadable(text, name(type), place);
+      return std::nullopt;
+    }
+    const double value = type == DataType::real32
+                             ? std::bit_cast<float>(static_cast<std::uint32_t>(pattern->magnitude))
+                             : std::bit_cast<double>(pattern->magnitude);
+    report_.warning(place.pos, "real-bit-pattern",
+                    to_string(place) + ": hexadecimal was taken for the bit pattern of " +
+                        std::to_string(value) + "; write a decimal number");
+    return value;
+  }
+  if (bare.empty()) return std::nullopt;
+  const auto value = parse_real(bare);
+  if (!value) unreadable(text, name(type), place);
+  if (!value) return std::nullopt;
+  constexpr double highest = std::numeric_limits<float>::max();
+  if (type == DataType::real32 && std::isfinite(*value) && std::abs(*value) > highest) {
+    exceeds(text, type, place);
+    return std::nullopt;
+  }
+  return *value;
+}
+
+std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
+  auto digits = without_comment(text);
+  if (digits == "0") return std::nullopt;  // how some tools write "nothing"
+  bool odd_form = false;
+  if (digits.size() >= 2 && digits[0] == '0' && fold(digits[1]) == 'x') {
+    digits.remove_prefix(2);
+    odd_form = true;
+  }
+  std::string bytes;
+  bytes.reserve(digits.size() / 2);
+  int high = -1;
+  for (const char c : digits) {
+    if (is_blank(c)) {
+      odd_form = true;
+      continue;
+    }
+    const int digit = hex_digit(c);
+    if (digit < 0) {
+      unreadable(text, "a row of hex byte pairs", place);
+      return std::nullopt;
+    }
+    if (high >= 0) bytes += static_cast<char>(high << 4 | digit);
+    high = high >= 0 ? -1 : digit;
+  }
+  if (high >= 0) {
+    unreadable(text, "a row of hex byte pairs (one digit is left over)", place);
+    return std::nullopt;
+  }
+  if (odd_form) {
+    report_.warning(place.pos, "octet-string-form",
+                    to_string(place) + ": 0x and blanks were left out; write bare hex byte pairs");
+  }
+  return bytes;
+}
+
+/// Milliseconds since midnight and days, as two numbers, or the 48 bits as one.
+std::optional<Value> ValueReader::read_time(std::string_view text, DataType type,
+                                            const ValuePlace& place) {
+  const auto bare = without_comment(text);
+  const auto gap = bare.find_first_of(" \t");
+  if (gap == std::string_view::npos) return read_integer(text, type, place);
+  const auto milliseconds = parse_number(bare.substr(0, gap));
+  const auto days = parse_number(bare.substr(gap));
+  const bool fits = milliseconds && days && !milliseconds->negative && !days->negative &&
+                    milliseconds->magnitude < (1U << 28) && days->magnitude < (1U << 16);
+  if (!fits) {
+    unreadable(text, "milliseconds and days", place);
+    return std::nullopt;
+  }
+  return milliseconds->magnitude | days->magnitude << 32;
+}
+
+/// Type unknown: an integer where it looks like one, so that it can be shown.
+std::optional<Value> ValueReader::read_untyped(std::string_view text) {
+  auto number = parse_number(text);
+  if (!number || !resolve(*number, node_)) return std::nullopt;
+  if (!number->negative) return number->magnitude;
+  return fit_signed(*number, 64).value;
+}
+
+std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std::uint32_t highest,
+                                                     std::string_view key, SourcePos pos) {
+  auto number = parse_number(text);
+  if (!number && number.error() == NumberFault::empty) return std::nullopt;
+  const bool good =
+      number && !number->negative && !number->relative() && number->magnitude <= highest;
+  if (!good) {
+    report_.warning(pos, "number-unreadable",
+                    std::string{key} + ": " + quoted(text) + " is not a number of 0.." +
+                        std::to_string(highest) + "; it was left out");
+    return std::nullopt;
+  }
+  if (number->has(NumberQuirk::octal)) {
+    report_.warning(pos, "octal-number",
+                    std::string{key} + ": " + quoted(text) + " was read as octal, " +
+                        std::to_string(number->magnitude) + ", as CiA 306 says; drop the zero");
+  }
+  return static_cast<std::uint32_t>(number->magnitude);
+}
+
+bool ValueReader::read_flag(std::string_view text, std::string_view key, SourcePos pos) {
+  if (const auto number = parse_number(text)) return number->magnitude != 0;
+  const auto bare = without_comment(text);
+  if (bare.empty()) return false;
+  const auto word = boolean_word(bare);
+  report_.warning(pos, "boolean-word",
+                  std::string{key} + ": " + quoted(text) + " was read as " +
+                      (word.value_or(false) ? "1" : "0") + "; write 0 or 1");
+  return word.value_or(false);
+}
+
+void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
+                              const ValuePlace& place) {
+  for (const auto& known : quirk_texts) {
+    if ((quirks & static_cast<std::uint16_t>(known.quirk)) == 0) continue;
+    if (!report_.wants(known.rule)) continue;
+    say(report_, known.severity, place.pos, known.rule,
+        to_string(place) + ": " + quoted(text) + ": " + std::string{known.message});
+  }
+}
+
+void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace& place) {
+  say(report_, place.misfit, place.pos, "value-exceeds-type",
+      to_string(place) + ": " + quoted(text) + " does not fit " + std::string{name(type)} +
+          "; it has no value now (it is not cut to fit)");
+}
+
+void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value& value,
+                               const ValuePlace& place) {
+  const auto start = to_string(place) + ": " + quoted(text);
+  if (const auto* number = std::get_if<std::int64_t>(&value)) {
+    report_.note(place.pos, "bit-pattern",
+                 start + " is the bit pattern of " + std::to_string(*number) + " in " +
+                     std::string{name(type)});
+  } else {
+    report_.warning(place.pos, "negative-unsigned",
+                    start + " in " + std::string{name(type)} + " was taken for the bit pattern " +
+                        std::to_string(std::get<std::uint64_t>(value)));
+  }
+}
+
+void ValueReader::unreadable(std::string_view text, std::string_view wanted,
+                             const ValuePlace& place) {
+  report_.warning(place.pos, "value-unreadable",
+                  to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
+                      "; it has no value now");
+}
+
+}  // namespace takt
