@@ -52,10 +52,10 @@ class OrderedStop {
   /// What the axes' controlwords have to be now; none: what is commanded.
   std::optional<std::int64_t> controlword() const noexcept;
 
-  /// The power stage is off: not ready to switch on, switch on disabled, or fault.
+  /// The power stage is off: not ready, switch on disabled, fault, or ready to switch on.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
     const std::int64_t state = statusword & 0x4F;
-    return state == 0x00 || state == 0x40 || state == 0x08;
+    return state == 0x00 || state == 0x40 || state == 0x08 || (statusword & 0x6F) == 0x21;
   }
 
  private:

@@ -28,8 +28,9 @@ struct BusLoopOptions {
 
 /// The bus thread: one SYNC cycle after another. A complete cycle makes six system calls (sleep,
 /// SYNC, sleep, receive, sleep, outputs), one with a missing PDO eight; service frames add theirs.
-/// Nothing allocates, locks or throws after construction.
-template <Port P>
+/// Nothing allocates, locks or throws after construction. `N` is the machine of the services:
+/// boot, SDO, NMT.
+template <Port P, class N = Network>
 class BusLoop {
  public:
   /// Keeps references to all three.
@@ -75,7 +76,7 @@ class BusLoop {
 
   EventQueue events_;
   PdoExchange pdos_;
-  Network network_;
+  N network_;
   OrderedStop stop_;
   PortWatch port_watch_;
   ServiceQueue services_;

@@ -1,11 +1,12 @@
 #pragma once
 // Member functions of BusLoop, in the order of a cycle.
 #include "master/rt/bus_loop.hpp"
+#include "master/wire/sync.hpp"
 
 namespace takt {
 
-template <Port P>
-BusLoop<P>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options)
+template <Port P, class N>
+BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options)
     : plan_{plan},
       port_{port},
       exchange_{exchange},
@@ -20,16 +21,16 @@ BusLoop<P>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOpt
       wire_{plan.bitrate},
       received_(batch) {}
 
-template <Port P>
-void BusLoop<P>::start() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::start() noexcept {
   const Time now = port_.now();
   clock_.start(now + clock_.period());
   network_.start(now);
   predict_next_publish();
 }
 
-template <Port P>
-void BusLoop<P>::cycle() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::cycle() noexcept {
   follow_nodes();
   wait_for_beat();
   send_sync();
@@ -43,8 +44,8 @@ void BusLoop<P>::cycle() noexcept {
 }
 
 /// Which nodes exchange PDOs in this cycle.
-template <Port P>
-void BusLoop<P>::follow_nodes() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::follow_nodes() noexcept {
   for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
     const bool exchanging = network_.exchanges_pdos(i);
     if (exchanging != exchanging_[i]) {
@@ -62,8 +63,8 @@ void BusLoop<P>::follow_nodes() noexcept {
   }
 }
 
-template <Port P>
-void BusLoop<P>::wait_for_beat() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::wait_for_beat() noexcept {
   port_.sleep_precisely_until(clock_.deadline());
   Time now = port_.now();
   if (const std::uint64_t missed = clock_.skip_missed(now); missed != 0) {
@@ -75,18 +76,15 @@ void BusLoop<P>::wait_for_beat() noexcept {
   sync_sent_ = now;
 }
 
-template <Port P>
-void BusLoop<P>::send_sync() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::send_sync() noexcept {
   const Time late = sync_sent_ - clock_.deadline();
   exchange_.timing.sync_lateness.record(late);
   if (late > clock_.period() / 10) ++status_.cycles_late;
   bool heard = true;
   if (plan_.cycle.sync && !options_.observe) {
-    Frame sync{.id = plan_.cycle.sync_cob_id};
-    if (counter_.used()) {
-      sync.length = 1;
-      sync.data[0] = counter_.next();
-    }
+    const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
+                                       : sync_frame(plan_.cycle.sync_cob_id);
     heard = send({&sync, 1}) == 1;
     if (heard) counter_.sent();
   }
@@ -94,8 +92,8 @@ void BusLoop<P>::send_sync() noexcept {
   status_.beats += heard;
 }
 
-template <Port P>
-void BusLoop<P>::receive() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::receive() noexcept {
   const Time end = std::min(sync_sent_ + plan_.cycle.receive_window,
                             clock_.deadline() + plan_.cycle.output_deadline);
   if (plan_.cycle.sync) port_.sleep_until(std::min(sync_sent_ + prediction_.predicted(), end));
@@ -108,8 +106,8 @@ void BusLoop<P>::receive() noexcept {
   learn(in_time);
 }
 
-template <Port P>
-void BusLoop<P>::drain() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::drain() noexcept {
   for (;;) {
     const std::size_t count = port_.receive(received_);
     for (std::size_t i = 0; i < count; ++i) {
@@ -124,8 +122,8 @@ void BusLoop<P>::drain() noexcept {
   }
 }
 
-template <Port P>
-void BusLoop<P>::learn(bool in_time) noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::learn(bool in_time) noexcept {
   if (pdos_.inputs().expected() == 0) return;
   const Time arrival = pdos_.inputs().last_arrival() - sync_sent_;
   if (in_time) {
@@ -136,8 +134,8 @@ void BusLoop<P>::learn(bool in_time) noexcept {
   exchange_.timing.sync_to_last_pdo.record(arrival);
 }
 
-template <Port P>
-void BusLoop<P>::publish() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::publish() noexcept {
   const PortNews news = port_.news();
   status_.port = news;
   sync_time_ = news.last_sync_echo >= sync_sent_ ? news.last_sync_echo : sync_sent_;
@@ -170,15 +168,15 @@ void BusLoop<P>::publish() noexcept {
   }
 }
 
-template <Port P>
-void BusLoop<P>::predict_next_publish() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::predict_next_publish() noexcept {
   const Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
   exchange_.next_publish.store(next.count(), std::memory_order_relaxed);
 }
 
 /// Slack: machines and requests. Their frames and the answers to them end before the outputs.
-template <Port P>
-void BusLoop<P>::serve() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::serve() noexcept {
   take_requests();
   const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
   std::size_t budget = plan_.cycle.service_frames;
@@ -193,8 +191,8 @@ void BusLoop<P>::serve() noexcept {
 }
 
 /// False: nothing was sent that will be answered soon.
-template <Port P>
-bool BusLoop<P>::send_services(std::size_t& budget) noexcept {
+template <Port P, class N>
+bool BusLoop<P, N>::send_services(std::size_t& budget) noexcept {
   if (services_.empty()) return false;
   const Time end = clock_.deadline() + plan_.cycle.output_deadline;
   const Time room = end - port_.now();
@@ -210,16 +208,16 @@ bool BusLoop<P>::send_services(std::size_t& budget) noexcept {
   return answered && count != 0;
 }
 
-template <Port P>
-void BusLoop<P>::take_requests() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::take_requests() noexcept {
   if (reply_waits_ || !exchange_.requests.pop(request_)) return;
   if (!options_.observe && network_.submit(request_, port_.now())) return;
   reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
   reply_waits_ = true;
 }
 
-template <Port P>
-void BusLoop<P>::give_replies() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::give_replies() noexcept {
   for (;;) {
     if (!reply_waits_ && !network_.take(reply_)) return;
     reply_waits_ = exchange_.replies.full() || !exchange_.replies.push(reply_);
@@ -227,8 +225,8 @@ void BusLoop<P>::give_replies() noexcept {
   }
 }
 
-template <Port P>
-void BusLoop<P>::send_outputs() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::send_outputs() noexcept {
   port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
   if (options_.observe) return;
   const Time now = port_.now();
@@ -246,8 +244,8 @@ void BusLoop<P>::send_outputs() noexcept {
 }
 
 /// Begins and follows the ordered stop.
-template <Port P>
-void BusLoop<P>::step_stop() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::step_stop() noexcept {
   const Time now = port_.now();
   if (stop_.stage() == StopStage::running) {
     if (!exchange_.stop_requested.load(std::memory_order_relaxed)) return;
@@ -268,8 +266,8 @@ void BusLoop<P>::step_stop() noexcept {
   if (done_) tell(EventKind::stopped, now);
 }
 
-template <Port P>
-void BusLoop<P>::give_events() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::give_events() noexcept {
   Event event;
   while (network_.take(event)) {
     event.cycle = clock_.cycle();
@@ -281,8 +279,8 @@ void BusLoop<P>::give_events() noexcept {
   }
 }
 
-template <Port P>
-void BusLoop<P>::write_status() noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::write_status() noexcept {
   status_.cycle = clock_.cycle();
   status_.stop = stop_.stage();
   status_.events_lost = events_.lost();
@@ -295,8 +293,8 @@ void BusLoop<P>::write_status() noexcept {
   if (done_) exchange_.finished.store(true, std::memory_order_release);
 }
 
-template <Port P>
-std::size_t BusLoop<P>::send(std::span<const Frame> frames) noexcept {
+template <Port P, class N>
+std::size_t BusLoop<P, N>::send(std::span<const Frame> frames) noexcept {
   const SendResult result = port_.send(frames);
   for (const Frame& frame : frames.first(result.sent)) {
     status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(frame));
@@ -309,8 +307,8 @@ std::size_t BusLoop<P>::send(std::span<const Frame> frames) noexcept {
   return result.sent;
 }
 
-template <Port P>
-void BusLoop<P>::tell(EventKind kind, Time now, std::int64_t value) noexcept {
+template <Port P, class N>
+void BusLoop<P, N>::tell(EventKind kind, Time now, std::int64_t value) noexcept {
   events_.push({.when = now, .cycle = clock_.cycle(), .kind = kind, .value = value});
 }
 

@@ -1,0 +1,136 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "master/core/network.hpp"
+#include "master/rt/port.hpp"
+
+namespace takt::test {
+
+/// A port in virtual time that writes down what the loop does, and answers SYNC as told.
+class FakePort {
+ public:
+  struct Answer {
+    Frame frame;
+    Time after{};  ///< SYNC
+  };
+  struct Sent {
+    Frame frame;
+    Time when{};
+  };
+
+  Time now() noexcept { return now_; }
+  void sleep_until(Time until) noexcept { note("sleep", until); }
+  void sleep_precisely_until(Time until) noexcept {
+    note("sleep", until);
+    now_ += stall;
+    stall = Time{};
+  }
+  bool wait_frame(Time until) noexcept {
+    const auto next = std::ranges::min_element(inbox, {}, &StampedFrame::when);
+    const bool some = next != inbox.end() && next->when <= until;
+    note("wait", some ? next->when : until);
+    return some;
+  }
+  std::size_t receive(std::span<StampedFrame> in) noexcept {
+    note("receive", now_);
+    std::size_t count = 0;
+    for (auto frame = inbox.begin(); frame != inbox.end() && count < in.size();) {
+      if (frame->when > now_) {
+        ++frame;
+        continue;
+      }
+      in[count++] = *frame;
+      frame = inbox.erase(frame);
+    }
+    return count;
+  }
+  SendResult send(std::span<const Frame> out) noexcept {
+    note("send", now_);
+    const std::size_t taken = std::min(out.size(), room);
+    for (const Frame& frame : out.first(taken)) {
+      sent.push_back({frame, now_});
+      if (frame.id == CobId::base(0x080)) {
+        for (const Answer& answer : answers) inbox.push_back({answer.frame, now_ + answer.after});
+      }
+      if (on_sent) on_sent(frame);
+    }
+    return {taken, taken == out.size() ? 0 : error};
+  }
+  PortNews news() const noexcept { return news_now; }
+
+  std::vector<Sent> sent_with(std::uint32_t id) const {
+    std::vector<Sent> found;
+    std::ranges::copy_if(sent, std::back_inserter(found),
+                         [&](const Sent& s) { return s.frame.id.id() == id; });
+    return found;
+  }
+
+  std::vector<Answer> answers;
+  std::vector<StampedFrame> inbox;
+  std::vector<Sent> sent;
+  std::vector<std::string> calls;
+  std::function<void(const Frame&)> on_sent;
+  PortNews news_now;
+  Time stall{};  ///< the next precise sleep comes back so much late
+  std::size_t room = 1000;
+  int error = 0;
+
+ private:
+  void note(const char* call, Time until) {
+    calls.emplace_back(call);
+    now_ = std::max(now_, until);
+  }
+  Time now_ = std::chrono::seconds{10};
+};
+static_assert(Port<FakePort>);
+
+/// Services of a bus whose nodes are all up; tests say what it sends.
+class FakeNetwork {
+ public:
+  explicit FakeNetwork(const BusPlan& plan, NetworkOptions options = {})
+      : status_(plan.nodes.size()), up_(plan.nodes.size(), !options.observe) {
+    newest = this;
+  }
+  void start(Time) noexcept {}
+  void on_frame(const Frame& frame, Time, Outbox&) noexcept { heard.push_back(frame); }
+  void on_time(Time, Outbox& out) noexcept {
+    for (; !to_send.empty() && out.push(to_send.front()); to_send.erase(to_send.begin())) {
+    }
+  }
+  Time deadline() const noexcept { return never; }
+  bool submit(const Request& request, Time) noexcept {
+    if (refuse) return false;
+    replies.push_back({.id = request.id, .data = {}});
+    return true;
+  }
+  bool take(Reply& reply) noexcept {
+    if (replies.empty()) return false;
+    reply = replies.front();
+    replies.erase(replies.begin());
+    return true;
+  }
+  bool take(Event&) noexcept { return false; }
+  std::span<const NodeStatus> nodes() const noexcept { return status_; }
+  bool exchanges_pdos(std::size_t node) const noexcept { return up_[node] && !stopping; }
+  void begin_stop(Time) noexcept { stopping = true; }
+  bool stopped() const noexcept { return stopping; }
+
+  void set_up(std::size_t node, bool up) { up_[node] = up; }
+
+  std::vector<Frame> heard;
+  std::vector<Frame> to_send;
+  std::vector<Reply> replies;
+  bool refuse = false;
+  bool stopping = false;
+  static inline FakeNetwork* newest = nullptr;  ///< the one inside the newest loop
+
+ private:
+  std::vector<NodeStatus> status_;
+  std::vector<bool> up_;
+};
+
+}  // namespace takt::test
