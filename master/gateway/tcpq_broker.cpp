@@ -1,0 +1,89 @@
+#include "master/gateway/tcpq_broker.hpp"
+
+#include <cerrno>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <utility>
+
+namespace takt {
+
+std::expected<std::unique_ptr<TcpqBroker>, int> TcpqBroker::listen(std::uint16_t port) {
+  FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+  if (!socket) return std::unexpected{errno};
+  const int on = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  if (::bind(socket.get(), generic, size) != 0 || ::listen(socket.get(), 16) != 0 ||
+      ::getsockname(socket.get(), generic, &size) != 0) {
+    return std::unexpected{errno};
+  }
+  return std::unique_ptr<TcpqBroker>{new TcpqBroker{std::move(socket), ntohs(address.sin_port)}};
+}
+
+std::string TcpqBroker::url() const { return "tcpq://127.0.0.1:" + std::to_string(port_); }
+
+bool TcpqBroker::publish(const std::string& channel, std::span<const std::byte> data) {
+  relay({.type = tcpq::Type::publish, .channel = channel, .data = data});
+  return true;
+}
+
+void TcpqBroker::relay(const tcpq::Message& message) {
+  for (const auto& client : clients_) {
+    if (!client->connection.opened() || !client->patterns.match(message.channel)) continue;
+    client->connection.queue(message);
+    client->connection.flush();
+  }
+}
+
+void TcpqBroker::accept_clients() {
+  for (;;) {
+    FileDescriptor socket{
+        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
+    if (!socket) return;
+    if (clients_.size() == most_clients) continue;
+    clients_.push_back(std::make_unique<Client>(
+        Client{.connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client},
+               .patterns = {}}));
+  }
+}
+
+void TcpqBroker::take(Client& client, const tcpq::Message& message, const MessageHandler& handler) {
+  switch (message.type) {
+    case tcpq::Type::subscribe:
+      client.patterns.add(message.channel);
+      return;
+    case tcpq::Type::unsubscribe:
+      client.patterns.remove(message.channel);
+      return;
+    case tcpq::Type::publish:
+      relay(message);
+      if (own_.match(message.channel)) handler(message.channel, message.data);
+      return;
+  }
+}
+
+void TcpqBroker::serve(const MessageHandler& handler) {
+  accept_clients();
+  for (const auto& client : clients_) {
+    client->connection.flush();
+    client->connection.receive(
+        [&](const tcpq::Message& message) { take(*client, message, handler); });
+  }
+  std::erase_if(clients_, [](const auto& client) { return client->connection.closed(); });
+}
+
+void TcpqBroker::watch(std::vector<pollfd>& descriptors) const {
+  descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  for (const auto& client : clients_) {
+    const int events = POLLIN | (client->connection.wants_to_write() ? POLLOUT : 0);
+    descriptors.push_back(
+        {.fd = client->connection.fd(), .events = static_cast<short>(events), .revents = 0});
+  }
+}
+
+}  // namespace takt

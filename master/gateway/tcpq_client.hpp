@@ -1,0 +1,44 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/gateway/channel_patterns.hpp"
+#include "master/gateway/tcpq_connection.hpp"
+#include "master/gateway/transport.hpp"
+
+namespace takt {
+
+/// The client side of LCM's tcpq:// protocol. Unlike LCM's own it never waits for the server and
+/// comes back by itself when the server does.
+class TcpqClient final : public Transport {
+ public:
+  TcpqClient(std::string address, std::uint16_t port);
+
+  /// True once the server has answered.
+  bool connected() const noexcept { return connection_ && connection_->opened(); }
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  void subscribe(const std::string& pattern) override;
+  void serve(const MessageHandler& handler) override;
+  void watch(std::vector<pollfd>& descriptors) const override;
+  bool good() const override { return true; }
+  std::string url() const override;
+
+ private:
+  void connect();
+
+  std::string address_;  // dotted IPv4
+  std::uint16_t port_;
+  std::vector<std::string> patterns_;
+  std::optional<tcpq::Connection> connection_;
+  std::chrono::steady_clock::time_point next_try_{};
+};
+
+/// Whether something that speaks tcpq:// answers there. Waits at most `limit`.
+bool tcpq_server_answers(const std::string& address, std::uint16_t port,
+                         std::chrono::milliseconds limit);
+
+}  // namespace takt

@@ -1,0 +1,80 @@
+#include "master/gateway/tcpq_connection.hpp"
+
+#include <array>
+#include <cerrno>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <utility>
+
+namespace takt::tcpq {
+namespace {
+
+void set_option(int fd, int level, int option, int value) noexcept {
+  ::setsockopt(fd, level, option, &value, sizeof value);
+}
+
+bool would_wait(int error) noexcept {
+  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
+}
+
+}  // namespace
+
+Connection::Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic)
+    : socket_{std::move(socket)}, parser_{other_magic} {
+  set_option(fd(), IPPROTO_TCP, TCP_NODELAY, 1);
+  // A stopped reader should find seconds, not minutes, of old messages when it goes on.
+  set_option(fd(), SOL_SOCKET, SO_SNDBUF, 128 * 1024);
+  append_opening(unsent_, own_magic);
+}
+
+bool Connection::queue(const Message& message) {
+  if (unsent_.size() - sent_ + message.data.size() + message.channel.size() + 12 > unsent_limit) {
+    ++lost_;
+    return false;
+  }
+  append(unsent_, message);
+  return true;
+}
+
+void Connection::flush() noexcept {
+  while (!closed_ && wants_to_write()) {
+    const ssize_t taken =
+        ::send(fd(), unsent_.data() + sent_, unsent_.size() - sent_, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (taken < 0) {
+      closed_ = !would_wait(errno);
+      break;
+    }
+    sent_ += static_cast<std::size_t>(taken);
+  }
+  if (sent_ == unsent_.size()) {
+    unsent_.clear();
+    sent_ = 0;
+  } else if (sent_ > unsent_limit / 2) {
+    unsent_.erase(unsent_.begin(), unsent_.begin() + static_cast<std::ptrdiff_t>(sent_));
+    sent_ = 0;
+  }
+}
+
+void Connection::receive(const std::function<void(const Message&)>& handler) {
+  std::array<std::byte, 16384> chunk;
+  // LCM's client sends a message in five small pieces without TCP_NODELAY: each must be
+  // acknowledged at once, or a command takes 40 ms. The kernel forgets this option by itself.
+  set_option(fd(), IPPROTO_TCP, TCP_QUICKACK, 1);
+  for (int rounds = 0; rounds < 8 && !closed_; ++rounds) {
+    const ssize_t size = ::recv(fd(), chunk.data(), chunk.size(), MSG_DONTWAIT);
+    if (size < 0) {
+      closed_ = !would_wait(errno);
+      return;
+    }
+    if (size == 0) {
+      closed_ = true;
+      return;
+    }
+    parser_.feed(std::span{chunk}.first(static_cast<std::size_t>(size)));
+    while (const auto message = parser_.next()) handler(*message);
+    if (parser_.broken()) closed_ = true;
+  }
+}
+
+}  // namespace takt::tcpq

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "master/gateway/tcpq_parser.hpp"
+#include "master/linux/file_descriptor.hpp"
+
+namespace takt::tcpq {
+
+/// One TCP connection with bounded buffers. No call waits.
+class Connection {
+ public:
+  /// Unsent bytes at most; a message that finds no room is lost as a whole.
+  static constexpr std::size_t unsent_limit = 1 << 20;
+
+  Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic);
+
+  int fd() const noexcept { return socket_.get(); }
+  bool closed() const noexcept { return closed_; }
+  bool opened() const noexcept { return parser_.opened(); }
+  bool wants_to_write() const noexcept { return sent_ < unsent_.size(); }
+  std::uint64_t lost() const noexcept { return lost_; }
+
+  /// False: no room, the message is lost.
+  bool queue(const Message& message);
+  /// Sends as much as the kernel takes.
+  void flush() noexcept;
+  /// Reads a bounded amount and hands over the messages in it.
+  void receive(const std::function<void(const Message&)>& handler);
+
+ private:
+  FileDescriptor socket_;
+  Parser parser_;
+  std::vector<std::byte> unsent_;
+  std::size_t sent_ = 0;  // of unsent_
+  std::uint64_t lost_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace takt::tcpq
