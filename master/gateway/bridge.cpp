@@ -1,0 +1,184 @@
+#include "master/gateway/bridge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "master/gateway/names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time status_period = std::chrono::milliseconds{100};
+constexpr Time layout_period = std::chrono::seconds{1};
+constexpr Time timing_period = std::chrono::seconds{1};
+
+}  // namespace
+
+Channels::Channels(const std::string& bus)
+    : image{channel_name(bus, "IMAGE")},
+      layout{channel_name(bus, "LAYOUT")},
+      command{channel_name(bus, "COMMAND")},
+      status{channel_name(bus, "STATUS")},
+      timing{channel_name(bus, "TIMING")},
+      event{channel_name(bus, "EVENT")},
+      request{channel_name(bus, "REQUEST")},
+      reply{channel_name(bus, "REPLY")} {}
+
+Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell)
+    : master_{master},
+      transport_{transport},
+      options_{std::move(options)},
+      tell_{std::move(tell)},
+      channels_{master.plan().name},
+      image_messages_{master.plan(), options_.session},
+      layout_messages_{layout_messages(master.plan(), options_.session)},
+      status_messages_{master.plan(), {options_.session, options_.interface, options_.realtime}},
+      timing_messages_{options_.session},
+      commands_{master.plan(),
+                {.session = options_.session, .observe = options_.observe},
+                [this](SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) {
+                  outputs_staged_ |= master_.set(signal, value, time_to_live);
+                },
+                [this](const Notice& notice) { this->tell(notice); }},
+      requests_{master.plan(),
+                {.session = options_.session, .observe = options_.observe},
+                [this](const Request& request) { return master_.submit(request); }},
+      wall_minus_monotonic_{realtime_offset()} {
+  master_.status(snapshot_);
+}
+
+std::int64_t Bridge::wall_microseconds(Time monotonic) const noexcept {
+  using std::chrono::microseconds;
+  return std::chrono::duration_cast<microseconds>(monotonic + wall_minus_monotonic_).count();
+}
+
+bool Bridge::serve() {
+  const bool some = publish_images();
+  take_messages();
+  take_replies();
+  take_events();
+  const Time now = monotonic_now();
+  if (now >= next_layout_) publish_layout();
+  if (now >= next_status_) publish_status();
+  if (now >= next_timing_) publish_timing();
+  return some;
+}
+
+Time Bridge::next_message() const noexcept {
+  return std::min({next_status_, next_layout_, next_timing_});
+}
+
+bool Bridge::publish_images() {
+  ImageView image;
+  bool some = false;
+  while (master_.take(image)) {
+    if (!some) wall_minus_monotonic_ = realtime_offset();
+    for (const image_t& part : image_messages_.fill(image, wall_minus_monotonic_)) {
+      publish(channels_.image, part);
+    }
+    cycle_ = image.cycle;
+    ++images_;
+    some = true;
+  }
+  return some;
+}
+
+void Bridge::take_messages() {
+  master_.status(snapshot_);
+  transport_.serve([this](std::string_view channel, Bytes data) { on_message(channel, data); });
+  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(monotonic_now());
+}
+
+void Bridge::on_message(std::string_view channel, Bytes data) {
+  if (channel == channels_.command) on_command(data);
+  if (channel == channels_.request) on_request(data);
+}
+
+void Bridge::on_command(Bytes data) {
+  const auto command = decode<command_t>(data);
+  if (!command) return tell_damaged(channels_.command, command.error());
+  commands_.take(*command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
+}
+
+void Bridge::on_request(Bytes data) {
+  const auto request = decode<request_t>(data);
+  if (!request) return tell_damaged(channels_.request, request.error());
+  if (auto reply = requests_.take(*request)) answer(std::move(*reply));
+}
+
+void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
+  const Time now = monotonic_now();
+  const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
+  if (!kept_back) return;
+  std::string sentence = "a message on " + channel + " can't be read: " + std::string{text(fault)};
+  if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more)";
+  tell({.when = now,
+        .cycle = cycle_,
+        .node = 0,
+        .kind = "bad_message",
+        .weight = Weight::warning,
+        .text = std::move(sentence)});
+}
+
+void Bridge::take_replies() {
+  Reply reply;
+  while (master_.take(reply)) {
+    if (auto message = requests_.finish(reply)) answer(std::move(*message));
+  }
+}
+
+void Bridge::answer(reply_t reply) {
+  reply.utime = wall_microseconds(monotonic_now());
+  publish(channels_.reply, reply);
+}
+
+void Bridge::take_events() {
+  Event event;
+  while (master_.take(event)) tell(to_notice(master_.plan(), event));
+}
+
+void Bridge::tell(Notice notice) {
+  event_t message = to_message(master_.plan(), notice);
+  message.utime = wall_microseconds(notice.when);
+  message.session = options_.session;
+  publish(channels_.event, message);
+  tell_(notice);
+}
+
+void Bridge::publish_layout() {
+  const Time now = monotonic_now();
+  next_layout_ = now + layout_period;
+  for (layout_t& part : layout_messages_) {
+    part.utime = wall_microseconds(now);
+    publish(channels_.layout, part);
+  }
+}
+
+void Bridge::publish_status() {
+  const Time now = monotonic_now();
+  next_status_ = now + status_period;
+  GatewayStatus gateway{.image_overruns = master_.image_overruns(),
+                        .event_overruns = master_.event_overruns(),
+                        .commands_taken = commands_.taken(),
+                        .commands_refused = commands_.refused(),
+                        .holders = {}};
+  for (std::size_t i = 0; i < master_.plan().nodes.size(); ++i) {
+    gateway.holders.emplace_back(commands_.holder(i, cycle_));
+  }
+  for (status_t& part : status_messages_.fill(snapshot_, gateway, now)) {
+    part.utime = wall_microseconds(now);
+    publish(channels_.status, part);
+  }
+}
+
+void Bridge::publish_timing() {
+  const Time now = monotonic_now();
+  next_timing_ = now + timing_period;
+  timing_t message = timing_messages_.fill(master_.timing(), cycle_);
+  message.utime = wall_microseconds(now);
+  publish(channels_.timing, message);
+}
+
+}  // namespace takt

@@ -1,0 +1,95 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "master/gateway/commands.hpp"
+#include "master/gateway/image_messages.hpp"
+#include "master/gateway/messages.hpp"
+#include "master/gateway/notice.hpp"
+#include "master/gateway/requests.hpp"
+#include "master/gateway/status_messages.hpp"
+#include "master/gateway/transport.hpp"
+#include "master/master.hpp"
+
+namespace takt {
+
+/// LCM channels of one bus.
+struct Channels {
+  explicit Channels(const std::string& bus);
+  std::string image, layout, command, status, timing, event, request, reply;
+  /// Those that the daemon hears.
+  std::vector<std::string> heard() const { return {command, request}; }
+};
+
+struct BridgeOptions {
+  std::int64_t session = 0;
+  bool observe = false;
+  std::string interface;  ///< told in status_t
+  std::string realtime;   ///< told in status_t
+};
+
+/// The work of the front thread: images, states and events of a Master become messages, messages
+/// become set-points and requests. Reads clocks, never waits.
+class Bridge {
+ public:
+  /// `tell` hears every event and every notice of the gateway's own, after LCM has.
+  Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell);
+
+  /// Everything that can be done now. True: there was an image.
+  bool serve();
+  /// When status_t, layout_t or timing_t are due next.
+  Time next_message() const noexcept;
+  /// A notice of somebody else: the diagnostic socket, the daemon.
+  void tell(Notice notice);
+
+  const StatusSnapshot& status() const noexcept { return snapshot_; }
+  std::uint64_t images() const noexcept { return images_; }
+  std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
+  std::uint64_t commands_refused() const noexcept { return commands_.refused(); }
+  const Channels& channels() const noexcept { return channels_; }
+
+ private:
+  bool publish_images();
+  void take_events();
+  void take_replies();
+  void take_messages();
+  void on_message(std::string_view channel, Bytes data);
+  void on_command(Bytes data);
+  void on_request(Bytes data);
+  void tell_damaged(const std::string& channel, DecodeFault fault);
+  void publish_layout();
+  void publish_status();
+  void publish_timing();
+  void answer(reply_t reply);
+  std::int64_t wall_microseconds(Time monotonic) const noexcept;
+  template <class T>
+  void publish(const std::string& channel, const T& message) {
+    transport_.publish(channel, encode(message, buffer_));
+  }
+
+  Master& master_;
+  Transport& transport_;
+  BridgeOptions options_;
+  NoticeSink tell_;
+  Channels channels_;
+  ImageMessages image_messages_;
+  std::vector<layout_t> layout_messages_;
+  StatusMessages status_messages_;
+  TimingMessages timing_messages_;
+  Commands commands_;
+  Requests requests_;
+  RateLimit damaged_{std::chrono::seconds{10}};
+  std::vector<std::byte> buffer_;
+  StatusSnapshot snapshot_;
+  Time wall_minus_monotonic_{};
+  Time next_status_{};
+  Time next_layout_{};
+  Time next_timing_{};
+  std::uint64_t cycle_ = 0;  // of the newest image
+  std::uint64_t images_ = 0;
+  bool outputs_staged_ = false;
+};
+
+}  // namespace takt

@@ -1,0 +1,155 @@
+#include "master/gateway/commands.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "master/gateway/messages.hpp"
+#include "master/gateway/units.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t longest_sender = 64;
+
+std::uint32_t cycles_in(Time span, Time period) noexcept {
+  if (period <= Time{0}) return 1;
+  return static_cast<std::uint32_t>(std::max<std::int64_t>(1, span / period));
+}
+
+std::string signal_text(const BusPlan& plan, const Signal& signal) {
+  return plan.nodes[signal.node_index].name + "." + signal.name;
+}
+
+}  // namespace
+
+Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output,
+                   NoticeSink tell)
+    : plan_{plan},
+      options_{options},
+      set_output_{std::move(set_output)},
+      tell_{std::move(tell)},
+      leases_{plan.nodes.size(), cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
+      verdicts_(plan.nodes.size()) {}
+
+bool Commands::refuse(const CommandContext& context, const command_t& command, std::uint8_t node,
+                      const std::string& why) {
+  ++refused_;
+  std::string sender = command.sender.substr(0, longest_sender);
+  const std::string thing = sender + '/' + std::to_string(node) + '/' + why.substr(0, 24);
+  const auto kept_back = told_.allow(thing, context.now);
+  if (!kept_back) return false;
+  std::string text = "command of '" + sender + "' refused";
+  if (node != 0)
+    text += " for node " + std::to_string(node) + " (" + std::string{node_name(plan_, node)} + ")";
+  text += ": " + why;
+  if (*kept_back != 0) text += " (" + std::to_string(*kept_back) + " more since the last message)";
+  tell_({.when = context.now,
+         .cycle = context.cycle,
+         .node = node,
+         .kind = "command_refused",
+         .weight = Weight::warning,
+         .text = std::move(text)});
+  return false;
+}
+
+bool Commands::check_message(const command_t& command, const CommandContext& context) {
+  if (options_.observe) {
+    return refuse(context, command, 0, "taktd only observes (--observe)");
+  }
+  if (command.schema != message_schema) {
+    return refuse(context, command, 0,
+                  "schema " + std::to_string(command.schema) + ", this taktd has " +
+                      std::to_string(message_schema));
+  }
+  if (command.session != options_.session) {
+    return refuse(context, command, 0,
+                  "another session of taktd (a replayed log, or taktd was started again); take the "
+                  "session from the newest image_t");
+  }
+  if (command.sender.empty() || command.sender.size() > longest_sender) {
+    return refuse(context, command, 0, "the sender has to give a name of 1 to 64 characters");
+  }
+  return read_items(command, context);
+}
+
+bool Commands::read_items(const command_t& command, const CommandContext& context) {
+  items_.clear();
+  for (std::size_t i = 0; i < command.signals.size(); ++i) {
+    const std::int16_t position = command.signals[i];
+    const auto index = static_cast<std::size_t>(position);
+    if (position < 0 || index >= plan_.layout.signals.size() ||
+        !plan_.layout.signals[index].output) {
+      return refuse(context, command, 0,
+                    "signal " + std::to_string(position) + " is not an output of the layout");
+    }
+    const Signal& signal = plan_.layout.signals[index];
+    if (!fits(signal.type, signal.bits, command.values[i])) {
+      return refuse(context, command, signal.node.value(),
+                    "the value of " + signal_text(plan_, signal) + ", " +
+                        std::to_string(command.values[i]) + ", does not fit its " +
+                        std::to_string(signal.bits) + " bits");
+    }
+    const Freshness left = freshness(
+        {.computed_from = static_cast<std::uint64_t>(std::max<std::int64_t>(0, command.cycle)),
+         .now = context.cycle,
+         .time_to_live = static_cast<std::uint32_t>(std::max(0, command.time_to_live)),
+         .configured = signal.fallback_cycles});
+    if (!left.fresh) {
+      return refuse(context, command, signal.node.value(),
+                    "it is too old: computed from cycle " + std::to_string(command.cycle) +
+                        ", now is cycle " + std::to_string(context.cycle));
+    }
+    items_.push_back({static_cast<SignalIndex>(index), command.values[i], left.cycles});
+  }
+  return !items_.empty();
+}
+
+std::uint32_t Commands::lease_cycles(std::size_t node_index) const noexcept {
+  std::uint32_t longest = 0;
+  for (const Item& item : items_) {
+    if (plan_.layout.signals[item.signal].node_index != node_index) continue;
+    if (item.cycles == 0) return 0;
+    longest = std::max(longest, item.cycles);
+  }
+  return longest;
+}
+
+bool Commands::check_node(std::size_t node_index, const command_t& command,
+                          const CommandContext& context) {
+  const std::uint8_t node = plan_.nodes[node_index].id.value();
+  const NodeStatus& status = context.nodes[node_index];
+  if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
+    return refuse(context, command, node, "the node has not booted (yet)");
+  }
+  if (status.nmt != NmtState::operational) {
+    return refuse(context, command, node, "the node is not operational");
+  }
+  if (!leases_.take(node_index, command.sender, context.cycle, lease_cycles(node_index))) {
+    return refuse(context, command, node,
+                  "its outputs belong to '" +
+                      std::string{leases_.holder(node_index, context.cycle)} +
+                      "' until the time to live of that sender's commands has run out");
+  }
+  return true;
+}
+
+bool Commands::take(const command_t& command, const CommandContext& context) {
+  if (!check_message(command, context)) return false;
+  std::ranges::fill(verdicts_, Verdict::unknown);
+  bool any = false;
+  for (const Item& item : items_) {
+    const std::size_t node = plan_.layout.signals[item.signal].node_index;
+    if (node >= context.nodes.size()) continue;
+    if (verdicts_[node] == Verdict::unknown) {
+      verdicts_[node] = check_node(node, command, context) ? Verdict::accepted : Verdict::refused;
+    }
+    if (verdicts_[node] == Verdict::refused) continue;
+    set_output_(item.signal, item.value, item.cycles);
+    any = true;
+  }
+  if (any) ++taken_;
+  return any;
+}
+
+}  // namespace takt

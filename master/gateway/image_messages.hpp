@@ -1,0 +1,31 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <takt/image_t.hpp>
+#include <takt/layout_t.hpp>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/rt/process_image.hpp"
+
+namespace takt {
+
+/// Values in one image_t at most: any mix of values and stale marks stays below message_bytes.
+inline constexpr std::size_t values_a_message = 120;
+
+/// The image of a cycle as messages; kept, so that a cycle allocates nothing.
+class ImageMessages {
+ public:
+  ImageMessages(const BusPlan& plan, std::int64_t session);
+
+  /// `wall_minus_monotonic` turns SYNC's time into wall clock time.
+  const std::vector<image_t>& fill(const ImageView& image, Time wall_minus_monotonic);
+
+ private:
+  std::vector<image_t> parts_;
+};
+
+/// What the values mean; a few signals a message.
+std::vector<layout_t> layout_messages(const BusPlan& plan, std::int64_t session);
+
+}  // namespace takt

@@ -1,0 +1,140 @@
+#include "master/gateway/lcm_link.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "master/gateway/tcpq_broker.hpp"
+#include "master/gateway/tcpq_client.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::chrono::seconds retry_pause{5};
+constexpr std::chrono::milliseconds hub_answer_limit{200};
+
+}  // namespace
+
+LcmLink::LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say)
+    : url_{std::move(url)}, say_{std::move(say)}, patterns_{std::move(patterns)} {
+  const bool tcpq = url_.scheme == "tcpq";
+  if (broker) {
+    const std::uint16_t port = tcpq ? url_.port : tcpq::default_port;
+    if (!serve_hub(port)) {
+      open_tcpq({.text = {}, .scheme = "tcpq", .address = "127.0.0.1", .port = port});
+    }
+  } else if (tcpq) {
+    open_tcpq(url_);
+  } else {
+    begin_lcm();
+  }
+}
+
+bool LcmLink::serve_hub(std::uint16_t port) {
+  auto hub = TcpqBroker::listen(port);
+  if (!hub) return false;
+  say_("LCM: serving the tcpq protocol by myself; other programs: export LCM_DEFAULT_URL=" +
+       (*hub)->url());
+  use(std::move(*hub));
+  return true;
+}
+
+void LcmLink::open_tcpq(const LcmUrl& url) {
+  const bool local = url.address.starts_with("127.");
+  const bool answers = tcpq_server_answers(url.address, url.port, hub_answer_limit);
+  if (!answers && local && serve_hub(url.port)) return;
+  auto client = std::make_unique<TcpqClient>(url.address, url.port);
+  say_(answers ? "LCM: using the hub at " + client->url()
+               : "LCM: no hub answers at " + client->url() + "; trying again and again");
+  use(std::move(client));
+}
+
+void LcmLink::use(std::unique_ptr<Transport> transport) {
+  for (const std::string& pattern : patterns_) transport->subscribe(pattern);
+  main_ = std::move(transport);
+}
+
+void LcmLink::begin_lcm() {
+  next_try_ = std::chrono::steady_clock::now() + retry_pause;
+  if (url_.scheme == "udpm") {
+    const std::string obstacle = multicast_obstacle(url_);
+    if (!obstacle.empty()) return fall_back(obstacle);
+  }
+  // With the first subscription LCM tests multicast, for up to ten seconds: beside the front
+  // thread, and not waited for when taktd ends.
+  std::promise<std::unique_ptr<LcmTransport>> promise;
+  opening_ = promise.get_future();
+  std::thread{[promise = std::move(promise), url = url_.text, patterns = patterns_]() mutable {
+    auto lcm = LcmTransport::create(url);
+    for (const std::string& pattern : patterns) {
+      if (lcm) lcm->subscribe(pattern);
+    }
+    if (lcm && !lcm->good()) lcm.reset();
+    promise.set_value(std::move(lcm));
+  }}.detach();
+}
+
+void LcmLink::finish_lcm() {
+  if (opening_.wait_for(std::chrono::seconds{0}) != std::future_status::ready) return;
+  next_try_ = std::chrono::steady_clock::now() + retry_pause;
+  std::unique_ptr<LcmTransport> lcm = opening_.get();
+  if (!lcm) return fall_back("LCM's own test of " + url_.text + " failed");
+  say_("LCM: " + url_.text +
+       (url_.text.find("ttl=0") != std::string::npos ? " (this host only)" : ""));
+  main_ = std::move(lcm);
+}
+
+void LcmLink::fall_back(const std::string& why) {
+  if (fallback_) return;
+  auto hub = TcpqBroker::listen(tcpq::default_port);
+  if (hub) {
+    fallback_ = std::move(*hub);
+  } else if (hub.error() == EADDRINUSE) {
+    fallback_ = std::make_unique<TcpqClient>("127.0.0.1", tcpq::default_port);
+  } else {
+    say_("LCM: " + why +
+         "; a hub on loopback is not possible either: " + std::strerror(hub.error()));
+    return;
+  }
+  for (const std::string& pattern : patterns_) fallback_->subscribe(pattern);
+  say_("LCM: " + why +
+       ". Serving LCM's tcpq protocol on loopback instead; other programs: export "
+       "LCM_DEFAULT_URL=" +
+       fallback_->url());
+}
+
+bool LcmLink::publish(const std::string& channel, std::span<const std::byte> data) {
+  const bool by_main = main_ && main_->publish(channel, data);
+  const bool by_fallback = fallback_ && fallback_->publish(channel, data);
+  return by_main || by_fallback;
+}
+
+void LcmLink::subscribe(const std::string& pattern) {
+  patterns_.push_back(pattern);
+  if (main_) main_->subscribe(pattern);
+  if (fallback_) fallback_->subscribe(pattern);
+}
+
+void LcmLink::serve(const MessageHandler& handler) {
+  if (opening_.valid()) finish_lcm();
+  if (main_) {
+    main_->serve(handler);
+    if (!main_->good()) main_.reset();
+  } else if (!opening_.valid() && std::chrono::steady_clock::now() >= next_try_) {
+    begin_lcm();
+  }
+  if (fallback_) fallback_->serve(handler);
+}
+
+void LcmLink::watch(std::vector<pollfd>& descriptors) const {
+  if (main_) main_->watch(descriptors);
+  if (fallback_) fallback_->watch(descriptors);
+}
+
+std::string LcmLink::url() const {
+  if (main_) return main_->url();
+  return fallback_ ? fallback_->url() : std::string{};
+}
+
+}  // namespace takt

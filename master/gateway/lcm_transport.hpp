@@ -1,0 +1,39 @@
+#pragma once
+#include <lcm/lcm.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "master/gateway/transport.hpp"
+
+namespace takt {
+
+/// LCM's own library behind the common face: udpm://, memq://, file://.
+class LcmTransport final : public Transport {
+ public:
+  /// Null: LCM refuses (its reason is on stderr). May take seconds: LCM tests multicast.
+  static std::unique_ptr<LcmTransport> create(const std::string& url);
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  void subscribe(const std::string& pattern) override;
+  void serve(const MessageHandler& handler) override;
+  void watch(std::vector<pollfd>& descriptors) const override;
+  bool good() const override { return good_; }
+  std::string url() const override { return url_; }
+
+ private:
+  struct Destroy {
+    void operator()(lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
+  };
+
+  LcmTransport(std::unique_ptr<lcm_t, Destroy> lcm, std::string url)
+      : lcm_{std::move(lcm)}, url_{std::move(url)} {}
+  static void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* self);
+
+  std::unique_ptr<lcm_t, Destroy> lcm_;
+  std::string url_;
+  const MessageHandler* handler_ = nullptr;  // during serve()
+  bool good_ = true;
+};
+
+}  // namespace takt

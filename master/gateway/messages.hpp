@@ -1,0 +1,88 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <span>
+#include <string_view>
+#include <takt/command_t.hpp>
+#include <takt/event_t.hpp>
+#include <takt/image_t.hpp>
+#include <takt/layout_t.hpp>
+#include <takt/reply_t.hpp>
+#include <takt/request_t.hpp>
+#include <takt/status_t.hpp>
+#include <takt/timing_t.hpp>
+#include <vector>
+
+#include "master/gateway/message_shape.hpp"
+
+namespace takt {
+
+/// Version of all messages, in their field `schema`.
+inline constexpr std::int16_t message_schema = 1;
+
+/// Largest message where the sender can choose: one Ethernet frame with LCM's header and channel.
+inline constexpr std::size_t message_bytes = 1300;
+
+using Bytes = std::span<const std::byte>;
+
+/// Why bytes are not the message that was expected.
+enum class DecodeFault : std::uint8_t {
+  other_version,  ///< the fingerprint is another one: the publisher has other .lcm files
+  malformed,      ///< sizes inside do not fit the message
+};
+
+std::string_view text(DecodeFault fault) noexcept;
+
+/// Layout of a type's bytes, see has_shape.
+template <class T>
+inline constexpr std::string_view message_layout = "";
+template <>
+inline constexpr std::string_view message_layout<command_t> = "lhlslin(h)(l)";
+template <>
+inline constexpr std::string_view message_layout<event_t> = "lhllhsshs";
+template <>
+inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(h)";
+template <>
+inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihbhhsdd)";
+template <>
+inline constexpr std::string_view message_layout<reply_t> = "lhllsblsn(b)";
+template <>
+inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
+template <>
+inline constexpr std::string_view message_layout<status_t> =
+    "lhhhlssislllllllllllllfhhhn(hshhhhihiiiiils)";
+template <>
+inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
+
+/// Bytes from outside to a message; hostile bytes cost no more than their own size.
+template <class T>
+std::expected<T, DecodeFault> decode(Bytes bytes) {
+  if (bytes.size() < 8 || bytes.size() > 0x7FFF'FFFF) {
+    return std::unexpected{DecodeFault::malformed};
+  }
+  std::uint64_t fingerprint = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
+  }
+  if (fingerprint != static_cast<std::uint64_t>(T::getHash())) {
+    return std::unexpected{DecodeFault::other_version};
+  }
+  T message;
+  if (!has_shape(bytes.subspan(8), message_layout<T>) ||
+      message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) {
+    return std::unexpected{DecodeFault::malformed};
+  }
+  return message;
+}
+
+/// The message as bytes, in a buffer that is used again and again.
+template <class T>
+Bytes encode(const T& message, std::vector<std::byte>& buffer) {
+  const int size = message.getEncodedSize();
+  buffer.resize(static_cast<std::size_t>(size));
+  const int written = message.encode(buffer.data(), 0, size);
+  return Bytes{buffer}.first(written < 0 ? 0 : static_cast<std::size_t>(written));
+}
+
+}  // namespace takt

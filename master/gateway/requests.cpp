@@ -1,0 +1,168 @@
+#include "master/gateway/requests.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "master/gateway/messages.hpp"
+#include "master/gateway/notice.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t most_recent = 256;
+constexpr std::size_t most_pending = 64;
+
+std::optional<NmtCommand> nmt_command(std::int16_t code) noexcept {
+  switch (static_cast<NmtCommand>(code)) {
+    case NmtCommand::start:
+    case NmtCommand::stop:
+    case NmtCommand::enter_preoperational:
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      return static_cast<NmtCommand>(code);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
+  const auto abort = [&] {
+    return hex(abort_code, 8) + " (" + std::string{abort_text(abort_code)} + ")";
+  };
+  switch (fault) {
+    case SdoFault::none:
+      return {};
+    case SdoFault::aborted_by_device:
+      return "the device refused with SDO abort " + abort();
+    case SdoFault::aborted_by_master:
+      return "the device broke the SDO protocol; the transfer was ended with " + abort();
+    case SdoFault::timeout:
+      return "the device did not answer in time";
+    case SdoFault::too_long:
+      return "the value is longer than " + std::to_string(request_bytes) +
+             " bytes, the most that a request carries";
+    case SdoFault::cancelled:
+      return "the node was reset or the master stops";
+  }
+  return {};
+}
+
+Requests::Requests(const BusPlan& plan, RequestsOptions options,
+                   std::function<bool(const Request&)> submit)
+    : plan_{plan}, options_{options}, submit_{std::move(submit)} {}
+
+reply_t Requests::reply_to(const Asker& asker) const {
+  reply_t reply{};
+  reply.schema = message_schema;
+  reply.session = options_.session;
+  reply.id = asker.id;
+  reply.sender = asker.sender;
+  return reply;
+}
+
+bool Requests::seen_before(const Asker& asker) {
+  if (std::ranges::find(recent_, asker) != recent_.end()) return true;
+  if (recent_.size() == most_recent) recent_.pop_front();
+  recent_.push_back(asker);
+  return false;
+}
+
+std::optional<reply_t> Requests::take(const request_t& message) {
+  Asker asker{.sender = message.sender.substr(0, 64), .id = message.id};
+  if (seen_before(asker)) return std::nullopt;
+  const auto refuse = [&](std::string why) {
+    reply_t reply = reply_to(asker);
+    reply.text = std::move(why);
+    return reply;
+  };
+  auto request = translate(message);
+  if (!request) return refuse(request.error());
+  request->id = next_id_;
+  asker.kind = request->kind;
+  if (pending_.size() == most_pending || !submit_(*request)) {
+    return refuse("too many requests at once; ask again later");
+  }
+  pending_.emplace(next_id_++, std::move(asker));
+  return std::nullopt;
+}
+
+std::expected<Request, std::string> Requests::translate(const request_t& message) const {
+  if (message.schema != message_schema) {
+    return std::unexpected{"this taktd has schema " + std::to_string(message_schema)};
+  }
+  if (message.session != 0 && message.session != options_.session) {
+    return std::unexpected{std::string{"the request is for another session of taktd"}};
+  }
+  if (options_.observe) {
+    return std::unexpected{std::string{"taktd only observes (--observe) and sends nothing"}};
+  }
+  if (message.node_id < 0 || message.node_id > 127) {
+    return std::unexpected{"node " + std::to_string(message.node_id) + " is not in 1..127"};
+  }
+  if (message.service == "nmt") return translate_nmt(message);
+  if (message.service == "sdo_upload" || message.service == "sdo_download") {
+    return translate_sdo(message);
+  }
+  return std::unexpected{"service '" + message.service.substr(0, 32) +
+                         "' is not known; there are sdo_upload, sdo_download and nmt"};
+}
+
+std::expected<Request, std::string> Requests::translate_nmt(const request_t& message) const {
+  const auto command = nmt_command(message.nmt_command);
+  if (!command) {
+    return std::unexpected{"NMT command " + std::to_string(message.nmt_command) +
+                           " is not one of 1, 2, 128, 129, 130"};
+  }
+  Request request;
+  request.kind = RequestKind::nmt;
+  request.node = static_cast<std::uint8_t>(message.node_id);
+  request.command = *command;
+  return request;
+}
+
+std::expected<Request, std::string> Requests::translate_sdo(const request_t& message) const {
+  const auto node = static_cast<std::uint8_t>(message.node_id);
+  if (node_name(plan_, node).empty()) {
+    return std::unexpected{"node " + std::to_string(message.node_id) +
+                           " is not in the network file of bus '" + plan_.name + "'"};
+  }
+  if (message.index < 0 || message.index > 0xFFFF || message.sub < 0 || message.sub > 0xFF) {
+    return std::unexpected{std::string{"index or sub-index is out of range"}};
+  }
+  if (message.data.size() > request_bytes) {
+    return std::unexpected{"a request carries at most " + std::to_string(request_bytes) + " bytes"};
+  }
+  Request request;
+  const bool upload = message.service == "sdo_upload";
+  request.kind = upload ? RequestKind::sdo_upload : RequestKind::sdo_download;
+  request.node = node;
+  request.object = {static_cast<std::uint16_t>(message.index),
+                    static_cast<std::uint8_t>(message.sub)};
+  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
+  request.size = static_cast<std::uint16_t>(message.data.size());
+  std::ranges::transform(message.data, request.data.begin(),
+                         [](std::uint8_t byte) { return std::byte{byte}; });
+  return request;
+}
+
+std::optional<reply_t> Requests::finish(const Reply& reply) {
+  const auto found = pending_.find(reply.id);
+  if (found == pending_.end()) return std::nullopt;
+  reply_t message = reply_to(found->second);
+  message.good = reply.fault == SdoFault::none ? 1 : 0;
+  message.abort_code = reply.abort_code;
+  message.text = fault_text(reply.fault, reply.abort_code);
+  if (found->second.kind == RequestKind::sdo_upload) {
+    message.size = reply.size;
+    message.data.resize(reply.size);
+    std::transform(reply.data.begin(), reply.data.begin() + reply.size, message.data.begin(),
+                   [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+  }
+  pending_.erase(found);
+  return message;
+}
+
+}  // namespace takt

@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <takt/status_t.hpp>
+#include <takt/timing_t.hpp>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/rt/exchange.hpp"
+
+namespace takt {
+
+/// What status_t tells beyond the bus thread's own counters.
+struct GatewayStatus {
+  std::uint64_t image_overruns = 0;
+  std::uint64_t event_overruns = 0;
+  std::uint64_t commands_taken = 0;
+  std::uint64_t commands_refused = 0;
+  std::vector<std::string> holders;  ///< per node: who commands its outputs
+};
+
+/// Share of time that the wire is busy, over about the last second.
+class BusLoad {
+ public:
+  explicit BusLoad(std::uint32_t bitrate) : bitrate_{bitrate} {}
+  float update(Time now, std::uint64_t wire_bits);
+
+ private:
+  struct Sample {
+    Time when{};
+    std::uint64_t bits = 0;
+  };
+  std::uint32_t bitrate_;
+  std::deque<Sample> samples_;
+};
+
+/// Fixed part of status_t.
+struct StatusIdentity {
+  std::int64_t session = 0;
+  std::string interface;
+  std::string realtime;
+};
+
+/// The state of the bus and of its nodes; a few nodes a message.
+class StatusMessages {
+ public:
+  StatusMessages(const BusPlan& plan, StatusIdentity identity);
+  std::vector<status_t> fill(const StatusSnapshot& snapshot, const GatewayStatus& gateway,
+                             Time now);
+
+ private:
+  status_t bus_part(const StatusSnapshot& snapshot, const GatewayStatus& gateway, Time now);
+
+  const BusPlan& plan_;
+  StatusIdentity identity_;
+  BusLoad load_;
+};
+
+/// The histograms of the time since the last call.
+class TimingMessages {
+ public:
+  explicit TimingMessages(std::int64_t session) : session_{session} {}
+  timing_t fill(const TimingHistograms& timing, std::uint64_t cycle);
+
+ private:
+  std::int64_t session_;
+  std::vector<HistogramSnapshot> earlier_;
+};
+
+}  // namespace takt

@@ -1,0 +1,32 @@
+#include "master/gateway/rate_limit.hpp"
+
+#include <gtest/gtest.h>
+
+namespace takt {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(RateLimit, TellsOnceAndThenCounts) {
+  RateLimit limit{milliseconds{1000}};
+
+  EXPECT_EQ(limit.allow("a", milliseconds{5000}), 0U);
+  EXPECT_EQ(limit.allow("a", milliseconds{5500}), std::nullopt);
+  EXPECT_EQ(limit.allow("a", milliseconds{5999}), std::nullopt);
+  EXPECT_EQ(limit.allow("b", milliseconds{5999}), 0U);
+  EXPECT_EQ(limit.allow("a", milliseconds{6000}), 2U);
+}
+
+TEST(RateLimit, AFloodOfDifferentThingsIsHeldBackToo) {
+  RateLimit limit{milliseconds{1000}, 4};
+  int told = 0;
+
+  for (int i = 0; i < 1000; ++i) {
+    if (limit.allow(std::to_string(i), milliseconds{5000 + i})) ++told;
+  }
+
+  EXPECT_EQ(told, 4);
+}
+
+}  // namespace
+}  // namespace takt

@@ -1,0 +1,216 @@
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <initializer_list>
+#include <netinet/in.h>
+#include <poll.h>
+#include <string>
+#include <sys/socket.h>
+#include <vector>
+
+#include "master/gateway/channel_patterns.hpp"
+#include "master/gateway/tcpq_broker.hpp"
+#include "master/gateway/tcpq_client.hpp"
+#include "master/gateway/tcpq_parser.hpp"
+
+namespace takt {
+namespace {
+
+using Octets = std::vector<std::byte>;
+
+Octets octets(std::initializer_list<int> values) {
+  Octets bytes;
+  for (const int value : values) bytes.push_back(static_cast<std::byte>(value));
+  return bytes;
+}
+
+// What LCM's own client sends: magic 287617FB, version 0100, subscribe "AB", publish "C" 1 byte.
+const Octets opening = octets({0x28, 0x76, 0x17, 0xFB, 0, 0, 1, 0});
+const Octets subscribe_ab = octets({0, 0, 0, 2, 0, 0, 0, 2, 'A', 'B'});
+const Octets publish_c = octets({0, 0, 0, 1, 0, 0, 0, 1, 'C', 0, 0, 0, 1, 0x55});
+
+TEST(TcpqParser, ReadsWhatTheClientOfLcmSends) {
+  tcpq::Parser parser{tcpq::magic_client};
+  parser.feed(opening);
+  parser.feed(subscribe_ab);
+  parser.feed(publish_c);
+
+  const auto first = parser.next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->type, tcpq::Type::subscribe);
+  EXPECT_EQ(first->channel, "AB");
+  const auto second = parser.next();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->type, tcpq::Type::publish);
+  EXPECT_EQ(second->channel, "C");
+  ASSERT_EQ(second->data.size(), 1U);
+  EXPECT_EQ(second->data[0], std::byte{0x55});
+  EXPECT_FALSE(parser.next());
+  EXPECT_FALSE(parser.broken());
+}
+
+TEST(TcpqParser, PutsTogetherWhatComesByteByByte) {
+  tcpq::Parser parser{tcpq::magic_client};
+  Octets all = opening;
+  all.insert(all.end(), publish_c.begin(), publish_c.end());
+
+  int messages = 0;
+  for (const std::byte byte : all) {
+    parser.feed({&byte, 1});
+    while (parser.next()) ++messages;
+  }
+
+  EXPECT_EQ(messages, 1);
+}
+
+TEST(TcpqParser, WritesWhatTheClientOfLcmReads) {
+  Octets out;
+  tcpq::append_opening(out, tcpq::magic_server);
+  EXPECT_EQ(out, octets({0x28, 0x76, 0x17, 0xFA, 0, 0, 1, 0}));
+
+  out.clear();
+  const Octets data = octets({0x55});
+  tcpq::append(out, {.type = tcpq::Type::publish, .channel = "C", .data = data});
+  EXPECT_EQ(out, publish_c);
+}
+
+TEST(TcpqParser, RefusesOtherProtocolsAndHugeSizes) {
+  tcpq::Parser http{tcpq::magic_client};
+  http.feed(octets({'G', 'E', 'T', ' ', '/', ' ', 'H', 'T'}));
+  EXPECT_FALSE(http.next());
+  EXPECT_TRUE(http.broken());
+
+  tcpq::Parser channel{tcpq::magic_client};
+  channel.feed(opening);
+  channel.feed(octets({0, 0, 0, 2, 0xFF, 0xFF, 0xFF, 0xFF}));
+  EXPECT_FALSE(channel.next());
+  EXPECT_TRUE(channel.broken());
+
+  tcpq::Parser data{tcpq::magic_client};
+  data.feed(opening);
+  data.feed(octets({0, 0, 0, 1, 0, 0, 0, 1, 'C', 0x7F, 0xFF, 0xFF, 0xFF}));
+  EXPECT_FALSE(data.next());
+  EXPECT_TRUE(data.broken());
+}
+
+TEST(ChannelPatterns, MatchWholeNamesAsLcmDoes) {
+  ChannelPatterns patterns;
+  EXPECT_TRUE(patterns.add("LIFT_IMAGE"));
+  EXPECT_TRUE(patterns.add("ARM_.*"));
+
+  EXPECT_TRUE(patterns.match("LIFT_IMAGE"));
+  EXPECT_FALSE(patterns.match("LIFT_IMAGES"));
+  EXPECT_TRUE(patterns.match("ARM_STATUS"));
+  EXPECT_FALSE(patterns.match("XARM_STATUS"));
+
+  patterns.remove("ARM_.*");
+  EXPECT_FALSE(patterns.match("ARM_STATUS"));
+}
+
+TEST(ChannelPatterns, CostlyPatternsAreRefusedOrMatchedInBoundedTime) {
+  ChannelPatterns patterns;
+  EXPECT_FALSE(patterns.add("((a{1000}){1000}){1000}"));
+  EXPECT_FALSE(patterns.add("(a"));
+  EXPECT_FALSE(patterns.add("(a)\\1"));
+  EXPECT_FALSE(patterns.add(std::string(10000, '(')));
+
+  // Exponential in a backtracking matcher; the test would not end.
+  if (patterns.add("(a*)*(a*)*(a*)*(a|aa)*b")) {
+    EXPECT_FALSE(patterns.match(std::string(60, 'a')));
+  }
+}
+
+// Serves all ends until `done`, at most as long as bytes can still be under way.
+template <class F>
+bool serve_until(std::vector<Transport*> ends, const MessageHandler& handler, F done) {
+  for (int rounds = 0; rounds < 2000; ++rounds) {
+    for (Transport* end : ends) end->serve(handler);
+    if (done()) return true;
+    std::vector<pollfd> descriptors;
+    for (Transport* end : ends) end->watch(descriptors);
+    ::poll(descriptors.data(), descriptors.size(), 5);
+  }
+  return false;
+}
+
+TEST(TcpqBroker, CarriesMessagesFromItsOwnerToClientsAndBack) {
+  auto broker = TcpqBroker::listen(0).value();
+  broker->subscribe("UP");
+  TcpqClient client{"127.0.0.1", broker->port()};
+  client.subscribe("DOWN.*");
+  std::vector<std::string> heard;
+  const MessageHandler handler = [&](std::string_view channel, std::span<const std::byte> data) {
+    heard.push_back(std::string{channel} + ":" + std::to_string(data.size()));
+  };
+  ASSERT_TRUE(serve_until({broker.get(), &client}, handler, [&] { return client.connected(); }));
+
+  const Octets three(3);
+  client.publish("UP", three);
+  client.publish("ELSEWHERE", three);
+  ASSERT_TRUE(serve_until({broker.get(), &client}, handler, [&] { return !heard.empty(); }));
+  broker->publish("OTHER", three);
+  broker->publish("DOWN_1", three);
+  ASSERT_TRUE(serve_until({broker.get(), &client}, handler, [&] { return heard.size() >= 2; }));
+
+  EXPECT_EQ(heard, (std::vector<std::string>{"UP:3", "DOWN_1:3"}));
+}
+
+TEST(TcpqBroker, RelaysBetweenClients) {
+  auto broker = TcpqBroker::listen(0).value();
+  TcpqClient one{"127.0.0.1", broker->port()};
+  TcpqClient two{"127.0.0.1", broker->port()};
+  two.subscribe("X");
+  int heard = 0;
+  const MessageHandler handler = [&](std::string_view, std::span<const std::byte>) { ++heard; };
+  ASSERT_TRUE(serve_until({broker.get(), &one, &two}, handler,
+                          [&] { return one.connected() && two.connected(); }));
+
+  // two's subscription is on its way: repeat until it counts.
+  EXPECT_TRUE(serve_until({broker.get(), &one, &two}, handler, [&] {
+    one.publish("X", Octets(1));
+    return heard > 0;
+  }));
+}
+
+TEST(TcpqBroker, AClientThatNeverReadsCostsBoundedMemoryAndNothingElse) {
+  auto broker = TcpqBroker::listen(0).value();
+  TcpqClient stuck{"127.0.0.1", broker->port()};
+  stuck.subscribe(".*");
+  TcpqClient reader{"127.0.0.1", broker->port()};
+  reader.subscribe("LAST");
+  const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
+  ASSERT_TRUE(serve_until({broker.get(), &stuck, &reader}, ignore,
+                          [&] { return stuck.connected() && reader.connected(); }));
+  serve_until({broker.get()}, ignore, [n = 0]() mutable { return ++n == 5; });
+
+  const Octets large(1000);
+  for (int i = 0; i < 20000; ++i) broker->publish("FLOOD", large);
+
+  int heard = 0;
+  const MessageHandler count = [&](std::string_view, std::span<const std::byte>) { ++heard; };
+  EXPECT_TRUE(serve_until({broker.get(), &reader}, count, [&] {
+    broker->publish("LAST", large);
+    return heard > 0;
+  }));
+}
+
+TEST(TcpqBroker, GarbageEndsOnlyItsOwnConnection) {
+  auto broker = TcpqBroker::listen(0).value();
+  FileDescriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(broker->port());
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const std::string garbage(5000, '\xEE');
+  ASSERT_GT(::send(socket.get(), garbage.data(), garbage.size(), MSG_NOSIGNAL), 0);
+
+  const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
+  bool seen = false;
+  EXPECT_TRUE(serve_until({broker.get()}, ignore, [&] {
+    seen = seen || broker->clients() == 1;
+    return broker->clients() == 0;
+  }));
+}
+
+}  // namespace
+}  // namespace takt
