@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// How many frames of each 11-bit identifier the bus thread has handed to the bus: what tells the
+/// diagnostic socket its frames from those of others. One writer, any reader, no lock.
+class SentFrames {
+ public:
+  /// Writer, before the frames are sent: a reader never sees a frame that is not counted yet.
+  void add(std::span<const Frame> frames) noexcept { change(frames, 1); }
+  /// Writer: these were refused after all.
+  void take_back(std::span<const Frame> frames) noexcept { change(frames, ~std::uint32_t{0}); }
+
+  std::uint32_t of(CobId id) const noexcept {
+    return counts_[id.id() & 0x7FF].load(std::memory_order_acquire);
+  }
+
+ private:
+  void change(std::span<const Frame> frames, std::uint32_t by) noexcept {
+    for (const Frame& frame : frames) {
+      if (frame.id.is_extended()) continue;
+      std::atomic<std::uint32_t>& count = counts_[frame.id.id()];
+      count.store(count.load(std::memory_order_relaxed) + by, std::memory_order_release);
+    }
+  }
+  std::array<std::atomic<std::uint32_t>, 2048> counts_{};
+};
+
+}  // namespace takt

@@ -1,0 +1,224 @@
+#include "master/linux/intruder_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace takt {
+namespace {
+
+constexpr Time ms = std::chrono::milliseconds{1};
+const Frame sync_frame = make_frame(CobId::base(0x080), {});
+const Frame rpdo = make_frame(CobId::base(0x205), {0x0F, 0x00});
+const Frame tpdo = make_frame(CobId::base(0x185), {0x37, 0x06});
+const Frame start_all = make_frame(CobId::base(0x000), {0x01, 0x00});
+
+/// SYNC, RPDO1 and TPDO1 (type 1) of node 5, the master's heartbeat as node 127.
+BusPlan plan_of_node_5() {
+  BusPlan plan;
+  plan.pdos.rpdos.push_back({.cob_id = CobId::base(0x205), .node = 5_node});
+  plan.pdos.tpdos.push_back({.cob_id = CobId::base(0x185), .node = 5_node, .transmission = 1});
+  return plan;
+}
+
+class IntruderWatchTest : public testing::Test {
+ protected:
+  void see(const Frame& frame, Origin origin = Origin::this_machine) {
+    watch_.on_frame({.frame = frame, .when = now_}, origin);
+  }
+  /// The bus thread sends, the diagnostic socket hears it.
+  void send(const Frame& frame) {
+    sent_->add({&frame, 1});
+    see(frame);
+  }
+  std::vector<Event> events() {
+    watch_.on_drained(*sent_, now_);
+    std::vector<Event> all;
+    for (Event event; watch_.take(event);) all.push_back(event);
+    return all;
+  }
+
+  std::unique_ptr<SentFrames> sent_ = std::make_unique<SentFrames>();
+  IntruderWatch watch_{plan_of_node_5()};
+  Time now_ = 1000 * ms;
+};
+
+TEST_F(IntruderWatchTest, IsSilentOverItsOwnTraffic) {
+  events();
+
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    now_ += 4 * ms;
+    send(sync_frame);
+    see(tpdo, Origin::wire);
+    send(rpdo);
+    EXPECT_TRUE(events().empty()) << cycle;
+  }
+}
+
+TEST_F(IntruderWatchTest, TellsASyncFromTheWireAtOnce) {
+  events();
+
+  see(sync_frame, Origin::wire);
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::foreign_sync);
+  EXPECT_EQ(told[0].when, 1000 * ms);
+}
+
+TEST_F(IntruderWatchTest, TellsASyncOfAnotherProgramHereByCounting) {
+  events();
+  send(sync_frame);
+  EXPECT_TRUE(events().empty());
+
+  send(sync_frame);
+  see(sync_frame);
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::foreign_sync);
+}
+
+TEST_F(IntruderWatchTest, TellsTheCommandOfAForeignNmtMaster) {
+  events();
+
+  see(start_all);
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::foreign_nmt);
+  EXPECT_EQ(told[0].bytes[0], 0x01);
+}
+
+TEST_F(IntruderWatchTest, TellsASecondSenderOfAnRpdoWithItsCobId) {
+  events();
+  send(rpdo);
+
+  see(rpdo, Origin::wire);
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(told[0].value, 0x205);
+}
+
+TEST_F(IntruderWatchTest, DoesNotMistakeFramesUnderWayForIntruders) {
+  events();
+  const std::array<Frame, 3> batch{rpdo, rpdo, rpdo};
+  sent_->add(batch);  // counted, still in the queue of the controller
+
+  EXPECT_TRUE(events().empty());
+  for (const Frame& frame : batch) see(frame);
+
+  EXPECT_TRUE(events().empty());
+}
+
+TEST_F(IntruderWatchTest, StillFindsIntrudersAfterTheSocketHasLostFrames) {
+  events();
+  const std::array<Frame, 50> lost = [] {
+    std::array<Frame, 50> all;
+    all.fill(sync_frame);
+    return all;
+  }();
+  sent_->add(lost);  // sent, never heard
+  for (int i = 0; i < 30; ++i) {
+    now_ += 100 * ms;
+    EXPECT_TRUE(events().empty());
+  }
+
+  send(sync_frame);
+  see(sync_frame);
+
+  EXPECT_EQ(events().size(), 1U);
+}
+
+TEST_F(IntruderWatchTest, TellsTheSameIntruderOnlyOnceInTenSeconds) {
+  events();
+  int told = 0;
+  for (int i = 0; i < 2100; ++i) {  // 21 s
+    now_ += 10 * ms;
+    see(sync_frame, Origin::wire);
+    told += static_cast<int>(events().size());
+  }
+  EXPECT_EQ(told, 3);
+}
+
+TEST_F(IntruderWatchTest, TellsTwoSendersOfOneTpdo) {
+  events();
+  std::vector<Event> told;
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    now_ += 4 * ms;
+    send(sync_frame);
+    see(tpdo, Origin::wire);
+    see(tpdo, Origin::wire);
+    for (const Event& event : events()) told.push_back(event);
+  }
+
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(told[0].value, 0x185);
+  EXPECT_EQ(told[0].node, 5);
+}
+
+TEST_F(IntruderWatchTest, ATpdoThatIsLateAndThenTwiceInACycleIsNoDuplicate) {
+  events();
+  for (int cycle = 0; cycle < 200; ++cycle) {
+    now_ += 4 * ms;
+    send(sync_frame);
+    if (cycle % 2 == 1) {
+      see(tpdo, Origin::wire);
+      see(tpdo, Origin::wire);
+    }
+    EXPECT_TRUE(events().empty());
+  }
+}
+
+TEST_F(IntruderWatchTest, TellsTwoNodesThatBothAnswerSdoRequests) {
+  events();
+  for (int i = 0; i < 3; ++i) {
+    send(make_frame(CobId::base(0x605), {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}));
+    see(make_frame(CobId::base(0x585), {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00}),
+        Origin::wire);
+    see(make_frame(CobId::base(0x585), {0x43, 0x00, 0x10, 0x00, 0x91, 0x01, 0x0F, 0x00}),
+        Origin::wire);
+  }
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, EventKind::duplicate_cob_id);
+  EXPECT_EQ(told[0].value, 0x585);
+  EXPECT_EQ(told[0].node, 5);
+}
+
+TEST_F(IntruderWatchTest, ASdoBlockUploadIsNoSecondNode) {
+  events();
+  send(make_frame(CobId::base(0x605), {0xA0, 0x08, 0x10, 0x00, 0x7F, 0, 0, 0}));
+  for (std::uint8_t segment = 1; segment < 20; ++segment) {
+    see(make_frame(CobId::base(0x585), {segment, 1, 2, 3, 4, 5, 6, 7}), Origin::wire);
+  }
+
+  EXPECT_TRUE(events().empty());
+}
+
+TEST_F(IntruderWatchTest, AbortsOfADeviceByItselfAreNoSecondNode) {
+  events();
+  for (int i = 0; i < 5; ++i) {
+    see(make_frame(CobId::base(0x585), {0x80, 0x00, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}),
+        Origin::wire);
+  }
+
+  EXPECT_TRUE(events().empty());
+}
+
+TEST(IntruderWatch, WithoutOurSyncSomebodyElseMayBeTheProducer) {
+  BusPlan plan;
+  plan.cycle.sync = false;
+  IntruderWatch watch{plan};
+
+  watch.on_frame({.frame = sync_frame, .when = ms}, Origin::wire);
+
+  Event event;
+  EXPECT_FALSE(watch.take(event));
+}
+
+}  // namespace
+}  // namespace takt
