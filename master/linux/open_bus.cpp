@@ -15,13 +15,14 @@ std::expected<AnyPort, BusError> wrap(std::expected<P, BusError> port) {
 
 }  // namespace
 
-std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& plan, Time spin) {
+std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& plan, Time spin,
+                                          SentFrames* sent) {
   const BusName name = BusName::parse(bus);
-  UnixBusOptions unix_options{.path = name.name, .spin = spin};
+  UnixBusOptions unix_options{.path = name.name, .spin = spin, .sent = sent};
   if (plan.cycle.sync) unix_options.sync_cob_id = plan.cycle.sync_cob_id;
   switch (name.kind) {
     case BusName::Kind::can_interface:
-      return wrap(SocketCanPort::open(name.name, plan, spin));
+      return wrap(SocketCanPort::open(name.name, plan, spin, sent));
     case BusName::Kind::unix_path:
       return wrap(UnixBusPort::open(unix_options));
     case BusName::Kind::simulated:

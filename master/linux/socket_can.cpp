@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "master/linux/can_control.hpp"
 #include "master/linux/can_error_frame.hpp"
 #include "master/linux/can_filters.hpp"
 #include "master/linux/can_frame.hpp"
@@ -20,7 +21,6 @@ namespace takt {
 namespace {
 
 constexpr std::size_t batch_frames = 256;
-constexpr std::size_t control_bytes = CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(__u32));
 constexpr Time look_again = std::chrono::milliseconds{50};
 
 BusError error_of(const std::string& interface, const std::string& what, int error) {
@@ -48,9 +48,10 @@ struct SocketCanPort::State {
   std::vector<can_filter> filters;
   std::optional<canid_t> sync_id;
   Time spin{};
+  SentFrames* sent = nullptr;
   Time next_look{};
   PortNews news;
-  MessageBatch<can_frame, batch_frames, control_bytes> in;
+  MessageBatch<can_frame, batch_frames, can_control_bytes> in;
   MessageBatch<can_frame, batch_frames, 0> out;
 
   bool bind_interface() noexcept;
@@ -93,47 +94,13 @@ void SocketCanPort::State::look_for_interface() noexcept {
   news.error_passive = false;
 }
 
-namespace {
-
-/// The kernel's stamp and its count of dropped frames, from the control messages.
-struct Control {
-  Time realtime{};
-  std::optional<__u32> dropped;
-};
-
-Control control_of(msghdr& header) noexcept {
-  Control control;
-  for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c)) {
-    if (c->cmsg_level != SOL_SOCKET) continue;
-    if (c->cmsg_type == SCM_TIMESTAMPNS) {
-      timespec stamp{};
-      std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
-      control.realtime = std::chrono::seconds{stamp.tv_sec} + Time{stamp.tv_nsec};
-    } else if (c->cmsg_type == SO_RXQ_OVFL) {
-      __u32 dropped = 0;
-      std::memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
-      control.dropped = dropped;
-    }
-  }
-  return control;
-}
-
-/// A stamp that a step of the wall clock has made impossible counts as now.
-Time monotonic_stamp(Time realtime, Time offset, Time now) noexcept {
-  constexpr Time oldest = std::chrono::seconds{1};
-  const Time when = realtime - offset;
-  return when > now || when < now - oldest ? now : when;
-}
-
-}  // namespace
-
 /// Message i of the batch: false where it is for the port alone (error frames, own frames).
 bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
                                 StampedFrame& frame) noexcept {
   if (in.bytes(i) != CAN_MTU) return false;
   const can_frame& raw = in.record(i);
   msghdr& header = in.header(i);
-  const Control control = control_of(header);
+  const CanControl control = can_control_of(header);
   if (control.dropped) news.receive_overruns = *control.dropped;
   if ((raw.can_id & CAN_ERR_FLAG) != 0) {
     apply_error_frame(raw, news);
@@ -163,6 +130,7 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
   std::memcpy(state->request.ifr_name, name.c_str(), name.size() + 1);
   state->filters = options.filters;
   state->spin = options.spin;
+  state->sent = options.sent;
   if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
 
   state->fd = socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
@@ -197,8 +165,10 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
 }
 
 std::expected<SocketCanPort, BusError> SocketCanPort::open(const std::string& interface,
-                                                           const BusPlan& plan, Time spin) {
-  SocketCanOptions options{.interface = interface, .filters = filters_for(plan), .spin = spin};
+                                                           const BusPlan& plan, Time spin,
+                                                           SentFrames* sent) {
+  SocketCanOptions options{
+      .interface = interface, .filters = filters_for(plan), .spin = spin, .sent = sent};
   if (plan.cycle.sync) options.sync_cob_id = plan.cycle.sync_cob_id;
   return open(options);
 }
@@ -239,6 +209,7 @@ SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
   SendResult result;
   if (state.news.interface_down) return {.sent = 0, .error = state.news.last_error};
+  if (state.sent != nullptr) state.sent->add(out);
   while (result.sent < out.size() && result.error == 0) {
     const std::size_t count = std::min(out.size() - result.sent, batch_frames);
     for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_kernel(out[result.sent + i]);
@@ -253,6 +224,7 @@ SendResult SocketCanPort::send(std::span<const Frame> out) noexcept {
       result.sent += static_cast<std::size_t>(sent);
     }
   }
+  if (state.sent != nullptr) state.sent->take_back(out.subspan(result.sent));
   return result;
 }
 

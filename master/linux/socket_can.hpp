@@ -9,6 +9,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/linux/bus_error.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/sent_frames.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {
@@ -19,7 +20,8 @@ struct SocketCanOptions {
   /// Own frames of this identifier are echoed by the kernel when they were on the wire; the newest
   /// echo is news().last_sync_echo. Only identifiers that pass `filters` are echoed.
   std::optional<CobId> sync_cob_id{};
-  Time spin{};  ///< of sleep_precisely_until
+  Time spin{};                 ///< of sleep_precisely_until
+  SentFrames* sent = nullptr;  ///< counts what was sent, for a DiagnosticSocket
 };
 
 /// A CAN interface of the kernel as a Port. One system call for each sleep, wait, receive and send;
@@ -30,7 +32,8 @@ class SocketCanPort {
   static std::expected<SocketCanPort, BusError> open(const SocketCanOptions& options);
   /// As the bus thread needs it: filters and SYNC from the plan.
   static std::expected<SocketCanPort, BusError> open(const std::string& interface,
-                                                     const BusPlan& plan, Time spin);
+                                                     const BusPlan& plan, Time spin,
+                                                     SentFrames* sent = nullptr);
   SocketCanPort(SocketCanPort&&) noexcept;
   SocketCanPort& operator=(SocketCanPort&&) noexcept;
   ~SocketCanPort();

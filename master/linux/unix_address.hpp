@@ -2,7 +2,10 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <sys/socket.h>
 #include <sys/un.h>
+
+#include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 
@@ -13,6 +16,14 @@ inline std::optional<sockaddr_un> unix_address(const std::string& path) noexcept
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   return address;
+}
+
+/// A connected, non-blocking SEQPACKET socket; none: errno says why.
+inline FileDescriptor connect_unix(const sockaddr_un& address) noexcept {
+  FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const auto* target = reinterpret_cast<const sockaddr*>(&address);
+  if (!socket || connect(socket.get(), target, sizeof address) != 0) return {};
+  return socket;
 }
 
 }  // namespace takt

@@ -20,13 +20,6 @@ constexpr std::size_t batch_frames = 256;
 constexpr Time look_again = std::chrono::milliseconds{10};
 constexpr Time open_limit = std::chrono::seconds{2};
 
-FileDescriptor connect_to(const sockaddr_un& address) noexcept {
-  FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  const auto* target = reinterpret_cast<const sockaddr*>(&address);
-  if (!socket || connect(socket.get(), target, sizeof address) != 0) return {};
-  return socket;
-}
-
 }  // namespace
 
 struct UnixBusPort::State {
@@ -36,6 +29,7 @@ struct UnixBusPort::State {
   std::optional<canid_t> sync_id;
   bool echoes = false;
   Time spin{};
+  SentFrames* sent = nullptr;
   Time next_look{};
   std::uint32_t lost_before = 0;  // on earlier connections
   PortNews news;
@@ -66,7 +60,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
   const Time now = monotonic_now();
   if (!address || now < next_look) return;
   next_look = now + look_again;
-  socket = connect_to(*address);
+  socket = connect_unix(*address);
   news.interface_down = !socket;
 }
 
@@ -107,10 +101,11 @@ std::expected<UnixBusPort, BusError> UnixBusPort::open(const UnixBusOptions& opt
   state->hub = std::move(*hub);
   state->address = unix_address(options.path);
   state->spin = options.spin;
+  state->sent = options.sent;
   if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
   // Another process may hold the lock and not listen yet.
   const Time limit = monotonic_now() + open_limit;
-  while (!(state->socket = connect_to(*state->address))) {
+  while (!(state->socket = connect_unix(*state->address))) {
     const int error = errno;
     if (monotonic_now() > limit) {
       return std::unexpected{
@@ -174,8 +169,9 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
 SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
   State& state = *state_;
   SendResult result;
+  if (state.news.interface_down) return {.sent = 0, .error = ENETDOWN};
+  if (state.sent != nullptr) state.sent->add(out);
   while (result.sent < out.size() && result.error == 0) {
-    if (state.news.interface_down) return {.sent = result.sent, .error = ENETDOWN};
     const std::size_t count = std::min(out.size() - result.sent, batch_frames);
     for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_record(out[result.sent + i]);
     for (std::size_t done = 0; done < count;) {
@@ -189,6 +185,7 @@ SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
       result.sent += static_cast<std::size_t>(sent);
     }
   }
+  if (state.sent != nullptr) state.sent->take_back(out.subspan(result.sent));
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "master/linux/bus_error.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/sent_frames.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {
@@ -15,6 +16,7 @@ struct UnixBusOptions {
   std::string path;                    ///< of `unix:PATH`, without `unix:`
   std::optional<CobId> sync_cob_id{};  ///< own frames whose echo is news().last_sync_echo
   Time spin{};
+  SentFrames* sent = nullptr;  ///< counts what was sent, for a DiagnosticSocket
 };
 
 /// A bus between the processes of one machine (`unix:PATH`) as a Port, for machines whose kernel
