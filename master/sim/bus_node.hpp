@@ -30,8 +30,9 @@ struct SenderFaults {
 
 /// A frame that waits for the wire.
 struct QueuedFrame {
-  Frame frame;
-  std::uint32_t rank = 0;  ///< arbitration: the lowest wins
+  Frame frame{};
+  std::uint32_t rank = 0;   ///< arbitration: the lowest wins
+  bool repetition = false;  ///< made by a fault
   Time ready{};
   Time expires = never;
 };
@@ -49,13 +50,18 @@ class BusNode {
  public:
   explicit BusNode(BusNodeOptions options);
 
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
   bool push(const QueuedFrame& frame) noexcept;
-  void pop(std::size_t position) noexcept;
+  QueuedFrame take(std::size_t position) noexcept;
+  /// Before all others: a frame that was destroyed on the wire.
+  void put_back(const QueuedFrame& frame) noexcept;
   void clear() noexcept { queue_.clear(); }
   bool empty() const noexcept { return queue_.empty(); }
-  /// Position of the frame that is offered at `now`; the queue's size: none. Drops expired frames
-  /// and adds their number to `expired`.
-  std::size_t offered(Time now, std::uint64_t& expired) noexcept;
+  /// How many there were.
+  std::size_t drop_expired(Time now) noexcept;
+  /// Position of the frame that is offered to the bus at `now`, else `none`.
+  std::size_t offered(Time now) const noexcept;
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
   /// When the earliest of the queued frames may be offered.

@@ -42,17 +42,17 @@ enum class FaultKind : std::uint8_t {
 /// One thing that goes wrong. Only the fields that `kind` names are looked at.
 struct Fault {
   FaultKind kind = FaultKind::loss;
-  std::optional<NodeId> node;  ///< none: every device; of the wire: every sender, the master too
+  std::optional<NodeId> node{};  ///< none: every device; of the wire: every sender, the master too
   Time at{};
   Time until = never;
   double probability = 0.0;  ///< 0..1 for each frame
   Time time{};
   int ppm = 0;
-  CobId cob_id;
-  std::optional<ObjectKey> object;
+  CobId cob_id{};
+  std::optional<ObjectKey> object{};
   std::uint32_t abort_code = 0;
   std::uint16_t emcy_code = 0;
-  std::vector<std::byte> value;
+  std::vector<std::byte> value{};
 };
 
 /// A schedule of faults, in any order.

@@ -29,7 +29,6 @@ class RealtimeWorld {
 
  private:
   void run() noexcept;
-  bool carry_in() noexcept;
   bool carry_out() noexcept;
 
   World world_;

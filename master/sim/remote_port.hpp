@@ -39,8 +39,11 @@ class RemotePort {
 
   // called by the world
   void on_wire(const WireFrame& wire) noexcept;
-  void stall_until(Time until) noexcept { stalled_until_ = until; }
-  void set_interface_down(bool down) noexcept;
+  void stall(Time from, Time until) noexcept {
+    stalled_from_ = from;
+    stalled_until_ = until;
+  }
+  void set_interface_down(bool down, Time now) noexcept;
 
  private:
   VirtualBus& bus_;
@@ -54,6 +57,7 @@ class RemotePort {
   bool down_ = false;
   int last_error_ = 0;
   Time last_sync_echo_{};
+  Time stalled_from_{};
   Time stalled_until_{};
 };
 

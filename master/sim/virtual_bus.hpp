@@ -53,32 +53,41 @@ class VirtualBus {
   std::uint32_t bitrate() const noexcept { return bitrate_; }
   const BusCounters& counters() const noexcept { return counters_; }
 
- private:
-  void schedule(Time now) noexcept;
-  void arbitrate(Time now) noexcept;
-  void begin(BusNodeIndex winner, BusNodeIndex rival, Time now) noexcept;
-  void finish(Time now, WireFrame& wire) noexcept;
-  void finish_good(BusNode& sender, WireFrame& wire) noexcept;
-  void finish_bad(Time now, WireFrame& wire) noexcept;
-  void punish(BusNode& sender, bool no_acknowledge, Time now) noexcept;
-  bool somebody_listens(BusNodeIndex sender) const noexcept;
-  void recover(Time now) noexcept;
-
+  /// A node has gone bus-off or come back since the last call; nobody: none.
+  BusNodeIndex take_change() noexcept;
   static constexpr BusNodeIndex nobody = 0xFFFF;
+
+ private:
+  void schedule() noexcept;
+  void arbitrate(Time now) noexcept;
+  void begin(Time now) noexcept;
+  std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
+  void finish(Time now, WireFrame& wire) noexcept;
+  void finish_good(WireFrame& wire) noexcept;
+  void finish_bad(Time now) noexcept;
+  void punish(BusNodeIndex index, Time now) noexcept;
+  void go_bus_off(BusNodeIndex index, Time now) noexcept;
+  void repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept;
+  void recover(Time now) noexcept;
+  void mark(BusNodeIndex index) noexcept;
+  bool acknowledged(BusNodeIndex sender) const noexcept;
 
   std::uint32_t bitrate_;
   Random random_;
   std::vector<BusNode> nodes_;
   std::vector<std::uint64_t> waiting_;  ///< bit set: nodes with queued frames
+  std::vector<BusNodeIndex> changes_;
   BusCounters counters_;
   bool analyser_ = false;
-  std::size_t listeners_ = 0;  ///< nodes that are powered and not bus-off
+  std::size_t on_bus_ = 0;  ///< nodes that are powered and not bus-off
+  std::size_t recovering_ = 0;
   Time next_ = never;
   Time idle_from_{};
   bool busy_ = false;
-  bool error_ = false;
-  WireFrame current_;
-  BusNodeIndex rival_ = nobody;
+  QueuedFrame current_;
+  BusNodeIndex sender_ = nobody;
+  BusNodeIndex rival_ = nobody;  ///< sends the same identifier at the same time
+  WireFrame wire_;
 };
 
 }  // namespace takt::sim

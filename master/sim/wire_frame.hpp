@@ -19,7 +19,7 @@ using BusNodeIndex = std::uint16_t;
 
 /// A frame as it was on the wire. `end` is the last bit of EOF; the interframe space follows.
 struct WireFrame {
-  Frame frame;
+  Frame frame{};
   Time start{};
   Time end{};
   BusNodeIndex sender = 0;

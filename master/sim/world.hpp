@@ -23,7 +23,7 @@ class HostedDevice;
 struct WorldOptions {
   std::uint64_t seed = 1;
   std::uint32_t bitrate = 1'000'000;
-  Faults faults;
+  Faults faults{};
   Time power_on_spread{};  ///< devices are switched on at random times within this
 };
 
@@ -60,26 +60,37 @@ class World {
   std::uint8_t node_of(BusNodeIndex sender) const noexcept;
 
  private:
-  friend class RemotePort;
   void step(Time at) noexcept;
+  void step_bus() noexcept;
   void run_device(std::size_t index) noexcept;
   void after_call(std::size_t index) noexcept;
-  void on_wire_end(const WireFrame& wire) noexcept;
-  void deliver(const WireFrame& wire) noexcept;
-  void deliver_to_devices(const WireFrame& wire) noexcept;
-  void apply(const Fault& fault, bool begins) noexcept;
-  void apply_to_device(HostedDevice& hosted, const Fault& fault, bool begins) noexcept;
-  void apply_to_wire(const Fault& fault, bool begins) noexcept;
   void route(std::size_t index) noexcept;
+  void on_wire_end(const WireFrame& wire) noexcept;
+  void deliver_to_devices(const WireFrame& wire) noexcept;
+  void deliver(std::size_t index, const Frame& frame) noexcept;
+  void tell_bus_changes() noexcept;
+  void set_power(std::size_t index, bool on) noexcept;
+  void babble_again() noexcept;
+
+  void apply(const Fault& fault, bool begins);
+  void apply_to_wire(const Fault& fault, bool begins) noexcept;
+  void apply_to_device(std::size_t index, const Fault& fault, bool begins);
+  void apply_to_ports(const Fault& fault, bool begins) noexcept;
+  void set_babble(const Fault& fault, bool begins) noexcept;
 
   Time now_{};
   Random random_;
   VirtualBus bus_;
   std::vector<std::unique_ptr<HostedDevice>> devices_;
   std::vector<std::unique_ptr<RemotePort>> ports_;
-  DeadlineTree timers_;
+  BusNodeIndex babbler_ = 0;
+  Frame babble_;
+  Time babble_period_{};
+  Time next_babble_ = never;
+  DeadlineTree timers_;  ///< of the devices; behind them the babbler
   FaultSchedule schedule_;
-  std::vector<std::vector<std::uint64_t>> takers_;  ///< 11-bit identifier -> bit set of devices
+  std::size_t words_ = 1;              ///< of a set of devices
+  std::vector<std::uint64_t> takers_;  ///< 11-bit identifier -> set of devices
   BusObserver* observer_ = nullptr;
 };
 

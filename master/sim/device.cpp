@@ -1,0 +1,341 @@
+#include "master/sim/device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace takt::sim {
+namespace {
+
+constexpr std::uint16_t pdos_a_direction = 512;
+constexpr Time fast_tick = std::chrono::milliseconds{1};   // while event-driven TPDOs want changes
+constexpr Time slow_tick = std::chrono::milliseconds{10};  // the longest time a model sleeps
+
+}  // namespace
+
+Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
+    : node_{table.node},
+      times_{times},
+      dummy_usage_{table.dummy_usage},
+      store_{table},
+      emcy_{store_, table.node},
+      sdo_{*this, table.node},
+      sync_{store_, emcy_},
+      heartbeat_{store_, table.node},
+      watch_{store_, emcy_},
+      storage_{store_} {
+  for (std::uint16_t n = 1; n <= pdos_a_direction; ++n) {
+    if (PdoRecord::exists(store_, PdoDirection::transmit, n)) {
+      tpdos_.emplace_back(PdoRecord{store_, PdoDirection::transmit, n});
+    }
+    if (PdoRecord::exists(store_, PdoDirection::receive, n)) {
+      rpdos_.emplace_back(PdoRecord{store_, PdoDirection::receive, n});
+    }
+  }
+  sdo_.set_latency(times_.sdo);
+  routes_.reserve(3 + watch_.watches().size() + tpdos_.size() + rpdos_.size());
+  model_ = make_model(table, store_, emcy_, random);
+}
+
+Device::~Device() = default;
+
+void Device::power_on(Time now) noexcept {
+  if (state_ == DeviceState::off) reset_node(now);
+}
+
+void Device::power_off() noexcept {
+  stop_pdos();
+  heartbeat_.stop();
+  sdo_.reset();
+  watch_.forget();
+  sync_.reset();
+  state_ = DeviceState::off;
+  boots_at_ = next_storm_ = tick_ = deadline_ = never;
+  routes_.clear();
+  routes_changed_ = true;
+}
+
+void Device::reset_node(Time now) noexcept {
+  begin_reset(times_.startup, now);
+  store_.reset(0x2000, 0x9FFF);
+  model_->reset(now);
+  finish_call(now);
+}
+
+void Device::reset_communication(Time now) noexcept {
+  if (state_ == DeviceState::operational) model_->connection_lost(now);
+  begin_reset(times_.communication_reset, now);
+}
+
+void Device::begin_reset(Time startup, Time now) noexcept {
+  stop_pdos();
+  state_ = DeviceState::initialising;
+  heartbeat_.stop();
+  sdo_.reset();
+  sync_.reset();
+  store_.reset(0x1000, 0x1FFF);
+  emcy_.reset();
+  watch_.forget();
+  watch_.configure();
+  tick_ = next_storm_ = never;
+  boots_at_ = now + startup + faults_.bootup_delay;
+  routes_.clear();
+  routes_changed_ = true;
+}
+
+/// The end of Initialising: boot-up message, then PRE-OPERATIONAL. CiA 301, 7.3.2.2.
+void Device::boot(Time now) noexcept {
+  boots_at_ = never;
+  send_bootup(now);
+  state_ = DeviceState::preoperational;
+  heartbeat_.start(now);
+  build_routes();
+  if (faults_.storm_period > Time{}) next_storm_ = now + faults_.storm_period;
+  if (faults_.self_start) enter(DeviceState::operational, now);
+}
+
+void Device::start_storm(Time now) noexcept {
+  if (state_ == DeviceState::off || boots_at_ != never) return;
+  next_storm_ = faults_.storm_period > Time{} ? now : never;
+  finish_call(now);
+}
+
+void Device::send_bootup(Time now) noexcept {
+  if (!faults_.no_bootup) out_.send(make_frame(CobId::base(0x700u + node_.value()), {0}), now);
+}
+
+void Device::on_frame(const Frame& frame, Time now) noexcept {
+  const auto [first, last] = std::ranges::equal_range(routes_, frame.id, {}, &Route::id);
+  if (first == last) return;
+  std::array<Route, 8> taken;  // a handler may rebuild the routes
+  const auto count = std::min<std::ptrdiff_t>(last - first, std::ssize(taken));
+  std::copy_n(first, count, taken.begin());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    dispatch(taken[static_cast<std::size_t>(i)], frame, now);
+  }
+  finish_call(now);
+}
+
+void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept {
+  if (frame.rtr) {
+    if (route.kind == RouteKind::tpdo_request && !faults_.mute_pdo) {
+      model_->advance(now);
+      tpdos_[route.index].on_request(now + times_.pdo, out_);
+    }
+    return;
+  }
+  switch (route.kind) {
+    case RouteKind::nmt:
+      return on_nmt(frame, now);
+    case RouteKind::sync:
+      if (communicates()) on_sync(frame, now);
+      return;
+    case RouteKind::sdo:
+      if (communicates() && !faults_.mute_sdo) sdo_.on_frame(frame, now, out_);
+      return;
+    case RouteKind::rpdo:
+      return on_rpdo(rpdos_[route.index], frame, now);
+    case RouteKind::heartbeat:
+      if (communicates() && frame.length == 1) {
+        watch_.on_heartbeat(static_cast<std::uint8_t>(frame.id.id() & 0x7F), frame.data[0], now);
+      }
+      return;
+    case RouteKind::tpdo_request:
+      return;
+  }
+}
+
+void Device::on_nmt(const Frame& frame, Time now) noexcept {
+  if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != node_.value())) return;
+  switch (frame.data[0]) {
+    case 1:
+      return enter(DeviceState::operational, now);
+    case 2:
+      return enter(DeviceState::stopped, now);
+    case 128:
+      return enter(DeviceState::preoperational, now);
+    case 129:
+      return reset_node(now);
+    case 130:
+      return reset_communication(now);
+    default:
+      return;
+  }
+}
+
+void Device::enter(DeviceState state, Time now) noexcept {
+  if (state_ == state) return;
+  const DeviceState old = std::exchange(state_, state);
+  if (old == DeviceState::operational) {
+    stop_pdos();
+    model_->advance(now);
+    model_->connection_lost(now);
+  }
+  if (state == DeviceState::operational) start_pdos(now);
+  if (state == DeviceState::stopped) {
+    sdo_.reset();
+    sync_.reset();
+    watch_.forget();
+  }
+}
+
+void Device::start_pdos(Time now) noexcept {
+  model_->advance(now);
+  for (Rpdo& rpdo : rpdos_) rpdo.start();
+  for (Tpdo& tpdo : tpdos_) tpdo.start(now);
+  run_tpdos(now);
+}
+
+void Device::run_tpdos(Time now) noexcept {
+  const std::size_t before = out_.pending().size();
+  for (Tpdo& tpdo : tpdos_) {
+    if (now < tpdo.deadline()) continue;
+    model_->advance(now);
+    tpdo.on_time(now, out_);
+  }
+  if (faults_.mute_pdo) out_.shrink(before);
+}
+
+void Device::stop_pdos() noexcept {
+  for (Rpdo& rpdo : rpdos_) rpdo.stop();
+  for (Tpdo& tpdo : tpdos_) tpdo.stop();
+}
+
+/// Inputs are sampled first, then what was received since the last SYNC takes effect.
+void Device::on_sync(const Frame& frame, Time now) noexcept {
+  const std::uint8_t counter = sync_.on_sync(frame, now);
+  model_->advance(now);
+  last_look_ = now;
+  if (state_ != DeviceState::operational) return;
+  if (!faults_.mute_pdo) {
+    for (Tpdo& tpdo : tpdos_) tpdo.on_sync(counter, now + times_.pdo, sync_.window_end(), out_);
+  }
+  bool fresh = false;
+  for (Rpdo& rpdo : rpdos_) {
+    if (!rpdo.waits()) continue;
+    rpdo.apply();
+    fresh = true;
+  }
+  if (fresh) model_->outputs(now);
+  model_->on_sync(now);
+}
+
+void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
+  if (state_ != DeviceState::operational) return;
+  if (!rpdo.on_frame(frame, now, sync_.window_end(), emcy_)) return;
+  model_->advance(now);
+  rpdo.apply();
+  model_->outputs(now);
+  look_at_inputs(now);
+}
+
+void Device::look_at_inputs(Time now) noexcept {
+  model_->advance(now);
+  last_look_ = now;
+  if (state_ != DeviceState::operational || faults_.mute_pdo) return;
+  for (Tpdo& tpdo : tpdos_) tpdo.notice(now, out_);
+}
+
+void Device::on_time(Time now) noexcept {
+  if (now >= boots_at_) boot(now);
+  if (now >= next_storm_) {
+    send_bootup(now);
+    next_storm_ = faults_.storm_period > Time{} ? now + faults_.storm_period : never;
+  }
+  if (now >= tick_) look_at_inputs(now);
+  heartbeat_.on_time(now, static_cast<std::uint8_t>(state_), faults_.no_heartbeat, out_);
+  if (communicates()) {
+    if (watch_.on_time(now)) communication_error(now);
+    sync_.on_time(now);
+    sdo_.on_time(now, out_);
+  }
+  if (state_ == DeviceState::operational) {
+    for (Rpdo& rpdo : rpdos_) rpdo.on_time(now, emcy_);
+    run_tpdos(now);
+  }
+  finish_call(now);
+}
+
+/// 0x1029:01, CiA 301, 7.5.2.32.
+void Device::communication_error(Time now) noexcept {
+  model_->advance(now);
+  model_->connection_lost(now);
+  switch (store_.number({0x1029, 1}, 0)) {
+    case 0:
+      if (state_ == DeviceState::operational) enter(DeviceState::preoperational, now);
+      return;
+    case 2:
+      return enter(DeviceState::stopped, now);
+    default:
+      return;
+  }
+}
+
+void Device::on_bus_off(Time now) noexcept {
+  if (!communicates()) return;
+  communication_error(now);
+  finish_call(now);
+}
+
+void Device::on_bus_recovered(Time now) noexcept {
+  emcy_.tell(0x8140);
+  finish_call(now);
+}
+
+void Device::fail(std::uint16_t emcy_code, Time now) noexcept {
+  if (state_ == DeviceState::off) return;
+  model_->advance(now);
+  model_->fail(emcy_code, now);
+  look_at_inputs(now);
+  finish_call(now);
+}
+
+/// After every call: errors are told, and the next deadline is known.
+void Device::finish_call(Time now) noexcept {
+  emcy_.on_time(now, communicates(), out_);
+  deadline_ = std::min({boots_at_, next_storm_, heartbeat_.deadline()});
+  if (!communicates()) {
+    tick_ = never;
+    return;
+  }
+  plan_tick();
+  deadline_ = std::min(
+      {deadline_, tick_, watch_.deadline(), sync_.deadline(), sdo_.deadline(), emcy_.deadline()});
+  if (state_ != DeviceState::operational) return;
+  for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
+  for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());
+}
+
+void Device::plan_tick() noexcept {
+  const Time change = model_->next_change();
+  if (change == never) {
+    tick_ = never;
+    return;
+  }
+  const bool events = std::ranges::any_of(tpdos_, &Tpdo::wants_events);
+  tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
+}
+
+void Device::build_routes() noexcept {
+  routes_.clear();
+  routes_.push_back({CobId::base(0), RouteKind::nmt, 0});
+  routes_.push_back({sync_.id(), RouteKind::sync, 0});
+  routes_.push_back({sdo_.request_id(), RouteKind::sdo, 0});
+  for (const auto& watch : watch_.watches()) {
+    if (watch.node != 0) {
+      routes_.push_back({CobId::base(0x700u + watch.node), RouteKind::heartbeat, 0});
+    }
+  }
+  for (std::size_t i = 0; i < rpdos_.size(); ++i) {
+    if (!rpdos_[i].record().valid()) continue;
+    routes_.push_back({rpdos_[i].record().id(), RouteKind::rpdo, static_cast<std::uint16_t>(i)});
+  }
+  for (std::size_t i = 0; i < tpdos_.size(); ++i) {
+    const PdoRecord& record = tpdos_[i].record();
+    if (!record.valid() || !record.rtr_allowed()) continue;
+    routes_.push_back({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
+  }
+  std::ranges::stable_sort(routes_, {}, &Route::id);
+  routes_changed_ = true;
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,148 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/device_faults.hpp"
+#include "master/sim/dictionary.hpp"
+#include "master/sim/emcy_producer.hpp"
+#include "master/sim/heartbeat.hpp"
+#include "master/sim/model.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/parameter_storage.hpp"
+#include "master/sim/random.hpp"
+#include "master/sim/rpdo.hpp"
+#include "master/sim/sdo_server.hpp"
+#include "master/sim/sync_consumer.hpp"
+#include "master/sim/tpdo.hpp"
+#include "master/sim/transmitter.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt::sim {
+
+/// NMT state of a device. The values from 4 on are those of the heartbeat. CiA 301, 7.3.2.
+enum class DeviceState : std::uint8_t {
+  off = 1,
+  initialising = 0,
+  stopped = 4,
+  operational = 5,
+  preoperational = 127,
+};
+
+/// How long a device computes.
+struct DeviceTimes {
+  Time startup = std::chrono::milliseconds{50};  ///< power on or reset node, to the boot-up message
+  Time communication_reset = std::chrono::milliseconds{5};
+  Time sdo = std::chrono::microseconds{200};  ///< request to answer
+  Time pdo = std::chrono::microseconds{30};   ///< SYNC to TPDO
+};
+
+/// A CANopen device made from its tables. Takes frames and its own time, hands out frames; knows no
+/// bus and no clock. The world calls on_time when deadline() has come and empties out() after each
+/// call.
+class Device final : private Dictionary {
+ public:
+  Device(const DeviceTable& table, Random random, DeviceTimes times = {});
+  ~Device() override;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  void power_on(Time now) noexcept;
+  void power_off() noexcept;
+  void on_frame(const Frame& frame, Time now) noexcept;
+  void on_time(Time now) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+  Transmitter& out() noexcept { return out_; }
+
+  /// Identifiers it listens to. Changed since the last look: take_routes_changed().
+  template <class Visit>
+  void visit_ids(Visit visit) const {
+    for (const Route& route : routes_) visit(route.id);
+  }
+  bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
+
+  void on_bus_off(Time now) noexcept;
+  void on_bus_recovered(Time now) noexcept;
+  /// Resets by itself, as after a watchdog.
+  void reset_node(Time now) noexcept;
+  void fail(std::uint16_t emcy_code, Time now) noexcept;
+  /// DeviceFaults::storm_period has been changed.
+  void start_storm(Time now) noexcept;
+
+  NodeId node() const noexcept { return node_; }
+  DeviceState state() const noexcept { return state_; }
+  ObjectStore& objects() noexcept { return store_; }
+  const ObjectStore& objects() const noexcept { return store_; }
+  DeviceFaults& faults() noexcept { return faults_; }
+
+ private:
+  enum class RouteKind : std::uint8_t { nmt, sync, sdo, rpdo, tpdo_request, heartbeat };
+  struct Route {
+    CobId id;
+    RouteKind kind = RouteKind::nmt;
+    std::uint16_t index = 0;
+  };
+
+  // Dictionary
+  Abort read(ObjectKey key, Time now, std::span<const std::byte>& data) noexcept override;
+  Abort write(ObjectKey key, Time now, std::span<const std::byte> data) noexcept override;
+  Abort width(ObjectKey key, std::size_t& bytes) const noexcept override;
+  bool is_mute(ObjectKey key) const noexcept override;
+
+  void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
+  void on_nmt(const Frame& frame, Time now) noexcept;
+  void on_sync(const Frame& frame, Time now) noexcept;
+  void on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept;
+  void enter(DeviceState state, Time now) noexcept;
+  void reset_communication(Time now) noexcept;
+  void begin_reset(Time startup, Time now) noexcept;
+  void boot(Time now) noexcept;
+  void send_bootup(Time now) noexcept;
+  void communication_error(Time now) noexcept;
+  void start_pdos(Time now) noexcept;
+  void run_tpdos(Time now) noexcept;
+  void stop_pdos() noexcept;
+  Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
+  void written(const Object& object, Time now) noexcept;
+  void pdo_written(ObjectKey key, Time now) noexcept;
+  void build_routes() noexcept;
+  void look_at_inputs(Time now) noexcept;
+  void plan_tick() noexcept;
+  void finish_call(Time now) noexcept;
+  bool communicates() const noexcept {
+    return state_ == DeviceState::operational || state_ == DeviceState::preoperational;
+  }
+
+  NodeId node_;
+  DeviceTimes times_;
+  std::uint8_t dummy_usage_;
+  ObjectStore store_;
+  Transmitter out_;
+  DeviceFaults faults_;
+  EmcyProducer emcy_;
+  SdoServer sdo_;
+  SyncConsumer sync_;
+  HeartbeatProducer heartbeat_;
+  HeartbeatConsumer watch_;
+  ParameterStorage storage_;
+  std::vector<Tpdo> tpdos_;
+  std::vector<Rpdo> rpdos_;
+  std::unique_ptr<Model> model_;
+  std::vector<Route> routes_;  ///< ascending identifier
+  bool routes_changed_ = true;
+  DeviceState state_ = DeviceState::off;
+  Time boots_at_ = never;
+  Time next_storm_ = never;
+  Time last_look_{};
+  Time tick_ = never;
+  Time deadline_ = never;
+  std::array<std::byte, 8> scratch_{};
+};
+
+}  // namespace takt::sim

@@ -1,0 +1,108 @@
+#include <initializer_list>
+
+#include "master/sim/device.hpp"
+
+namespace takt::sim {
+namespace {
+
+constexpr bool between(std::uint16_t index, std::uint16_t first, std::uint16_t last) noexcept {
+  return index >= first && index <= last;
+}
+
+}  // namespace
+
+bool Device::is_mute(ObjectKey key) const noexcept {
+  const auto access = faults_.find(key);
+  return access && access->refusal == Abort::none;
+}
+
+Abort Device::width(ObjectKey key, std::size_t& bytes) const noexcept {
+  const Object* object = store_.find(key);
+  if (object == nullptr) return store_.may_read(key);
+  bytes = object->width;
+  if (const auto access = faults_.find(key)) return access->refusal;
+  return object->writable() ? Abort::none : Abort::read_only;
+}
+
+Abort Device::read(ObjectKey key, Time now, std::span<const std::byte>& data) noexcept {
+  if (const auto access = faults_.find(key)) return access->refusal;
+  Abort refused = store_.may_read(key);
+  if (refused == Abort::none) refused = emcy_.check_read(key);
+  if (refused != Abort::none) return refused;
+  model_->advance(now);
+  const Object& object = *store_.find(key);
+  if (object.is_bytes()) {
+    data = object.bytes;
+    return Abort::none;
+  }
+  for (std::size_t i = 0; i < scratch_.size(); ++i)
+    scratch_[i] = std::byte(object.value >> (8 * i));
+  data = std::span{scratch_}.first(object.width);
+  return Abort::none;
+}
+
+Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) noexcept {
+  if (const auto access = faults_.find(key)) return access->refusal;
+  const Abort refused = store_.may_write(key, data);
+  if (refused != Abort::none) return refused;
+  Object& object = *store_.find(key);
+  if (object.is_bytes()) {
+    object.bytes.assign(data.begin(), data.end());
+    return Abort::none;
+  }
+  const std::uint64_t raw = to_number(data);
+  if (ParameterStorage::owns(key)) return storage_.execute(key, raw);
+  model_->advance(now);
+  const Abort unfit = check_write(object, raw);
+  if (unfit != Abort::none) return unfit;
+  object.set(raw);
+  written(object, now);
+  return Abort::none;
+}
+
+Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcept {
+  const std::uint16_t index = object.key.index;
+  if (index >= 0x2000) return model_->check_write(object, raw);
+  if (between(index, 0x1600, 0x17FF) || between(index, 0x1A00, 0x1BFF)) {
+    if (faults_.fixed_mapping) return Abort::read_only;
+  }
+  for (const Rpdo& rpdo : rpdos_) {
+    if (!rpdo.record().owns(object.key)) continue;
+    return rpdo.record().check_write({PdoDirection::receive, dummy_usage_}, object, raw);
+  }
+  for (const Tpdo& tpdo : tpdos_) {
+    if (!tpdo.record().owns(object.key)) continue;
+    return tpdo.record().check_write({PdoDirection::transmit, dummy_usage_}, object, raw);
+  }
+  for (const Abort refused : {emcy_.check_write(object, raw), watch_.check_write(object, raw),
+                              sync_.check_write(object, raw)}) {
+    if (refused != Abort::none) return refused;
+  }
+  return Abort::none;
+}
+
+void Device::written(const Object& object, Time now) noexcept {
+  const std::uint16_t index = object.key.index;
+  if (index >= 0x2000) {
+    model_->outputs(now);
+    look_at_inputs(now);
+    return;
+  }
+  if (index == 0x1017) heartbeat_.start(now);
+  if (index == 0x1016) watch_.configure();
+  if (index == 0x1003) emcy_.written(object);
+  if (index == 0x1006) sync_.reset();
+  if (between(index, 0x1400, 0x1BFF)) pdo_written(object.key, now);
+  if (index == 0x1005 || index == 0x1016 || index >= 0x1400) build_routes();
+}
+
+void Device::pdo_written(ObjectKey key, Time now) noexcept {
+  for (Rpdo& rpdo : rpdos_) {
+    if (rpdo.record().owns(key)) rpdo.reconfigure();
+  }
+  for (Tpdo& tpdo : tpdos_) {
+    if (tpdo.record().owns(key)) tpdo.reconfigure(now);
+  }
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,79 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/abort.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/transmitter.hpp"
+
+namespace takt::sim {
+
+/// Bits of the error register 0x1001. CiA 301, 7.5.2.2.
+enum class ErrorBit : std::uint8_t {
+  generic = 0x01,
+  current = 0x02,
+  voltage = 0x04,
+  temperature = 0x08,
+  communication = 0x10,
+  profile = 0x20,
+  manufacturer = 0x80,
+};
+
+/// Tells errors when they come and when they go: EMCY frames, error register 0x1001, history
+/// 0x1003, inhibit time 0x1015. CiA 301, 7.2.7.
+class EmcyProducer {
+ public:
+  using Detail = std::array<std::uint8_t, 5>;
+
+  EmcyProducer(ObjectStore& store, NodeId node);
+
+  void reset() noexcept;
+  /// Told once; again only after it has gone. The first byte of the detail tells errors of one
+  /// code apart: the number of the PDO, the silent node.
+  void raise(std::uint16_t code, ErrorBit bit, Detail detail = {}) noexcept;
+  void clear(std::uint16_t code, std::uint8_t source = 0) noexcept;
+  /// Told, but not remembered as a present error.
+  void tell(std::uint16_t code, Detail detail = {}) noexcept;
+  bool is_active(std::uint16_t code, std::uint8_t source = 0) const noexcept;
+
+  /// Sends what waits, as far as the inhibit time lets it.
+  void on_time(Time now, bool may_send, Transmitter& out) noexcept;
+  Time deadline() const noexcept { return waiting_ == 0 ? never : allowed_from_; }
+
+  Abort check_read(ObjectKey key) const noexcept;
+  Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
+  void written(const Object& object) noexcept;
+
+ private:
+  struct Error {
+    std::uint16_t code = 0;
+    std::uint8_t source = 0;
+    std::uint8_t bits = 0;
+  };
+  struct Message {
+    std::uint16_t code = 0;
+    std::uint8_t error_register = 0;
+    Detail detail{};
+  };
+
+  void push(std::uint16_t code, Detail detail) noexcept;
+  void remember(std::uint16_t code) noexcept;
+  std::uint8_t error_register() const noexcept;
+  Frame encode(const Message& message) const noexcept;
+
+  ObjectStore& store_;
+  NodeId node_;
+  Object* register_;
+  Object* cob_;
+  Object* inhibit_;
+  std::array<Error, 16> active_{};
+  std::size_t active_count_ = 0;
+  std::array<Message, 16> queue_{};
+  std::size_t waiting_ = 0;
+  Time allowed_from_{};
+};
+
+}  // namespace takt::sim

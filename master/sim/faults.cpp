@@ -1,0 +1,50 @@
+#include "master/sim/faults.hpp"
+
+#include <array>
+#include <utility>
+
+namespace takt::sim {
+namespace {
+
+constexpr std::array<std::pair<FaultKind, std::string_view>, 22> names{{
+    {FaultKind::loss, "loss"},
+    {FaultKind::duplicate, "duplicate"},
+    {FaultKind::delay, "delay"},
+    {FaultKind::error_frames, "error_frames"},
+    {FaultKind::babble, "babble"},
+    {FaultKind::power_off, "power_off"},
+    {FaultKind::drift, "drift"},
+    {FaultKind::mute_sdo, "mute_sdo"},
+    {FaultKind::refuse_object, "refuse_object"},
+    {FaultKind::override_value, "override_value"},
+    {FaultKind::late_bootup, "late_bootup"},
+    {FaultKind::no_bootup, "no_bootup"},
+    {FaultKind::no_heartbeat, "no_heartbeat"},
+    {FaultKind::bootup_storm, "bootup_storm"},
+    {FaultKind::self_start, "self_start"},
+    {FaultKind::fixed_mapping, "fixed_mapping"},
+    {FaultKind::mute_pdo, "mute_pdo"},
+    {FaultKind::device_error, "device_error"},
+    {FaultKind::reset, "reset"},
+    {FaultKind::bus_off, "bus_off"},
+    {FaultKind::stall_master, "stall_master"},
+    {FaultKind::interface_down, "interface_down"},
+}};
+
+}  // namespace
+
+std::string_view name(FaultKind kind) noexcept {
+  for (const auto& [known, text] : names) {
+    if (known == kind) return text;
+  }
+  return "unknown";
+}
+
+std::optional<FaultKind> fault_kind(std::string_view text) noexcept {
+  for (const auto& [kind, known] : names) {
+    if (known == text) return kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/abort.hpp"
+#include "master/sim/emcy_producer.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/transmitter.hpp"
+
+namespace takt::sim {
+
+/// Sends the NMT state every 0x1017 ms. CiA 301, 7.2.8.3.2.2.
+class HeartbeatProducer {
+ public:
+  HeartbeatProducer(ObjectStore& store, NodeId node)
+      : period_{store.find({0x1017, 0})}, node_{node} {}
+
+  /// The boot-up message counts as the first heartbeat.
+  void start(Time now) noexcept;
+  void stop() noexcept { next_ = never; }
+  void on_time(Time now, std::uint8_t state, bool mute, Transmitter& out) noexcept;
+  Time deadline() const noexcept { return next_; }
+
+ private:
+  Object* period_;
+  NodeId node_;
+  Time next_ = never;
+};
+
+/// Watches the heartbeats of the nodes in 0x1016. Begins with the first heartbeat of each.
+class HeartbeatConsumer {
+ public:
+  HeartbeatConsumer(ObjectStore& store, EmcyProducer& emcy);
+
+  /// After reset and after 0x1016 has been written.
+  void configure() noexcept;
+  void forget() noexcept;
+  void on_heartbeat(std::uint8_t node, std::uint8_t state, Time now) noexcept;
+  /// True: a node has fallen silent just now.
+  bool on_time(Time now) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+  Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
+
+  struct Watch {
+    const Object* entry = nullptr;
+    std::uint8_t node = 0;  ///< 0: not used
+    Time timeout{};
+    Time deadline = never;  ///< never: not yet heard
+  };
+  const std::vector<Watch>& watches() const noexcept { return watches_; }
+
+ private:
+  void update_deadline() noexcept;
+
+  EmcyProducer& emcy_;
+  std::vector<Watch> watches_;
+  Time deadline_ = never;
+};
+
+}  // namespace takt::sim

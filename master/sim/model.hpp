@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/abort.hpp"
+#include "master/sim/emcy_producer.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/random.hpp"
+
+namespace takt::sim {
+
+/// What a device does besides communicating: a drive, inputs and outputs, an encoder. It reads and
+/// writes objects of the dictionary; its time is the device's own.
+class Model {
+ public:
+  virtual ~Model() = default;
+  /// Power on and reset node: the objects hold their power-on values.
+  virtual void reset(Time now) noexcept = 0;
+  /// The world goes on up to `now`; inputs are written into the dictionary.
+  virtual void advance(Time now) noexcept = 0;
+  /// Objects have been written by RPDO or SDO.
+  virtual void outputs(Time now) noexcept = 0;
+  /// SYNC in OPERATIONAL, after inputs were sampled and outputs taken over.
+  virtual void on_sync(Time) noexcept {}
+  /// May this value be written by SDO? Called after the checks of the dictionary itself.
+  virtual Abort check_write(const Object&, std::uint64_t) const noexcept { return Abort::none; }
+  /// Heartbeat lost, bus-off or OPERATIONAL left.
+  virtual void connection_lost(Time) noexcept {}
+  /// A fault: the device reports this error by EMCY and behaves accordingly.
+  virtual void fail(std::uint16_t, Time) noexcept {}
+  /// When inputs may change next by themselves; `never`: they don't.
+  virtual Time next_change() const noexcept { return never; }
+};
+
+/// The model of this name: "drive402", "io401", "encoder406"; anything else: a plain device. What a
+/// model needs and the dictionary lacks is left out.
+std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy,
+                                  Random random);
+
+}  // namespace takt::sim

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/abort.hpp"
+#include "master/sim/cob_rules.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/pdo_mapping.hpp"
+
+namespace takt::sim {
+
+/// The communication and mapping objects of one PDO in the dictionary, and the checks that a
+/// device makes when they are written. CiA 301, 7.5.2.35 to .38.
+class PdoRecord {
+ public:
+  /// `number` counts from 1. Usable only where exists().
+  PdoRecord(ObjectStore& store, PdoDirection direction, std::uint16_t number);
+
+  static bool exists(const ObjectStore& store, PdoDirection direction, std::uint16_t number);
+
+  std::uint16_t number() const noexcept { return number_; }
+  bool valid() const noexcept { return (cob_->value & cob_invalid) == 0; }
+  bool rtr_allowed() const noexcept { return (cob_->value & cob_bit30) == 0; }
+  CobId id() const noexcept { return cob_id(cob_->value); }
+  std::uint8_t type() const noexcept {
+    return type_ == nullptr ? 255 : static_cast<std::uint8_t>(type_->value);
+  }
+  bool synchronous() const noexcept { return type() <= 240 || type() == 252; }
+  Time inhibit() const noexcept;
+  Time event_timer() const noexcept;  ///< of an RPDO: its deadline
+  std::uint8_t sync_start() const noexcept {
+    return start_ == nullptr ? 0 : static_cast<std::uint8_t>(start_->value);
+  }
+
+  /// Objects of this PDO: 0x1400.. or 0x1800.., and the mapping 0x200 above.
+  bool owns(ObjectKey key) const noexcept {
+    return key.index == communication_ || key.index == communication_ + 0x200;
+  }
+  Abort check_write(const MappingRules& rules, const Object& object,
+                    std::uint64_t raw) const noexcept;
+  /// The mapping as it is in the dictionary now; empty while its sub 0 is 0.
+  void compile(PdoMapping& mapping) const noexcept;
+
+ private:
+  Abort check_cob(std::uint64_t raw) const noexcept;
+  Abort check_type(PdoDirection direction, std::uint64_t raw) const noexcept;
+  Abort check_count(const MappingRules& rules, std::uint64_t raw) const noexcept;
+
+  ObjectStore& store_;
+  std::uint16_t number_;
+  std::uint16_t communication_;
+  Object* cob_;
+  Object* type_;
+  Object* inhibit_;
+  Object* timer_;
+  Object* start_;
+  Object* count_;
+};
+
+}  // namespace takt::sim

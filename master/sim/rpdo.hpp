@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+#include "master/sim/emcy_producer.hpp"
+#include "master/sim/pdo_record.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt::sim {
+
+/// One RPDO of a device: taken over at once or at the next SYNC, its length checked, its deadline
+/// watched. CiA 301, 7.2.2 and 7.5.2.35.
+class Rpdo {
+ public:
+  explicit Rpdo(PdoRecord record) : record_{record} {}
+
+  const PdoRecord& record() const noexcept { return record_; }
+  void start() noexcept;
+  void stop() noexcept { running_ = false; }
+  void reconfigure() noexcept;
+
+  /// True: the frame acts at once; call apply().
+  bool on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer& emcy) noexcept;
+  /// Something waits for SYNC.
+  bool waits() const noexcept { return full_ && synchronous_; }
+  /// Writes what was received into the mapped objects.
+  void apply() noexcept;
+  void on_time(Time now, EmcyProducer& emcy) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+
+ private:
+  bool length_is_good(const Frame& frame, EmcyProducer& emcy) noexcept;
+
+  PdoRecord record_;
+  PdoMapping mapping_;
+  bool running_ = false;
+  bool synchronous_ = false;
+  bool full_ = false;
+  std::uint64_t data_ = 0;
+  Time deadline_ = never;
+};
+
+}  // namespace takt::sim

@@ -1,0 +1,99 @@
+#include "master/sim/tpdo.hpp"
+
+#include <algorithm>
+
+namespace takt::sim {
+
+void Tpdo::start(Time now) noexcept {
+  running_ = true;
+  allowed_from_ = Time{};
+  reconfigure(now);
+}
+
+void Tpdo::reconfigure(Time now) noexcept {
+  record_.compile(mapping_);
+  type_ = record_.type();
+  count_ = 0;
+  sampled_ = started_ = false;
+  pending_ = type_ == 0 || type_ >= 254;  // tells its state once
+  const Time period = record_.event_timer();
+  timer_ = type_ >= 254 && period != Time{} ? now + period : never;
+  update_deadline();
+}
+
+void Tpdo::update_deadline() noexcept {
+  deadline_ = never;
+  if (!running_ || !record_.valid() || type_ < 254) return;
+  deadline_ = timer_;
+  if (pending_) deadline_ = std::min(deadline_, allowed_from_);
+}
+
+void Tpdo::on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
+  if (!running_ || !record_.valid()) return;
+  if (type_ == 252) {
+    sample_ = mapping_.pack();
+    sampled_ = true;
+  } else if (type_ == 0) {
+    const std::uint64_t data = mapping_.pack();
+    if (pending_ || data != last_) send(data, ready, window_end, out);
+    pending_ = false;
+  } else if (type_ <= 240 && counts_to_its_turn(counter)) {
+    send(mapping_.pack(), ready, window_end, out);
+  }
+}
+
+/// The SYNC whose counter is the start value is the first; from there every n-th.
+bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
+  const std::uint8_t start = record_.sync_start();
+  if (start != 0 && counter != 0 && !started_) {
+    if (counter != start) return false;
+    started_ = true;
+    count_ = 0;
+    return true;
+  }
+  if (++count_ < type_) return false;
+  count_ = 0;
+  return true;
+}
+
+void Tpdo::on_request(Time now, Transmitter& out) noexcept {
+  if (!running_ || !record_.valid() || !record_.rtr_allowed()) return;
+  if (type_ == 252) {
+    if (sampled_) send(sample_, now, never, out);
+  } else if (type_ >= 253) {
+    send(mapping_.pack(), now, never, out);
+  }
+}
+
+void Tpdo::notice(Time now, Transmitter& out) noexcept {
+  if (!wants_events() || type_ == 0) return;
+  if (mapping_.pack() != last_) pending_ = true;
+  if (pending_) event(now, out);
+}
+
+void Tpdo::on_time(Time now, Transmitter& out) noexcept {
+  if (now < deadline_) return;
+  if (now >= timer_) pending_ = true;
+  event(now, out);
+}
+
+/// Within the inhibit time an event is put off, not lost; several become one frame.
+void Tpdo::event(Time now, Transmitter& out) noexcept {
+  if (now >= allowed_from_) send(mapping_.pack(), now, never, out);
+  update_deadline();
+}
+
+void Tpdo::send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept {
+  Frame frame{.id = record_.id(), .length = mapping_.bytes()};
+  for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(data >> (8 * i));
+  out.send(frame, ready, expires);
+  last_ = data;
+  if (type_ < 253) return;
+  pending_ = false;
+  allowed_from_ = ready + record_.inhibit();
+  const Time period = record_.event_timer();
+  timer_ = type_ >= 254 && period != Time{} ? ready + period : never;
+  update_deadline();
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+#include "master/sim/pdo_record.hpp"
+#include "master/sim/transmitter.hpp"
+
+namespace takt::sim {
+
+/// One TPDO of a device: sampled and sent by SYNC, by event, by timer or on request. CiA 301,
+/// 7.2.2 and 7.5.2.37.
+class Tpdo {
+ public:
+  explicit Tpdo(PdoRecord record) : record_{record} {}
+
+  const PdoRecord& record() const noexcept { return record_; }
+  /// Back to the state on entering OPERATIONAL: an event is pending, counters are zero.
+  void start(Time now) noexcept;
+  void stop() noexcept { running_ = false; }
+  /// After a write to one of its objects.
+  void reconfigure(Time now) noexcept;
+
+  /// `ready`: when the frame may be on the wire; `window_end`: dropped after it.
+  void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
+  void on_request(Time now, Transmitter& out) noexcept;
+  /// Mapped values may have changed.
+  void notice(Time now, Transmitter& out) noexcept;
+  void on_time(Time now, Transmitter& out) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+  /// Changes of its values are events.
+  bool wants_events() const noexcept {
+    return running_ && record_.valid() && (type_ == 0 || type_ == 254 || type_ == 255);
+  }
+
+ private:
+  bool counts_to_its_turn(std::uint8_t counter) noexcept;
+  void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
+  void event(Time now, Transmitter& out) noexcept;
+  void update_deadline() noexcept;
+
+  PdoRecord record_;
+  PdoMapping mapping_;
+  std::uint8_t type_ = 255;
+  bool running_ = false;
+  bool pending_ = false;    ///< an event that has not been sent yet
+  bool sampled_ = false;    ///< type 252: sample_ holds something
+  bool started_ = false;    ///< the SYNC start value has been seen
+  std::uint8_t count_ = 0;  ///< SYNCs since the last transmission
+  std::uint64_t last_ = 0;
+  std::uint64_t sample_ = 0;
+  Time allowed_from_{};  ///< inhibit time
+  Time timer_ = never;   ///< event timer
+  Time deadline_ = never;
+};
+
+}  // namespace takt::sim
