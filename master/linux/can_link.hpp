@@ -1,0 +1,52 @@
+#pragma once
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/linux/bus_error.hpp"
+
+namespace takt {
+
+/// State of a CAN controller, as the driver tells it.
+enum class CanState : std::uint8_t {
+  error_active,
+  error_warning,
+  error_passive,
+  bus_off,
+  stopped,
+  sleeping,
+};
+std::string_view name(CanState state) noexcept;
+
+/// A CAN interface as the kernel describes it (`ip -details -statistics link show`). What a virtual
+/// interface does not have is absent.
+struct CanLink {
+  std::string name;
+  std::string kind;  ///< "can", "vcan", "vxcan"; empty: not told
+  bool is_can = false;
+  bool up = false;
+  std::uint32_t tx_queue_length = 0;  ///< frames
+  std::optional<std::uint32_t> bitrate{};
+  std::optional<std::uint32_t> restart_ms{};  ///< after bus-off; 0 = never by itself
+  std::optional<CanState> state{};
+  std::optional<std::uint16_t> tx_errors{};
+  std::optional<std::uint16_t> rx_errors{};
+  std::optional<std::uint32_t> bus_off_count{};  ///< times, since the driver was loaded
+  bool listen_only = false;
+  std::uint64_t rx_frames = 0;
+  std::uint64_t tx_frames = 0;
+  std::uint64_t rx_dropped = 0;
+};
+
+/// Asks the kernel by netlink (RTM_GETLINK); needs no privilege.
+std::expected<CanLink, BusError> read_can_link(const std::string& interface);
+
+/// Sentences about what does not fit the network file or will hurt while running, each with the
+/// command that mends it. Empty: all is well. `frames_a_cycle`: the most that the master sends at
+/// once.
+std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrate,
+                                       std::size_t frames_a_cycle);
+
+}  // namespace takt
