@@ -17,6 +17,8 @@ enum class SdoFault : std::uint8_t {
   timeout,            ///< the device fell silent; 0504 0000 was sent
   too_long,           ///< the answer does not fit into the buffer; 0504 0005 was sent
   cancelled,          ///< the node was reset or the master stops
+  no_such_node,       ///< requests: the network file has no such node
+  refused,            ///< requests: the master only observes
 };
 
 /// The one record of a failed boot: all that is needed to explain it. boot_report turns it into
@@ -29,22 +31,30 @@ struct BootFailure {
   bool downloading = false;         ///< the failing transfer was a download
   std::uint32_t abort_code = 0;
   ObjectKey object;
-  std::uint8_t received_size = 0;
+  std::uint8_t received_size = 0;  ///< of the last frame of the transfer; 0: nothing came
   std::array<std::uint8_t, 8> received{};
   std::uint8_t sent_size = 0;
   std::array<std::uint8_t, 8> sent{};
-  Time elapsed{};  ///< since the boot began
+  std::uint16_t value_size = 0;             ///< of the value that was read
+  std::array<std::uint8_t, 8> value{};      ///< its first bytes
+  NmtState node_state = NmtState::unknown;  ///< heard last in this boot; unknown: silent
+  bool bootup_seen = false;
+  std::uint8_t attempts = 0;  ///< uploads of the failing step
+  std::uint8_t restarts = 0;  ///< the node restarted so often while it was booted
+  std::uint16_t emcy = 0;     ///< newest error code that came during this boot, 0 = none
+  Time elapsed{};             ///< since the boot began
 };
 
 enum class EventKind : std::uint8_t {
   // nodes
   boot_started,
-  boot_done,       ///< `boot_done_skipped` in value: node was already operational
-  boot_failed,     ///< failure
-  node_state,      ///< value: new NmtState
+  boot_done,    ///< value 1: it was already operational and was not reset; detail: ms
+  boot_failed,  ///< failure; detail: how often in a row by the same cause (told at 1, 2, 4, 8 ...)
+  node_state,   ///< value: new NmtState
   heartbeat_lost,  ///< value: ns of silence
+  heartbeat_back,  ///< of a node that is only watched; lost ones that are managed boot again
   bootup_again,    ///< a boot-up message of a node that was ready
-  emcy,            ///< bytes: the eight bytes of the EMCY frame
+  emcy,  ///< bytes: the eight bytes of the EMCY frame; value: how many before it were not told
   // the cycle
   pdo_missing,      ///< value: TPDO number; told when it begins
   pdo_back,         ///< value: TPDO number

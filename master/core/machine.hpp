@@ -16,6 +16,7 @@ class Outbox {
 
   /// From now on at most `frames` frames in all; the budget of a cycle.
   void set_limit(std::size_t frames) noexcept { limit_ = frames < capacity ? frames : capacity; }
+  std::size_t limit() const noexcept { return limit_; }
   std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
 
   /// False: full; the frame is not taken and the machine has to come back.
@@ -33,6 +34,9 @@ class Outbox {
   std::size_t size_ = 0;
   std::size_t limit_ = capacity;
 };
+
+/// The deadline of a machine that has something to do now.
+inline constexpr Time at_once{};
 
 /// A protocol machine: takes frames and time, gives frames and the time it wants to be called
 /// next. Reads no clock, allocates nothing.
