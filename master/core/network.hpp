@@ -1,12 +1,18 @@
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
+#include "master/core/event_queue.hpp"
 #include "master/core/machine.hpp"
+#include "master/core/node_session.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/request.hpp"
+#include "master/core/request_table.hpp"
 
 namespace takt {
 
@@ -20,6 +26,8 @@ struct NetworkOptions {
 class Network {
  public:
   explicit Network(const BusPlan& plan, NetworkOptions options = {});
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
 
   /// Begins to boot all nodes (not when observing).
   void start(Time now) noexcept;
@@ -46,6 +54,30 @@ class Network {
   void begin_stop(Time now) noexcept;
   /// All frames of the stop have been handed out.
   bool stopped() const noexcept;
+
+ private:
+  static constexpr std::uint8_t no_session = 0xFF;
+
+  NodeSession* session(std::uint32_t node) noexcept;
+  void touched(std::size_t index) noexcept;
+  void send_heartbeat(Time now, Outbox& out) noexcept;
+  void send_commands(Time now, Outbox& out) noexcept;
+  void run_sessions(Time now, Outbox& out) noexcept;
+
+  const BusPlan& plan_;
+  bool observe_;
+  bool stopping_ = false;
+  EventQueue events_;
+  RequestTable requests_;
+  std::vector<NodeSession> sessions_;    // order of plan.nodes
+  std::vector<NodeStatus> statuses_;     // copies, one block for the reader
+  std::vector<Time> deadlines_;          // of the sessions, one block to search
+  std::array<std::uint8_t, 128> index_;  // node id -> session
+  std::size_t turn_ = 0;                 // session that sends first, round robin
+  RequestSlot* command_ = nullptr;       // NMT request that waits to be sent
+  NmtState own_state_ = NmtState::bootup;
+  Time heartbeat_at_ = never;
 };
+static_assert(Machine<Network>);
 
 }  // namespace takt

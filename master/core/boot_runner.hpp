@@ -1,0 +1,117 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "eds_parser/table/boot_plan.hpp"
+#include "master/core/event.hpp"
+#include "master/core/request.hpp"
+#include "master/core/sdo_client.hpp"
+
+namespace takt {
+
+/// Runs the BootPlan of one node over its SDO client: a small interpreter of the steps. Uploads
+/// that get no answer are repeated, downloads never. Every wait has a deadline. CiA 302-2.
+class BootRunner {
+ public:
+  enum class State : std::uint8_t { idle, running, done, failed };
+  enum class From : std::uint8_t {
+    beginning,
+    bootup,  ///< the node has just said boot-up: the reset at the beginning isn't needed
+  };
+
+  /// `plan` must outlive the runner. The client is lent to each call, always the same one.
+  explicit BootRunner(const BootPlan& plan) noexcept;
+
+  void start(From from, Time now) noexcept;
+  void stop() noexcept { state_ = State::idle; }
+
+  /// A boot-up message: awaited, or the node has restarted and its plan runs anew.
+  void on_bootup(Time now, SdoClient& client) noexcept;
+  void on_heartbeat(NmtState state) noexcept;
+  /// Goes as far as it can; takes the results of the client.
+  void on_time(Time now, SdoClient& client) noexcept;
+  /// Of its own waits; the client has its own.
+  Time deadline() const noexcept;
+
+  /// NMT command that waits to be sent to the node; nmt_sent tells that it was.
+  std::optional<NmtCommand> nmt_to_send() const noexcept;
+  void nmt_sent(Time now, SdoClient& client) noexcept;
+
+  State state() const noexcept { return state_; }
+  std::uint16_t step() const noexcept { return step_; }
+  Time began() const noexcept { return began_; }
+  bool reset_sent() const noexcept { return reset_sent_; }
+  const BootFailure& failure() const noexcept { return failure_; }
+
+ private:
+  enum class Phase : std::uint8_t {
+    enter,        // the step has not begun
+    nmt,          // its command waits to be sent
+    wait,         // for time or a message
+    upload_next,  // an upload is to begin as soon as the client is idle
+    upload,
+    download_next,
+    download,
+    confirm_next,  // a refused redundant write is read back
+    confirm,
+  };
+  static constexpr std::uint8_t max_restarts = 5;
+  static constexpr std::uint8_t upload_attempts = 3;
+  static constexpr Time probe_attempt = std::chrono::milliseconds{500};
+  static constexpr Time probe_pause = std::chrono::milliseconds{50};
+  static constexpr Time default_timeout = std::chrono::seconds{1};
+
+  const BootStep& current() const noexcept { return plan_->steps[step_]; }
+  void go_to(std::size_t step) noexcept;
+  void next() noexcept { go_to(step_ + 1U); }
+  void enter(Time now) noexcept;
+  // False: has to wait.
+  bool proceed(Time now, SdoClient& client) noexcept;
+  bool begin_transfer(Time now, SdoClient& client) noexcept;
+  bool end_wait(Time now, const SdoClient& client) noexcept;
+  void on_result(const SdoResult& result, Time now, SdoClient& client) noexcept;
+  void on_uploaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_probed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_downloaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void remember_cob_id() noexcept;
+  void write_cob_id() noexcept;
+  void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  bool knows_cob_id() const noexcept { return cob_id_object_ == current().object; }
+  std::span<const std::byte> received() const noexcept {
+    return std::span{buffer_}.first(received_);
+  }
+
+  const BootPlan* plan_;
+  std::size_t after_reset_;  // first step behind the reset that the plan may begin with
+  State state_ = State::idle;
+  Phase phase_ = Phase::enter;
+  std::uint16_t step_ = 0;
+  std::uint8_t attempts_ = 0;
+  std::uint8_t restarts_ = 0;
+  bool differs_ = false;
+  bool reset_sent_ = false;
+  bool bootup_seen_ = false;
+  bool bootup_in_step_ = false;
+  bool heartbeat_in_step_ = false;
+  NmtState heard_ = NmtState::unknown;
+  bool heartbeat_seen_ = false;
+  Time began_{};
+  Time deadline_ = never;                   // of the step
+  Time wait_until_ = never;                 // of the wait in it
+  std::optional<ObjectKey> cob_id_object_;  // of the COB-ID entry that was read last
+  std::uint32_t cob_id_ = 0;
+  std::span<const std::byte> to_write_;
+  std::array<std::byte, 4> cob_id_bytes_{};
+  SdoResult refused_;  // why the write that is being confirmed failed
+  Frame refused_sent_;
+  Frame refused_received_;
+  std::size_t received_ = 0;
+  std::array<std::byte, request_bytes> buffer_{};
+  BootFailure failure_;
+};
+
+}  // namespace takt

@@ -1,0 +1,54 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "eds_parser/table/boot_plan.hpp"
+#include "master/wire/bytes.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+
+inline bool all_zero(std::span<const std::byte> value) noexcept {
+  return std::ranges::all_of(value, [](std::byte byte) { return byte == std::byte{0}; });
+}
+
+/// Is what the device gave what the step wants? Numbers are compared by their low bytes under the
+/// mask, because devices answer with more or fewer bytes than the EDS says; strings and other long
+/// values without trailing zeros.
+inline bool same_value(std::span<const std::byte> got, const BootStep& step) noexcept {
+  const std::span<const std::byte> want{step.value};
+  if (want.size() <= 4) {
+    const auto width = std::min<std::size_t>(want.size(), got.size());
+    const auto low = [width](std::span<const std::byte> bytes) {
+      return load_le<std::uint32_t>(bytes.first(std::min(width, bytes.size())));
+    };
+    return (low(got) & step.mask) == (low(want) & step.mask) && all_zero(want.subspan(width));
+  }
+  const auto common = std::min(want.size(), got.size());
+  return std::ranges::equal(want.first(common), got.first(common)) &&
+         all_zero(want.subspan(common)) && all_zero(got.subspan(common));
+}
+
+/// An absent object is as good as a zero in it: optional steps only.
+inline bool may_be_missing(const BootStep& step, std::uint32_t code) noexcept {
+  return step.optional && all_zero(step.value) &&
+         (code == abort_code::no_object || code == abort_code::no_sub_index);
+}
+
+/// Codes that devices give for writing what is there already: worth a look at what is there.
+inline bool may_be_redundant(const BootStep& step, std::uint32_t code) noexcept {
+  return step.optional && (code == abort_code::access_unsupported ||
+                           code == abort_code::read_only || code == abort_code::no_sub_index ||
+                           code == abort_code::invalid_value || code == abort_code::device_state);
+}
+
+/// The device is alive but not ready to say it: asked again while it boots.
+inline bool means_busy(std::uint32_t code) noexcept {
+  return code >> 16 == 0x0503 || code >> 16 == 0x0504 || code == abort_code::resource_unavailable ||
+         code == abort_code::cannot_store || code == abort_code::local_control ||
+         code == abort_code::device_state;
+}
+
+}  // namespace takt

@@ -1,0 +1,164 @@
+#include "master/core/network.hpp"
+
+#include <algorithm>
+
+#include "master/wire/emcy.hpp"
+#include "master/wire/heartbeat.hpp"
+#include "master/wire/nmt.hpp"
+
+namespace takt {
+
+Network::Network(const BusPlan& plan, NetworkOptions options)
+    : plan_{plan}, observe_{options.observe} {
+  index_.fill(no_session);
+  sessions_.reserve(plan.nodes.size());
+  for (const NodePlan& node : plan.nodes) {
+    index_[node.id.value()] = static_cast<std::uint8_t>(sessions_.size());
+    const auto managed = node.boot && !observe_ ? Managed::yes : Managed::no;
+    sessions_.emplace_back(node, managed, NodeSession::Shared{events_, requests_});
+  }
+  statuses_.resize(sessions_.size());
+  deadlines_.resize(sessions_.size(), never);
+}
+
+NodeSession* Network::session(std::uint32_t node) noexcept {
+  if (node >= index_.size() || index_[node] == no_session) return nullptr;
+  return &sessions_[index_[node]];
+}
+
+void Network::touched(std::size_t index) noexcept {
+  statuses_[index] = sessions_[index].status();
+  deadlines_[index] = sessions_[index].deadline();
+}
+
+void Network::start(Time now) noexcept {
+  if (observe_) return;
+  if (plan_.master_heartbeat > Time{}) heartbeat_at_ = now;
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].start(now);
+    touched(i);
+  }
+}
+
+void Network::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
+  if (frame.id.is_extended() || frame.rtr) return;
+  const std::uint32_t node = frame.id.id() & 0x7F;
+  NodeSession* const peer = session(node);
+  if (peer == nullptr) return;
+  switch (frame.id.id() & ~0x7FU) {
+    case 0x580:
+      peer->on_sdo_answer(frame, now);
+      break;
+    case 0x700:
+      if (const auto heartbeat = decode_heartbeat(frame)) peer->on_heartbeat(heartbeat->state, now);
+      break;
+    case 0x080:
+      if (const auto emcy = decode_emcy(frame)) peer->on_emcy(*emcy, frame, now);
+      break;
+    default:
+      return;
+  }
+  touched(index_[node]);
+}
+
+void Network::on_time(Time now, Outbox& out) noexcept {
+  const std::size_t limit = out.limit();
+  const std::size_t budget = std::max<std::size_t>(plan_.cycle.service_frames, 1);
+  out.set_limit(std::min(limit, out.frames().size() + budget));
+  send_heartbeat(now, out);
+  send_commands(now, out);
+  run_sessions(now, out);
+  out.set_limit(limit);
+}
+
+void Network::send_heartbeat(Time now, Outbox& out) noexcept {
+  if (now < heartbeat_at_ || !out.push(encode(Heartbeat{plan_.master_id, own_state_}))) return;
+  if (own_state_ == NmtState::bootup) own_state_ = NmtState::operational;
+  heartbeat_at_ += plan_.master_heartbeat;
+  if (heartbeat_at_ <= now) heartbeat_at_ = now + plan_.master_heartbeat;
+}
+
+void Network::send_commands(Time now, Outbox& out) noexcept {
+  while (command_ != nullptr || (command_ = requests_.next(0)) != nullptr) {
+    const Request& request = command_->request;
+    if (!out.push(encode(NmtMessage{request.command, request.node}))) return;
+    for (std::size_t i = 0; i < sessions_.size(); ++i) {
+      if (request.node != 0 && index_[request.node] != i) continue;
+      sessions_[i].on_commanded(request.command, now);
+      touched(i);
+    }
+    requests_.answer(*command_, SdoFault::none);
+    command_ = nullptr;
+  }
+}
+
+void Network::run_sessions(Time now, Outbox& out) noexcept {
+  // A session may have a second frame for the same moment, hence the rounds; `out` ends them.
+  for (bool again = true; again;) {
+    again = false;
+    const std::size_t first = turn_;
+    for (std::size_t k = 0; k < sessions_.size(); ++k) {
+      const std::size_t i = (first + k) % sessions_.size();
+      if (deadlines_[i] > now) continue;
+      if (sessions_[i].on_time(now, out)) {
+        again = true;
+        turn_ = (i + 1) % sessions_.size();
+      }
+      touched(i);
+    }
+    if (out.room() == 0) return;
+  }
+}
+
+Time Network::deadline() const noexcept {
+  if (command_ != nullptr || requests_.has_waiting(0)) return at_once;
+  const auto first = std::ranges::min_element(deadlines_);
+  return std::min(heartbeat_at_, first == deadlines_.end() ? never : *first);
+}
+
+bool Network::submit(const Request& request, Time now) noexcept {
+  RequestSlot* const slot = requests_.accept(request);
+  if (slot == nullptr) return false;
+  if (observe_ || stopping_) {
+    requests_.answer(*slot, observe_ ? SdoFault::refused : SdoFault::cancelled);
+  } else if (request.kind == RequestKind::nmt) {
+    if (request.node > 127) requests_.answer(*slot, SdoFault::no_such_node);
+  } else if (NodeSession* const peer = session(request.node); peer == nullptr) {
+    requests_.answer(*slot, SdoFault::no_such_node);
+  } else {
+    peer->on_request(now);
+    touched(index_[request.node]);
+  }
+  return true;
+}
+
+bool Network::take(Reply& reply) noexcept { return requests_.take(reply); }
+
+bool Network::take(Event& event) noexcept { return events_.pop(event); }
+
+std::span<const NodeStatus> Network::nodes() const noexcept { return statuses_; }
+
+bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
+  if (node_index >= statuses_.size()) return false;
+  const NodeStatus& node = statuses_[node_index];
+  return (node.boot == BootState::ready || node.boot == BootState::idle) &&
+         node.nmt == NmtState::operational;
+}
+
+void Network::begin_stop(Time /*now*/) noexcept {
+  if (stopping_) return;
+  stopping_ = true;
+  own_state_ = NmtState::preoperational;
+  command_ = nullptr;
+  requests_.cancel_all();
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].begin_stop();
+    touched(i);
+  }
+}
+
+bool Network::stopped() const noexcept {
+  return stopping_ && std::ranges::all_of(sessions_, &NodeSession::stopped);
+}
+
+}  // namespace takt

@@ -1,0 +1,88 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/boot_runner.hpp"
+#include "master/core/event.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/machine.hpp"
+#include "master/core/node_status.hpp"
+#include "master/core/node_watch.hpp"
+#include "master/core/request_table.hpp"
+#include "master/core/sdo_client.hpp"
+
+namespace takt {
+
+enum class Managed : std::uint8_t {
+  no,   ///< only watched: the master sends nothing by itself
+  yes,  ///< booted, started, booted again when it comes back
+};
+
+/// All that the master has to do with one node: boots it, watches it, boots it again when it was
+/// lost or has restarted, and works off the requests of applications between that.
+class NodeSession {
+ public:
+  /// What all sessions share, owned by the network.
+  struct Shared {
+    EventQueue& events;
+    RequestTable& requests;
+  };
+
+  NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
+
+  void start(Time now) noexcept;
+  void on_sdo_answer(const Frame& frame, Time now) noexcept;
+  void on_heartbeat(NmtState state, Time now) noexcept;
+  void on_emcy(const Emcy& emcy, const Frame& frame, Time now) noexcept;
+  /// A request for this node has been accepted.
+  void on_request(Time now) noexcept;
+  /// An NMT command that covers this node has been sent for an application.
+  void on_commanded(NmtCommand command, Time now) noexcept;
+  /// False: it had nothing to send, or `out` has no room.
+  bool on_time(Time now, Outbox& out) noexcept;
+  Time deadline() const noexcept;
+
+  /// Gives up what is running and leaves the node in pre-operational.
+  void begin_stop() noexcept;
+  bool stopped() const noexcept;
+
+  const NodeStatus& status() const noexcept { return status_; }
+
+ private:
+  void boot(BootRunner::From from, Time now) noexcept;
+  void advance(Time now) noexcept;
+  void follow_boot(Time now) noexcept;
+  void follow_request(Time now) noexcept;
+  void on_boot_failed(Time now) noexcept;
+  void on_bootup(Time now) noexcept;
+  void look_for_silence(Time now) noexcept;
+  void node_was_reset() noexcept;
+  void assume(NmtState state, Time now) noexcept;
+  void send_nmt(Time now, Outbox& out) noexcept;
+  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+  bool booting() const noexcept { return status_.boot == BootState::booting; }
+  bool waits_to_boot() const noexcept {
+    return managed_ == Managed::yes && !stopping_ &&
+           (status_.boot == BootState::failed || status_.boot == BootState::lost);
+  }
+
+  const NodePlan* plan_;
+  Managed managed_;
+  Shared shared_;
+  NodeStatus status_;
+  SdoClient client_;
+  BootRunner runner_;
+  NodeWatch watch_;
+  RequestSlot* active_ = nullptr;
+  Time retry_at_ = never;
+  NmtState state_at_boot_ = NmtState::unknown;
+  std::uint32_t emcys_at_boot_ = 0;
+  std::uint32_t same_failures_ = 0;  // in a row
+  BootFailure last_failure_;
+  bool silent_ = false;  // heartbeat lost and not back
+  bool stopping_ = false;
+  bool preop_to_send_ = false;
+};
+
+}  // namespace takt

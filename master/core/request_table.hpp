@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "master/core/request.hpp"
+
+namespace takt {
+
+/// One accepted request from its arrival until its reply is taken. An upload is received into
+/// `request.data`.
+struct RequestSlot {
+  enum class State : std::uint8_t { free, waiting, active, answered };
+  State state = State::free;
+  std::uint64_t order = 0;
+  Request request;
+  SdoFault fault = SdoFault::none;
+  std::uint32_t abort_code = 0;
+};
+
+/// The requests of applications: one lane a node for SDO and lane 0 for NMT, first come first
+/// served in each. Every accepted request is answered once.
+class RequestTable {
+ public:
+  static constexpr std::size_t capacity = 32;
+
+  RequestTable() : slots_(capacity) {}
+
+  static std::uint8_t lane(const Request& request) noexcept {
+    return request.kind == RequestKind::nmt ? std::uint8_t{0} : request.node;
+  }
+  /// Null: no room.
+  RequestSlot* accept(const Request& request) noexcept;
+  /// Makes the oldest waiting request of a lane the active one. Null: nobody waits.
+  RequestSlot* next(std::uint8_t lane) noexcept;
+  bool has_waiting(std::uint8_t lane) const noexcept;
+  void answer(RequestSlot& slot, SdoFault fault, std::uint32_t abort_code = 0,
+              std::size_t size = 0) noexcept;
+  /// Answers all that wait or are active.
+  void cancel_all() noexcept;
+  bool take(Reply& reply) noexcept;
+
+ private:
+  const RequestSlot* oldest(RequestSlot::State state, int lane) const noexcept;
+
+  std::vector<RequestSlot> slots_;
+  std::size_t waiting_ = 0;
+  std::size_t answered_ = 0;
+  std::uint64_t order_ = 0;
+};
+
+}  // namespace takt
