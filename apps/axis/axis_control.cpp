@@ -1,0 +1,159 @@
+#include "apps/axis/axis_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "master/gateway/messages.hpp"
+
+namespace takt {
+namespace {
+
+ValueFormat format_of(const signal_t& signal) {
+  const bool usable = std::isfinite(signal.scale) && signal.scale != 0.0 &&
+                      std::isfinite(signal.offset) && signal.bits >= 1 && signal.bits <= 64;
+  if (!usable) return {};
+  return {.type = static_cast<DataType>(signal.data_type),
+          .bits = static_cast<std::uint8_t>(signal.bits),
+          .scale = signal.scale,
+          .offset = signal.offset};
+}
+
+}  // namespace
+
+void AxisControl::set_layout(const ImageInput& input) {
+  std::vector<ValueFormat> formats;
+  for (const signal_t& signal : input.signals()) formats.push_back(format_of(signal));
+  units_ = Units{formats};
+  axes_.clear();
+  for (AxisSignals& signals : find_axes(input.signals())) {
+    Axis& axis = axes_.emplace_back();
+    axis.signals = std::move(signals);
+  }
+  for (Eigen::VectorXd* values : {&positions_, &velocities_, &torques_, &target_positions_,
+                                  &target_velocities_, &target_torques_}) {
+    values->setZero(size());
+  }
+}
+
+double AxisControl::read(AxisSignals::Position signal, const ImageInput& input) const {
+  if (!signal) return 0.0;
+  const ValueFormat& format = units_.format(*signal);
+  return number_of(format.type, input.values()[*signal]) * format.scale + format.offset;
+}
+
+void AxisControl::on_image(const ImageInput& input) {
+  for (Index i = 0; i < size(); ++i) {
+    Axis& axis = axes_[at(i)];
+    positions_(i) = read(axis.signals.position, input);
+    velocities_(i) = read(axis.signals.velocity, input);
+    torques_(i) = read(axis.signals.torque, input);
+    step(axis, input);
+    rest(i);
+  }
+  command_.session = input.session();
+  command_.cycle = input.cycle();
+}
+
+void AxisControl::step(Axis& axis, const ImageInput& input) {
+  const auto missing = [&](AxisSignals::Position signal) { return signal && input.stale(*signal); };
+  axis.stale = missing(axis.signals.statusword) || missing(axis.signals.position);
+  if (axis.signals.mode_display) {
+    axis.shown_mode = static_cast<std::int8_t>(input.values()[*axis.signals.mode_display]);
+  }
+  if (missing(axis.signals.statusword)) return;  // hold the controlword
+  axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
+  axis.controlword = axis.drive.step(axis.statusword);
+  if (mode_ == DriveMode::profile_position && axis.drive.enabled()) {
+    axis.controlword |= axis.handshake.step(axis.statusword);
+  }
+}
+
+void AxisControl::rest(Index axis) {
+  if (drive(axis).enabled()) return;
+  target_positions_(axis) = positions_(axis);
+  target_velocities_(axis) = 0.0;
+  target_torques_(axis) = 0.0;
+}
+
+command_t& AxisControl::command() {
+  command_.schema = message_schema;
+  command_.signals.clear();
+  command_.values.clear();
+  for (Index i = 0; i < size(); ++i) {
+    const Axis& axis = axes_[at(i)];
+    put(axis.signals.controlword, axis.controlword);
+    put(axis.signals.mode, std::to_underlying(mode_));
+    put_si(axis.signals.target_position, target_positions_(i));
+    put_si(axis.signals.target_velocity, target_velocities_(i));
+    put_si(axis.signals.target_torque, target_torques_(i));
+    put_si(axis.signals.velocity_offset, 0.0);
+    put_si(axis.signals.torque_offset, 0.0);
+  }
+  command_.num_values = static_cast<std::int32_t>(command_.values.size());
+  return command_;
+}
+
+void AxisControl::put(AxisSignals::Position signal, std::int64_t raw) {
+  if (!signal) return;
+  command_.signals.push_back(static_cast<std::int16_t>(*signal));
+  command_.values.push_back(raw);
+}
+
+void AxisControl::put_si(AxisSignals::Position signal, double si) {
+  if (signal) put(signal, units_.to_raw(*signal, si));
+}
+
+bool AxisControl::any_stale() const noexcept {
+  return std::ranges::any_of(axes_, [](const Axis& axis) { return axis.stale; });
+}
+
+bool AxisControl::all_enabled() const noexcept {
+  return std::ranges::all_of(axes_, [](const Axis& axis) { return axis.drive.enabled(); });
+}
+
+bool AxisControl::all_reached() const noexcept {
+  return std::ranges::all_of(axes_, [](const Axis& axis) { return axis.drive.reached(); });
+}
+
+void AxisControl::set_goal(DriveGoal goal) {
+  for (Axis& axis : axes_) axis.drive.set_goal(goal);
+}
+
+void AxisControl::reset_faults() {
+  for (Axis& axis : axes_) axis.drive.reset_fault();
+}
+
+bool AxisControl::in_mode() const noexcept {
+  return std::ranges::all_of(axes_, [this](const Axis& axis) {
+    return !axis.signals.mode_display || axis.shown_mode == std::to_underlying(mode_);
+  });
+}
+
+void AxisControl::set_positions(const Eigen::Ref<const Eigen::VectorXd>& si) {
+  for (Index i = 0; i < size(); ++i) {
+    if (drive(i).enabled()) target_positions_(i) = si(i);
+  }
+}
+
+void AxisControl::set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si) {
+  for (Index i = 0; i < size(); ++i) {
+    if (drive(i).enabled()) target_velocities_(i) = si(i);
+  }
+}
+
+void AxisControl::set_torques(const Eigen::Ref<const Eigen::VectorXd>& si) {
+  for (Index i = 0; i < size(); ++i) {
+    if (drive(i).enabled()) target_torques_(i) = si(i);
+  }
+}
+
+void AxisControl::begin_set_points() {
+  for (Axis& axis : axes_) axis.handshake.begin();
+}
+
+bool AxisControl::set_points_taken() const noexcept {
+  return std::ranges::all_of(axes_, [](const Axis& axis) { return axis.handshake.done(); });
+}
+
+}  // namespace takt

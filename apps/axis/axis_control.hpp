@@ -1,0 +1,104 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <takt/command_t.hpp>
+#include <vector>
+
+#include "apps/axis/axis_signals.hpp"
+#include "apps/axis/drive_sequence.hpp"
+#include "apps/axis/image_input.hpp"
+#include "apps/axis/set_point_handshake.hpp"
+#include "master/gateway/units.hpp"
+
+namespace takt {
+
+/// Modes of operation, 0x6060. CiA 402-2.
+enum class DriveMode : std::int8_t {
+  none = 0,
+  profile_position = 1,
+  profile_velocity = 3,
+  profile_torque = 4,
+  homing = 6,
+  cyclic_position = 8,
+  cyclic_velocity = 9,
+  cyclic_torque = 10,
+};
+
+/// All axes of a bus as vectors in SI units: image in, command out, without LCM and without a
+/// clock. Until an axis is in Operation enabled its target follows its position and its target
+/// velocity and torque are zero, so that enabling never makes it jump.
+class AxisControl {
+ public:
+  using Index = Eigen::Index;
+
+  /// The layout is new: every axis is found again and shall be disabled.
+  void set_layout(const ImageInput& input);
+  /// Takes the newest image and steps the state machines. Call once an image.
+  void on_image(const ImageInput& input);
+  /// Set-points for all axes, computed from the last image. `utime`, `sender` and `time_to_live`
+  /// are the caller's.
+  command_t& command();
+
+  Index size() const noexcept { return static_cast<Index>(axes_.size()); }
+  const AxisSignals& signals(Index axis) const { return axes_[at(axis)].signals; }
+  const std::string& name(Index axis) const { return signals(axis).name; }
+  const DriveSequence& drive(Index axis) const { return axes_[at(axis)].drive; }
+  std::uint16_t statusword(Index axis) const { return axes_[at(axis)].statusword; }
+  /// Its statusword or position did not arrive with the newest image.
+  bool stale(Index axis) const { return axes_[at(axis)].stale; }
+  bool any_stale() const noexcept;
+  bool all_enabled() const noexcept;
+  bool all_reached() const noexcept;  ///< each axis is where set_goal() sent it
+
+  const Eigen::VectorXd& positions() const noexcept { return positions_; }
+  const Eigen::VectorXd& velocities() const noexcept { return velocities_; }
+  const Eigen::VectorXd& torques() const noexcept { return torques_; }
+  const Eigen::VectorXd& target_positions() const noexcept { return target_positions_; }
+
+  void set_goal(DriveGoal goal);
+  void set_goal(Index axis, DriveGoal goal) { axes_[at(axis)].drive.set_goal(goal); }
+  void reset_faults();
+  void set_mode(DriveMode mode) noexcept { mode_ = mode; }
+  /// Whether every axis shows the mode (0x6061), as far as it is mapped.
+  bool in_mode() const noexcept;
+
+  // One value an axis. Axes that are not in Operation enabled keep to their position and rest.
+  void set_positions(const Eigen::Ref<const Eigen::VectorXd>& si);
+  void set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si);
+  void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
+  /// Profile position: the targets are new; hands them over edge by edge.
+  void begin_set_points();
+  bool set_points_taken() const noexcept;
+
+ private:
+  struct Axis {
+    AxisSignals signals;
+    DriveSequence drive;
+    SetPointHandshake handshake;
+    std::uint16_t statusword = 0;
+    std::uint16_t controlword = 0;
+    std::int8_t shown_mode = 0;
+    bool stale = false;
+  };
+
+  static std::size_t at(Index axis) noexcept { return static_cast<std::size_t>(axis); }
+  double read(AxisSignals::Position signal, const ImageInput& input) const;
+  void step(Axis& axis, const ImageInput& input);
+  void rest(Index axis);
+  void put(AxisSignals::Position signal, std::int64_t raw);
+  void put_si(AxisSignals::Position signal, double si);
+
+  std::vector<Axis> axes_;
+  Units units_;
+  DriveMode mode_ = DriveMode::cyclic_position;
+  Eigen::VectorXd positions_;
+  Eigen::VectorXd velocities_;
+  Eigen::VectorXd torques_;
+  Eigen::VectorXd target_positions_;
+  Eigen::VectorXd target_velocities_;
+  Eigen::VectorXd target_torques_;
+  command_t command_{};
+};
+
+}  // namespace takt

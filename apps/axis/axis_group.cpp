@@ -1,0 +1,124 @@
+#include "apps/axis/axis_group.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <poll.h>
+#include <span>
+#include <utility>
+
+#include "master/gateway/messages.hpp"
+#include "master/gateway/names.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t most_events = 256;
+/// Of emptying the queue, so that a flood of messages cannot hold the caller.
+constexpr int most_rounds = 16;
+/// Staleness is looked at so often.
+constexpr std::chrono::milliseconds longest_pause{1};
+
+timespec to_timespec(std::chrono::nanoseconds time) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
+}
+
+}  // namespace
+
+AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
+    : lcm_{std::move(lcm)}, options_{std::move(options)} {
+  if (options_.bus.empty()) {
+    lcm_->subscribe(any_bus("LAYOUT"));
+  } else {
+    listen_to(options_.bus);
+    lcm_->subscribe(layout_channel_);
+  }
+}
+
+void AxisGroup::listen_to(std::string_view bus) {
+  bus_ = bus;
+  image_channel_ = channel_name(bus_, "IMAGE");
+  layout_channel_ = channel_name(bus_, "LAYOUT");
+  command_channel_ = channel_name(bus_, "COMMAND");
+  event_channel_ = channel_name(bus_, "EVENT");
+  lcm_->subscribe(image_channel_);
+  lcm_->subscribe(event_channel_);
+}
+
+void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) {
+  if (bus_.empty()) {
+    heard_ = bus_of_channel(channel, "LAYOUT");
+  } else if (channel == image_channel_) {
+    if (const auto part = decode<image_t>(data)) fresh_ |= input_.take(*part);
+  } else if (channel == layout_channel_) {
+    if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
+  } else if (channel == event_channel_ && events_.size() < most_events) {
+    if (auto event = decode<event_t>(data)) events_.push_back(std::move(*event));
+  }
+}
+
+void AxisGroup::serve() {
+  std::vector<pollfd> descriptors;
+  int ready = 1;
+  for (int i = 0; i < most_rounds && ready > 0; ++i) {  // all that waits: only the newest counts
+    lcm_->serve(
+        [this](std::string_view channel, std::span<const std::byte> data) { take(channel, data); });
+    descriptors.clear();
+    lcm_->watch(descriptors);
+    ready = ::poll(descriptors.data(), descriptors.size(), 0);
+  }
+  if (bus_.empty() && !heard_.empty()) listen_to(heard_);
+}
+
+Input AxisGroup::wait(std::chrono::nanoseconds longest) {
+  const auto until = Clock::now() + longest;
+  std::vector<pollfd> descriptors;
+  while (true) {
+    serve();
+    if (std::exchange(new_layout_, false)) {
+      axes_.set_layout(input_);
+      fresh_ = told_stale_ = false;
+      return Input::restarted;
+    }
+    if (std::exchange(fresh_, false)) {
+      arrival_ = Clock::now();
+      told_stale_ = false;
+      axes_.on_image(input_);
+      return Input::fresh;
+    }
+    if (!told_stale_ && is_stale()) {
+      told_stale_ = true;
+      return Input::stale;
+    }
+    const auto left = until - Clock::now();
+    if (left <= left.zero()) return Input::nothing;
+    descriptors.clear();
+    lcm_->watch(descriptors);
+    const auto pause = to_timespec(std::min<std::chrono::nanoseconds>(left, longest_pause));
+    ::ppoll(descriptors.data(), descriptors.size(), &pause, nullptr);
+  }
+}
+
+bool AxisGroup::send() {
+  using std::chrono::microseconds;
+  command_t& command = axes_.command();
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  command.utime = std::chrono::duration_cast<microseconds>(now).count();
+  command.sender = options_.sender;
+  command.time_to_live = options_.time_to_live;
+  return lcm_->publish(command_channel_, encode(command, buffer_));
+}
+
+std::chrono::nanoseconds AxisGroup::period() const noexcept {
+  return std::chrono::nanoseconds{input_.period_ns()};
+}
+
+std::chrono::nanoseconds AxisGroup::age() const { return Clock::now() - arrival_; }
+
+bool AxisGroup::is_stale() const {
+  return input_.has_image() && age() > options_.stale_cycles * period();
+}
+
+std::vector<event_t> AxisGroup::take_events() { return std::exchange(events_, {}); }
+
+}  // namespace takt

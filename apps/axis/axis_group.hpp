@@ -1,0 +1,78 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <takt/event_t.hpp>
+#include <vector>
+
+#include "apps/axis/axis_control.hpp"
+#include "apps/axis/image_input.hpp"
+#include "master/gateway/transport.hpp"
+
+namespace takt {
+
+struct AxisGroupOptions {
+  std::string bus;                 ///< empty: the first bus that is heard
+  std::string sender = "axes";     ///< one sender holds a node's outputs at a time
+  std::int32_t stale_cycles = 5;   ///< an image older than this is stale
+  std::int32_t time_to_live = 20;  ///< of the commands, in cycles; 0: as configured
+};
+
+/// What waiting for the next image came to.
+enum class Input : std::uint8_t {
+  fresh,      ///< the newest image is new
+  nothing,    ///< no image yet, or none in this time
+  stale,      ///< the newest image has become older than `stale_cycles`
+  restarted,  ///< the daemon or its layout is another one; all axes shall be disabled
+};
+
+/// The axes of one bus over LCM. Takes only the newest image; commands carry the session and the
+/// cycle that they were computed from. One thread.
+class AxisGroup {
+ public:
+  AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options);
+
+  /// Waits for the next image, `longest` at most, and steps the axes with it.
+  Input wait(std::chrono::nanoseconds longest);
+  /// Sends the set-points of all axes. False: LCM did not take them.
+  bool send();
+
+  AxisControl& axes() noexcept { return axes_; }
+  const ImageInput& input() const noexcept { return input_; }
+  const std::string& bus() const noexcept { return bus_; }  ///< empty: none heard yet
+  std::chrono::nanoseconds period() const noexcept;         ///< of SYNC; 0: not known yet
+  /// Age of the newest image by this machine's clock.
+  std::chrono::nanoseconds age() const;
+  /// What the daemon has told since the last call (boots, refused commands, faults), 256 at most.
+  std::vector<event_t> take_events();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void serve();
+  void take(std::string_view channel, std::span<const std::byte> data);
+  void listen_to(std::string_view bus);
+  bool is_stale() const;
+
+  std::unique_ptr<Transport> lcm_;
+  AxisGroupOptions options_;
+  std::string bus_;
+  std::string heard_;  // a bus whose layout came while none was chosen
+  std::string image_channel_;
+  std::string layout_channel_;
+  std::string command_channel_;
+  std::string event_channel_;
+  ImageInput input_;
+  AxisControl axes_;
+  bool fresh_ = false;
+  bool new_layout_ = false;
+  bool told_stale_ = false;
+  Clock::time_point arrival_{};
+  std::vector<event_t> events_;
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace takt

@@ -1,0 +1,68 @@
+#include "apps/axis/axis_signals.hpp"
+
+#include <array>
+#include <map>
+#include <utility>
+
+namespace takt {
+namespace {
+
+/// Axis n of a device has its objects n * 0x800 higher. CiA 402-2.
+constexpr std::int32_t axis_step = 0x800;
+constexpr std::int32_t first_profile_object = 0x6000;
+constexpr std::int32_t last_profile_object = 0x9FFF;
+
+struct Meaning {
+  std::int32_t object;
+  bool output;
+  AxisSignals::Position AxisSignals::* place;
+};
+
+constexpr std::array meanings{
+    Meaning{0x6041, false, &AxisSignals::statusword},
+    Meaning{0x6061, false, &AxisSignals::mode_display},
+    Meaning{0x6064, false, &AxisSignals::position},
+    Meaning{0x606C, false, &AxisSignals::velocity},
+    Meaning{0x6077, false, &AxisSignals::torque},
+    Meaning{0x6040, true, &AxisSignals::controlword},
+    Meaning{0x6060, true, &AxisSignals::mode},
+    Meaning{0x607A, true, &AxisSignals::target_position},
+    Meaning{0x60FF, true, &AxisSignals::target_velocity},
+    Meaning{0x6071, true, &AxisSignals::target_torque},
+    Meaning{0x60B1, true, &AxisSignals::velocity_offset},
+    Meaning{0x60B2, true, &AxisSignals::torque_offset},
+};
+
+/// What the object means within its axis; null: nothing to the axis library.
+const Meaning* meaning_of(const signal_t& signal) {
+  if (signal.index < first_profile_object || signal.index > last_profile_object) return nullptr;
+  const std::int32_t object = first_profile_object + signal.index % axis_step;
+  for (const Meaning& meaning : meanings) {
+    const bool same = meaning.object == object && meaning.output == (signal.output != 0);
+    if (same && signal.sub == 0) return &meaning;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<AxisSignals> find_axes(std::span<const signal_t> signals) {
+  std::map<std::pair<std::int16_t, std::int32_t>, AxisSignals> found;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const signal_t& signal = signals[i];
+    const Meaning* meaning = meaning_of(signal);
+    if (meaning == nullptr) continue;
+    const std::int32_t number = (signal.index - first_profile_object) / axis_step;
+    AxisSignals& axis = found[{signal.node_id, number}];
+    axis.name = number == 0 ? signal.node : signal.node + "." + std::to_string(number + 1);
+    axis.node = signal.node_id;
+    axis.*(meaning->place) = i;
+  }
+  std::vector<AxisSignals> axes;
+  for (auto& [key, axis] : found) {
+    if (axis.controlword && axis.statusword) axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+}  // namespace takt

@@ -1,0 +1,106 @@
+#include "apps/axis/image_input.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "master/gateway/messages.hpp"
+
+namespace takt {
+namespace {
+
+/// Signals have 16-bit positions.
+constexpr std::int32_t most_signals = 0x7FFF;
+constexpr std::int16_t most_parts = 4096;
+
+bool is_range(std::int32_t first, std::int32_t count, std::size_t total) {
+  return first >= 0 && count >= 0 &&
+         static_cast<std::size_t>(first) + static_cast<std::size_t>(count) <= total;
+}
+
+bool is_part(std::int16_t part, std::int16_t parts) {
+  return parts >= 1 && parts <= most_parts && part >= 0 && part < parts;
+}
+
+}  // namespace
+
+void ImageInput::Parts::restart(std::size_t count) {
+  seen.assign(count, 0);
+  missing = count;
+}
+
+bool ImageInput::Parts::mark(std::size_t part) {
+  if (part >= seen.size() || seen[part] != 0) return false;
+  seen[part] = 1;
+  --missing;
+  return true;
+}
+
+bool ImageInput::take(const layout_t& part) {
+  if (part.schema != message_schema || !is_part(part.part, part.parts)) return false;
+  if (part.total_signals < 1 || part.total_signals > most_signals || part.period_ns < 1) {
+    return false;
+  }
+  if (has_layout() && part.hash == hash_ && part.session == session_) return false;
+  const auto total = static_cast<std::size_t>(part.total_signals);
+  if (part.hash != new_hash_ || part.session != new_session_ || new_signals_.size() != total ||
+      layout_parts_.seen.size() != static_cast<std::size_t>(part.parts)) {
+    begin(part);
+  }
+  if (!is_range(part.first_signal, part.num_signals, total) ||
+      !layout_parts_.mark(static_cast<std::size_t>(part.part))) {
+    return false;
+  }
+  std::ranges::copy(part.signals, new_signals_.begin() + part.first_signal);
+  if (layout_parts_.missing != 0) return false;
+  finish();
+  return true;
+}
+
+void ImageInput::begin(const layout_t& part) {
+  new_session_ = part.session;
+  new_hash_ = part.hash;
+  new_period_ns_ = part.period_ns;
+  new_signals_.assign(static_cast<std::size_t>(part.total_signals), {});
+  layout_parts_.restart(static_cast<std::size_t>(part.parts));
+}
+
+void ImageInput::finish() {
+  signals_ = std::exchange(new_signals_, {});
+  layout_parts_.restart(0);
+  session_ = new_session_;
+  hash_ = new_hash_;
+  period_ns_ = new_period_ns_;
+  has_image_ = false;
+  cycle_ = new_cycle_ = -1;
+  values_.assign(signals_.size(), 0);
+  stale_.assign(signals_.size(), 0);
+}
+
+bool ImageInput::belongs(const image_t& part) const noexcept {
+  return has_layout() && part.schema == message_schema && part.session == session_ &&
+         part.layout_hash == hash_ && is_part(part.part, part.parts) &&
+         is_range(part.first_signal, part.num_values, signals_.size());
+}
+
+bool ImageInput::take(const image_t& part) {
+  if (!belongs(part) || part.cycle < new_cycle_) return false;
+  if (part.cycle > new_cycle_) {
+    new_cycle_ = part.cycle;
+    new_values_.assign(signals_.size(), 0);
+    new_stale_.assign(signals_.size(), 0);
+    image_parts_.restart(static_cast<std::size_t>(part.parts));
+  }
+  if (!image_parts_.mark(static_cast<std::size_t>(part.part))) return false;
+  std::ranges::copy(part.values, new_values_.begin() + part.first_signal);
+  for (const std::int16_t signal : part.stale) {
+    if (is_range(signal, 1, signals_.size())) new_stale_[static_cast<std::size_t>(signal)] = 1;
+  }
+  if (image_parts_.missing != 0) return false;
+  values_.swap(new_values_);
+  stale_.swap(new_stale_);
+  cycle_ = new_cycle_;
+  has_image_ = true;
+  return true;
+}
+
+}  // namespace takt

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <takt/image_t.hpp>
+#include <takt/layout_t.hpp>
+#include <vector>
+
+namespace takt {
+
+/// What has come over LCM, put together from its parts: the layout, and the newest image that is
+/// whole. Parts that do not belong together (another session, layout or cycle) are left out.
+class ImageInput {
+ public:
+  /// True: with this part a layout is complete that differs from the one before.
+  bool take(const layout_t& part);
+  /// True: with this part a newer image is complete.
+  bool take(const image_t& part);
+
+  bool has_layout() const noexcept { return !signals_.empty(); }
+  bool has_image() const noexcept { return has_image_; }
+  const std::vector<signal_t>& signals() const noexcept { return signals_; }
+  std::int64_t session() const noexcept { return session_; }
+  std::int64_t period_ns() const noexcept { return period_ns_; }
+  std::int64_t cycle() const noexcept { return cycle_; }
+  const std::vector<std::int64_t>& values() const noexcept { return values_; }
+  bool stale(std::size_t signal) const noexcept { return stale_[signal] != 0; }
+
+ private:
+  /// Which parts of something have arrived.
+  struct Parts {
+    std::vector<char> seen;
+    std::size_t missing = 0;
+    void restart(std::size_t count);
+    bool mark(std::size_t part);  // false: it was there already
+  };
+
+  void begin(const layout_t& part);
+  void finish();
+  bool belongs(const image_t& part) const noexcept;
+
+  std::vector<signal_t> signals_;
+  std::int64_t session_ = 0;
+  std::int64_t hash_ = 0;
+  std::int64_t period_ns_ = 0;
+
+  std::vector<signal_t> new_signals_;
+  std::int64_t new_session_ = 0;
+  std::int64_t new_hash_ = 0;
+  std::int64_t new_period_ns_ = 0;
+  Parts layout_parts_;
+
+  bool has_image_ = false;
+  std::int64_t cycle_ = -1;
+  std::vector<std::int64_t> values_;
+  std::vector<char> stale_;
+
+  std::int64_t new_cycle_ = -1;
+  std::vector<std::int64_t> new_values_;
+  std::vector<char> new_stale_;
+  Parts image_parts_;
+};
+
+}  // namespace takt

@@ -1,0 +1,34 @@
+#include <csignal>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/axis/axis_group.hpp"
+#include "apps/axis/open_lcm.hpp"
+#include "apps/move/move_run.hpp"
+#include "apps/move/options.hpp"
+
+namespace {
+
+volatile std::sig_atomic_t stop = 0;
+
+void on_signal(int) { stop = 1; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto [options, exit_code] = takt::parse_move(argc, argv);
+  if (exit_code) return *exit_code;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  auto lcm = takt::open_lcm(options.lcm_url);
+  if (!lcm) {
+    fmt::print(stderr, "takt-move: {}\n", lcm.error());
+    return 3;
+  }
+  takt::AxisGroup group{std::move(*lcm),
+                        {.bus = options.bus,
+                         .sender = fmt::format("takt-move {}", ::getpid()),
+                         .stale_cycles = options.stale_cycles,
+                         .time_to_live = 2 * options.stale_cycles}};
+  return takt::MoveRun{group, options, stop}.run();
+}

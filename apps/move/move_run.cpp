@@ -1,0 +1,211 @@
+#include "apps/move/move_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+
+#include "apps/move/sine.hpp"
+#include "apps/move/synchronised_move.hpp"
+
+namespace takt {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int exit_good = 0;
+constexpr int exit_not_followed = 1;
+constexpr int exit_wrong_use = 2;
+constexpr int exit_no_daemon = 3;
+
+/// Seconds from full speed to standstill when the motion is held.
+constexpr double hold_ramp = 0.2;
+/// Longest wait for an image before the motion is looked at again.
+constexpr std::chrono::milliseconds tick{2};
+/// A drive may need so long for its brake and its DC link.
+constexpr double enable_seconds = 5.0;
+constexpr double disable_seconds = 2.0;
+
+}  // namespace
+
+MoveRun::MoveRun(AxisGroup& group, const MoveOptions& options,
+                 const volatile std::sig_atomic_t& stop)
+    : group_{group}, axes_{group.axes()}, options_{options}, stop_{stop} {}
+
+int MoveRun::run() {
+  if (!find_axes()) return exit_no_daemon;
+  const auto targets = static_cast<Eigen::Index>(options_.to.size());
+  if (targets > 1 && targets != axes_.size()) {
+    progress_.say(fmt::format("--to has {} values for {} axes", targets, axes_.size()));
+    return exit_wrong_use;
+  }
+  good_ = enable() && move();
+  if (!restarted_) disable();
+  return sum_up();
+}
+
+bool MoveRun::find_axes() {
+  progress_.say("waiting for " + (options_.bus.empty() ? "a bus" : "bus " + options_.bus) +
+                " on LCM");
+  const auto until = Clock::now() + std::chrono::duration<double>(options_.wait_seconds);
+  while (stop_ == 0 && Clock::now() < until) {
+    if (group_.wait(std::chrono::milliseconds{50}) != Input::fresh) continue;
+    if (axes_.size() == 0) {
+      progress_.say("bus " + group_.bus() + " has no CiA 402 axis (6040 and 6041 in PDOs)");
+      return false;
+    }
+    const auto& signals = group_.input().signals();
+    const auto position = axes_.signals(0).position;
+    unit_ = position ? signals[*position].unit : std::string{};
+    sizes_ = sizes_for(options_, unit_);
+    progress_.set_unit(unit_.empty() ? "counts" : unit_);
+    following_ = Following{axes_.size()};
+    progress_.say(fmt::format("bus {}: {} signals, {} axes, SYNC every {:g} ms", group_.bus(),
+                              signals.size(), axes_.size(),
+                              std::chrono::duration<double, std::milli>(group_.period()).count()));
+    return true;
+  }
+  progress_.say(group_.bus().empty() ? "no bus heard: is taktd running, with the same LCM URL?"
+                                     : "bus " + group_.bus() + " sends no image");
+  return false;
+}
+
+bool MoveRun::hold_until(const std::function<bool()>& done, double seconds) {
+  const auto until = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!restarted_ && Clock::now() < until) {
+    const Input input = group_.wait(tick);
+    restarted_ = input == Input::restarted;
+    if (input != Input::fresh) continue;
+    progress_.states(group_);
+    if (done()) return true;
+    group_.send();
+  }
+  return false;
+}
+
+bool MoveRun::enable() {
+  axes_.set_mode(DriveMode::cyclic_position);
+  const auto devices_answer = [&] { return stop_ != 0 || !axes_.any_stale(); };
+  if (!hold_until(devices_answer, options_.wait_seconds)) {
+    progress_.say("not all axes send their state");
+    return false;
+  }
+  axes_.reset_faults();
+  axes_.set_goal(DriveGoal::enabled);
+  const auto ready = [&] { return stop_ != 0 || (axes_.all_enabled() && axes_.in_mode()); };
+  if (hold_until(ready, enable_seconds)) return stop_ == 0;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    if (axes_.drive(i).enabled()) continue;
+    progress_.say(fmt::format("{}: not enabled, {}", axes_.name(i), name(axes_.drive(i).state())));
+  }
+  if (axes_.all_enabled()) progress_.say("not all axes show mode 8, cyclic synchronous position");
+  return false;
+}
+
+Eigen::VectorXd MoveRun::target() const {
+  const Eigen::VectorXd& from = axes_.target_positions();
+  if (options_.to.empty()) return from.array() + sizes_.distance;
+  if (options_.to.size() == 1) return Eigen::VectorXd::Constant(from.size(), options_.to.front());
+  return Eigen::VectorXd::Map(options_.to.data(), from.size());
+}
+
+bool MoveRun::move() {
+  double left = options_.seconds;
+  if (options_.point) {
+    const SynchronisedMove move{axes_.target_positions(), target(), sizes_.limits};
+    progress_.say(fmt::format("moving all axes together, {:.2f} s", move.duration()));
+    if (!follow("move", move.duration(), [&](double t) { return move.position(t); })) return false;
+    left -= move.duration();
+  }
+  if (!options_.sine || stop_ != 0) return true;
+  const Sine sine{
+      axes_.target_positions(),
+      {.amplitude = sizes_.amplitude, .frequency = options_.frequency, .duration = left}};
+  progress_.say(fmt::format("sine of {:g} Hz, {:.2f} s", options_.frequency, sine.duration()));
+  return follow("sine", sine.duration(), [&](double t) { return sine.position(t); });
+}
+
+bool MoveRun::follow(const char* what, double duration, const Trajectory& trajectory) {
+  Pace pace{hold_ramp};
+  last_cycle_ = group_.input().cycle();
+  auto last_tick = Clock::now();
+  while (pace.time() < duration && !(stop_ != 0 && pace.standing())) {
+    const Input input = group_.wait(tick);
+    const Hold hold = take_input(input);
+    if (restarted_ || axes_lost()) return false;
+    const std::chrono::duration<double> passed = Clock::now() - last_tick;
+    if (input != Input::fresh && holding_ == Hold::no) continue;  // the next image sets the pace
+    last_tick = Clock::now();
+    const double step = input == Input::fresh ? real_step() : passed.count();
+    axes_.set_positions(trajectory(pace.step(step, hold)));
+    group_.send();
+    if (input != Input::fresh) continue;
+    following_.seen(group_.input().cycle(), axes_.positions());
+    following_.sent(group_.input().cycle(), axes_.target_positions());
+    progress_.states(group_);
+    progress_.positions(axes_, following_, what);
+  }
+  return true;
+}
+
+/// Seconds of bus time since the last image; a gap does not make the motion jump.
+double MoveRun::real_step() {
+  const std::int64_t cycle = group_.input().cycle();
+  const std::int64_t cycles =
+      std::clamp<std::int64_t>(cycle - last_cycle_, 0, options_.stale_cycles);
+  last_cycle_ = cycle;
+  return std::chrono::duration<double>(group_.period()).count() * static_cast<double>(cycles);
+}
+
+Hold MoveRun::take_input(Input input) {
+  if (input == Input::restarted) {
+    restarted_ = true;
+    progress_.say("the daemon has restarted: its axes are disabled");
+  }
+  if (input == Input::fresh) stale_images_ = axes_.any_stale() ? stale_images_ + 1 : 0;
+  const bool stale = input == Input::stale || stale_images_ > options_.stale_cycles ||
+                     (holding_ == Hold::yes && input == Input::nothing);
+  if (stale && holding_ == Hold::no) {
+    ++holds_;
+    progress_.say(fmt::format("input is older than {} cycles: holding", options_.stale_cycles));
+  } else if (!stale && holding_ == Hold::yes) {
+    progress_.say("input is fresh again: going on");
+  }
+  holding_ = stale ? Hold::yes : Hold::no;
+  return stale || stop_ != 0 ? Hold::yes : Hold::no;
+}
+
+bool MoveRun::axes_lost() {
+  if (axes_.all_enabled()) return false;
+  progress_.states(group_);
+  progress_.say("an axis has left Operation enabled: stopping");
+  return true;
+}
+
+void MoveRun::disable() {
+  progress_.say("disabling the axes, one after the other");
+  for (AxisControl::Index i = axes_.size() - 1; i >= 0; --i) {
+    axes_.set_goal(i, DriveGoal::disabled);
+    if (!hold_until([&] { return axes_.drive(i).reached(); }, disable_seconds)) {
+      progress_.say(axes_.name(i) + " does not confirm that it is disabled");
+      good_ = false;
+    }
+  }
+}
+
+int MoveRun::sum_up() const {
+  fmt::print("\n{:<14}{:>16}{:>24}   unit\n", "axis", "position", "largest following error");
+  bool followed = following_.samples() > 0;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const double error = following_.largest()(i);
+    followed = followed && error <= sizes_.following_limit;
+    fmt::print("{:<14}{:>16.4f}{:>24.4f}   {}\n", axes_.name(i), axes_.positions()(i), error,
+               unit_.empty() ? "counts" : unit_);
+  }
+  fmt::print("{} images compared, held {} times. {}\n", following_.samples(), holds_,
+             good_ && followed
+                 ? "The axes followed."
+                 : fmt::format("The axes did NOT follow (limit {:g}).", sizes_.following_limit));
+  return good_ && followed ? exit_good : exit_not_followed;
+}
+
+}  // namespace takt

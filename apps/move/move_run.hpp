@@ -1,0 +1,55 @@
+#pragma once
+#include <csignal>
+#include <functional>
+#include <string>
+
+#include "apps/axis/axis_group.hpp"
+#include "apps/move/following.hpp"
+#include "apps/move/options.hpp"
+#include "apps/move/pace.hpp"
+#include "apps/move/progress.hpp"
+
+namespace takt {
+
+/// Finds the axes of a bus, enables them, moves them, disables them in order and sums up.
+class MoveRun {
+ public:
+  /// `stop` becomes 1 when the user wants an end.
+  MoveRun(AxisGroup& group, const MoveOptions& options, const volatile std::sig_atomic_t& stop);
+
+  /// The exit code of takt-move.
+  int run();
+
+ private:
+  using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
+
+  bool find_axes();
+  bool enable();
+  bool move();
+  bool follow(const char* what, double duration, const Trajectory& trajectory);
+  Hold take_input(Input input);
+  double real_step();
+  bool axes_lost();
+  void disable();
+  /// Serves images and sends commands until `done` or for this long; false: time is up.
+  bool hold_until(const std::function<bool()>& done, double seconds);
+  int sum_up() const;
+  Eigen::VectorXd target() const;
+
+  AxisGroup& group_;
+  AxisControl& axes_;
+  const MoveOptions& options_;
+  const volatile std::sig_atomic_t& stop_;
+  Progress progress_;
+  Following following_{0};
+  MoveSizes sizes_{};
+  std::string unit_;
+  bool good_ = true;
+  bool restarted_ = false;
+  Hold holding_ = Hold::no;
+  int stale_images_ = 0;
+  int holds_ = 0;
+  std::int64_t last_cycle_ = 0;
+};
+
+}  // namespace takt

@@ -1,0 +1,45 @@
+#include "apps/move/progress.hpp"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <string>
+
+namespace takt {
+
+void Progress::say(std::string_view text) {
+  const std::chrono::duration<double> since = Clock::now() - start_;
+  fmt::print("{:6.2f} s  {}\n", since.count(), text);
+  std::fflush(stdout);
+}
+
+void Progress::states(AxisGroup& group) {
+  const AxisControl& axes = group.axes();
+  const bool first = told_.size() != static_cast<std::size_t>(axes.size());
+  told_.resize(static_cast<std::size_t>(axes.size()), State402::not_ready_to_switch_on);
+  for (AxisControl::Index i = 0; i < axes.size(); ++i) {
+    State402& told = told_[static_cast<std::size_t>(i)];
+    const State402 state = axes.drive(i).state();
+    if (state == told && !first) continue;
+    told = state;
+    say(fmt::format("{:<12} {}  (statusword 0x{:04X})", axes.name(i), name(state),
+                    axes.statusword(i)));
+  }
+  for (const event_t& event : group.take_events()) {
+    if (event.severity > 0) say(fmt::format("{:<12} {}", event.node, event.text));
+  }
+}
+
+void Progress::positions(const AxisControl& axes, const Following& following,
+                         std::string_view what) {
+  const auto now = Clock::now();
+  if (now < next_positions_) return;
+  next_positions_ = now + std::chrono::milliseconds{250};
+  std::string line = fmt::format("{:<8}", what);
+  for (AxisControl::Index i = 0; i < axes.size(); ++i) {
+    line += fmt::format("  {} {:9.4f} {} (error {:+.4f})", axes.name(i), axes.positions()(i), unit_,
+                        following.error()(i));
+  }
+  say(line);
+}
+
+}  // namespace takt

@@ -1,0 +1,180 @@
+#include "apps/axis/axis_control.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <map>
+
+#include "test/unit/apps/messages_for_tests.hpp"
+
+namespace takt {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::image;
+using testing::signal;
+using testing::two_axes;
+
+constexpr std::int64_t disabled = 0x0250;
+constexpr std::int64_t ready = 0x0231;
+constexpr std::int64_t enabled = 0x0237;
+constexpr std::int64_t fault = 0x0218;
+
+/// Positions of the layout of two_axes().
+constexpr std::int16_t controlword_5 = 4;
+constexpr std::int16_t controlword_6 = 5;
+constexpr std::int16_t target_5 = 6;
+constexpr std::int16_t target_6 = 7;
+
+class TwoAxes : public ::testing::Test {
+ protected:
+  TwoAxes() {
+    input_.take(two_axes());
+    axes_.set_layout(input_);
+  }
+  void see(std::initializer_list<std::int64_t> values) {
+    input_.take(image(++cycle_, values));
+    axes_.on_image(input_);
+  }
+  std::int64_t commanded(std::int16_t signal) {
+    const command_t& command = axes_.command();
+    for (std::size_t i = 0; i < command.signals.size(); ++i) {
+      if (command.signals[i] == signal) return command.values[i];
+    }
+    return -1;
+  }
+
+  ImageInput input_;
+  AxisControl axes_;
+  std::int64_t cycle_ = 0;
+};
+
+TEST_F(TwoAxes, AreFoundByNode) {
+  ASSERT_EQ(axes_.size(), 2);
+  EXPECT_EQ(axes_.name(0), "shoulder");
+  EXPECT_EQ(axes_.name(1), "elbow");
+}
+
+TEST_F(TwoAxes, HavePositionsInSi) {
+  see({disabled, disabled, 1500, -250});
+  EXPECT_DOUBLE_EQ(axes_.positions()(0), 1.5);
+  EXPECT_DOUBLE_EQ(axes_.positions()(1), -0.25);
+}
+
+TEST_F(TwoAxes, AreCommandedWithTheSessionAndCycleOfTheirImage) {
+  cycle_ = 41;
+  see({disabled, disabled, 0, 0});
+  const command_t& command = axes_.command();
+  EXPECT_EQ(command.session, 77);
+  EXPECT_EQ(command.cycle, 42);
+  EXPECT_EQ(command.schema, 1);
+  EXPECT_THAT(command.signals, ElementsAre(controlword_5, target_5, controlword_6, target_6));
+  EXPECT_EQ(command.num_values, 4);
+}
+
+TEST_F(TwoAxes, DoNotJumpWhenTheyAreEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({ready, ready, 1500, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+  axes_.set_positions(Eigen::Vector2d{9.0, 9.0});
+  EXPECT_EQ(commanded(target_5), 1500);
+  see({enabled, ready, 1502, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+  EXPECT_EQ(commanded(target_6), -250);
+}
+
+TEST_F(TwoAxes, TakeTargetsOnlyWhereTheyAreEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, ready, 1500, -250});
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  EXPECT_EQ(commanded(target_5), 2000);
+  EXPECT_EQ(commanded(target_6), -250);
+}
+
+TEST_F(TwoAxes, FollowTheirPositionAgainAfterAFault) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  see({fault, enabled, 700, 100});
+  EXPECT_EQ(commanded(target_5), 700);
+  EXPECT_EQ(commanded(target_6), 2000);
+  EXPECT_EQ(commanded(controlword_5), 0x0000);
+  EXPECT_EQ(commanded(controlword_6), 0x000F);
+  EXPECT_FALSE(axes_.all_enabled());
+}
+
+TEST_F(TwoAxes, HoldTheControlwordWhileTheStatuswordIsMissing) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({ready, ready, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x0007);
+  image_t missing = image(++cycle_, {fault, ready, 0, 0});
+  missing.stale = {0};
+  missing.num_stale = 1;
+  input_.take(missing);
+  axes_.on_image(input_);
+  EXPECT_EQ(commanded(controlword_5), 0x0007);
+  EXPECT_TRUE(axes_.stale(0));
+  EXPECT_FALSE(axes_.stale(1));
+}
+
+TEST_F(TwoAxes, AreRaisedAndLoweredByTheHandshakeInProfilePosition) {
+  axes_.set_mode(DriveMode::profile_position);
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x002F);
+  axes_.begin_set_points();
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x003F);
+  see({0x1237, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x002F);
+  EXPECT_EQ(commanded(controlword_6), 0x003F);
+}
+
+TEST_F(TwoAxes, ShallBeDisabledAfterANewLayout) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  layout_t again = two_axes();
+  again.session = 78;
+  input_.take(again);
+  axes_.set_layout(input_);
+  EXPECT_EQ(axes_.drive(0).goal(), DriveGoal::disabled);
+}
+
+TEST(AxisSignals, FindsTheSecondAxisOfADevice) {
+  const std::vector signals{signal(5, 0x6041, false, 16), signal(5, 0x6040, true, 16),
+                            signal(5, 0x6841, false, 16), signal(5, 0x6840, true, 16),
+                            signal(5, 0x687A, true, 32)};
+  const auto axes = find_axes(signals);
+
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_EQ(axes[1].name, "shoulder.2");
+  EXPECT_EQ(axes[1].target_position, 4U);
+  EXPECT_EQ(axes[0].target_position, std::nullopt);
+}
+
+TEST(AxisSignals, LeavesOutWhatIsNoAxis) {
+  const std::vector signals{signal(5, 0x6041, false, 16),  // no controlword
+                            signal(6, 0x6000, false, 8), signal(6, 0x6200, true, 8)};
+  EXPECT_TRUE(find_axes(signals).empty());
+}
+
+TEST(AxisControl, CommandsTheModeWhereItIsMapped) {
+  layout_t layout = two_axes();
+  layout.signals[1] = signal(5, 0x6061, false, 8);
+  layout.signals[5] = signal(5, 0x6060, true, 8);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_mode(DriveMode::cyclic_position);
+  input.take(image(1, {enabled, 1, 0, 0}));
+  axes.on_image(input);
+
+  EXPECT_FALSE(axes.in_mode());
+  EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 8, 0));
+  input.take(image(2, {enabled, 8, 0, 0}));
+  axes.on_image(input);
+  EXPECT_TRUE(axes.in_mode());
+}
+
+}  // namespace
+}  // namespace takt
