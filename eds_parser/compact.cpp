@@ -38,6 +38,7 @@ void apply_entry(SubObject& sub, ObjectKey key, CompactList list, const IniEntry
       return;
     case CompactList::values:
       sub.parameter_text = to_utf8(entry.value);
+      sub.parameter_pos = entry.pos();
       sub.parameter_value = values.read(entry.value, sub.type, {key, "Value", entry.pos()});
       return;
   }

@@ -305,6 +305,7 @@ void ObjectReader::read_values(SubObject& sub, const ObjectFields& fields, Objec
   if (fields.has(Keyword::parameter_value)) {
     sub.parameter_value = read(Keyword::parameter_value, "ParameterValue", Severity::error);
     sub.parameter_text = to_utf8(fields.text(Keyword::parameter_value));
+    sub.parameter_pos = fields.pos(Keyword::parameter_value, section.pos);
   }
   if (fields.has(Keyword::denotation)) sub.denotation = to_utf8(fields.text(Keyword::denotation));
   sub.low_limit = read(Keyword::low_limit, "LowLimit", Severity::warning);

@@ -48,13 +48,16 @@ struct SubObject {
   std::string default_text;              ///< as written
   std::string parameter_text;
   std::string denotation;
-  SourcePos pos;          ///< of its section
-  SourcePos default_pos;  ///< of DefaultValue, or of the section
+  SourcePos pos;            ///< of its section
+  SourcePos default_pos;    ///< of DefaultValue, or of the section
+  SourcePos parameter_pos;  ///< of ParameterValue; 0:0 where there is none
 
   /// ParameterValue of the DCF, else the default.
   const std::optional<Value>& value() const noexcept {
     return parameter_value ? parameter_value : default_value;
   }
+  /// Where value() is written.
+  SourcePos value_pos() const noexcept { return parameter_value ? parameter_pos : default_pos; }
 };
 
 struct Object {

@@ -7,4 +7,6 @@ namespace takt {
 /// code (see README, "Exit codes").
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
+void add_eds(CLI::App& app, int& exit_code);
+
 }  // namespace takt

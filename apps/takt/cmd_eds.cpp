@@ -1,0 +1,100 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "apps/takt/commands.hpp"
+#include "eds_parser/check/check.hpp"
+#include "eds_parser/eds.hpp"
+#include "eds_parser/print/dictionary.hpp"
+
+namespace takt {
+namespace {
+
+struct ShowOptions {
+  std::string file;
+  unsigned node = 0;
+  bool json = false;
+};
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  unsigned node = 0;
+  bool quiet = false;
+};
+
+/// Reads and judges one file: the reader's findings and those of the checks, by place.
+EdsFile read_and_check(const std::string& path, unsigned node) {
+  auto file = read_eds_file(path, NodeId::from(node));
+  if (!file.readable) return file;
+  auto judged = check(file.dictionary);
+  std::ranges::move(judged, std::back_inserter(file.findings));
+  std::ranges::stable_sort(file.findings, {}, &Finding::pos);
+  return file;
+}
+
+int show(const ShowOptions& options) {
+  const auto file = read_and_check(options.file, options.node);
+  if (!file.readable) {
+    for (const auto& finding : file.findings) std::cerr << to_string(finding) << '\n';
+    return 1;
+  }
+  if (options.json) {
+    print_json(std::cout, file.dictionary, file.findings);
+  } else {
+    print_text(std::cout, file.dictionary);
+  }
+  return 0;
+}
+
+int check_files(const CheckOptions& options) {
+  bool any_error = false;
+  for (const auto& path : options.files) {
+    const auto file = read_and_check(path, options.node);
+    for (const auto& finding : file.findings) {
+      if (options.quiet && finding.severity == Severity::note) continue;
+      std::cout << to_string(finding) << '\n';
+    }
+    any_error = any_error || has_error(file.findings);
+  }
+  return any_error ? 1 : 0;
+}
+
+void add_show(CLI::App& eds, int& exit_code) {
+  auto options = std::make_shared<ShowOptions>();
+  auto* command = eds.add_subcommand("show", "object dictionary and PDO tables of a file");
+  command->add_option("FILE", options->file, "EDS or DCF")->required();
+  command->add_option("--node", options->node, "node id that $NODEID stands for")
+      ->check(CLI::Range(1U, 127U));
+  command->add_flag("--json", options->json, "one JSON document");
+  command->footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
+  command->callback([options, &exit_code] { exit_code = show(*options); });
+}
+
+void add_check(CLI::App& eds, int& exit_code) {
+  auto options = std::make_shared<CheckOptions>();
+  auto* command = eds.add_subcommand("check", "what is wrong with files");
+  command->add_option("FILE", options->files, "EDS or DCF")->required();
+  command->add_option("--node", options->node, "node id that $NODEID stands for")
+      ->check(CLI::Range(1U, 127U));
+  command->add_flag("--quiet", options->quiet, "leave out notes");
+  command->footer(
+      "Findings are written as file:line:column: severity: message [rule].\n"
+      "  error    the device would refuse it, or a master would do something else than meant\n"
+      "  warning  a deviation that can be read in only one way\n"
+      "  note     style\n"
+      "Exit code 1 if there is any error.\n\n"
+      "Example:\n  takt eds check share/eds/*.eds");
+  command->callback([options, &exit_code] { exit_code = check_files(*options); });
+}
+
+}  // namespace
+
+void add_eds(CLI::App& app, int& exit_code) {
+  auto* eds = app.add_subcommand("eds", "read and judge EDS and DCF files");
+  eds->require_subcommand(1);
+  eds->footer("Example:\n  takt eds check drive.eds\n  takt eds show --node 5 drive.eds");
+  add_show(*eds, exit_code);
+  add_check(*eds, exit_code);
+}
+
+}  // namespace takt

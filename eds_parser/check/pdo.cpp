@@ -1,0 +1,82 @@
+#include <algorithm>
+
+#include "eds_parser/check/rules.hpp"
+
+namespace takt {
+namespace {
+
+bool within(std::uint16_t index, unsigned first) noexcept {
+  return index >= first && index < first + 512;
+}
+
+SourcePos pos_of(const ObjectDictionary& dictionary, ObjectKey key) {
+  if (const auto* sub = dictionary.find(key)) return sub->value_pos();
+  const auto* object = dictionary.find(key.index);
+  return object == nullptr ? SourcePos{} : object->pos;
+}
+
+/// CiA 301, tables 69 and 72.
+void check_transmission(const ObjectDictionary& dictionary, const PdoDescription& pdo,
+                        Report& report) {
+  const ObjectKey key{pdo.communication_index(), 2};
+  if (!pdo.transmission_type) return;
+  const unsigned type = *pdo.transmission_type;
+  const unsigned first_event = pdo.is_tpdo ? 252 : 254;
+  if (type > 240 && type < first_event) {
+    report.error(pos_of(dictionary, key), "pdo-transmission-type",
+                 section_name(key) + ": transmission type " + std::to_string(type) +
+                     " is reserved for " +
+                     (pdo.is_tpdo ? "TPDOs (0..240, 252..255)" : "RPDOs (0..240, 254, 255)"));
+  }
+  if (pdo.sync_start.value_or(0) > 240) {
+    const ObjectKey start{pdo.communication_index(), 6};
+    report.error(pos_of(dictionary, start), "pdo-sync-start",
+                 section_name(start) + ": the SYNC start value is 0..240");
+  }
+  if (!pdo.is_tpdo && pdo.inhibit_time_us != 0) {
+    const ObjectKey inhibit{pdo.communication_index(), 3};
+    report.note(pos_of(dictionary, inhibit), "pdo-inhibit-of-rpdo",
+                section_name(inhibit) + ": the inhibit time of an RPDO has no effect");
+  }
+}
+
+void check_partners(const ObjectDictionary& dictionary, Report& report) {
+  for (const auto& object : dictionary.objects) {
+    const bool mapping = within(object.index, 0x1600) || within(object.index, 0x1A00);
+    const bool communication = within(object.index, 0x1400) || within(object.index, 0x1800);
+    if (!mapping && !communication) continue;
+    const auto partner = static_cast<std::uint16_t>(object.index + (mapping ? -0x200 : 0x200));
+    if (dictionary.find(partner) != nullptr) continue;
+    report.warning(object.pos, "pdo-half",
+                   hex(object.index) + " has no " + (mapping ? "communication" : "mapping") +
+                       " record " + hex(partner) + "; this is no complete PDO");
+  }
+}
+
+/// NrOfRXPDO, NrOfTXPDO against the records found (made ones of CompactPDO included).
+void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t found,
+                  Report& report) {
+  const auto& device = dictionary.device;
+  const std::size_t said = is_tpdo ? device.nr_tx_pdo : device.nr_rx_pdo;
+  if (said == found || device.pos.line == 0) return;
+  report.warning(device.pos, "pdo-count",
+                 std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} + " is " + std::to_string(said) +
+                     ", but " + std::to_string(found) + " are described; the records count");
+}
+
+}  // namespace
+
+void check_pdos(const ObjectDictionary& dictionary, Report& report) {
+  const auto pdos = describe_pdos(dictionary);
+  for (const auto& pdo : pdos) {
+    check_transmission(dictionary, pdo, report);
+    check_mapping(dictionary, pdo, report);
+  }
+  check_partners(dictionary, report);
+  const auto tpdos =
+      static_cast<std::size_t>(std::ranges::count_if(pdos, &PdoDescription::is_tpdo));
+  check_number(dictionary, false, pdos.size() - tpdos, report);
+  check_number(dictionary, true, tpdos, report);
+}
+
+}  // namespace takt

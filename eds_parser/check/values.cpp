@@ -1,0 +1,97 @@
+#include "eds_parser/check/rules.hpp"
+#include "eds_parser/standard_types.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+/// Below the low or above the high limit.
+bool outside(const Value& value, const SubObject& sub) noexcept {
+  const auto comparable = [&value](const std::optional<Value>& limit) {
+    return limit && limit->index() == value.index() && !std::holds_alternative<std::string>(value);
+  };
+  if (comparable(sub.low_limit) && value < *sub.low_limit) return true;
+  return comparable(sub.high_limit) && value > *sub.high_limit;
+}
+
+void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
+  if (sub.default_value && outside(*sub.default_value, sub)) {
+    report.warning(sub.default_pos, "default-outside-limits",
+                   section_name(key) + ": DefaultValue " + quoted(sub.default_text) +
+                       " is outside LowLimit and HighLimit; it is kept");
+  }
+  if (sub.parameter_value && outside(*sub.parameter_value, sub)) {
+    report.error(sub.parameter_pos, "value-outside-limits",
+                 section_name(key) + ": ParameterValue " + quoted(sub.parameter_text) +
+                     " is outside LowLimit and HighLimit; the device would refuse it");
+  }
+}
+
+void check_type(ObjectKey key, const SubObject& sub, Report& report) {
+  const auto wanted = standard_type(key);
+  if (wanted != DataType::unknown && sub.type != DataType::unknown && wanted != sub.type) {
+    report.warning(sub.pos, "standard-type",
+                   section_name(key) + ": DataType is " + std::string{name(sub.type)} +
+                       ", CiA 301 says " + std::string{name(wanted)});
+  }
+  if (sub.pdo_mappable && is_bytes(sub.type) && sub.type != DataType::unknown) {
+    report.warning(sub.pos, "mappable-without-size",
+                   section_name(key) + ": a " + std::string{name(sub.type)} +
+                       " has no fixed size, so PDOMapping should be 0");
+  }
+}
+
+/// Objects whose sub 0 counts something that changes: errors so far, active entries.
+bool counts_at_run_time(std::uint16_t index) noexcept {
+  return index == 0x1003 || (index >= 0x1600 && index < 0x1800) ||
+         (index >= 0x1A00 && index < 0x1C00);
+}
+
+void check_count(const Object& object, Report& report) {
+  const bool structured = object.type == ObjectType::array || object.type == ObjectType::record;
+  if (!structured || object.subs.empty() || counts_at_run_time(object.index)) return;
+  const auto& first = object.subs.front();
+  if (first.sub != 0) {
+    report.warning(object.pos, "sub-0-missing",
+                   hex(object.index) + " has sub-objects but no sub 0");
+    return;
+  }
+  std::uint8_t highest = 0;
+  for (const auto& sub : object.subs) {
+    if (sub.sub != 0xFF) highest = sub.sub;
+  }
+  const auto said = first.default_value ? as_integer(*first.default_value) : std::nullopt;
+  if (said && *said != highest && report.wants("sub-0-count")) {
+    report.note(first.default_pos, "sub-0-count",
+                section_name({object.index, 0}) + ": DefaultValue is " + std::to_string(*said) +
+                    ", the highest sub-index described is " + std::to_string(highest));
+  }
+}
+
+}  // namespace
+
+void check_values(const ObjectDictionary& dictionary, Report& report) {
+  std::size_t parameter_values = 0;
+  SourcePos first_parameter_value;
+  for (const auto& object : dictionary.objects) {
+    for (const auto& sub : object.subs) {
+      const ObjectKey key{object.index, sub.sub};
+      check_limits(key, sub, report);
+      check_type(key, sub, report);
+      if (sub.parameter_text.empty()) continue;
+      if (parameter_values++ == 0) first_parameter_value = sub.parameter_pos;
+    }
+    check_count(object, report);
+  }
+  if (!dictionary.is_dcf && parameter_values != 0) {
+    report.note(first_parameter_value, "parameter-value-in-eds",
+                "an EDS has no ParameterValue, only a DCF; " + std::to_string(parameter_values) +
+                    " were read as configured values");
+  }
+  if (dictionary.is_dcf && !dictionary.commissioning.node_id) {
+    report.warning({}, "dcf-without-node-id",
+                   "a DCF says its NodeID in [DeviceComissioning]; this one does not");
+  }
+}
+
+}  // namespace takt

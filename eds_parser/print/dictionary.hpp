@@ -1,0 +1,16 @@
+#pragma once
+#include <iosfwd>
+
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/source.hpp"
+
+namespace takt {
+
+/// One JSON document: device, all objects, PDOs, findings (README, "takt eds show"). Written object
+/// by object, so that a large dictionary does not need much memory.
+void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Findings& findings);
+
+/// The same for people: device, PDO tables, objects.
+void print_text(std::ostream& out, const ObjectDictionary& dictionary);
+
+}  // namespace takt

@@ -1,0 +1,154 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/print/names.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN and no infinities: they become strings.
+Json json_of(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+Json json_of(const std::string& bytes, DataType type) {
+  const bool is_text = type == DataType::visible_string || type == DataType::unicode_string;
+  return is_text ? to_utf8(bytes) : hex_bytes(bytes);
+}
+
+Json json_of(const std::optional<Value>& value, DataType type) {
+  if (!value) return nullptr;
+  if (const auto* bytes = std::get_if<std::string>(&*value)) return json_of(*bytes, type);
+  if (const auto* real = std::get_if<double>(&*value)) return json_of(*real);
+  if (const auto* number = std::get_if<std::uint64_t>(&*value)) return *number;
+  return std::get<std::int64_t>(*value);
+}
+
+template <class T>
+Json json_of(const std::optional<T>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
+
+Json json_of(const DeviceInfo& device) {
+  return {{"vendor_name", device.vendor_name},
+          {"vendor_number", device.vendor_number},
+          {"product_name", device.product_name},
+          {"product_number", device.product_number},
+          {"revision_number", device.revision_number},
+          {"order_code", device.order_code},
+          {"baud_rates_kbit", device.baud_rates_kbit},
+          {"simple_boot_up_master", device.simple_boot_up_master},
+          {"simple_boot_up_slave", device.simple_boot_up_slave},
+          {"granularity", device.granularity},
+          {"dynamic_channels", device.dynamic_channels},
+          {"group_messaging", device.group_messaging},
+          {"nr_rx_pdo", device.nr_rx_pdo},
+          {"nr_tx_pdo", device.nr_tx_pdo},
+          {"lss_supported", device.lss_supported},
+          {"compact_pdo", device.compact_pdo}};
+}
+
+Json json_of(const SubObject& sub) {
+  Json json{{"sub", sub.sub},
+            {"name", sub.name},
+            {"data_type", sub.type_code},
+            {"access", access_name(sub.access)},
+            {"pdo_mappable", sub.pdo_mappable},
+            {"low_limit", json_of(sub.low_limit, sub.type)},
+            {"high_limit", json_of(sub.high_limit, sub.type)},
+            {"default", json_of(sub.default_value, sub.type)},
+            {"default_text", sub.default_text},
+            {"value", json_of(sub.value(), sub.type)}};
+  if (!sub.parameter_text.empty()) json["parameter_text"] = sub.parameter_text;
+  if (!sub.denotation.empty()) json["denotation"] = sub.denotation;
+  if (sub.flags != 0) json["obj_flags"] = sub.flags;
+  return json;
+}
+
+Json json_of(const Object& object) {
+  Json json{{"index", object.index},
+            {"name", object.name},
+            {"object_type", static_cast<unsigned>(object.type)},
+            {"list", list_name(object)}};
+  auto subs = Json::array();
+  for (const auto& sub : object.subs) subs.push_back(json_of(sub));
+  json["subs"] = std::move(subs);
+  return json;
+}
+
+Json json_of(const MappedObject& entry) {
+  return {{"index", entry.key.index},
+          {"sub", entry.key.sub},
+          {"bits", entry.bits},
+          {"bit_offset", entry.bit_offset},
+          {"name", entry.name}};
+}
+
+Json json_of(const PdoDescription& pdo) {
+  Json json{{"number", pdo.number},
+            {"cob_id", json_of(pdo.cob_id())},
+            {"valid", pdo.valid},
+            {"rtr_allowed", pdo.rtr_allowed},
+            {"extended", pdo.extended},
+            {"transmission_type", json_of(pdo.transmission_type)},
+            {"inhibit_time_us", pdo.inhibit_time_us},
+            {"event_timer_ms", pdo.event_timer_ms},
+            {"sync_start", json_of(pdo.sync_start)},
+            {"bits", pdo.bits}};
+  auto mapping = Json::array();
+  for (const auto& entry : pdo.mapping) mapping.push_back(json_of(entry));
+  json["mapping"] = std::move(mapping);
+  return json;
+}
+
+Json json_of(const Finding& finding) {
+  return {{"line", finding.pos.line},
+          {"column", finding.pos.column},
+          {"severity", name(finding.severity)},
+          {"rule", finding.rule},
+          {"message", finding.message}};
+}
+
+/// Bytes that are not UTF-8 (a file name, say) must not end the program.
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// `"name":[` and one item a line.
+template <class Items, class Wanted>
+void print_items(std::ostream& out, std::string_view name, const Items& items, Wanted wanted) {
+  out << ",\n\"" << name << "\":[";
+  std::string_view separator = "\n";
+  for (const auto& item : items) {
+    if (!wanted(item)) continue;
+    out << separator << text_of(json_of(item));
+    separator = ",\n";
+  }
+  out << ']';
+}
+
+}  // namespace
+
+void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Findings& findings) {
+  const auto pdos = describe_pdos(dictionary);
+  const auto all = [](const auto&) { return true; };
+  out << "{\"file\":" << text_of(dictionary.file) << ",\"kind\":\""
+      << (dictionary.is_dcf ? "dcf" : "eds") << "\",\"node_id\":"
+      << (dictionary.node_id ? std::to_string(dictionary.node_id->value()) : "null")
+      << ",\n\"device\":" << text_of(json_of(dictionary.device));
+  print_items(out, "objects", dictionary.objects, all);
+  print_items(out, "rpdos", pdos, [](const PdoDescription& pdo) { return !pdo.is_tpdo; });
+  print_items(out, "tpdos", pdos, [](const PdoDescription& pdo) { return pdo.is_tpdo; });
+  print_items(out, "diagnostics", findings, all);
+  out << "}\n";
+}
+
+}  // namespace takt

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <charconv>
+#include <ostream>
+
+#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/print/names.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t widest_name = 44;
+constexpr std::size_t widest_value = 34;
+
+/// Characters of a UTF-8 text.
+std::size_t width(std::string_view text) noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// One line's worth of text, at most `most` characters.
+std::string shortened(std::string_view text, std::size_t most) {
+  std::string out;
+  std::size_t count = 0;
+  const bool cut = width(text) > most;
+  for (const char c : text) {
+    const bool starts = (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    if (starts && cut && count == most - 3) break;
+    if (starts) ++count;
+    out += is_blank(c) ? ' ' : c;
+  }
+  return cut ? out + "..." : out;
+}
+
+std::string left(std::string_view text, std::size_t columns) {
+  std::string out{text};
+  const auto used = width(text);
+  if (used < columns) out.append(columns - used, ' ');
+  return out;
+}
+
+std::string right(std::string_view text, std::size_t columns) {
+  const auto used = width(text);
+  return used < columns ? std::string(columns - used, ' ').append(text) : std::string{text};
+}
+
+std::string text_of(double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, result.ptr};
+}
+
+std::string text_of(const Value& value, DataType type) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* number = std::get_if<std::uint64_t>(&value)) return std::to_string(*number);
+  if (const auto* real = std::get_if<double>(&value)) return text_of(*real);
+  const auto& bytes = std::get<std::string>(value);
+  const bool is_text = type == DataType::visible_string || type == DataType::unicode_string;
+  return is_text ? '"' + to_utf8(bytes) + '"' : hex_bytes(bytes);
+}
+
+/// `131474 (0x00020192)`: the value, and the text where that says more.
+std::string value_text(const SubObject& sub) {
+  const auto& value = sub.value();
+  const auto& text = sub.parameter_text.empty() ? sub.default_text : sub.parameter_text;
+  if (!value) return text.empty() ? "-" : text;
+  const auto shown = text_of(*value, sub.type);
+  if (std::holds_alternative<std::string>(*value) || text == shown) return shown;
+  return shown + " (" + text + ')';
+}
+
+std::string limits_text(const SubObject& sub) {
+  if (!sub.low_limit && !sub.high_limit) return {};
+  return (sub.low_limit ? text_of(*sub.low_limit, sub.type) : "") + ".." +
+         (sub.high_limit ? text_of(*sub.high_limit, sub.type) : "");
+}
+
+std::string type_text(const SubObject& sub) {
+  return sub.type == DataType::unknown ? hex(sub.type_code) : std::string{name(sub.type)};
+}
+
+void print_fact(std::ostream& out, std::string_view label, std::string_view text) {
+  if (!text.empty()) out << "  " << left(label, 12) << text << '\n';
+}
+
+std::string bit_rates(const DeviceInfo& device) {
+  std::string text;
+  for (const auto rate : device.baud_rates_kbit) text += std::to_string(rate) + ' ';
+  return text.empty() ? "none given" : text + "kbit/s";
+}
+
+std::string profile_text(const ObjectDictionary& dictionary) {
+  const auto* sub = dictionary.find(ObjectKey{0x1000, 0});
+  const auto value = sub && sub->value() ? as_integer(*sub->value()) : std::nullopt;
+  if (!value) return "unknown";
+  const auto profile = static_cast<std::uint32_t>(*value) & 0xFFFF;
+  return (profile == 0 ? "none" : "CiA " + std::to_string(profile)) + ", device type " +
+         hex(static_cast<std::uint32_t>(*value), 8);
+}
+
+void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
+  const auto& device = dictionary.device;
+  out << dictionary.file << "  (" << (dictionary.is_dcf ? "DCF" : "EDS");
+  if (dictionary.node_id) out << ", node " << unsigned{dictionary.node_id->value()};
+  out << ")\n\n";
+  print_fact(out, "vendor", device.vendor_name + "  " + hex(device.vendor_number, 8));
+  print_fact(out, "product",
+             device.product_name + "  " + hex(device.product_number, 8) + "  revision " +
+                 hex(device.revision_number, 8));
+  print_fact(out, "order code", device.order_code);
+  print_fact(out, "profile", profile_text(dictionary));
+  print_fact(out, "bit rates", bit_rates(device));
+  print_fact(out, "PDOs",
+             std::to_string(device.nr_rx_pdo) + " RPDOs, " + std::to_string(device.nr_tx_pdo) +
+                 " TPDOs" + (device.granularity == 0 ? ", mapping is fixed" : ""));
+  if (!dictionary.commissioning.node_name.empty()) {
+    print_fact(out, "node name", dictionary.commissioning.node_name);
+  }
+}
+
+std::string cob_id_text(const PdoDescription& pdo) {
+  if (const auto id = pdo.cob_id()) return hex(*id, pdo.extended ? 8 : 3);
+  return "no COB-ID";
+}
+
+/// `byte 2..5`, or bits where an entry does not fill bytes.
+std::string place_text(const MappedObject& entry) {
+  const unsigned first = entry.bit_offset;
+  const unsigned last = first + std::max<unsigned>(entry.bits, 1) - 1;
+  if (first % 8 == 0 && entry.bits % 8 == 0 && entry.bits != 0) {
+    const auto byte = std::to_string(first / 8);
+    return "byte " + (last / 8 == first / 8 ? byte : byte + ".." + std::to_string(last / 8));
+  }
+  const auto bit = std::to_string(first);
+  return "bit " + (first == last ? bit : bit + ".." + std::to_string(last));
+}
+
+void print_pdo(std::ostream& out, const PdoDescription& pdo) {
+  const auto label = (pdo.is_tpdo ? "TPDO" : "RPDO") + std::to_string(pdo.number);
+  out << "  " << left(label, 8) << left(cob_id_text(pdo), 11) << (pdo.valid ? "on   " : "off  ");
+  if (pdo.transmission_type) {
+    out << "type " << left(std::to_string(*pdo.transmission_type), 4)
+        << left(transmission_name(*pdo.transmission_type, pdo.is_tpdo), 22);
+  }
+  out << pdo.bits << " bits";
+  if (pdo.inhibit_time_us != 0) out << ", inhibit " << pdo.inhibit_time_us << " us";
+  if (pdo.event_timer_ms != 0) out << ", event timer " << pdo.event_timer_ms << " ms";
+  if (pdo.sync_start.value_or(0) != 0) out << ", from SYNC " << unsigned{*pdo.sync_start};
+  if (pdo.is_tpdo && pdo.rtr_allowed) out << ", RTR";
+  out << '\n';
+  for (const auto& entry : pdo.mapping) {
+    out << "      " << left(place_text(entry), 12) << to_string(entry.key) << "  "
+        << left(shortened(entry.name, widest_name), widest_name)
+        << right(std::to_string(entry.bits), 3) << " bits\n";
+  }
+}
+
+void print_pdos(std::ostream& out, const ObjectDictionary& dictionary) {
+  const auto pdos = describe_pdos(dictionary);
+  if (pdos.empty()) return;
+  out << "\nPDOs (directions are the device's: it receives RPDOs)\n";
+  for (const auto& pdo : pdos) print_pdo(out, pdo);
+}
+
+std::size_t name_column(const ObjectDictionary& dictionary) {
+  std::size_t widest = 12;
+  for (const auto& object : dictionary.objects) {
+    widest = std::max(widest, width(object.name));
+    for (const auto& sub : object.subs) widest = std::max(widest, width(sub.name));
+  }
+  return std::min(widest, widest_name);
+}
+
+void print_entry(std::ostream& out, std::string_view key, const SubObject& sub,
+                 std::size_t columns) {
+  std::string line = "  " + left(key, 10) + left(shortened(sub.name, columns), columns) + "  " +
+                     left(type_text(sub), 16) + left(access_name(sub.access), 7) +
+                     left(sub.pdo_mappable ? "PDO" : "", 5) +
+                     left(shortened(value_text(sub), widest_value), widest_value) + "  " +
+                     limits_text(sub);
+  line.erase(line.find_last_not_of(' ') + 1);
+  out << line << '\n';
+}
+
+void print_object(std::ostream& out, const Object& object, std::size_t columns) {
+  const auto index = hex(object.index).substr(2);
+  const bool single = object.subs.size() == 1 && object.subs.front().sub == 0 &&
+                      object.type != ObjectType::array && object.type != ObjectType::record;
+  if (single) return print_entry(out, index, object.subs.front(), columns);
+  out << "  " << left(index, 10) << left(shortened(object.name, columns), columns) << "  "
+      << object_type_name(object.type) << '\n';
+  for (const auto& sub : object.subs) {
+    print_entry(out, "    :" + hex(sub.sub, 2).substr(2), sub, columns);
+  }
+}
+
+}  // namespace
+
+void print_text(std::ostream& out, const ObjectDictionary& dictionary) {
+  print_device(out, dictionary);
+  print_pdos(out, dictionary);
+  const auto columns = name_column(dictionary);
+  out << "\nObjects (" << dictionary.objects.size() << ")\n  " << left("index", 10)
+      << left("name", columns) << "  " << left("type", 16) << left("access", 7) << left("PDO", 5)
+      << left("value (as written)", widest_value) << "  limits\n";
+  for (const auto& object : dictionary.objects) print_object(out, object, columns);
+}
+
+}  // namespace takt

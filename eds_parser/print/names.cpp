@@ -1,0 +1,84 @@
+#include "eds_parser/print/names.hpp"
+
+namespace takt {
+
+std::string_view access_name(Access access) noexcept {
+  switch (access) {
+    case Access::ro:
+      return "ro";
+    case Access::wo:
+      return "wo";
+    case Access::rw:
+      return "rw";
+    case Access::rwr:
+      return "rwr";
+    case Access::rww:
+      return "rww";
+    case Access::constant:
+      return "const";
+  }
+  return "rw";
+}
+
+std::string_view object_type_name(ObjectType type) noexcept {
+  switch (type) {
+    case ObjectType::null:
+      return "NULL";
+    case ObjectType::domain:
+      return "DOMAIN";
+    case ObjectType::deftype:
+      return "DEFTYPE";
+    case ObjectType::defstruct:
+      return "DEFSTRUCT";
+    case ObjectType::var:
+      return "VAR";
+    case ObjectType::array:
+      return "ARRAY";
+    case ObjectType::record:
+      return "RECORD";
+  }
+  return "VAR";
+}
+
+std::string_view list_name(const Object& object) noexcept {
+  switch (object.list) {
+    case ObjectList::mandatory:
+      return "mandatory";
+    case ObjectList::optional:
+      return "optional";
+    case ObjectList::manufacturer:
+      return "manufacturer";
+    case ObjectList::unlisted:
+      break;
+  }
+  const bool mandatory = object.index == 0x1000 || object.index == 0x1001 || object.index == 0x1018;
+  if (mandatory) return "mandatory";
+  return object.index >= 0x2000 && object.index < 0x6000 ? "manufacturer" : "optional";
+}
+
+std::string hex_bytes(std::string_view bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  text.reserve(bytes.size() * 2);
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += digits[byte >> 4];
+    text += digits[byte & 0xF];
+  }
+  return text;
+}
+
+std::string transmission_name(std::uint8_t type, bool is_tpdo) {
+  if (type == 0) return is_tpdo ? "with SYNC, on change" : "acts at SYNC";
+  if (type <= 240) {
+    if (!is_tpdo) return "acts at SYNC";
+    return type == 1 ? "every SYNC" : "every " + std::to_string(type) + " SYNCs";
+  }
+  if (type == 252) return is_tpdo ? "RTR, sampled at SYNC" : "reserved";
+  if (type == 253) return is_tpdo ? "RTR" : "reserved";
+  if (type == 254) return "event, manufacturer";
+  if (type == 255) return "event, profile";
+  return "reserved";
+}
+
+}  // namespace takt
