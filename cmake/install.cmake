@@ -1,0 +1,38 @@
+# cmake --install: programs, libraries, headers, data, package files for CMake and pkg-config, files for systemd.
+# (The LCM types and their bindings are installed by share/lcm.)
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
+install(TARGETS ${libraries} EXPORT takt-targets)
+install(TARGETS takt takt-move)
+
+set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/takt)
+install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp)
+install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
+install(DIRECTORY share/eds DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
+
+# systemd reads lib/systemd below /usr and below /usr/local.
+install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)
+install(FILES share/systemd/60-takt-can.link DESTINATION lib/systemd/network)
+install(FILES share/systemd/takt.conf DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/security/limits.d)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
+install(EXPORT takt-targets NAMESPACE takt:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/takt-config.cmake.in takt-config.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(takt-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/takt-config-version.cmake
+        DESTINATION ${package_dir})
+
+# A static library stands before those it needs: the reverse of the order in which they are defined.
+list(REVERSE libraries)
+set(TAKT_PC_LIBS "")
+foreach(library IN LISTS libraries)
+  get_target_property(type ${library} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    string(APPEND TAKT_PC_LIBS " -l${library}")
+  endif()
+endforeach()
+file(RELATIVE_PATH TAKT_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/takt.pc.in takt.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

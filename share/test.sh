@@ -1,0 +1,81 @@
+#!/bin/sh
+# test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
+#   TAKT_STAGES  only these of: format tidy release asan tsan       TAKT_JOBS  parallel jobs (number of processors)
+set -u
+cd "$(dirname "$0")/.." || exit 1
+sh share/install_packages.sh build run test || exit 1
+
+stages=${TAKT_STAGES:-format release asan tsan tidy}
+jobs=${TAKT_JOBS:-$(nproc)}
+logs=build/test-logs
+mkdir -p $logs
+passed=0
+failed=0
+
+sources() { find eds_parser master apps test \( -name '*.hpp' -o -name '*.cpp' \) -print; }
+
+# A line of ctest's summary: "98% tests passed, 2 tests failed out of 100" -> "100 2"
+ctest_counts() { sed -n 's/.* passed, \([0-9]*\) tests failed out of \([0-9]*\)$/\2 \1/p' "$1" | tail -n 1; }
+
+# Shows what matters of a log that ended badly.
+explain() {
+  echo "--- $1"
+  grep -nE 'error:|FAILED|Failure|\*\*\*|ERROR: |SUMMARY: |WARNING: ThreadSanitizer' "$1" | head -n 40
+  echo "--- its end"
+  tail -n 30 "$1"
+  echo "---"
+}
+
+# stage NAME COMMAND... - counts as one test, or as its tests where the command is ctest.
+stage() {
+  name=$1
+  log=$logs/$1.log
+  shift
+  started=$(date +%s)
+  printf '%-16s' "$name"
+  if "$@" >"$log" 2>&1; then good=1 bad=0; else good=0 bad=1; fi
+  verdict=$bad
+  counts=$(ctest_counts "$log")
+  if [ -n "$counts" ]; then
+    bad=${counts#* }
+    good=$((${counts% *} - bad))
+    [ "$verdict" -ne 0 ] && [ "$bad" -eq 0 ] && bad=1
+  fi
+  passed=$((passed + good))
+  failed=$((failed + bad))
+  [ "$verdict" -eq 0 ] && word=good || word=FAILED
+  printf '%-7s %4d s   %d passed, %d failed\n' $word $(($(date +%s) - started)) "$good" "$bad"
+  [ "$verdict" -eq 0 ] || explain "$log"
+  return "$verdict"
+}
+
+check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
+
+check_tidy() { run-clang-tidy-19 -quiet -p build/release -j "$jobs" '/(eds_parser|master|apps)/.*\.cpp$'; }
+
+# build PRESET [TARGET...]
+build() {
+  preset=$1
+  shift
+  cmake --preset "$preset" -DTAKT_TESTS=ON && ninja -C "build/$preset" -j "$jobs" "$@"
+}
+
+# run_tests PRESET [CTEST OPTION...]
+run_tests() {
+  preset=$1
+  shift
+  ctest --test-dir "build/$preset" --output-on-failure --no-tests=error -j "$jobs" "$@"
+}
+
+for wanted in $stages; do
+  case $wanted in
+    format) stage format check_format ;;
+    tidy) stage tidy check_tidy ;;
+    release) stage release-build build release && stage release-tests run_tests release ;;
+    asan) stage asan-build build asan takt_host_tests && stage asan-tests run_tests asan -L host ;;
+    tsan) stage tsan-build build tsan takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
+    *) echo "no stage $wanted" >&2 && exit 2 ;;
+  esac
+done
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
