@@ -34,7 +34,7 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
     if (signal.node_index != node_index) continue;
-    outputs_[i] = Output{.generation = set_points[i].generation};
+    outputs_[i] = Output{.generation = set_points[i].generation, .limit = signal.fallback_cycles};
   }
 }
 
@@ -52,19 +52,6 @@ void PdoOutputs::tell(EventKind kind, std::size_t row, std::int64_t value, Outpu
                 .node = plan_.pdos.rpdos[row].node.value(),
                 .detail = detail,
                 .value = value});
-}
-
-void PdoOutputs::take(Output& output, SignalIndex signal, const SetPoint& set_point,
-                      std::uint64_t cycle) noexcept {
-  const std::uint32_t configured = plan_.layout.signals[signal].fallback_cycles;
-  std::uint32_t limit = set_point.time_to_live;
-  if (limit == 0 || (configured != 0 && configured < limit)) limit = configured;
-  output.generation = set_point.generation;
-  output.expires = limit == 0 ? no_end : cycle + limit;
-  output.known = true;
-  output.commanded = true;
-  output.fallen = false;
-  image_.values[signal] = set_point.value;
 }
 
 void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {

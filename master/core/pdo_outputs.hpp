@@ -57,9 +57,10 @@ class PdoOutputs {
   struct Output {
     std::uint64_t expires = no_end;  ///< cycle in which the command is too old
     std::uint32_t generation = 0;
-    bool known = false;      ///< has a value worth sending
-    bool commanded = false;  ///< and that value was commanded
-    bool fallen = false;     ///< its fallback is in force
+    std::uint32_t limit = 0;  ///< configured time to live in cycles; 0: none
+    bool known = false;       ///< has a value worth sending
+    bool commanded = false;   ///< and that value was commanded
+    bool fallen = false;      ///< its fallback is in force
     bool forced = false;
   };
   struct Row {
@@ -83,7 +84,17 @@ class PdoOutputs {
 
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   void take(Output& output, SignalIndex signal, const SetPoint& set_point,
-            std::uint64_t cycle) noexcept;
+            std::uint64_t cycle) noexcept {
+    // The shorter of the two times to live that are set.
+    std::uint32_t limit = set_point.time_to_live;
+    if (limit == 0 || (output.limit != 0 && output.limit < limit)) limit = output.limit;
+    output.generation = set_point.generation;
+    output.expires = limit == 0 ? no_end : cycle + limit;
+    output.known = true;
+    output.commanded = true;
+    output.fallen = false;
+    image_.values[signal] = set_point.value;
+  }
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;
   bool due(std::size_t row, std::uint64_t word, Time now) const noexcept;

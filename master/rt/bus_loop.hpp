@@ -47,7 +47,7 @@ class BusLoop {
   bool done() const noexcept { return done_; }
 
  private:
-  static constexpr std::size_t batch = 512;  ///< frames taken by one receive
+  static constexpr std::size_t batch = 256;  ///< frames taken by one receive
   static constexpr Time status_interval = std::chrono::milliseconds{10};
 
   void follow_nodes() noexcept;

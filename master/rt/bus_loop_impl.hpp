@@ -56,10 +56,11 @@ void BusLoop<P, N>::follow_nodes() noexcept {
         pdos_.outputs().shut(i);
       }
     }
-    const bool watched = options_.observe || !plan_.nodes[i].boot;
-    pdos_.inputs().set_reception(
-        i, exchanging ? Reception::full : (watched ? Reception::listening : Reception::off),
-        sync_sent_);
+    // Without a SYNC of our own no cycle can wait for answers to it.
+    const Reception heard = options_.observe ? Reception::listening : Reception::full;
+    const bool listen = options_.observe || !plan_.nodes[i].boot;
+    const Reception unheard = listen ? Reception::listening : Reception::off;
+    pdos_.inputs().set_reception(i, exchanging ? heard : unheard, sync_sent_);
   }
 }
 
@@ -181,7 +182,8 @@ void BusLoop<P, N>::serve() noexcept {
   const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
   std::size_t budget = plan_.cycle.service_frames;
   for (;;) {
-    if (services_.size() < budget) network_.on_time(port_.now(), services_.inbox());
+    services_.inbox().set_limit(budget);
+    network_.on_time(port_.now(), services_.inbox());
     if (options_.observe) services_.clear();
     if (!send_services(budget) || budget == 0 || !port_.wait_frame(end)) break;
     drain();

@@ -25,6 +25,7 @@ class ServiceQueue {
     const std::size_t kept = size() - count;
     std::copy_n(outbox_.frames().begin() + static_cast<std::ptrdiff_t>(count), kept, rest_.begin());
     outbox_.clear();
+    outbox_.set_limit(Outbox::capacity);
     for (std::size_t i = 0; i < kept; ++i) outbox_.push(rest_[i]);
   }
   void clear() noexcept { outbox_.clear(); }

@@ -308,10 +308,9 @@ TEST(BusLoop, TakesTheAnswerToAnSdoInTheSlack) {
 }
 
 TEST(BusLoop, LeavesOutOutputsThatCouldNotEndBeforeTheNextSync) {
-  Loop bus;
+  Loop bus{test::axes({.fallback_cycles = 0})};
   bus.run(1);
   bus.command_all(0x0F, 7, 100);
-  for (Signal& signal : bus.plan.layout.signals) signal.fallback_cycles = 0;
   bus.plan.cycle.output_deadline = 1900us;  // two frames take up to 230 us
   bus.run(1);
   EXPECT_TRUE(bus.port.sent_with(0x201).empty());
@@ -339,10 +338,9 @@ TEST(BusLoop, TellsAFullSendBufferWithItsCauseOnceASecond) {
 }
 
 TEST(BusLoop, ANodeThatIsOffDoesNotDisturbTheOthers) {
-  Loop bus;
+  Loop bus{test::axes({.fallback_cycles = 0})};
   bus.run(1);
   bus.command_all(0x0F, 7, 1000);
-  for (Signal& signal : bus.plan.layout.signals) signal.fallback_cycles = 0;
   bus.run(50);
   bus.network->set_up(1, false);
   bus.port.answers.pop_back();
