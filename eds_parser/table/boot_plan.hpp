@@ -42,8 +42,8 @@ enum class BootAction : std::uint8_t {
 struct BootStep {
   BootAction action = BootAction::write;
   char letter = 'J';  ///< error status of CiA 302-2 (A..O) when the step fails
-  ObjectKey object;
-  std::vector<std::byte> value;      ///< little endian, as it goes onto the wire
+  ObjectKey object{};
+  std::vector<std::byte> value{};    ///< little endian, as it goes onto the wire
   std::uint32_t mask = 0xFFFF'FFFF;  ///< for values up to 4 bytes
   NmtCommand command = NmtCommand::start;
   std::uint16_t target = 0;
@@ -51,8 +51,8 @@ struct BootStep {
   /// devices give for a redundant write are then taken as "already so".
   bool optional = false;
   Time timeout{};
-  std::string purpose;   ///< "vendor id", "TPDO1 mapping entry 2: 6064:00 Position actual value"
-  std::string eds_note;  ///< what the EDS says of it, quoted when the step fails; may be empty
+  std::string purpose{};   ///< "vendor id", "TPDO1 mapping entry 2: 6064:00 Position actual value"
+  std::string eds_note{};  ///< what the EDS says of it, quoted when the step fails; may be empty
 };
 
 /// How one node comes up: a linear program, run by the boot runner for each node by itself.

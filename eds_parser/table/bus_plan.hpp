@@ -16,12 +16,12 @@ namespace takt {
 struct NodePlan {
   std::string name;  ///< from the network file: "shoulder"
   NodeId id;
-  std::string description_file;  ///< EDS or DCF, as written in the network file
-  std::string product_name;
+  std::string description_file{};  ///< EDS or DCF, as written in the network file
+  std::string product_name{};
   bool boot = true;        ///< false: only watched, no NMT, no SDO
   bool mandatory = false;  ///< its failure ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
-  BootPlan boot_plan;
+  BootPlan boot_plan{};
   Time heartbeat_timeout{};  ///< longest silence; 0 = not watched
   Time sdo_timeout{};        ///< of requests while running
   Time reboot_delay{};       ///< pause before a failed boot is tried again
@@ -43,15 +43,15 @@ struct CyclePlan {
 /// Everything the master needs to know of a bus; compiled, printable, constant while it runs.
 struct BusPlan {
   std::string name;                   ///< "lift"; LCM channels use it in capitals
-  std::string interface;              ///< "can0"; empty: simulated
+  std::string interface{};            ///< "can0"; empty: simulated
   std::uint32_t bitrate = 1'000'000;  ///< bit/s
   NodeId master_id = NodeId::from(127).value();
   Time master_heartbeat{};  ///< producer time of the master, 0 = none
   bool start_nodes = true;  ///< the master sends NMT start after boot
-  CyclePlan cycle;
-  ImageLayout layout;
-  PdoTable pdos;
-  std::vector<NodePlan> nodes;                  ///< ascending node id
+  CyclePlan cycle{};
+  ImageLayout layout{};
+  PdoTable pdos{};
+  std::vector<NodePlan> nodes{};                ///< ascending node id
   Time stop_timeout = std::chrono::seconds{5};  ///< of the whole ordered stop
 };
 

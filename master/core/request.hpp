@@ -21,7 +21,7 @@ struct Request {
   std::uint64_t id = 0;  ///< repeated by the reply
   RequestKind kind = RequestKind::sdo_upload;
   std::uint8_t node = 0;  ///< NMT: 0 = all nodes
-  ObjectKey object;
+  ObjectKey object{};
   NmtCommand command = NmtCommand::start;
   Time timeout{};  ///< of the SDO transfer; 0 = the node's own
   std::uint16_t size = 0;

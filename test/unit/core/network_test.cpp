@@ -1,0 +1,408 @@
+#include "master/core/network.hpp"
+
+#include <gtest/gtest.h>
+#include <set>
+
+#include "test/unit/core/network_rig.hpp"
+
+namespace takt {
+namespace {
+
+class NetworkTest : public testing::Test, public NetworkRig {
+ protected:
+  static BootPlan simple() {
+    Steps steps;
+    steps.nmt(NmtCommand::reset_communication)
+        .wait(BootAction::await_bootup, 'B', 1s)
+        .object(BootAction::probe, 'B', {0x1000, 0})
+        .nmt(NmtCommand::start);
+    return steps.plan;
+  }
+  /// A drive with heartbeat each 50 ms, lost after 150 ms.
+  NodePlan& add_drive(std::uint8_t id = 5) {
+    auto& node = add(id, simple());
+    node.heartbeat_timeout = 150ms;
+    devices.back().objects[{0x1000, 0}] = bytes({0x92, 0x01, 0x02, 0x00});
+    devices.back().heartbeats(now, 50ms);
+    return node;
+  }
+  Request read(std::uint64_t id, ObjectKey object, std::uint8_t node = 5) {
+    return {.id = id, .kind = RequestKind::sdo_upload, .node = node, .object = object};
+  }
+  int sent_count(const Frame& frame) const {
+    return static_cast<int>(std::ranges::count(sent, frame));
+  }
+};
+
+TEST_F(NetworkTest, BootsEightNodesInParallelWithinTheFrameBudget) {
+  plan.cycle.service_frames = 3;
+  for (std::uint8_t id = 1; id <= 8; ++id) add_drive(id);
+  start();
+  run(60ms);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(status(i).boot, BootState::ready) << i;
+  EXPECT_EQ(most_frames, 3U);
+}
+
+TEST_F(NetworkTest, GivesEveryNodeItsTurn) {
+  plan.cycle.service_frames = 1;
+  for (std::uint8_t id = 1; id <= 4; ++id) add_drive(id);
+  start();
+  run(4ms);
+  EXPECT_EQ(sent.size(), 4U);
+  EXPECT_EQ(
+      (std::set<std::uint8_t>{sent[0].data[1], sent[1].data[1], sent[2].data[1], sent[3].data[1]}),
+      (std::set<std::uint8_t>{1, 2, 3, 4}));
+}
+
+TEST_F(NetworkTest, BootsOneNodeWhileAnotherIsMute) {
+  add_drive(5);
+  add_drive(6);
+  device(0).on = false;
+  start();
+  run(100ms);
+  EXPECT_EQ(status(0).boot, BootState::booting);
+  EXPECT_EQ(status(1).boot, BootState::ready);
+  EXPECT_TRUE(network->exchanges_pdos(1));
+}
+
+TEST_F(NetworkTest, TellsALostHeartbeatAtItsDeadlineAndBootsTheNodeAgain) {
+  add_drive();
+  start();
+  run(200ms);
+  ASSERT_TRUE(network->exchanges_pdos(0));
+  const Time last = status().last_heartbeat;
+  device().on = false;
+  run(last + 150ms - 1ns - now);
+  EXPECT_EQ(count(EventKind::heartbeat_lost), 0);
+  run(1ns);
+  ASSERT_EQ(count(EventKind::heartbeat_lost), 1);
+  EXPECT_EQ(find(EventKind::heartbeat_lost)->value, 150'000'000);
+  EXPECT_EQ(status().boot, BootState::lost);
+  EXPECT_EQ(status().nmt, NmtState::unknown);
+  EXPECT_FALSE(network->exchanges_pdos(0));
+
+  sent.clear();
+  device().on = true;
+  device().next_heartbeat = never;
+  run(999ms);
+  EXPECT_TRUE(sent.empty());
+  run(100ms);
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 1);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(status().boot_count, 2U);
+}
+
+TEST_F(NetworkTest, BootsANodeAtOnceWhenItsHeartbeatComesBack) {
+  add_drive();
+  start();
+  run(200ms);
+  device().on = false;
+  run(200ms);
+  ASSERT_EQ(status().boot, BootState::lost);
+  device().on = true;
+  device().heartbeats(now, 50ms);
+  run(150ms);
+  EXPECT_EQ(status().boot, BootState::ready);
+}
+
+TEST_F(NetworkTest, BootsANodeThatRestartedWithoutResettingItAgain) {
+  add_drive();
+  start();
+  run(200ms);
+  sent.clear();
+  hear(heartbeat(0x00));
+  EXPECT_FALSE(network->exchanges_pdos(0));
+  EXPECT_EQ(count(EventKind::bootup_again), 1);
+  run(40ms);
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 0);
+  EXPECT_EQ(sent_count(nmt({0x01, 0x05})), 1);
+  EXPECT_EQ(status().boot, BootState::ready);
+}
+
+TEST_F(NetworkTest, BootsAFailedNodeAtOnceWithItsNextBootUpMessage) {
+  add_drive();
+  device().on = false;
+  start();
+  run(1800ms);
+  ASSERT_EQ(status().boot, BootState::failed);
+  device().on = true;
+  hear(heartbeat(0x00));
+  run(20ms);
+  EXPECT_EQ(status().boot, BootState::ready);
+}
+
+TEST_F(NetworkTest, TellsOfANodeThatStaysAwayMoreAndMoreRarely) {
+  add_drive();
+  device().on = false;
+  start();
+  run(60s);
+  EXPECT_GT(sent_count(nmt({0x82, 0x05})), 16);
+  EXPECT_LE(count(EventKind::boot_failed), 6);
+  EXPECT_GE(count(EventKind::boot_failed), 4);
+  EXPECT_LE(count(EventKind::boot_started), 6);
+}
+
+TEST_F(NetworkTest, FollowsTheStateInTheHeartbeat) {
+  add_drive();
+  start();
+  run(200ms);
+  events.clear();
+  device().state = 0x7F;  // the drive falls out of OPERATIONAL by itself
+  run(60ms);
+  EXPECT_FALSE(network->exchanges_pdos(0));
+  ASSERT_EQ(count(EventKind::node_state), 1);
+  EXPECT_EQ(find(EventKind::node_state)->value, 0x7F);
+}
+
+TEST_F(NetworkTest, OnlyWatchesANodeThatIsNotBooted) {
+  add_drive().boot = false;
+  start();
+  run(200ms);
+  EXPECT_TRUE(sent.empty());
+  EXPECT_EQ(status().boot, BootState::idle);
+  EXPECT_EQ(status().nmt, NmtState::preoperational);
+  device().on = false;
+  run(200ms);
+  EXPECT_EQ(count(EventKind::heartbeat_lost), 1);
+  device().on = true;
+  run(100ms);
+  EXPECT_EQ(count(EventKind::heartbeat_back), 1);
+}
+
+TEST_F(NetworkTest, SaysNothingWhileItObserves) {
+  plan.master_heartbeat = 100ms;
+  add_drive();
+  start({.observe = true});
+  ASSERT_TRUE(network->submit(read(1, {0x1000, 0}), now));
+  run(1s);
+  hear(heartbeat(0x00));
+  hear(make_frame(CobId::base(0x85), {0x30, 0x81, 0x11}));
+  run(1s);
+  EXPECT_TRUE(sent.empty());
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].fault, SdoFault::refused);
+  EXPECT_EQ(status().last_emcy, 0x8130);
+}
+
+TEST_F(NetworkTest, ProducesTheHeartbeatOfTheMaster) {
+  plan.master_heartbeat = 100ms;
+  start();
+  run(250ms);
+  const CobId id = CobId::base(0x77F);
+  EXPECT_EQ(sent, (std::vector<Frame>{make_frame(id, {0x00}), make_frame(id, {0x05}),
+                                      make_frame(id, {0x05})}));
+  EXPECT_EQ(network->deadline(), 10300ms);
+}
+
+// EMCY
+
+TEST_F(NetworkTest, TellsAnEmcyWithItsBytes) {
+  add_drive();
+  start();
+  hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
+  ASSERT_EQ(count(EventKind::emcy), 1);
+  EXPECT_EQ(find(EventKind::emcy)->node, 5);
+  EXPECT_EQ(find(EventKind::emcy)->bytes,
+            (std::array<std::uint8_t, 8>{0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(status().last_emcy, 0x7310);
+  EXPECT_EQ(status().error_register, 0x21);
+  EXPECT_EQ(status().emcy_count, 1U);
+}
+
+TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {
+  add_drive();
+  start();
+  for (int i = 0; i < 1000; ++i) hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21}));
+  EXPECT_EQ(status().emcy_count, 1000U);
+  EXPECT_EQ(count(EventKind::emcy), 10);
+  now += 1s;
+  hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21}));
+  EXPECT_EQ(events.back().value, 990);
+}
+
+// Requests
+
+TEST_F(NetworkTest, AnswersAReadWithTheValue) {
+  add_drive();
+  device().objects[{0x1008, 0}] = bytes({'S', 'a', 'm', 'p', 'l', 'e'});
+  start();
+  run(100ms);
+  ASSERT_TRUE(network->submit(read(7, {0x1008, 0}), now));
+  run(10ms);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].id, 7U);
+  EXPECT_EQ(replies[0].fault, SdoFault::none);
+  ASSERT_EQ(replies[0].size, 6U);
+  EXPECT_EQ(replies[0].data[0], std::byte{'S'});
+}
+
+TEST_F(NetworkTest, AnswersAWriteAndReportsItsAbort) {
+  add_drive();
+  device().write_aborts[{0x6081, 0}] = 0x06090031;
+  start();
+  run(100ms);
+  Request write{.id = 1, .kind = RequestKind::sdo_download, .node = 5, .object = {0x6040, 0}};
+  write.size = 2;
+  write.data[0] = std::byte{6};
+  network->submit(write, now);
+  write.id = 2;
+  write.object = {0x6081, 0};
+  network->submit(write, now);
+  run(10ms);
+  ASSERT_EQ(replies.size(), 2U);
+  EXPECT_EQ(replies[0].fault, SdoFault::none);
+  EXPECT_EQ(replies[1].fault, SdoFault::aborted_by_device);
+  EXPECT_EQ(replies[1].abort_code, 0x06090031U);
+  EXPECT_EQ(sent_count(tx({0x2B, 0x40, 0x60, 0x00, 0x06})), 1);
+}
+
+TEST_F(NetworkTest, KeepsRequestsWaitingBehindTheBoot) {
+  add_drive();
+  start();
+  network->submit(read(1, {0x1000, 0}), now);
+  run(20ms);
+  EXPECT_TRUE(replies.empty());
+  run(100ms);
+  EXPECT_EQ(status().boot, BootState::ready);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].fault, SdoFault::none);
+}
+
+TEST_F(NetworkTest, WorksOffRequestsOfOneNodeInOrderAndOfTwoAtOnce) {
+  add_drive(5);
+  add_drive(6);
+  start();
+  run(100ms);
+  device(0).latency = 30ms;
+  for (std::uint64_t id = 1; id <= 3; ++id) network->submit(read(id, {0x1000, 0}, 5), now);
+  network->submit(read(4, {0x1000, 0}, 6), now);
+  run(35ms);
+  ASSERT_EQ(replies.size(), 2U);
+  EXPECT_EQ(replies[0].id, 4U);
+  EXPECT_EQ(replies[1].id, 1U);
+  run(100ms);
+  ASSERT_EQ(replies.size(), 4U);
+  EXPECT_EQ(replies[2].id, 2U);
+  EXPECT_EQ(replies[3].id, 3U);
+}
+
+TEST_F(NetworkTest, CancelsARequestWhoseNodeRestarts) {
+  add_drive();
+  start();
+  run(100ms);
+  device().latency = 50ms;
+  network->submit(read(1, {0x1000, 0}), now);
+  run(10ms);
+  hear(heartbeat(0x00));
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].fault, SdoFault::cancelled);
+  device().latency = 1ms;
+  run(200ms);
+  EXPECT_EQ(replies.size(), 1U);
+  EXPECT_EQ(status().boot, BootState::ready);
+}
+
+TEST_F(NetworkTest, AnswersRequestsForNodesItDoesNotKnow) {
+  add_drive();
+  start();
+  EXPECT_TRUE(network->submit(read(1, {0x1000, 0}, 99), now));
+  EXPECT_TRUE(network->submit(read(2, {0x1000, 0}, 200), now));
+  EXPECT_TRUE(network->submit(
+      {.id = 3, .kind = RequestKind::nmt, .node = 128, .command = NmtCommand::stop}, now));
+  collect();
+  ASSERT_EQ(replies.size(), 3U);
+  for (const Reply& reply : replies) EXPECT_EQ(reply.fault, SdoFault::no_such_node);
+}
+
+TEST_F(NetworkTest, RefusesTheRequestThatDoesNotFitAndAnswersAllOthers) {
+  add_drive();
+  start();
+  std::uint64_t accepted = 0;
+  while (network->submit(read(accepted + 1, {0x1000, 0}), now)) ++accepted;
+  EXPECT_EQ(accepted, 32U);
+  run(1s);
+  EXPECT_EQ(replies.size(), accepted);
+}
+
+TEST_F(NetworkTest, SendsNmtCommandsAndFollowsThem) {
+  add_drive(5);
+  add_drive(6);
+  start();
+  run(100ms);
+  sent.clear();
+  network->submit({.id = 1, .kind = RequestKind::nmt, .node = 0, .command = NmtCommand::stop}, now);
+  EXPECT_EQ(network->deadline(), at_once);
+  run(1ms);
+  EXPECT_EQ(sent, (std::vector<Frame>{nmt({0x02, 0x00})}));
+  EXPECT_EQ(status(0).nmt, NmtState::stopped);
+  EXPECT_EQ(status(1).nmt, NmtState::stopped);
+  EXPECT_FALSE(network->exchanges_pdos(0));
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].fault, SdoFault::none);
+
+  network->submit({.id = 2, .kind = RequestKind::nmt, .node = 6, .command = NmtCommand::start},
+                  now);
+  run(1ms);
+  EXPECT_FALSE(network->exchanges_pdos(0));
+  EXPECT_TRUE(network->exchanges_pdos(1));
+}
+
+TEST_F(NetworkTest, BootsANodeThatAnApplicationHasReset) {
+  add_drive();
+  start();
+  run(100ms);
+  network->submit({.id = 1, .kind = RequestKind::nmt, .node = 5, .command = NmtCommand::reset_node},
+                  now);
+  run(5ms);
+  EXPECT_EQ(status().boot, BootState::lost);
+  run(100ms);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(status().boot_count, 2U);
+  EXPECT_EQ(count(EventKind::heartbeat_lost), 0);
+  EXPECT_EQ(sent_count(nmt({0x81, 0x05})), 1);
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 1);  // of the first boot only
+}
+
+// Stop
+
+TEST_F(NetworkTest, StopsWithEveryRequestAnsweredAndEveryNodePreOperational) {
+  add_drive(5);
+  add_drive(6);
+  add_drive(7).boot = false;
+  start();
+  run(100ms);
+  device(0).latency = 1s;
+  for (std::uint64_t id = 1; id <= 3; ++id) network->submit(read(id, {0x1000, 0}), now);
+  run(5ms);
+  sent.clear();
+  EXPECT_FALSE(network->stopped());
+  network->begin_stop(now);
+  run(2ms);
+
+  EXPECT_TRUE(network->stopped());
+  EXPECT_EQ(replies.size(), 3U);
+  for (const Reply& reply : replies) EXPECT_EQ(reply.fault, SdoFault::cancelled);
+  EXPECT_EQ(sent_count(tx({0x80, 0x00, 0x10, 0x00, 0x00, 0x00, 0x00, 0x08})), 1);
+  EXPECT_EQ(sent_count(nmt({0x80, 0x05})), 1);
+  EXPECT_EQ(sent_count(nmt({0x80, 0x06})), 1);
+  EXPECT_EQ(sent.size(), 3U);
+
+  network->submit(read(9, {0x1000, 0}), now);
+  run(5s);
+  EXPECT_EQ(replies.back().fault, SdoFault::cancelled);
+  EXPECT_EQ(sent.size(), 3U);  // nothing is booted any more
+}
+
+TEST_F(NetworkTest, StopsInTheMiddleOfABoot) {
+  add_drive();
+  start();
+  run(21ms);
+  network->begin_stop(now);
+  run(2ms);
+  EXPECT_TRUE(network->stopped());
+  run(5s);
+  EXPECT_EQ(status().boot, BootState::idle);
+}
+
+}  // namespace
+}  // namespace takt
