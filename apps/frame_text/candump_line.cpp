@@ -1,0 +1,120 @@
+#include "apps/frame_text/candump_line.hpp"
+
+#include <charconv>
+#include <fmt/format.h>
+#include <vector>
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t error_flag = 0x2000'0000;
+constexpr std::size_t most_words = 32;
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n";
+  std::vector<std::string_view> words;
+  while (words.size() < most_words) {
+    const std::size_t begin = text.find_first_not_of(blank);
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = std::min(text.find_first_of(blank, begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
+template <class T>
+std::optional<T> number(std::string_view text, int base) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
+  return value;
+}
+
+/// Three digits are an 11-bit identifier, eight a 29-bit one, or the class of an error frame.
+bool read_id(std::string_view text, CandumpLine& line) {
+  const auto id = number<std::uint32_t>(text, 16);
+  if (!id || (text.size() != 3 && text.size() != 8)) return false;
+  line.error_frame = text.size() == 8 && (*id & error_flag) != 0;
+  line.frame.id = text.size() == 8 ? CobId::extended(*id) : CobId::base(*id);
+  return true;
+}
+
+bool add_byte(std::string_view text, Frame& frame) {
+  const auto byte = number<std::uint8_t>(text, 16);
+  if (!byte || text.size() != 2 || frame.length == 8) return false;
+  frame.data[frame.length++] = *byte;
+  return true;
+}
+
+/// `185#3706`, `705#R`, `705#R1`; dots between bytes are allowed.
+bool read_log_frame(std::string_view text, CandumpLine& line) {
+  const std::size_t hash = text.find('#');
+  if (hash == std::string_view::npos || !read_id(text.substr(0, hash), line)) return false;
+  text.remove_prefix(hash + 1);
+  if (text.starts_with('#')) return false;  // CAN FD
+  if (text.starts_with('R') || text.starts_with('r')) {
+    line.frame.rtr = true;
+    const auto length = text.size() == 1 ? 0 : number<std::uint8_t>(text.substr(1), 10);
+    if (!length || *length > 8) return false;
+    line.frame.length = *length;
+    return true;
+  }
+  while (!text.empty()) {
+    if (text.starts_with('.')) text.remove_prefix(1);
+    if (!add_byte(text.substr(0, 2), line.frame)) return false;
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+/// `185 [2] 37 06`, `705 [1] remote request`.
+bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& line) {
+  if (words.size() < 2 || !read_id(words[0], line)) return false;
+  const std::string_view bracket = words[1];
+  if (bracket.size() != 3 || bracket[0] != '[' || bracket[2] != ']') return false;
+  const auto length = number<std::uint8_t>(bracket.substr(1, 1), 10);
+  if (!length || *length > 8) return false;
+  if (words.size() >= 4 && words[2] == "remote") {
+    line.frame.rtr = true;
+    line.frame.length = *length;
+    return true;
+  }
+  if (words.size() < 2U + *length) return false;
+  for (std::size_t i = 0; i < *length; ++i) {
+    if (!add_byte(words[2 + i], line.frame)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<CandumpLine> parse_candump(std::string_view text) {
+  const std::vector<std::string_view> all = words_of(text);
+  std::span<const std::string_view> words{all};
+  CandumpLine line;
+  if (!words.empty() && words[0].starts_with('(') && words[0].ends_with(')')) {
+    line.stamp = words[0].substr(1, words[0].size() - 2);
+    words = words.subspan(1);
+  }
+  if (words.size() < 2) return {};
+  line.interface = words[0];
+  words = words.subspan(1);
+  const bool log = words[0].find('#') != std::string_view::npos;
+  if (!(log ? read_log_frame(words[0], line) : read_terminal_frame(words, line))) return {};
+  return line;
+}
+
+std::string to_string(const CandumpLine& line) {
+  const Frame& frame = line.frame;
+  std::string out = line.stamp.empty() ? "" : fmt::format("({})  ", line.stamp);
+  out += line.interface;
+  out += frame.id.is_extended() ? fmt::format("  {:08X}", frame.id.id())
+                                : fmt::format("  {:03X}", frame.id.id());
+  out += fmt::format("   [{}] ", frame.length);
+  if (frame.rtr) return out + " remote request";
+  for (const std::uint8_t byte : frame.payload()) out += fmt::format(" {:02X}", byte);
+  return out;
+}
+
+}  // namespace takt

@@ -1,0 +1,106 @@
+#include "apps/frame_text/names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace takt {
+namespace {
+
+struct Range {
+  std::uint16_t first;
+  std::uint16_t last;
+  std::string_view name;
+  DataType type = DataType::unknown;  // of sub-index 0 of a variable
+};
+
+constexpr std::array<Range, 38> communication_objects{{
+    {0x1000, 0x1000, "device type", DataType::unsigned32},
+    {0x1001, 0x1001, "error register", DataType::unsigned8},
+    {0x1002, 0x1002, "manufacturer status register", DataType::unsigned32},
+    {0x1003, 0x1003, "pre-defined error field"},
+    {0x1005, 0x1005, "COB-ID SYNC", DataType::unsigned32},
+    {0x1006, 0x1006, "communication cycle period", DataType::unsigned32},
+    {0x1007, 0x1007, "synchronous window length", DataType::unsigned32},
+    {0x1008, 0x1008, "manufacturer device name", DataType::visible_string},
+    {0x1009, 0x1009, "manufacturer hardware version", DataType::visible_string},
+    {0x100A, 0x100A, "manufacturer software version", DataType::visible_string},
+    {0x100C, 0x100C, "guard time", DataType::unsigned16},
+    {0x100D, 0x100D, "life time factor", DataType::unsigned8},
+    {0x1010, 0x1010, "store parameters"},
+    {0x1011, 0x1011, "restore default parameters"},
+    {0x1012, 0x1012, "COB-ID TIME", DataType::unsigned32},
+    {0x1013, 0x1013, "high resolution time stamp", DataType::unsigned32},
+    {0x1014, 0x1014, "COB-ID EMCY", DataType::unsigned32},
+    {0x1015, 0x1015, "inhibit time EMCY", DataType::unsigned16},
+    {0x1016, 0x1016, "consumer heartbeat time"},
+    {0x1017, 0x1017, "producer heartbeat time", DataType::unsigned16},
+    {0x1018, 0x1018, "identity object"},
+    {0x1019, 0x1019, "synchronous counter overflow", DataType::unsigned8},
+    {0x1020, 0x1020, "verify configuration"},
+    {0x1021, 0x1021, "store EDS", DataType::domain},
+    {0x1022, 0x1022, "store format", DataType::unsigned16},
+    {0x1028, 0x1028, "emergency consumer"},
+    {0x1029, 0x1029, "error behavior"},
+    {0x1200, 0x127F, "SDO server parameter"},
+    {0x1280, 0x12FF, "SDO client parameter"},
+    {0x1400, 0x15FF, "RPDO communication parameter"},
+    {0x1600, 0x17FF, "RPDO mapping parameter"},
+    {0x1800, 0x19FF, "TPDO communication parameter"},
+    {0x1A00, 0x1BFF, "TPDO mapping parameter"},
+    {0x1F22, 0x1F22, "concise DCF"},
+    {0x1F50, 0x1F50, "program data"},
+    {0x1F51, 0x1F51, "program control"},
+    {0x1F80, 0x1F80, "NMT startup", DataType::unsigned32},
+    {0x1F81, 0x1F81, "NMT slave assignment"},
+}};
+
+const Range* range_of(std::uint16_t index) {
+  const auto found = std::ranges::find_if(communication_objects, [index](const Range& range) {
+    return index >= range.first && index <= range.last;
+  });
+  return found == communication_objects.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string_view communication_object_name(std::uint16_t index) {
+  const Range* range = range_of(index);
+  return range == nullptr ? std::string_view{} : range->name;
+}
+
+std::string FrameNames::node(unsigned id) const {
+  if (network_ != nullptr) {
+    for (const NodePlan& node : network_->plan.nodes) {
+      if (node.id.value() == id) return node.name;
+    }
+    if (id == network_->plan.master_id.value()) return "master";
+  }
+  return fmt::format("node {}", id);
+}
+
+std::string FrameNames::object(unsigned node, ObjectKey key) const {
+  std::string text = fmt::format("{:04X}:{:02X}", key.index, key.sub);
+  std::string_view name = communication_object_name(key.index);
+  if (network_ != nullptr) {
+    for (const Signal& signal : network_->plan.layout.signals) {
+      if (signal.node.value() == node && signal.object == key) name = signal.name;
+    }
+  }
+  if (!name.empty()) text.append(" ").append(name);
+  return text;
+}
+
+DataType FrameNames::type(unsigned node, ObjectKey key) const {
+  if (network_ != nullptr) {
+    for (const DeviceTable& device : network_->devices) {
+      if (device.node.value() != node) continue;
+      const auto at = std::ranges::lower_bound(device.objects, key, {}, &DeviceObject::key);
+      if (at != device.objects.end() && at->key == key) return at->type;
+    }
+  }
+  const Range* range = range_of(key.index);
+  return range != nullptr && key.sub == 0 ? range->type : DataType::unknown;
+}
+
+}  // namespace takt
