@@ -1,0 +1,202 @@
+#include "eds_parser/network_file/map_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "eds_parser/suggest.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t longest_quote = 60;
+
+std::string quote(std::string_view text) {
+  std::string out = "`";
+  for (const char c : text.substr(0, longest_quote)) {
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + (text.size() > longest_quote ? "...`" : "`");
+}
+
+std::string range_text(IntegerRange range) {
+  return std::to_string(range.low) + ".." + std::to_string(range.high) + std::string{range.unit};
+}
+
+bool is_scalar(const YamlNode& node, std::string_view key, std::string_view expected,
+               NetworkReport& report) {
+  if (node.kind == YamlNode::Kind::scalar) return true;
+  report.error(
+      node.pos, "wrong-type",
+      "`" + std::string{key} + "` is " + std::string{expected} + ", this is " +
+          (node.kind == YamlNode::Kind::null ? "empty" : "a " + std::string{name(node.kind)}));
+  return false;
+}
+
+bool looks_octal(std::string_view text) {
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
+  return text.size() > 1 && text[0] == '0' &&
+         std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// Decimal or 0x with sign; nothing else.
+std::optional<std::int64_t> parse_integer(std::string_view text) {
+  bool negative = false;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
+    negative = text[0] == '-';
+    text.remove_prefix(1);
+  }
+  const bool is_hex = text.starts_with("0x") || text.starts_with("0X");
+  if (is_hex) text.remove_prefix(2);
+  std::uint64_t magnitude = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), magnitude, is_hex ? 16 : 10);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
+  constexpr std::uint64_t limit = std::uint64_t{1} << 63;
+  if (magnitude > limit || (magnitude == limit && !negative)) return {};
+  return static_cast<std::int64_t>(negative ? std::uint64_t{0} - magnitude : magnitude);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view key,
+                                         IntegerRange range, NetworkReport& report) {
+  if (!is_scalar(node, key, "a number", report)) return {};
+  if (looks_octal(node.text)) {
+    report.error(node.pos, "octal",
+                 quote(node.text) + " of `" + std::string{key} +
+                     "` is octal to some YAML readers and decimal to others: write it without "
+                     "leading zeros, or with 0x");
+    return {};
+  }
+  const auto value = parse_integer(node.text);
+  if (!value) {
+    report.error(node.pos, "not-a-number",
+                 "`" + std::string{key} + "`: " + quote(node.text) +
+                     " is no whole number; expected " + range_text(range) + ", decimal or 0x");
+    return {};
+  }
+  if (*value < range.low || *value > range.high) {
+    report.error(
+        node.pos, "out-of-range",
+        "`" + std::string{key} + "`: " + quote(node.text) + " is outside " + range_text(range));
+    return {};
+  }
+  return value;
+}
+
+std::optional<double> read_number(const YamlNode& node, std::string_view key,
+                                  NetworkReport& report) {
+  if (!is_scalar(node, key, "a number", report)) return {};
+  if (const auto integer = parse_integer(node.text); integer && !looks_octal(node.text)) {
+    return static_cast<double>(*integer);
+  }
+  double value = 0;
+  std::string_view text = node.text;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
+      looks_octal(text)) {
+    report.error(node.pos, "not-a-number",
+                 "`" + std::string{key} + "`: " + quote(node.text) + " is no number");
+    return {};
+  }
+  return value;
+}
+
+std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report) {
+  if (!is_scalar(node, key, "true or false", report)) return {};
+  std::string text = node.text;
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (text == "true" || text == "yes" || text == "on" || text == "1") return true;
+  if (text == "false" || text == "no" || text == "off" || text == "0") return false;
+  report.error(node.pos, "wrong-type",
+               "`" + std::string{key} + "` is true or false, not " + quote(node.text));
+  return {};
+}
+
+std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
+                                     NetworkReport& report) {
+  if (!is_scalar(node, key, "text", report)) return {};
+  if (node.text.empty()) {
+    report.error(node.pos, "wrong-type", "`" + std::string{key} + "` is empty");
+    return {};
+  }
+  return node.text;
+}
+
+MapReader::MapReader(const YamlNode& node, std::string what, NetworkReport& report)
+    : node_{node}, what_{std::move(what)}, report_{report} {
+  if (node.kind == YamlNode::Kind::map || node.kind == YamlNode::Kind::null) return;
+  report.error(node.pos, "wrong-type",
+               what_ + " is a map (`key: value`), this is a " + std::string{name(node.kind)});
+}
+
+const YamlNode* MapReader::take(std::string_view key) {
+  known_.push_back(key);
+  return node_.find(key);
+}
+
+SourcePos MapReader::key_pos(std::string_view key) const noexcept {
+  for (const YamlPair& pair : node_.pairs) {
+    if (pair.key == key) return pair.key_pos;
+  }
+  return node_.pos;
+}
+
+void MapReader::number(std::string_view key, Sourced<double>& out) {
+  if (const YamlNode* node = take(key)) {
+    if (const auto value = read_number(*node, key, report_)) out = {*value, node->pos, true};
+  }
+}
+
+void MapReader::boolean(std::string_view key, Sourced<bool>& out) {
+  if (const YamlNode* node = take(key)) {
+    if (const auto value = read_bool(*node, key, report_)) out = {*value, node->pos, true};
+  }
+}
+
+void MapReader::text(std::string_view key, Sourced<std::string>& out) {
+  if (const YamlNode* node = take(key)) {
+    if (auto value = read_text(*node, key, report_)) out = {std::move(*value), node->pos, true};
+  }
+}
+
+void MapReader::ignore(std::span<const std::string_view> keys, std::string_view why) {
+  for (const std::string_view key : keys) {
+    if (node_.find(key) == nullptr) continue;
+    known_.push_back(key);
+    report_.note(key_pos(key), "unused-key",
+                 "`" + std::string{key} + "` of " + what_ + " " + std::string{why});
+  }
+}
+
+void MapReader::finish() {
+  for (const YamlPair& pair : node_.pairs) {
+    if (std::ranges::find(known_, pair.key) != known_.end()) continue;
+    report_.error(
+        pair.key_pos, "unknown-key",
+        "unknown key " + quote(pair.key) + " in " + what_ + did_you_mean(pair.key, known_));
+  }
+}
+
+std::optional<std::size_t> read_choice(const YamlNode& node, std::string_view key,
+                                       std::span<const std::string_view> names,
+                                       NetworkReport& report) {
+  if (!is_scalar(node, key, "a word", report)) return {};
+  const auto found = std::ranges::find(names, node.text);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string list;
+  for (const std::string_view choice : names) {
+    list += (list.empty() ? "" : ", ") + std::string{choice};
+  }
+  report.error(node.pos, "unknown-value",
+               "`" + std::string{key} + "`: " + quote(node.text) + " is none of " + list +
+                   did_you_mean(node.text, names));
+  return {};
+}
+
+}  // namespace takt

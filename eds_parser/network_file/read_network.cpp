@@ -1,0 +1,136 @@
+#include "eds_parser/network_file/read_network.hpp"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <set>
+#include <utility>
+
+#include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/suggest.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::array<std::string_view, 7> section_names{"options", "master", "defaults", "nodes",
+                                                        "bus",     "lcm",    "realtime"};
+constexpr std::size_t max_nodes = 127;
+
+bool is_section(std::string_view key) {
+  return std::ranges::find(section_names, key) != section_names.end();
+}
+
+/// The node with the keys of `defaults` that it does not state itself.
+YamlNode with_defaults(const YamlNode& node, const YamlNode* defaults) {
+  YamlNode merged = node;
+  if (defaults == nullptr || defaults->kind != YamlNode::Kind::map) return merged;
+  if (merged.kind == YamlNode::Kind::null) merged.kind = YamlNode::Kind::map;
+  for (const YamlPair& pair : defaults->pairs) {
+    if (node.find(pair.key) == nullptr) merged.pairs.push_back(pair);
+  }
+  return merged;
+}
+
+class NetworkReader {
+ public:
+  NetworkReader(const YamlNode& root, NetworkSpec& spec, NetworkReport& report)
+      : root_{root}, spec_{spec}, report_{report} {}
+
+  void run() {
+    if (root_.kind != YamlNode::Kind::map) {
+      report_.error(root_.pos, "wrong-type",
+                    "a network file is a map with `master:` and `nodes:`, this is a " +
+                        std::string{name(root_.kind)});
+      return;
+    }
+    read_sections();
+    for (const YamlPair& pair : root_.pairs) {
+      if (!is_section(pair.key) && !pair.key.starts_with('.')) read_top_level(pair);
+    }
+    if (const YamlNode* nodes = root_.find("nodes")) read_nodes(*nodes);
+    if (!found_node_) {
+      report_.error(root_.pos, "no-nodes",
+                    "no node is described: expected `nodes:` with `NAME: {node_id: 1..127, dcf: "
+                    "FILE.eds}`");
+    }
+  }
+
+ private:
+  void read_sections() {
+    const auto section = [&](std::string_view key, auto read) {
+      if (const YamlNode* node = root_.find(key)) read(*node, spec_, report_);
+    };
+    section("options", read_options);
+    section("bus", read_bus);
+    section("master", read_master);
+    section("realtime", read_realtime);
+    section("lcm", read_lcm);
+  }
+
+  void read_top_level(const YamlPair& pair) {
+    if (pair.value->kind == YamlNode::Kind::map &&
+        (pair.value->find("node_id") != nullptr || pair.value->find("dcf") != nullptr)) {
+      add(pair);
+      return;
+    }
+    report_.error(pair.key_pos, "unknown-key",
+                  "unknown section `" + pair.key + "` (a node would have a `node_id`)" +
+                      did_you_mean(pair.key, section_names));
+  }
+
+  void read_nodes(const YamlNode& nodes) {
+    if (nodes.kind != YamlNode::Kind::map) {
+      report_.error(nodes.pos, "wrong-type",
+                    "`nodes` is a map of `NAME: {node_id: ..., dcf: ...}`, this is a " +
+                        std::string{name(nodes.kind)});
+      found_node_ = true;  // said already
+      return;
+    }
+    for (const YamlPair& pair : nodes.pairs) {
+      if (!pair.key.starts_with('.')) add(pair);
+    }
+  }
+
+  void add(const YamlPair& pair) {
+    found_node_ = true;
+    if (spec_.nodes.size() >= max_nodes) {
+      report_.error(pair.key_pos, "too-many", "more than 127 nodes on one bus");
+      return;
+    }
+    const YamlNode merged = with_defaults(*pair.value, root_.find("defaults"));
+    spec_.nodes.push_back(read_node(merged, pair.key, pair.key_pos, report_));
+  }
+
+  const YamlNode& root_;
+  NetworkSpec& spec_;
+  NetworkReport& report_;
+  bool found_node_ = false;
+};
+
+/// What stands in `defaults` was read once a node; it is told once.
+void drop_repeated(Findings& findings, std::size_t first) {
+  std::set<std::pair<SourcePos, std::string_view>> seen;
+  const auto repeated = [&](const Finding& finding) {
+    return !seen.emplace(finding.pos, finding.rule).second;
+  };
+  findings.erase(std::remove_if(findings.begin() + static_cast<std::ptrdiff_t>(first),
+                                findings.end(), repeated),
+                 findings.end());
+}
+
+}  // namespace
+
+NetworkSpec read_network(std::string_view text, const std::string& file, Findings& findings) {
+  NetworkSpec spec;
+  spec.file = file;
+  const YamlTree tree = YamlTree::parse(text, file, findings);
+  if (tree.root() == nullptr) return spec;
+  const std::size_t first = findings.size();
+  NetworkReport report{file, findings};
+  NetworkReader{*tree.root(), spec, report}.run();
+  drop_repeated(findings, first);
+  return spec;
+}
+
+}  // namespace takt

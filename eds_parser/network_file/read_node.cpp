@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "eds_parser/network_file/sections.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::array<std::string_view, 33> keys_of_others{"driver",
+                                                          "package",
+                                                          "namespace",
+                                                          "polling",
+                                                          "period",
+                                                          "non_transmit_timeout",
+                                                          "diagnostics",
+                                                          "switching_state",
+                                                          "homing_timeout_seconds",
+                                                          "channels",
+                                                          "channel_names",
+                                                          "num_channels",
+                                                          "position_mode",
+                                                          "velocity_mode",
+                                                          "effort_mode",
+                                                          "torque_mode",
+                                                          "homing_mode",
+                                                          "interpolated_position_mode",
+                                                          "cyclic_position_mode",
+                                                          "cyclic_velocity_mode",
+                                                          "cyclic_torque_mode",
+                                                          "enable_lazy_load",
+                                                          "remappings",
+                                                          "parameters",
+                                                          "boot_timeout",
+                                                          "joint_name",
+                                                          "plugin",
+                                                          "type",
+                                                          "executor",
+                                                          "container_name",
+                                                          "emcy_cob_id",
+                                                          "description",
+                                                          "comment"};
+constexpr std::array<std::string_view, 14> scales{
+    "scale_pos_to_dev",  "scale_pos_from_dev",  "scale_vel_to_dev",  "scale_vel_from_dev",
+    "scale_eff_to_dev",  "scale_eff_from_dev",  "offset_pos_to_dev", "offset_pos_from_dev",
+    "offset_vel_to_dev", "offset_vel_from_dev", "offset_eff_to_dev", "offset_eff_from_dev",
+    "scale_acc_to_dev",  "scale_acc_from_dev"};
+constexpr std::array<std::string_view, 8> not_supported{
+    "time_cob_id", "time_cobid",    "retry_factor",     "life_time_factor",
+    "guard_time",  "software_file", "software_version", "configuration_file"};
+
+void read_identity(MapReader& reader, NodeSpec& node) {
+  reader.integer("device_type", node.device_type);
+  reader.integer("vendor_id", node.vendor_id);
+  reader.integer("product_code", node.product_code);
+  reader.integer("revision_number", node.revision_number);
+  reader.integer("serial_number", node.serial_number);
+}
+
+void read_reset(MapReader& reader, NodeSpec& node) {
+  Sourced<bool> communication;
+  reader.boolean("reset_communication", communication);
+  if (communication.given) {
+    node.reset = {*communication ? ResetPolicy::communication : ResetPolicy::none,
+                  communication.pos, true};
+  }
+  const YamlNode* value = reader.take("reset");
+  if (value == nullptr) return;
+  constexpr std::array<std::string_view, 3> names{"communication", "node", "none"};
+  if (const auto choice = read_choice(*value, "reset", names, reader.report())) {
+    if (communication.given) {
+      reader.report().error(value->pos, "duplicate-key",
+                            "`reset` and `reset_communication` say the same twice: keep one");
+    }
+    node.reset = {static_cast<ResetPolicy>(*choice), value->pos, true};
+  }
+}
+
+void read_boot(MapReader& reader, NodeSpec& node) {
+  reader.boolean("boot", node.boot);
+  reader.boolean("mandatory", node.mandatory);
+  read_reset(reader, node);
+  reader.integer("restore_configuration", node.restore, {0, 127});
+  reader.integer("boot_timeout_ms", node.boot_timeout_ms, {1, 600'000, " ms"});
+  reader.integer("sdo_timeout_ms", node.sdo_timeout_ms, {1, 60'000, " ms"});
+  reader.integer("reboot_delay_ms", node.reboot_delay_ms, {1, 600'000, " ms"});
+}
+
+void read_heartbeat(MapReader& reader, NodeSpec& node) {
+  reader.boolean("heartbeat_consumer", node.heartbeat_consumer);
+  reader.integer("heartbeat_producer", node.heartbeat_producer, {0, 65535, " ms"});
+  reader.number("heartbeat_multiplier", node.heartbeat_multiplier);
+  if (node.heartbeat_multiplier.given && *node.heartbeat_multiplier < 1.5) {
+    reader.report().error(node.heartbeat_multiplier.pos, "out-of-range",
+                          "`heartbeat_multiplier` is at least 1.5, or one late heartbeat stops the "
+                          "node");
+  }
+  const YamlNode* behavior = reader.take("error_behavior");
+  if (behavior == nullptr || behavior->kind == YamlNode::Kind::null) return;
+  if (behavior->kind != YamlNode::Kind::map) {
+    reader.report().error(behavior->pos, "wrong-type",
+                          "`error_behavior` is a map of 1029 sub-indices, as `{1: 0}`");
+    return;
+  }
+  for (const YamlPair& pair : behavior->pairs) {
+    YamlNode sub;
+    sub.kind = YamlNode::Kind::scalar;
+    sub.text = pair.key;
+    sub.pos = pair.key_pos;
+    const auto key = read_integer(sub, "error_behavior", {1, 254}, reader.report());
+    const auto value = read_integer(*pair.value, "error_behavior", {0, 255}, reader.report());
+    if (!key || !value) continue;
+    SdoSpec& sdo = node.error_behavior.emplace_back();
+    sdo.object = {0x1029, static_cast<std::uint8_t>(*key)};
+    sdo.value = *value;
+    sdo.pos = pair.key_pos;
+    sdo.value_pos = pair.value->pos;
+  }
+}
+
+void read_timeout(MapReader& outer, NodeSpec& node) {
+  const YamlNode* map = outer.take("on_timeout");
+  if (map == nullptr) return;
+  MapReader reader{*map, "`on_timeout` of " + outer.what(), outer.report()};
+  if (const YamlNode* fallback = reader.take("fallback")) {
+    constexpr std::array<std::string_view, 5> names{"quick_stop", "hold", "zero", "safe",
+                                                    "disable"};
+    if (const auto choice = read_choice(*fallback, "fallback", names, outer.report())) {
+      node.on_timeout.fallback = {static_cast<FallbackPolicy>(*choice), fallback->pos, true};
+    }
+  }
+  reader.integer("after_cycles", node.on_timeout.after_cycles, {0, 1'000'000});
+  reader.finish();
+}
+
+void read_sim(MapReader& outer, NodeSpec& node) {
+  const YamlNode* map = outer.take("sim");
+  if (map == nullptr) return;
+  MapReader reader{*map, "`sim` of " + outer.what(), outer.report()};
+  Sourced<std::string> model;
+  reader.text("model", model);
+  node.sim.model = *model;
+  if (const YamlNode* quirks = reader.take("quirks")) {
+    if (quirks->kind == YamlNode::Kind::scalar) node.sim.quirks.push_back(quirks->text);
+    for (const YamlNode* item : quirks->items) {
+      if (auto text = read_text(*item, "quirks", outer.report())) {
+        node.sim.quirks.push_back(std::move(*text));
+      }
+    }
+  }
+  reader.finish();
+}
+
+void read_lists(MapReader& reader, NodeSpec& node) {
+  NetworkReport& report = reader.report();
+  const std::string& owner = reader.what();
+  if (const YamlNode* list = reader.take("tpdo")) {
+    node.tpdos = read_pdos(*list, "tpdo", owner, report);
+  }
+  if (const YamlNode* list = reader.take("rpdo")) {
+    node.rpdos = read_pdos(*list, "rpdo", owner, report);
+  }
+  if (const YamlNode* list = reader.take("sdo")) {
+    node.sdo = read_objects(*list, "sdo", owner, report);
+  }
+  if (const YamlNode* list = reader.take("safe_values")) {
+    node.safe_values = read_objects(*list, "safe_values", owner, report);
+  }
+  if (const YamlNode* map = reader.take("units")) node.units = read_units(*map, owner, report);
+}
+
+void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {
+  const auto bad = [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; };
+  if (name.empty() || name.size() > 48 || std::ranges::any_of(name, bad)) {
+    report.error(pos, "name",
+                 "the node name `" + name.substr(0, 60) +
+                     "` becomes a part of LCM channels: letters, digits, `_` and `-`, at most 48");
+  }
+}
+
+}  // namespace
+
+NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
+                   NetworkReport& report) {
+  NodeSpec spec;
+  spec.name = name;
+  spec.pos = pos;
+  check_name(name, pos, report);
+  MapReader reader{node, "node `" + name + "`", report};
+  const bool has_id = reader.take("node_id") != nullptr;
+  reader.integer("node_id", spec.id, {1, 127});
+  reader.text("dcf", spec.dcf);
+  reader.text("dcf_path", spec.dcf_path);
+  read_identity(reader, spec);
+  read_boot(reader, spec);
+  read_heartbeat(reader, spec);
+  if (const YamlNode* profile = reader.take("profile")) {
+    constexpr std::array<std::string_view, 4> names{"none", "cia401", "cia402", "cia406"};
+    if (const auto choice = read_choice(*profile, "profile", names, report)) {
+      spec.profile = {std::string{names[*choice]}, profile->pos, true};
+    }
+  }
+  read_lists(reader, spec);
+  read_timeout(reader, spec);
+  read_sim(reader, spec);
+  reader.ignore(keys_of_others, "means nothing to takt and is left alone");
+  reader.ignore(scales,
+                "is left alone: takt scales by `units: {position: {scale: ..., unit: rad}}`");
+  reader.ignore(not_supported, "is not acted on by this version of takt");
+  reader.finish();
+  if (!has_id) report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
+  if (!spec.dcf.given && node.find("dcf") == nullptr) {
+    report.error(pos, "missing-key",
+                 "node `" + name + "` lacks `dcf`, the name of its EDS or DCF file");
+  }
+  return spec;
+}
+
+}  // namespace takt

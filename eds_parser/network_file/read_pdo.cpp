@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "eds_parser/network_file/sections.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t max_list = 1024;
+
+void read_cob_id(MapReader& reader, PdoSpec& pdo) {
+  const YamlNode* node = reader.take("cob_id");
+  if (node == nullptr) return;
+  if (node->kind == YamlNode::Kind::scalar && node->text == "auto") {
+    pdo.cob_id = {std::nullopt, node->pos, true};
+    return;
+  }
+  if (node->kind == YamlNode::Kind::scalar && !node->text.empty() &&
+      (std::isalpha(static_cast<unsigned char>(node->text[0])) != 0 || node->text[0] == '$')) {
+    reader.report().error(node->pos, "unknown-value",
+                          "`cob_id` is a number or `auto`, not `" + node->text.substr(0, 40) + "`");
+    return;
+  }
+  if (const auto value = read_integer(*node, "cob_id", {0, 0xFFFF'FFFF}, reader.report())) {
+    pdo.cob_id = {static_cast<std::uint32_t>(*value), node->pos, true};
+  }
+}
+
+void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
+  const YamlNode* node = reader.take("mapping");
+  if (node == nullptr) return;
+  NetworkReport& report = reader.report();
+  if (node->kind != YamlNode::Kind::sequence) {
+    report.error(node->pos, "wrong-type",
+                 "`mapping` of " + what +
+                     " is a list of `{index: 0x6041, sub_index: 0}`, this is " + "a " +
+                     std::string{name(node->kind)});
+    return;
+  }
+  pdo.mapping.pos = node->pos;
+  pdo.mapping.given = true;
+  if (node->items.size() > 64) {
+    report.error(node->pos, "too-many", "`mapping` of " + what + " has more than 64 entries");
+    return;
+  }
+  for (const YamlNode* item : node->items) {
+    MapReader entry{*item, "a mapping entry of " + what, report};
+    MappingSpec mapping{.object = {}, .bits = {}, .pos = item->pos};
+    const auto key = read_object_key(entry, item->pos);
+    Sourced<std::uint8_t> bits;
+    entry.integer("bits", bits, {1, 64});
+    entry.finish();
+    if (!key) continue;
+    mapping.object = *key;
+    if (bits.given) mapping.bits = *bits;
+    pdo.mapping.value.push_back(mapping);
+  }
+}
+
+void check_types(const PdoSpec& pdo, std::string_view key, const std::string& what,
+                 NetworkReport& report) {
+  if (pdo.transmission.given && *pdo.transmission >= 241 && *pdo.transmission <= 251) {
+    report.error(pdo.transmission.pos, "transmission-type",
+                 "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
+                     " is reserved by CiA 301: 0..240 with SYNC, 254 or 255 by event");
+  }
+  if (pdo.transmission.given && (*pdo.transmission == 252 || *pdo.transmission == 253)) {
+    const bool rpdo = key == "rpdo";
+    report.error(pdo.transmission.pos, "transmission-type",
+                 "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
+                     (rpdo ? " is reserved for RPDOs"
+                           : " is sent on remote request only, which takt "
+                             "does not use") +
+                     ": 0..240 with SYNC, 254 or 255 by event");
+  }
+}
+
+PdoSpec read_pdo(const YamlPair& pair, std::uint16_t number, std::string_view key,
+                 const std::string& owner, NetworkReport& report) {
+  const std::string what =
+      (key == "tpdo" ? "TPDO" : "RPDO") + std::to_string(number) + " of " + owner;
+  PdoSpec pdo{.number = number,
+              .pos = pair.key_pos,
+              .cob_id = {},
+              .transmission = {},
+              .inhibit_time = {},
+              .event_timer = {},
+              .event_deadline = {},
+              .sync_start = {},
+              .mapping = {}};
+  MapReader reader{*pair.value, what, report};
+  reader.boolean("enabled", pdo.enabled);
+  read_cob_id(reader, pdo);
+  reader.integer("transmission", pdo.transmission);
+  reader.integer("inhibit_time", pdo.inhibit_time, {0, 65535, " x 100 us"});
+  reader.integer("event_timer", pdo.event_timer, {0, 65535, " ms"});
+  reader.integer("event_deadline", pdo.event_deadline, {0, 65535, " ms"});
+  reader.integer("sync_start", pdo.sync_start, {0, 240});
+  read_mapping(reader, pdo, what);
+  reader.finish();
+  check_types(pdo, key, what, report);
+  return pdo;
+}
+
+}  // namespace
+
+std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos) {
+  Sourced<std::uint16_t> index;
+  Sourced<std::uint8_t> sub;
+  const bool has_index = reader.take("index") != nullptr;
+  reader.integer("index", index, {1, 0xFFFF});
+  reader.integer("sub_index", sub, {0, 0xFF});
+  if (index.given) return ObjectKey{*index, *sub};
+  if (!has_index) {
+    reader.report().error(pos, "missing-key", reader.what() + " lacks `index`");
+  }
+  return std::nullopt;
+}
+
+std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const std::string& owner,
+                               NetworkReport& report) {
+  std::vector<PdoSpec> pdos;
+  if (node.kind == YamlNode::Kind::null) return pdos;
+  if (node.kind != YamlNode::Kind::map) {
+    report.error(node.pos, "wrong-type",
+                 "`" + std::string{key} + "` of " + owner +
+                     " is a map of PDO numbers, `1: {mapping: [...]}`; this is a " +
+                     std::string{name(node.kind)});
+    return pdos;
+  }
+  for (const YamlPair& pair : node.pairs) {
+    YamlNode number;
+    number.kind = YamlNode::Kind::scalar;
+    number.text = pair.key;
+    number.pos = pair.key_pos;
+    const auto value = read_integer(number, std::string{key} + " number", {1, 512}, report);
+    if (!value) continue;
+    const auto same = [&](const PdoSpec& pdo) { return pdo.number == *value; };
+    if (std::ranges::any_of(pdos, same)) {
+      report.error(pair.key_pos, "duplicate-key",
+                   "`" + std::string{key} + "` " + std::to_string(*value) + " of " + owner +
+                       " is written twice");
+      continue;
+    }
+    pdos.push_back(read_pdo(pair, static_cast<std::uint16_t>(*value), key, owner, report));
+  }
+  return pdos;
+}
+
+namespace {
+
+/// Whole number, real number or text, as the value looks. False: reported.
+bool read_value(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
+  const std::string& text = node.text;
+  const std::size_t digits = text.find_first_not_of("+-");
+  const bool numeric = node.kind != YamlNode::Kind::scalar ||
+                       (digits < 2 && std::isdigit(static_cast<unsigned char>(text[digits])) != 0);
+  const bool is_hex =
+      digits < 2 && (text.compare(digits, 2, "0x") == 0 || text.compare(digits, 2, "0X") == 0);
+  if (!numeric) {
+    sdo.value = text;
+    return true;
+  }
+  if (!is_hex && text.find_first_of(".eE") != std::string::npos) {
+    const auto number = read_number(node, "value", report);
+    if (number) sdo.value = *number;
+    return number.has_value();
+  }
+  constexpr IntegerRange any{std::numeric_limits<std::int64_t>::min(),
+                             std::numeric_limits<std::int64_t>::max()};
+  const auto number = read_integer(node, "value", any, report);
+  if (number) sdo.value = *number;
+  return number.has_value();
+}
+
+std::optional<SdoSpec> read_object(const YamlNode& item, std::string_view key,
+                                   const std::string& owner, bool& again, NetworkReport& report) {
+  MapReader reader{item, "an entry of `" + std::string{key} + "` of " + owner, report};
+  const auto object = read_object_key(reader, item.pos);
+  Sourced<bool> repeated;
+  reader.boolean("again", repeated);
+  again = *repeated;
+  const YamlNode* value = reader.take("value");
+  reader.finish();
+  if (value == nullptr) {
+    report.error(item.pos, "missing-key", reader.what() + " lacks `value`");
+    return {};
+  }
+  if (!object) return {};
+  SdoSpec sdo;
+  sdo.object = *object;
+  sdo.pos = item.pos;
+  sdo.value_pos = value->pos;
+  if (!read_value(*value, sdo, report)) return {};
+  return sdo;
+}
+
+}  // namespace
+
+std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
+                                  const std::string& owner, NetworkReport& report) {
+  std::vector<SdoSpec> list;
+  if (node.kind == YamlNode::Kind::null) return list;
+  if (node.kind != YamlNode::Kind::sequence || node.items.size() > max_list) {
+    report.error(node.pos, "wrong-type",
+                 "`" + std::string{key} + "` of " + owner +
+                     " is a list of at most 1024 `{index: 0x6083, sub_index: 0, value: 1000}`");
+    return list;
+  }
+  std::map<ObjectKey, SourcePos> seen;
+  for (const YamlNode* item : node.items) {
+    bool again = false;
+    const auto sdo = read_object(*item, key, owner, again, report);
+    if (!sdo) continue;
+    const auto [first, is_new] = seen.emplace(sdo->object, sdo->pos);
+    if (!is_new && !again) {
+      report.error(sdo->pos, "written-twice",
+                   to_string(sdo->object) + " of " + owner + " is written twice, first in line " +
+                       std::to_string(first->second.line) +
+                       ": is one of them meant for another object? (`again: true` keeps both)");
+    }
+    list.push_back(*sdo);
+  }
+  return list;
+}
+
+}  // namespace takt

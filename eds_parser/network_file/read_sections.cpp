@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+
+#include "eds_parser/network_file/sections.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::string_view other_reader = "means nothing to takt and is left alone";
+constexpr std::string_view not_yet = "is not acted on by this version of takt";
+
+constexpr std::array<std::uint32_t, 9> standard_rates{10, 20, 50, 100, 125, 250, 500, 800, 1000};
+
+/// kbit/s; a value in bit/s is recognised and refused with a sentence.
+void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_t>& out) {
+  Sourced<std::uint32_t> rate;
+  reader.integer(key, rate, {1, 100'000'000, " kbit/s"});
+  if (!rate.given) return;
+  const std::string written = "`" + std::string{key} + "` is in kbit/s";
+  if (*rate > 1000) {
+    const bool is_bits = std::ranges::find(standard_rates, *rate / 1000) != standard_rates.end();
+    reader.report().error(rate.pos, "unit",
+                          written + ": " + std::to_string(*rate) + " would be " +
+                              std::to_string(*rate / 1000) + " Mbit/s; CAN ends at 1000" +
+                              (is_bits ? ", write " + std::to_string(*rate / 1000) : ""));
+    return;
+  }
+  if (std::ranges::find(standard_rates, *rate) == standard_rates.end()) {
+    reader.report().warning(rate.pos, "bit-rate",
+                            written + " and " + std::to_string(*rate) +
+                                " is no CANopen rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
+  }
+  out = rate;
+}
+
+void read_sync(MapReader& reader, MasterSpec& master) {
+  NetworkReport& report = reader.report();
+  reader.integer("sync_period", master.sync_period_us, {0, 60'000'000, " us"});
+  reader.integer("sync_window", master.sync_window_us, {0, 60'000'000, " us"});
+  reader.integer("sync_overflow", master.sync_overflow, {0, 240});
+  reader.integer("sync_cob_id", master.sync_cob_id, {0x001, 0x7FF});
+  reader.integer("cycle", master.cycle_us, {200, 60'000'000, " us"});
+  if (master.sync_overflow.given && *master.sync_overflow == 1) {
+    report.error(master.sync_overflow.pos, "out-of-range",
+                 "`sync_overflow` is 0 (no counter) or 2..240; 1 is reserved by CiA 301");
+  }
+  const std::uint32_t period = *master.sync_period_us;
+  if (period > 0 && period < 200) {
+    report.error(master.sync_period_us.pos, "unit",
+                 "`sync_period` is in us: " + std::to_string(period) +
+                     " us has no room for frames; for " + std::to_string(period) + " ms write " +
+                     std::to_string(period * 1000));
+  }
+  if (master.sync_window_us.given && *master.sync_window_us > period) {
+    report.error(master.sync_window_us.pos, "out-of-range",
+                 "`sync_window` of " + std::to_string(*master.sync_window_us) +
+                     " us is longer than `sync_period` of " + std::to_string(period) + " us");
+  }
+}
+
+bool is_multicast(std::string_view url) {
+  const std::string_view address = url.substr(7);
+  int first = 0;
+  const auto [end, error] = std::from_chars(address.data(), address.data() + address.size(), first);
+  return address.empty() || address[0] == ':' || address[0] == '?' ||
+         (error == std::errc{} && first >= 224 && first <= 239);
+}
+
+}  // namespace
+
+void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`bus`", report};
+  reader.text("name", spec.bus.name);
+  reader.text("interface", spec.bus.interface);
+  read_bit_rate(reader, "bitrate_kbit", spec.master.baudrate_kbit);
+  reader.finish();
+  const auto bad = [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; };
+  if (spec.bus.name.given &&
+      (std::ranges::any_of(*spec.bus.name, bad) || spec.bus.name->size() > 32)) {
+    report.error(spec.bus.name.pos, "name",
+                 "the bus name becomes a part of LCM channels: letters, digits, `_` and `-`, at "
+                 "most 32");
+  }
+}
+
+void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`options`", report};
+  reader.text("dcf_path", spec.dcf_path);
+  reader.number("heartbeat_multiplier", spec.heartbeat_multiplier);
+  reader.ignore(std::array<std::string_view, 1>{"retry_factor"}, not_yet);
+  reader.finish();
+  if (spec.heartbeat_multiplier.given && *spec.heartbeat_multiplier < 1.5) {
+    report.error(spec.heartbeat_multiplier.pos, "out-of-range",
+                 "`heartbeat_multiplier` is at least 1.5, or one late heartbeat stops the node");
+  }
+}
+
+void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`master`", report};
+  MasterSpec& master = spec.master;
+  master.pos = node.pos;
+  const Sourced<std::uint32_t> of_bus = master.baudrate_kbit;
+  reader.integer("node_id", master.node_id, {1, 127});
+  read_bit_rate(reader, "baudrate", master.baudrate_kbit);
+  if (of_bus.given && master.baudrate_kbit.value != of_bus.value) {
+    report.error(master.baudrate_kbit.pos, "bit-rate",
+                 "`baudrate` of `master` and `bitrate_kbit` of `bus` differ: keep one");
+  }
+  read_sync(reader, master);
+  reader.integer("heartbeat_producer", master.heartbeat_producer, {0, 65535, " ms"});
+  reader.number("heartbeat_multiplier", master.heartbeat_multiplier);
+  reader.boolean("heartbeat_consumer", master.heartbeat_consumer);
+  reader.boolean("start_nodes", master.start_nodes);
+  reader.integer("stop_timeout", master.stop_timeout_ms, {100, 60'000, " ms"});
+  reader.ignore(
+      std::array<std::string_view, 11>{"driver", "package", "namespace", "polling", "period",
+                                       "diagnostics", "vendor_id", "product_code",
+                                       "revision_number", "serial_number", "remappings"},
+      other_reader);
+  reader.ignore(
+      std::array<std::string_view, 13>{
+          "time_cob_id", "emcy_inhibit_time", "nmt_inhibit_time", "error_behavior", "start",
+          "start_all_nodes", "reset_all_nodes", "stop_all_nodes", "boot_time", "boot_timeout",
+          "boot_timeout_ms", "sdo_timeout_ms", "non_transmit_timeout"},
+      not_yet);
+  reader.finish();
+}
+
+void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`realtime`", report};
+  RealtimeOptions& options = spec.realtime;
+  if (const YamlNode* mode = reader.take("mode")) {
+    constexpr std::array<std::string_view, 3> names{"enforce", "try", "off"};
+    // YAML 1.1 readers take a bare `off` for false; here it is the word.
+    if (const auto choice = read_choice(*mode, "mode", names, report)) {
+      options.mode = static_cast<RtMode>(*choice);
+    }
+  }
+  Sourced<std::uint32_t> priority, cpu, spin_us, late_us;
+  reader.integer("priority", priority, {1, 99});
+  reader.integer("cpu", cpu, {0, 1023});
+  reader.integer("spin_us", spin_us, {0, 10'000, " us"});
+  reader.integer("late_limit_us", late_us, {0, 1'000'000, " us"});
+  reader.integer("receive_window_us", spec.receive_window_us, {1, 60'000'000, " us"});
+  reader.finish();
+  if (priority.given) options.priority = static_cast<int>(*priority);
+  if (cpu.given) options.cpu = static_cast<int>(*cpu);
+  if (spin_us.given) options.spin = std::chrono::microseconds{*spin_us};
+  if (late_us.given) options.late_limit = std::chrono::microseconds{*late_us};
+}
+
+void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`lcm`", report};
+  Sourced<std::string> url;
+  Sourced<bool> broker;
+  reader.text("url", url);
+  reader.boolean("broker", broker);
+  reader.finish();
+  spec.lcm = {.url = *url, .broker = *broker};
+  if (!url.given) return;
+  const std::size_t scheme = url->find("://");
+  if (scheme == std::string::npos) {
+    report.error(url.pos, "lcm-url",
+                 "`url`: expected `udpm://239.255.76.67:7667?ttl=0`, `tcpq://HOST:PORT` or another "
+                 "LCM URL");
+  } else if (url->starts_with("udpm://") && !is_multicast(*url)) {
+    report.error(url.pos, "lcm-url",
+                 "`udpm://` takes a multicast address (224.0.0.0 .. 239.255.255.255), as "
+                 "`udpm://239.255.76.67:7667?ttl=0`; for one host use `tcpq://`");
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,30 @@
+#pragma once
+#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_spec.hpp"
+
+namespace takt {
+
+// The sections of a network file, one function each. All report and go on.
+
+void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+
+/// One node; keys that it does not have itself are already merged in from `defaults`.
+NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
+                   NetworkReport& report);
+
+/// `tpdo:` or `rpdo:` of a node. `key` is "tpdo" or "rpdo".
+std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const std::string& owner,
+                               NetworkReport& report);
+/// A list of `{index, sub_index, value}`; an object twice is an error unless it says `again: true`.
+std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
+                                  const std::string& owner, NetworkReport& report);
+UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report);
+
+/// `index` and `sub_index` of a list entry; none: reported.
+std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos);
+
+}  // namespace takt

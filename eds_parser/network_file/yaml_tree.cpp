@@ -1,0 +1,235 @@
+#include "eds_parser/network_file/yaml_tree.hpp"
+
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+namespace takt {
+namespace {
+
+SourcePos position(const YAML::Mark& mark) {
+  if (mark.is_null()) return {};
+  return {static_cast<std::uint32_t>(mark.line + 1), static_cast<std::uint32_t>(mark.column + 1)};
+}
+
+/// Leaves yaml-cpp's parser; what was wrong is already in the findings.
+struct Stop {};
+
+}  // namespace
+
+/// Builds the tree from the parser's events.
+class YamlTreeBuilder : public YAML::EventHandler {
+ public:
+  YamlTreeBuilder(YamlTree& tree, const std::string& file, Findings& findings)
+      : tree_{tree}, file_{file}, findings_{findings} {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    finish(add(mark, anchor, YamlNode::Kind::null));
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end() || found->second.second) {
+      stop(position(mark), "alias", "an alias inside the value that it names never ends");
+    }
+    attach(found->second.first, position(mark));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    YamlNode& node = add(mark, anchor, YamlNode::Kind::scalar);
+    node.quoted = tag == "!";
+    node.text = value;
+    finish(node);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(add(mark, anchor, YamlNode::Kind::sequence), anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(add(mark, anchor, YamlNode::Kind::map), anchor);
+  }
+  void OnMapEnd() override {
+    merge(*stack_.back().node, stack_.back().merges);
+    close();
+  }
+
+ private:
+  struct Open {
+    YamlNode* node;
+    YAML::anchor_t anchor;
+    const YamlNode* key = nullptr;  ///< of a map: the key that waits for its value
+    SourcePos key_pos;
+    std::vector<std::pair<const YamlNode*, SourcePos>> merges;
+    std::map<std::string, SourcePos, std::less<>> seen;
+  };
+
+  [[noreturn]] void stop(SourcePos pos, std::string_view rule, std::string message) {
+    findings_.push_back({file_, pos, Severity::error, rule, std::move(message)});
+    throw Stop{};
+  }
+
+  YamlNode& add(const YAML::Mark& mark, YAML::anchor_t anchor, YamlNode::Kind kind) {
+    if (tree_.nodes_.size() >= YamlTree::max_nodes) {
+      stop(position(mark), "too-large", "more than 100000 values in one file");
+    }
+    YamlNode& node = tree_.nodes_.emplace_back();
+    node.kind = kind;
+    node.pos = position(mark);
+    if (anchor != 0) anchors_[anchor] = {&node, true};
+    anchor_of_ = anchor;
+    return node;
+  }
+
+  void open(YamlNode& node, YAML::anchor_t anchor) {
+    if (stack_.size() >= YamlTree::max_depth) {
+      stop(node.pos, "too-deep", "nested more than 32 levels deep");
+    }
+    stack_.push_back({.node = &node, .anchor = anchor, .key_pos = {}, .merges = {}, .seen = {}});
+  }
+
+  void close() {
+    const Open done = std::move(stack_.back());
+    stack_.pop_back();
+    anchor_of_ = done.anchor;
+    finish(*done.node);
+  }
+
+  void finish(YamlNode& node) {
+    if (anchor_of_ != 0) anchors_[anchor_of_].second = false;
+    attach(&node, node.pos);
+  }
+
+  void attach(const YamlNode* node, SourcePos pos) {
+    if (stack_.empty()) {
+      tree_.root_ = node;
+      return;
+    }
+    Open& parent = stack_.back();
+    if (parent.node->kind == YamlNode::Kind::sequence) {
+      parent.node->items.push_back(node);
+    } else if (parent.key == nullptr) {
+      if (node->kind != YamlNode::Kind::scalar) stop(pos, "syntax", "a key has to be plain text");
+      parent.key = node;
+      parent.key_pos = pos;
+    } else {
+      add_pair(parent, *node, pos);
+      parent.key = nullptr;
+    }
+  }
+
+  void add_pair(Open& parent, const YamlNode& value, SourcePos value_pos) {
+    if (parent.key->text == "<<" && !parent.key->quoted) {
+      parent.merges.emplace_back(&value, value_pos);
+      return;
+    }
+    const auto [first, is_new] = parent.seen.emplace(parent.key->text, parent.key_pos);
+    if (!is_new) {
+      findings_.push_back({file_, parent.key_pos, Severity::error, "duplicate-key",
+                           "key `" + parent.key->text + "` is written twice, first in line " +
+                               std::to_string(first->second.line) + ": keep one"});
+      return;
+    }
+    parent.node->pairs.push_back({parent.key->text, parent.key_pos, &value});
+  }
+
+  /// YAML 1.1 merge keys: own keys win, then earlier maps of the list.
+  void merge(YamlNode& map, const std::vector<std::pair<const YamlNode*, SourcePos>>& merges) {
+    if (merges.empty()) return;
+    std::set<std::string, std::less<>> keys;
+    for (const YamlPair& pair : map.pairs) keys.insert(pair.key);
+    for (const auto& [source, pos] : merges) {
+      if (source->kind == YamlNode::Kind::sequence) {
+        for (const YamlNode* item : source->items) merge_one(map, *item, pos, keys);
+      } else {
+        merge_one(map, *source, pos, keys);
+      }
+    }
+  }
+
+  void merge_one(YamlNode& map, const YamlNode& source, SourcePos pos,
+                 std::set<std::string, std::less<>>& keys) {
+    if (source.kind != YamlNode::Kind::map) {
+      stop(pos, "merge-key",
+           "`<<` merges a map or a list of maps, this is a " + std::string{name(source.kind)});
+    }
+    merged_ += source.pairs.size() + 1;
+    if (merged_ > YamlTree::max_merged) {
+      stop(pos, "too-large", "merge keys expand to more than 100000 entries");
+    }
+    for (const YamlPair& pair : source.pairs) {
+      if (keys.insert(pair.key).second) map.pairs.push_back(pair);
+    }
+  }
+
+  YamlTree& tree_;
+  const std::string& file_;
+  Findings& findings_;
+  std::vector<Open> stack_;
+  std::map<YAML::anchor_t, std::pair<YamlNode*, bool>> anchors_;  ///< second: still open
+  YAML::anchor_t anchor_of_ = 0;
+  std::size_t merged_ = 0;
+};
+
+const YamlNode* YamlNode::find(std::string_view key) const noexcept {
+  for (const YamlPair& pair : pairs) {
+    if (pair.key == key) return pair.value;
+  }
+  return nullptr;
+}
+
+YamlTree YamlTree::parse(std::string_view text, const std::string& file, Findings& findings) {
+  YamlTree tree;
+  const auto fail = [&](SourcePos pos, std::string_view rule, std::string message) {
+    findings.push_back({file, pos, Severity::error, rule, std::move(message)});
+    tree.root_ = nullptr;
+  };
+  if (text.size() > max_text) {
+    fail({}, "too-large", "larger than 1 MiB: no network file");
+    return tree;
+  }
+  try {
+    std::istringstream in{std::string{text}};
+    YAML::Parser parser{in};
+    YamlTreeBuilder builder{tree, file, findings};
+    if (!parser.HandleNextDocument(builder)) {
+      fail({1, 1}, "syntax", "the file is empty: a network file has `master:` and `nodes:`");
+      return tree;
+    }
+    const YamlNode* first = tree.root_;
+    if (parser.HandleNextDocument(builder)) {
+      fail(tree.root_ != nullptr ? tree.root_->pos : SourcePos{}, "syntax",
+           "a second document begins here (`---`): one network a file");
+      return tree;
+    }
+    tree.root_ = first;
+  } catch (const Stop&) {
+    tree.root_ = nullptr;
+  } catch (const YAML::Exception& error) {
+    fail(position(error.mark), "syntax", "no valid YAML: " + error.msg);
+  }
+  return tree;
+}
+
+std::string_view name(YamlNode::Kind kind) noexcept {
+  switch (kind) {
+    case YamlNode::Kind::null:
+      return "empty value";
+    case YamlNode::Kind::scalar:
+      return "single value";
+    case YamlNode::Kind::sequence:
+      return "list";
+    case YamlNode::Kind::map:
+      return "map";
+  }
+  return "value";
+}
+
+}  // namespace takt

@@ -1,0 +1,183 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "eds_parser/source.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/run_options.hpp"
+
+namespace takt {
+
+/// A value of the network file and where it stands. `given` is false for a default.
+template <class T>
+struct Sourced {
+  T value{};
+  SourcePos pos;
+  bool given = false;
+
+  const T& operator*() const noexcept { return value; }
+  const T* operator->() const noexcept { return &value; }
+  T value_or(T fallback) const { return given ? value : fallback; }
+};
+
+/// `mapping: [{index: 0x6041, sub_index: 0}]`.
+struct MappingSpec {
+  ObjectKey object;
+  std::optional<std::uint8_t> bits;  ///< none: the width of the object
+  SourcePos pos;
+};
+
+/// `tpdo: {1: {...}}` or `rpdo:`; the device's directions. What is not given stays as the EDS says.
+struct PdoSpec {
+  std::uint16_t number = 1;  ///< 1..512
+  SourcePos pos;
+  Sourced<bool> enabled{.value = true, .pos = {}};
+  /// COB-ID with flags of bits 29..31 as in 0x1800:01; none: `auto`.
+  Sourced<std::optional<std::uint32_t>> cob_id;
+  Sourced<std::uint8_t> transmission;
+  Sourced<std::uint16_t> inhibit_time;    ///< 100 us
+  Sourced<std::uint16_t> event_timer;     ///< ms
+  Sourced<std::uint16_t> event_deadline;  ///< ms
+  Sourced<std::uint8_t> sync_start;
+  Sourced<std::vector<MappingSpec>> mapping;
+};
+
+/// `sdo: [{index: 0x6083, sub_index: 0, value: 10000}]`, written at boot in this order.
+struct SdoSpec {
+  ObjectKey object;
+  std::variant<std::int64_t, double, std::string> value;
+  SourcePos pos;
+  SourcePos value_pos;
+};
+
+/// SI value = sign * counts * scale + offset.
+struct UnitSpec {
+  Sourced<double> scale{.value = 1.0, .pos = {}};
+  double offset = 0.0;
+  int sign = 1;
+  std::string unit;
+  SourcePos pos;
+};
+
+/// Objects that share a unit.
+enum class Quantity : std::uint8_t { position, velocity, acceleration, torque };
+
+struct ObjectUnitSpec {
+  ObjectKey object;
+  UnitSpec unit;
+};
+
+/// `units:` of a node.
+struct UnitsSpec {
+  std::optional<UnitSpec> position;
+  std::optional<UnitSpec> velocity;
+  std::optional<UnitSpec> acceleration;
+  std::optional<UnitSpec> torque;
+  std::vector<ObjectUnitSpec> objects;  ///< `objects: [{index, sub_index, scale, unit}]`
+
+  const std::optional<UnitSpec>& of(Quantity quantity) const noexcept {
+    switch (quantity) {
+      case Quantity::position:
+        return position;
+      case Quantity::velocity:
+        return velocity;
+      case Quantity::acceleration:
+        return acceleration;
+      case Quantity::torque:
+        return torque;
+    }
+    return position;
+  }
+};
+
+/// What outputs do when their command has grown old.
+enum class FallbackPolicy : std::uint8_t { quick_stop, hold, zero, safe, disable };
+
+struct TimeoutSpec {
+  Sourced<FallbackPolicy> fallback;
+  Sourced<std::uint32_t> after_cycles;
+};
+
+/// What the master does to a node before it talks to it.
+enum class ResetPolicy : std::uint8_t { communication, node, none };
+
+struct SimSpec {
+  std::string model;
+  std::vector<std::string> quirks;
+};
+
+struct NodeSpec {
+  std::string name;
+  SourcePos pos;
+  Sourced<std::uint8_t> id;  ///< 1..127 where given
+  Sourced<std::string> dcf;
+  Sourced<std::string> dcf_path;
+
+  // expected identity; 0: not checked
+  Sourced<std::uint32_t> device_type;
+  Sourced<std::uint32_t> vendor_id;
+  Sourced<std::uint32_t> product_code;
+  Sourced<std::uint32_t> revision_number;
+  Sourced<std::uint32_t> serial_number;
+
+  Sourced<bool> boot{.value = true, .pos = {}};
+  Sourced<bool> mandatory;
+  Sourced<ResetPolicy> reset;
+  Sourced<std::uint8_t> restore;  ///< sub-index of 0x1011, 0 = no
+  Sourced<std::uint32_t> boot_timeout_ms;
+  Sourced<std::uint32_t> sdo_timeout_ms;
+  Sourced<std::uint32_t> reboot_delay_ms;
+
+  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the device watches the master
+  Sourced<std::uint16_t> heartbeat_producer;                   ///< ms
+  Sourced<double> heartbeat_multiplier;
+  std::vector<SdoSpec> error_behavior;  ///< 0x1029 by sub-index
+
+  Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; not given: from the EDS
+  UnitsSpec units;
+  TimeoutSpec on_timeout;
+  std::vector<SdoSpec> safe_values;
+  SimSpec sim;
+  std::vector<PdoSpec> tpdos;
+  std::vector<PdoSpec> rpdos;
+  std::vector<SdoSpec> sdo;
+};
+
+struct MasterSpec {
+  SourcePos pos;
+  Sourced<std::uint8_t> node_id{.value = 127, .pos = {}};
+  Sourced<std::uint32_t> baudrate_kbit{.value = 1000, .pos = {}};
+  Sourced<std::uint32_t> sync_period_us;
+  Sourced<std::uint32_t> sync_window_us;
+  Sourced<std::uint8_t> sync_overflow;
+  Sourced<std::uint32_t> sync_cob_id{.value = 0x80, .pos = {}};
+  Sourced<std::uint32_t> cycle_us{.value = 10'000, .pos = {}};  ///< of the image, without SYNC
+  Sourced<std::uint16_t> heartbeat_producer{.value = 100, .pos = {}};  ///< ms, 0 = none
+  Sourced<double> heartbeat_multiplier;
+  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the master watches the nodes
+  Sourced<bool> start_nodes{.value = true, .pos = {}};
+  Sourced<std::uint32_t> stop_timeout_ms{.value = 5000, .pos = {}};
+};
+
+struct BusSpec {
+  Sourced<std::string> name;
+  Sourced<std::string> interface;
+};
+
+/// A network file as it was written: nothing of the devices is known yet.
+struct NetworkSpec {
+  std::string file;
+  BusSpec bus;
+  Sourced<std::string> dcf_path;
+  Sourced<double> heartbeat_multiplier{.value = 3.0, .pos = {}};
+  MasterSpec master;
+  RealtimeOptions realtime;
+  Sourced<std::uint32_t> receive_window_us;
+  LcmOptions lcm;
+  std::vector<NodeSpec> nodes;  ///< in the order of the file
+};
+
+}  // namespace takt
