@@ -15,7 +15,8 @@ struct LoadedNetwork {
   std::vector<DeviceTable> devices;  ///< one a node, for the simulation; same order as plan.nodes
   RealtimeOptions realtime;
   LcmOptions lcm;
-  Findings findings;  ///< of the network file and of the device files it names
+  bool bus_named = false;  ///< the file names the bus or its interface; else plan.name is "sim"
+  Findings findings;       ///< of the network file and of the device files it names
 };
 
 /// Reads, checks and compiles a network file. All errors are listed at once.

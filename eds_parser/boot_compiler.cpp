@@ -1,0 +1,224 @@
+#include "eds_parser/boot_compiler.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "eds_parser/boot_pdos.hpp"
+#include "eds_parser/boot_steps.hpp"
+#include "eds_parser/boot_values.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::int64_t load_signature = 0x6461'6F6C;  // "load"
+constexpr Time restore_timeout = std::chrono::seconds{5};
+constexpr Time longest_bootup_wait = std::chrono::seconds{2};
+
+class BootCompiler {
+ public:
+  BootCompiler(const NodePdos& node, const BootContext& context, NetworkReport& report)
+      : node_{node},
+        spec_{*node.node.spec},
+        dictionary_{*node.node.dictionary},
+        context_{context},
+        report_{report},
+        steps_{dictionary_, context.sdo_timeout} {}
+
+  BootPlan run() {
+    reset();
+    identity();
+    restore();
+    heartbeat();
+    sync();
+    append_values(node_.node, context_, steps_, report_);
+    for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
+    start();
+    return steps_.take();
+  }
+
+ private:
+  void reset() {
+    const ResetPolicy policy = *spec_.reset;
+    if (policy != ResetPolicy::none) {
+      steps_.nmt(
+          policy == ResetPolicy::node ? NmtCommand::reset_node : NmtCommand::reset_communication,
+          policy == ResetPolicy::node ? "reset node" : "reset communication");
+      await_bootup();
+    }
+    probe();
+  }
+
+  void await_bootup() {
+    steps_.wait(BootAction::await_bootup, std::min(longest_bootup_wait, context_.boot_timeout), 'B',
+                "boot-up message; a node that sends none is probed next");
+  }
+
+  void probe() {
+    BootStep& step = steps_.integer(BootAction::probe, {0x1000, 0}, 0, "does it answer SDO?");
+    step.value.clear();
+    step.letter = 'B';
+    step.timeout = context_.boot_timeout;
+  }
+
+  /// The value of the network file, else of the device file; 0 is not checked.
+  std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key,
+                         std::uint32_t fallback = 0) const {
+    if (wanted.given) return *wanted;
+    const SubObject* sub = dictionary_.find(key);
+    if (sub == nullptr || !sub->value()) return fallback;
+    return static_cast<std::uint32_t>(as_integer(*sub->value()).value_or(0));
+  }
+
+  void expect(ObjectKey key, std::uint32_t value, char letter, const std::string& purpose) {
+    if (value == 0) return;
+    steps_.integer(BootAction::expect, key, value, purpose).letter = letter;
+  }
+
+  void identity() {
+    expect({0x1000, 0}, expected(spec_.device_type, {0x1000, 0}), 'C', "device type");
+    expect({0x1018, 1}, expected(spec_.vendor_id, {0x1018, 1}, dictionary_.device.vendor_number),
+           'D', "vendor id");
+    expect({0x1018, 2},
+           expected(spec_.product_code, {0x1018, 2}, dictionary_.device.product_number), 'M',
+           "product code");
+    expect({0x1018, 3}, *spec_.revision_number, 'N', "revision number");
+    expect({0x1018, 4}, *spec_.serial_number, 'O', "serial number");
+  }
+
+  void restore() {
+    const std::uint8_t sub = *spec_.restore;
+    if (sub == 0) return;
+    const ObjectKey key{0x1011, sub};
+    if (!steps_.has(key)) {
+      report_.error(spec_.restore.pos, "no-such-object",
+                    "`restore_configuration` of node `" + spec_.name + "` needs " + to_string(key) +
+                        ", which " + dictionary_.file + " does not have");
+      return;
+    }
+    steps_.integer(BootAction::write, key, load_signature, "restore defaults (\"load\")").timeout =
+        std::max(restore_timeout, context_.sdo_timeout);
+    steps_.nmt(sub == 2 ? NmtCommand::reset_communication : NmtCommand::reset_node,
+               "make the restored values effective");
+    await_bootup();
+    probe();
+  }
+
+  void heartbeat() {
+    if (context_.producer_ms != 0 && steps_.writable({0x1017, 0})) {
+      steps_.integer(BootAction::write_if_differs, {0x1017, 0}, context_.producer_ms,
+                     "heartbeat every " + std::to_string(context_.producer_ms) + " ms");
+    } else if (spec_.heartbeat_producer.given && *spec_.heartbeat_producer == 0 &&
+               steps_.writable({0x1017, 0})) {
+      steps_.integer(BootAction::write_if_differs, {0x1017, 0}, 0, "no heartbeat");
+    }
+    watch_master();
+    for (const SdoSpec& sdo : spec_.error_behavior) {
+      if (!steps_.has(sdo.object)) {
+        report_.error(sdo.pos, "no-such-object",
+                      "`error_behavior` of node `" + spec_.name + "` needs " +
+                          to_string(sdo.object) + ", which " + dictionary_.file + " does not have");
+        continue;
+      }
+      steps_.integer(BootAction::write_if_differs, sdo.object, std::get<std::int64_t>(sdo.value),
+                     "error behaviour", 1);
+    }
+  }
+
+  /// 0x1016: an entry that already names the master, else the first one.
+  void watch_master() {
+    if (context_.master_consumer_ms == 0 || !*spec_.heartbeat_consumer) return;
+    const Object* object = dictionary_.find(std::uint16_t{0x1016});
+    if (object == nullptr) return;
+    ObjectKey key{0x1016, 1};
+    for (const SubObject& sub : object->subs) {
+      const auto value = sub.value() ? as_integer(*sub.value()) : std::nullopt;
+      if (sub.sub != 0 && value && ((*value >> 16) & 0x7F) == context_.master_id.value()) {
+        key.sub = sub.sub;
+      }
+    }
+    if (!steps_.writable(key)) return;
+    const std::int64_t value =
+        (std::int64_t{context_.master_id.value()} << 16) | context_.master_consumer_ms;
+    steps_.integer(BootAction::write_if_differs, key, value,
+                   "the device watches the master (node " +
+                       std::to_string(context_.master_id.value()) + ") for " +
+                       std::to_string(context_.master_consumer_ms) + " ms");
+  }
+
+  void sync() {
+    if (!context_.sync) return;
+    if (steps_.writable({0x1005, 0})) {
+      steps_
+          .integer(BootAction::write_if_differs, {0x1005, 0}, context_.sync_cob_id,
+                   "SYNC comes from the master, on " + hex(context_.sync_cob_id, 3))
+          .mask = 0x7FFF'FFFF;
+    }
+    sync_counter();
+    if (steps_.writable({0x1006, 0})) {
+      steps_.integer(BootAction::write_if_differs, {0x1006, 0}, context_.sync_period_us,
+                     "SYNC period " + std::to_string(context_.sync_period_us) + " us");
+    }
+    if (!context_.sync_window_us.given) return;
+    if (steps_.writable({0x1007, 0})) {
+      steps_.integer(BootAction::write_if_differs, {0x1007, 0}, *context_.sync_window_us,
+                     "synchronous window " + std::to_string(*context_.sync_window_us) + " us");
+    }
+  }
+
+  /// 0x1019 may change only while 0x1006 is 0. CiA 301, 7.5.2.22.
+  void sync_counter() {
+    const ObjectKey key{0x1019, 0};
+    if (!steps_.writable(key)) {
+      if (context_.sync_overflow != 0 && !steps_.has(key)) {
+        report_.warning(spec_.pos, "sync-counter",
+                        "node `" + spec_.name + "` has no " + to_string(key) +
+                            ": it may report each SYNC with a counter as a length error");
+      }
+      return;
+    }
+    const std::string purpose = context_.sync_overflow == 0
+                                    ? "SYNC without counter"
+                                    : "SYNC counter 1.." + std::to_string(context_.sync_overflow);
+    steps_.integer(BootAction::compare, key, context_.sync_overflow, purpose, 1);
+    const std::size_t skip = steps_.skip_if_same("SYNC counter is right");
+    if (steps_.writable({0x1006, 0})) {
+      steps_.integer(BootAction::write, {0x1006, 0}, 0, "period 0, so that 1019 may change");
+    }
+    steps_.integer(BootAction::write, key, context_.sync_overflow, purpose, 1);
+    steps_.land(skip);
+  }
+
+  void start() {
+    const bool watched = context_.heartbeat_timeout != Time{};
+    if (watched) {
+      steps_.wait(BootAction::await_heartbeat, context_.heartbeat_timeout, 'K', "first heartbeat");
+    }
+    if (!context_.start_nodes) return;
+    steps_.nmt(NmtCommand::start, "start");
+    if (watched) {
+      steps_.wait(BootAction::await_operational,
+                  std::max<Time>(2 * context_.heartbeat_timeout, std::chrono::milliseconds{500}),
+                  'K', "OPERATIONAL");
+    }
+  }
+
+  const NodePdos& node_;
+  const NodeSpec& spec_;
+  const ObjectDictionary& dictionary_;
+  const BootContext& context_;
+  NetworkReport& report_;
+  BootSteps steps_;
+};
+
+}  // namespace
+
+BootPlan compile_boot(const NodePdos& node, const BootContext& context, NetworkReport& report) {
+  return BootCompiler{node, context, report}.run();
+}
+
+bool has_heartbeat_producer(const ObjectDictionary& dictionary) noexcept {
+  const SubObject* sub = dictionary.find(ObjectKey{0x1017, 0});
+  return sub != nullptr && sub->access != Access::ro && sub->access != Access::constant;
+}
+
+}  // namespace takt

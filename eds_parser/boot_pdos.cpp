@@ -1,0 +1,152 @@
+#include "eds_parser/boot_pdos.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t all_but_rtr = 0xBFFF'FFFF;
+constexpr std::uint32_t valid_bit = 0x8000'0000;
+
+class PdoBoot {
+ public:
+  PdoBoot(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps)
+      : dictionary_{dictionary}, pdo_{pdo}, steps_{steps} {}
+
+  void exchange() {
+    compare_all();
+    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is as it should be");
+    disable();
+    if (!pdo_.fixed_mapping) write_mapping();
+    write_parameters();
+    if (steps_.writable(cob_id_key())) {
+      steps_.integer(BootAction::enable_pdo, cob_id_key(), cob_id_value(),
+                     pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id));
+    }
+    read_back();
+    steps_.land(skip);
+  }
+
+  void switch_off() {
+    if (!steps_.has(cob_id_key())) return;
+    steps_.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
+        valid_bit;
+    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is off");
+    disable();
+    steps_.land(skip);
+  }
+
+ private:
+  ObjectKey communication(std::uint8_t sub) const { return {pdo_.communication_index(), sub}; }
+  ObjectKey mapping(std::size_t sub) const {
+    return {pdo_.mapping_index(), static_cast<std::uint8_t>(sub)};
+  }
+  ObjectKey cob_id_key() const { return communication(1); }
+  std::int64_t cob_id_value() const {
+    return std::int64_t{pdo_.cob_id.id()} | (pdo_.cob_id.is_extended() ? 0x2000'0000 : 0);
+  }
+  std::string entry_text(std::size_t number) const {
+    const EffectiveEntry& entry = pdo_.mapping[number - 1];
+    return pdo_.label() + " entry " + std::to_string(number) + ": " +
+           (entry.dummy ? "gap" : label(dictionary_, entry.object)) + ", " +
+           std::to_string(entry.bits) + " bits";
+  }
+  std::string type_text() const {
+    const std::string text = pdo_.label() + " type " + std::to_string(pdo_.transmission);
+    if (pdo_.transmission == 0) return text + ": after SYNC, on change";
+    if (pdo_.transmission == 1) return text + ": every SYNC";
+    if (pdo_.synchronous()) return text + ": every " + std::to_string(pdo_.transmission) + " SYNCs";
+    return text + ": by event";
+  }
+
+  void compare_all() {
+    if (steps_.has(cob_id_key())) {
+      steps_
+          .integer(BootAction::compare, cob_id_key(), cob_id_value(),
+                   pdo_.label() + " COB-ID " + to_string(pdo_.cob_id))
+          .mask = all_but_rtr;
+    }
+    if (steps_.has(communication(2))) {
+      steps_.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
+    }
+    parameters(BootAction::compare);
+    steps_.integer(BootAction::compare, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+                   pdo_.label() + " maps " + std::to_string(pdo_.mapping.size()) + " objects", 1);
+    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
+      steps_.integer(BootAction::compare, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
+    }
+  }
+
+  void disable() {
+    if (!steps_.writable(cob_id_key())) return;
+    steps_.integer(BootAction::disable_pdo, cob_id_key(), 0, pdo_.label() + " off").value.clear();
+  }
+
+  void write_mapping() {
+    steps_.integer(BootAction::write, mapping(0), 0, pdo_.label() + " mapping off", 1);
+    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
+      steps_.integer(BootAction::write, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
+    }
+    steps_.integer(
+        BootAction::write, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+        pdo_.label() + " mapping on, " + std::to_string(pdo_.mapping.size()) + " objects", 1);
+  }
+
+  void write_parameters() {
+    if (steps_.writable(communication(2))) {
+      steps_.integer(BootAction::write_if_differs, communication(2), pdo_.transmission,
+                     type_text());
+    }
+    parameters(BootAction::write_if_differs);
+  }
+
+  /// Inhibit time, event timer and SYNC start value, where the device has them.
+  void parameters(BootAction action) {
+    const auto step = [&](bool has, std::uint8_t sub, std::int64_t value, const std::string& text) {
+      if (!has) return;
+      steps_.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
+    };
+    step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
+         "inhibit time " + std::to_string(pdo_.inhibit_time) + " x 100 us");
+    step(pdo_.has_event_timer, 5, pdo_.event_timer,
+         (pdo_.is_tpdo ? "event timer " : "deadline ") + std::to_string(pdo_.event_timer) + " ms");
+    step(pdo_.has_sync_start, 6, pdo_.sync_start,
+         "SYNC start value " + std::to_string(pdo_.sync_start));
+  }
+
+  void read_back() {
+    if (steps_.has(cob_id_key())) {
+      steps_
+          .integer(BootAction::verify, cob_id_key(), cob_id_value(),
+                   pdo_.label() + " COB-ID read back")
+          .mask = all_but_rtr;
+    }
+    steps_.integer(BootAction::verify, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+                   pdo_.label() + " number of mapped objects read back", 1);
+    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
+      steps_.integer(BootAction::verify, mapping(i), pdo_.mapping[i - 1].raw(),
+                     entry_text(i) + ", read back");
+    }
+  }
+
+  const ObjectDictionary& dictionary_;
+  const EffectivePdo& pdo_;
+  BootSteps& steps_;
+};
+
+}  // namespace
+
+void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps) {
+  PdoBoot boot{dictionary, pdo, steps};
+  switch (pdo.use) {
+    case PdoUse::exchanged:
+    case PdoUse::linked:
+      boot.exchange();
+      break;
+    case PdoUse::off:
+      boot.switch_off();
+      break;
+    case PdoUse::ignored:
+      break;
+  }
+}
+
+}  // namespace takt

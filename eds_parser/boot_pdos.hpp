@@ -1,0 +1,11 @@
+#pragma once
+#include "eds_parser/boot_steps.hpp"
+#include "eds_parser/effective_pdo.hpp"
+
+namespace takt {
+
+/// Steps for one PDO: compare what the device has; where something differs, configure it in the
+/// order that devices accept (CiA 301, 7.5.2.36) and read it back. A fixed mapping is only checked.
+void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps);
+
+}  // namespace takt

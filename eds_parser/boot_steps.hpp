@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/mapping_compiler.hpp"
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/table/boot_plan.hpp"
+
+namespace takt {
+
+/// Appends steps to a boot plan; knows the dictionary, so that each step can say what it does.
+class BootSteps {
+ public:
+  BootSteps(const ObjectDictionary& dictionary, Time sdo_timeout)
+      : dictionary_{dictionary}, sdo_timeout_{sdo_timeout} {}
+
+  BootStep& nmt(NmtCommand command, std::string purpose);
+  BootStep& wait(BootAction action, Time timeout, char letter, std::string purpose);
+  /// A step on an object with an integer of its width (or of `bytes` bytes where that is unknown).
+  BootStep& integer(BootAction action, ObjectKey object, std::int64_t value, std::string purpose,
+                    unsigned bytes = 4);
+  BootStep& bytes(BootAction action, ObjectKey object, std::vector<std::byte> value,
+                  std::string purpose);
+  /// `skip_if_same` whose target is set by land().
+  std::size_t skip_if_same(std::string purpose);
+  /// The step after the last one is the target of `skip`.
+  void land(std::size_t skip);
+
+  bool has(ObjectKey object) const noexcept { return dictionary_.find(object) != nullptr; }
+  bool writable(ObjectKey object) const noexcept;
+  bool readable(ObjectKey object) const noexcept;
+  BootPlan take() { return std::move(plan_); }
+
+ private:
+  BootStep& add(BootAction action, std::string purpose);
+  std::string eds_note(ObjectKey object) const;
+
+  const ObjectDictionary& dictionary_;
+  Time sdo_timeout_;
+  BootPlan plan_;
+};
+
+/// `value` little endian in `width` bytes.
+std::vector<std::byte> little_endian(std::int64_t value, unsigned width);
+
+}  // namespace takt

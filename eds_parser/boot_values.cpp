@@ -1,0 +1,246 @@
+#include "eds_parser/boot_values.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "eds_parser/object_units.hpp"
+#include "eds_parser/pdo_compiler.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t refuse_write_on_download = 1;
+
+/// Objects that other parts of the boot set, or that only a person should write.
+bool is_set_elsewhere(std::uint16_t index) {
+  switch (index) {
+    case 0x1000:
+    case 0x1003:
+    case 0x1005:
+    case 0x1006:
+    case 0x1010:
+    case 0x1011:
+    case 0x1017:
+    case 0x1018:
+    case 0x1019:
+    case 0x1020:
+      return true;
+    default:
+      return is_pdo_parameter(index) || (index >= 0x1200 && index <= 0x12FF) ||
+             (index >= 0x1F50 && index <= 0x1F5F);
+  }
+}
+
+/// A period as value * 10^exponent seconds, as 0x60C2 holds it; none: not possible.
+struct Interpolation {
+  std::int64_t value;
+  std::int64_t exponent;
+};
+std::optional<Interpolation> interpolation(std::uint32_t period_us) {
+  std::uint32_t unit_us = 1000;
+  for (std::int64_t exponent = -3; exponent >= -6; --exponent, unit_us /= 10) {
+    if (period_us % unit_us == 0 && period_us / unit_us <= 255) {
+      return Interpolation{period_us / unit_us, exponent};
+    }
+  }
+  return {};
+}
+
+class ValueSteps {
+ public:
+  ValueSteps(const NodeSource& node, const BootContext& context, BootSteps& steps,
+             NetworkReport& report)
+      : spec_{*node.spec},
+        dictionary_{*node.dictionary},
+        context_{context},
+        steps_{steps},
+        report_{report} {}
+
+  void run() {
+    if (dictionary_.is_dcf) device_values();
+    if (context_.cia402 && context_.sync) interpolation_periods();
+    for (const SdoSpec& sdo : spec_.sdo) configured(sdo);
+  }
+
+ private:
+  const SdoSpec* configured_value(ObjectKey key) const {
+    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
+    return found == spec_.sdo.end() ? nullptr : &*found;
+  }
+
+  void device_values() {
+    for (const Object& object : dictionary_.objects) {
+      if (is_set_elsewhere(object.index)) continue;
+      for (const SubObject& sub : object.subs) {
+        const ObjectKey key{object.index, sub.sub};
+        const bool refused = (sub.flags & refuse_write_on_download) != 0;
+        if (!sub.parameter_value || refused || !steps_.writable(key) || configured_value(key)) {
+          continue;
+        }
+        write(key, to_bytes(*sub.parameter_value, sub.type),
+              "DCF: " + label(dictionary_, key) + " = " + sub.parameter_text);
+      }
+    }
+  }
+
+  void write(ObjectKey key, std::vector<std::byte> value, std::string purpose) {
+    const BootAction action =
+        steps_.readable(key) ? BootAction::write_if_differs : BootAction::write;
+    BootStep& step = steps_.bytes(action, key, std::move(value), std::move(purpose));
+    if (step.value.size() > 4) step.mask = 0xFFFF'FFFF;
+  }
+
+  /// 0x60C2 of every axis := SYNC period, unless the network file has its own mind.
+  void interpolation_periods() {
+    for (std::uint32_t index = 0x60C2; index < 0xA000; index += 0x800) {
+      const ObjectKey value{static_cast<std::uint16_t>(index), 1};
+      const ObjectKey exponent{static_cast<std::uint16_t>(index), 2};
+      if (!steps_.writable(value) || !steps_.has(exponent)) continue;
+      const SdoSpec* own = configured_value(value);
+      if (own != nullptr) {
+        compare_period(*own, configured_value(exponent));
+        continue;
+      }
+      const auto period = interpolation(context_.sync_period_us);
+      if (!period) {
+        report_.warning(spec_.pos, "interpolation-period",
+                        "node `" + spec_.name + "`: " + to_string(value) +
+                            " can't express the SYNC period of " +
+                            std::to_string(context_.sync_period_us) + " us");
+        continue;
+      }
+      const std::string text = "interpolation period = SYNC period";
+      steps_.integer(BootAction::write_if_differs, value, period->value, text, 1);
+      if (steps_.writable(exponent)) {
+        steps_.integer(BootAction::write_if_differs, exponent, period->exponent,
+                       text + " (x 10^" + std::to_string(period->exponent) + " s)", 1);
+      }
+    }
+  }
+
+  void compare_period(const SdoSpec& value, const SdoSpec* exponent) {
+    const auto* counts = std::get_if<std::int64_t>(&value.value);
+    const auto* power = exponent == nullptr ? nullptr : std::get_if<std::int64_t>(&exponent->value);
+    if (counts == nullptr) return;
+    const double seconds = static_cast<double>(*counts) *
+                           std::pow(10.0, power == nullptr ? -3.0 : static_cast<double>(*power));
+    const double us = seconds * 1e6;
+    if (std::abs(us - context_.sync_period_us) < 0.5) return;
+    report_.warning(value.pos, "interpolation-period",
+                    "node `" + spec_.name + "`: " + to_string(value.object) + " makes " +
+                        std::to_string(static_cast<std::int64_t>(std::llround(us))) +
+                        " us, the SYNC period is " + std::to_string(context_.sync_period_us) +
+                        " us: in cyclic synchronous modes the axis will not move evenly (leave "
+                        "the entry out and takt sets it)");
+  }
+
+  void configured(const SdoSpec& sdo) {
+    if (is_pdo_parameter(sdo.object.index)) {
+      if (dictionary_.find(sdo.object) == nullptr) missing(sdo);
+      report_.note(sdo.pos, "pdo-by-sdo",
+                   to_string(sdo.object) + " of node `" + spec_.name +
+                       "` is taken into the PDO's configuration; `tpdo:`/`rpdo:` say it plainer");
+      return;
+    }
+    const SubObject* sub = dictionary_.find(sdo.object);
+    if (sub == nullptr) return missing(sdo);
+    if (!steps_.writable(sdo.object)) {
+      report_.error(sdo.pos, "read-only",
+                    "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) +
+                        " can only be read");
+      return;
+    }
+    auto value = bytes_of(sdo, *sub);
+    if (!value) return;
+    write(sdo.object, std::move(*value), "sdo: " + label(dictionary_, sdo.object));
+  }
+
+  void missing(const SdoSpec& sdo) {
+    const Object* object = dictionary_.find(sdo.object.index);
+    std::string hint;
+    if (object != nullptr && !object->subs.empty()) {
+      hint = "; " + hex(object->index) + " " + object->name + " has sub-index " +
+             std::to_string(object->subs.front().sub) + ".." +
+             std::to_string(object->subs.back().sub);
+    }
+    report_.error(sdo.pos, "no-such-object",
+                  "`sdo` of node `" + spec_.name + "`: object " + to_string(sdo.object) +
+                      " is not in " + dictionary_.file + hint);
+  }
+
+  void wrong_value(const SdoSpec& sdo, const SubObject& sub, const std::string& why) {
+    report_.error(sdo.value_pos, "out-of-range",
+                  "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) + " (" +
+                      std::string{name(sub.type)} + ") " + why);
+  }
+
+  std::optional<std::vector<std::byte>> bytes_of(const SdoSpec& sdo, const SubObject& sub) {
+    if (is_bytes(sub.type)) {
+      if (const auto* text = std::get_if<std::string>(&sdo.value)) {
+        return to_bytes(Value{*text}, sub.type);
+      }
+      wrong_value(sdo, sub, "takes text in quotes");
+      return {};
+    }
+    if (const auto* real = std::get_if<double>(&sdo.value)) {
+      if (is_real(sub.type)) return to_bytes(Value{*real}, sub.type);
+      wrong_value(sdo, sub, "takes whole numbers");
+      return {};
+    }
+    const auto* integer = std::get_if<std::int64_t>(&sdo.value);
+    if (integer == nullptr) {
+      wrong_value(sdo, sub, "takes a number");
+      return {};
+    }
+    if (is_real(sub.type)) return to_bytes(Value{static_cast<double>(*integer)}, sub.type);
+    if (!fits(sdo, sub, *integer)) return {};
+    return little_endian(*integer, byte_width(sub.type));
+  }
+
+  /// A bit pattern of the width (0xFFFFFFFF for -1) passes as well.
+  bool fits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
+    const unsigned bits = bit_width(sub.type);
+    const bool sign = is_signed(sub.type);
+    const std::int64_t low = sign && bits < 64 ? -(std::int64_t{1} << (bits - 1))
+                             : sign            ? std::numeric_limits<std::int64_t>::min()
+                                               : 0;
+    const std::int64_t high =
+        bits >= 63 ? std::numeric_limits<std::int64_t>::max() : (std::int64_t{1} << bits) - 1;
+    if (value < low || value > high) {
+      wrong_value(sdo, sub,
+                  "holds " + std::to_string(low) + ".." + std::to_string(high) + ", not " +
+                      std::to_string(value));
+      return false;
+    }
+    warn_of_limits(sdo, sub, value);
+    return true;
+  }
+
+  void warn_of_limits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
+    const auto low = sub.low_limit ? as_integer(*sub.low_limit) : std::nullopt;
+    const auto high = sub.high_limit ? as_integer(*sub.high_limit) : std::nullopt;
+    if ((!low || value >= *low) && (!high || value <= *high)) return;
+    report_.warning(sdo.value_pos, "limits",
+                    "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) +
+                        " = " + std::to_string(value) + " is outside the limits " +
+                        (low ? std::to_string(*low) : "") + ".." +
+                        (high ? std::to_string(*high) : "") + " of " + dictionary_.file +
+                        "; the device may refuse it");
+  }
+
+  const NodeSpec& spec_;
+  const ObjectDictionary& dictionary_;
+  const BootContext& context_;
+  BootSteps& steps_;
+  NetworkReport& report_;
+};
+
+}  // namespace
+
+void append_values(const NodeSource& node, const BootContext& context, BootSteps& steps,
+                   NetworkReport& report) {
+  ValueSteps{node, context, steps, report}.run();
+}
+
+}  // namespace takt

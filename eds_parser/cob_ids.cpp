@@ -1,0 +1,187 @@
+#include "eds_parser/cob_ids.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t first_free = 0x181;
+constexpr std::uint32_t last_free = 0x57F;
+constexpr std::uint32_t time_id = 0x100;
+
+std::uint32_t predefined(const EffectivePdo& pdo, NodeId node) {
+  const std::uint32_t base = pdo.is_tpdo ? 0x180U : 0x200U;
+  return base + 0x100U * (pdo.number - 1U) + node.value();
+}
+
+struct User {
+  EffectivePdo* pdo = nullptr;
+  const NodeSource* node = nullptr;
+  std::string text() const { return pdo->label() + " of node `" + node->spec->name + "`"; }
+};
+
+class CobIdAssigner {
+ public:
+  CobIdAssigner(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report)
+      : nodes_{nodes}, sync_id_{sync_id}, report_{report} {}
+
+  void run() {
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (p.has_cob_id && p.origin == CobIdOrigin::network_file) claim_of_file(n, p);
+    });
+    const auto device = [](const EffectivePdo& p) {
+      return p.has_cob_id && p.origin == CobIdOrigin::device_file;
+    };
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (device(p) && is_own(n, p)) claim_of_device(n, p);
+    });
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (device(p) && !is_own(n, p)) claim_of_device(n, p);
+    });
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (!p.has_cob_id && p.number <= 4) claim_automatic(n, p);
+    });
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (!p.has_cob_id) claim_automatic(n, p);
+    });
+  }
+
+ private:
+  template <class F>
+  void each(F&& f) {
+    for (NodePdos& node : nodes_) {
+      for (EffectivePdo& pdo : node.pdos) {
+        if (pdo.use == PdoUse::exchanged) f(node, pdo);
+      }
+    }
+  }
+
+  static bool is_own(const NodePdos& node, const EffectivePdo& pdo) {
+    return pdo.number <= 4 && pdo.cob_id == CobId::base(predefined(pdo, node.node.id));
+  }
+
+  /// Why no PDO may have this id; empty: it may.
+  std::string service_at(CobId id) const {
+    if (id.is_extended()) return {};
+    if (is_restricted(id.id())) return "is reserved by CiA 301 (table 40)";
+    if (id.id() == sync_id_) return "is SYNC";
+    if (id.id() == time_id) return "is TIME";
+    for (const NodePdos& node : nodes_) {
+      if (id.id() == 0x80U + node.node.id.value()) {
+        return "is EMCY of node `" + node.node.spec->name + "`";
+      }
+    }
+    return {};
+  }
+
+  void take(NodePdos& node, EffectivePdo& pdo, CobId id) {
+    pdo.cob_id = id;
+    pdo.has_cob_id = true;
+    used_[id] = {&pdo, &node.node};
+  }
+
+  void claim_of_file(NodePdos& node, EffectivePdo& pdo) {
+    const User user{&pdo, &node.node};
+    if (const std::string service = service_at(pdo.cob_id); !service.empty()) {
+      report_.error(pdo.cob_id_pos, "cob-id",
+                    "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " " + service +
+                        "; `auto` would give " + hex(automatic(node, pdo)));
+      return;
+    }
+    const auto other = used_.find(pdo.cob_id);
+    if (other == used_.end()) {
+      take(node, pdo, pdo.cob_id);
+    } else if (other->second.pdo->is_tpdo != pdo.is_tpdo) {
+      link(pdo, other->second, user);
+    } else {
+      report_.error(pdo.cob_id_pos, "cob-id-clash",
+                    "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " belongs to " +
+                        other->second.text() + " (line " +
+                        std::to_string(other->second.pdo->cob_id_pos.line) + ") already; `auto` " +
+                        "would give " + hex(automatic(node, pdo)));
+    }
+  }
+
+  /// A TPDO and an RPDO of one id: the devices talk to each other, the master only listens.
+  void link(EffectivePdo& pdo, const User& other, const User& user) {
+    EffectivePdo& receiver = pdo.is_tpdo ? *other.pdo : pdo;
+    const User& sender = pdo.is_tpdo ? user : other;
+    const User& fed = pdo.is_tpdo ? other : user;
+    receiver.use = PdoUse::linked;
+    used_[pdo.cob_id] = sender;
+    report_.note(pdo.cob_id_pos, "linked",
+                 fed.text() + " is fed by " + sender.text() + " (both " + to_string(pdo.cob_id) +
+                     "); the master does not send it");
+  }
+
+  void claim_of_device(NodePdos& node, EffectivePdo& pdo) {
+    const User user{&pdo, &node.node};
+    const std::string service = service_at(pdo.cob_id);
+    const auto other = used_.find(pdo.cob_id);
+    if (service.empty() && other == used_.end()) {
+      take(node, pdo, pdo.cob_id);
+      return;
+    }
+    const CobId id = CobId::base(automatic(node, pdo));
+    report_.note(pdo.cob_id_pos, "cob-id-moved",
+                 user.text() + " has COB-ID " + to_string(pdo.cob_id) + " in " +
+                     node.node.dictionary->file + ", which " +
+                     (service.empty() ? "is " + other->second.text() : service) + "; it becomes " +
+                     to_string(id));
+    pdo.origin = CobIdOrigin::automatic;
+    take(node, pdo, id);
+  }
+
+  void claim_automatic(NodePdos& node, EffectivePdo& pdo) {
+    const std::uint32_t id = automatic(node, pdo);
+    if (id == 0) {
+      report_.error(pdo.cob_id_pos, "cob-id",
+                    "no COB-ID is free for " + pdo.label() + " of node `" + node.node.spec->name +
+                        "` in 0x181..0x57F");
+      return;
+    }
+    take(node, pdo, CobId::base(id));
+  }
+
+  /// Predefined where that is free, else the lowest id that no node's predefined set covers.
+  std::uint32_t automatic(const NodePdos& node, const EffectivePdo& pdo) const {
+    if (pdo.number <= 4) {
+      const std::uint32_t own = predefined(pdo, node.node.id);
+      if (!used_.contains(CobId::base(own)) && service_at(CobId::base(own)).empty()) return own;
+    }
+    for (const bool spare_predefined : {true, false}) {
+      for (std::uint32_t id = first_free; id <= last_free; ++id) {
+        if (!used_.contains(CobId::base(id)) && !(spare_predefined && is_predefined(id)) &&
+            service_at(CobId::base(id)).empty()) {
+          return id;
+        }
+      }
+    }
+    return 0;
+  }
+
+  bool is_predefined(std::uint32_t id) const {
+    return std::ranges::any_of(
+        nodes_, [&](const NodePdos& node) { return (id & 0x7F) == node.node.id.value(); });
+  }
+
+  std::span<NodePdos> nodes_;
+  std::uint32_t sync_id_;
+  NetworkReport& report_;
+  std::map<CobId, User> used_;
+};
+
+}  // namespace
+
+bool is_restricted(std::uint32_t id) noexcept {
+  const auto in = [id](std::uint32_t low, std::uint32_t high) { return id >= low && id <= high; };
+  return in(0x000, 0x07F) || in(0x101, 0x180) || in(0x581, 0x5FF) || in(0x601, 0x67F) ||
+         in(0x6E0, 0x6FF) || in(0x701, 0x77F) || in(0x780, 0x7FF);
+}
+
+void assign_cob_ids(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report) {
+  CobIdAssigner{nodes, sync_id, report}.run();
+}
+
+}  // namespace takt

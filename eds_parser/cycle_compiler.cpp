@@ -1,0 +1,179 @@
+#include "eds_parser/cycle_compiler.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/frame_time.hpp"
+
+namespace takt {
+namespace {
+
+constexpr unsigned longest_data = 8;
+constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
+constexpr std::uint16_t most_service_frames = 16;
+constexpr Time shortest_margin = std::chrono::microseconds{20};
+constexpr Time longest_margin = std::chrono::microseconds{200};
+
+std::int64_t us(Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
+
+Time row_time(const PdoRow& row, std::uint32_t bitrate) {
+  return wire_time(worst_frame_bits(row.length, row.cob_id.is_extended()), bitrate);
+}
+
+Time frame_time(std::uint32_t bitrate) {
+  return wire_time(worst_frame_bits(longest_data), bitrate);
+}
+
+/// Own frames end so long before SYNC: one longest frame that may be on the wire, and 2 % of the
+/// period (20..200 us) for the answer it solicits and for being late.
+Time quiet_time(const BusPlan& plan) {
+  const Time margin = std::clamp<Time>(plan.cycle.period / 50, shortest_margin, longest_margin);
+  return frame_time(plan.bitrate) + margin;
+}
+
+class CycleCompiler {
+ public:
+  CycleCompiler(const NetworkSpec& spec, std::span<const NodePdos> nodes, BusPlan& plan,
+                NetworkReport& report)
+      : spec_{spec}, nodes_{nodes}, plan_{plan}, cycle_{plan.cycle}, report_{report} {}
+
+  void run() {
+    cycle_.quiet_before_sync = quiet_time(plan_);
+    const TimeBudget wire = time_budget(plan_);
+    cycle_.output_deadline =
+        std::max<Time>(cycle_.period - cycle_.quiet_before_sync - wire.outputs_wire, Time{});
+    set_receive_window(wire);
+    set_service_frames(wire);
+    judge(wire);
+    judge_device_windows(wire);
+    judge_types();
+  }
+
+ private:
+  SourcePos period_pos() const {
+    return plan_.cycle.sync ? spec_.master.sync_period_us.pos : spec_.master.pos;
+  }
+
+  /// Twice the worst wire time and a frame in the way, at least half a period; at most 80 % of it,
+  /// and never beyond the outputs.
+  void set_receive_window(const TimeBudget& wire) {
+    if (spec_.receive_window_us.given) {
+      cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
+      if (cycle_.receive_window >= cycle_.period) {
+        report_.error(spec_.receive_window_us.pos, "out-of-range",
+                      "`receive_window_us` of " + std::to_string(us(cycle_.receive_window)) +
+                          " us is not shorter than the period of " +
+                          std::to_string(us(cycle_.period)) + " us");
+      }
+      return;
+    }
+    const Time wanted =
+        std::max<Time>(2 * wire.inputs_wire + frame_time(plan_.bitrate), cycle_.period / 2);
+    cycle_.receive_window =
+        std::min<Time>({wanted, cycle_.period * 4 / 5,
+                        std::max<Time>(cycle_.output_deadline, cycle_.period / 10)});
+  }
+
+  /// SDO requests with their answers in the bits that nothing else needs, a tenth kept free.
+  void set_service_frames(const TimeBudget& wire) {
+    const Time left = cycle_.period - cycle_.period / 10 - wire.inputs_wire - wire.outputs_wire -
+                      cycle_.quiet_before_sync;
+    const Time pair = wire_time(service_pair_bits, plan_.bitrate);
+    const Time::rep pairs = left / pair;
+    cycle_.service_frames =
+        static_cast<std::uint16_t>(std::clamp<Time::rep>(pairs, 1, most_service_frames));
+  }
+
+  void judge(const TimeBudget& wire) {
+    if (!plan_.cycle.sync) return;
+    const Time total = wire.inputs_wire + wire.outputs_wire;
+    const std::string frames = std::to_string(us(wire.inputs_wire)) + " us of SYNC and TPDOs and " +
+                               std::to_string(us(wire.outputs_wire)) + " us of RPDOs at " +
+                               std::to_string(plan_.bitrate / 1000) + " kbit/s";
+    if (total > cycle_.period) {
+      report_.error(period_pos(), "does-not-fit",
+                    frames + " do not fit into a period of " + std::to_string(us(cycle_.period)) +
+                        " us: a longer `sync_period`, fewer or shorter PDOs, or slower types (n "
+                        "SYNCs)");
+      return;
+    }
+    const TimeBudget budget = time_budget(plan_);
+    if (!budget.next_sync) {
+      report_.warning(period_pos(), "no-time-budget",
+                      frames + " leave an application no time in a period of " +
+                          std::to_string(us(cycle_.period)) +
+                          " us: what it computes from SYNC k acts at SYNC k+2");
+    }
+  }
+
+  /// A device drops synchronous RPDOs that come after its 0x1007.
+  void judge_device_windows(const TimeBudget& wire) {
+    if (!plan_.cycle.sync) return;
+    const Time sent = cycle_.output_deadline + wire.outputs_wire;
+    for (const NodePdos& node : nodes_) {
+      const bool listens = std::ranges::any_of(node.pdos, [](const EffectivePdo& pdo) {
+        return pdo.use == PdoUse::exchanged && !pdo.is_tpdo && pdo.synchronous();
+      });
+      const SubObject* object = node.node.dictionary->find(ObjectKey{0x1007, 0});
+      if (!listens || object == nullptr) continue;
+      const auto device = object->value() ? as_integer(*object->value()) : std::nullopt;
+      const std::int64_t window = spec_.master.sync_window_us.given
+                                      ? std::int64_t{*spec_.master.sync_window_us}
+                                      : device.value_or(0);
+      if (window <= 0 || std::chrono::microseconds{window} >= sent) continue;
+      report_.warning(
+          spec_.master.sync_window_us.given ? spec_.master.sync_window_us.pos : node.node.spec->pos,
+          "sync-window",
+          "node `" + node.node.spec->name + "` takes synchronous RPDOs until " +
+              std::to_string(window) + " us after SYNC (0x1007); the outputs go out " + "between " +
+              std::to_string(us(cycle_.output_deadline)) + " and " + std::to_string(us(sent)) +
+              " us");
+    }
+  }
+
+  void judge_types() {
+    if (plan_.cycle.sync) return;
+    for (const NodePdos& node : nodes_) {
+      for (const EffectivePdo& pdo : node.pdos) {
+        if (pdo.use != PdoUse::exchanged || !pdo.synchronous()) continue;
+        report_.warning(pdo.pos, "no-sync",
+                        pdo.label() + " of node `" + node.node.spec->name +
+                            "` is synchronous (type " + std::to_string(pdo.transmission) +
+                            "), but the network has no SYNC: set `sync_period` of `master`, or "
+                            "transmission 255");
+      }
+    }
+  }
+
+  const NetworkSpec& spec_;
+  std::span<const NodePdos> nodes_;
+  BusPlan& plan_;
+  CyclePlan& cycle_;
+  NetworkReport& report_;
+};
+
+}  // namespace
+
+TimeBudget time_budget(const BusPlan& plan) noexcept {
+  TimeBudget budget;
+  if (plan.cycle.sync) {
+    budget.inputs_wire =
+        wire_time(worst_frame_bits(plan.cycle.sync_overflow != 0 ? 1 : 0), plan.bitrate);
+  }
+  for (const PdoRow& row : plan.pdos.tpdos) {
+    if (row.cyclic()) budget.inputs_wire += row_time(row, plan.bitrate);
+  }
+  for (const PdoRow& row : plan.pdos.rpdos) budget.outputs_wire += row_time(row, plan.bitrate);
+  budget.earliest = budget.inputs_wire + frame_time(plan.bitrate);
+  budget.latest = plan.cycle.output_deadline;
+  budget.next_sync = budget.latest > budget.earliest;
+  return budget;
+}
+
+void compile_cycle(const NetworkSpec& spec, std::span<const NodePdos> nodes, BusPlan& plan,
+                   NetworkReport& report) {
+  CycleCompiler{spec, nodes, plan, report}.run();
+}
+
+}  // namespace takt

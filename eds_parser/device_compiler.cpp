@@ -1,0 +1,61 @@
+#include "eds_parser/device_compiler.hpp"
+
+namespace takt {
+namespace {
+
+std::string model_of(const NodeSource& node) {
+  if (!node.spec->sim.model.empty()) return node.spec->sim.model;
+  const SubObject* type = node.dictionary->find(ObjectKey{0x1000, 0});
+  const auto value = type != nullptr && type->value() ? as_integer(*type->value()) : std::nullopt;
+  switch (value.value_or(0) & 0xFFFF) {
+    case 401:
+      return "io401";
+    case 402:
+      return "drive402";
+    case 406:
+      return "encoder406";
+    default:
+      return "plain";
+  }
+}
+
+DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
+  DeviceObject object{.key = {index, sub.sub},
+                      .type = sub.type,
+                      .access = sub.access,
+                      .pdo_mappable = sub.pdo_mappable,
+                      .value = {},
+                      .low_limit = {},
+                      .high_limit = {}};
+  const auto& value = sub.default_value ? sub.default_value : sub.parameter_value;
+  if (value) {
+    object.value = to_bytes(*value, sub.type);
+  } else {
+    object.value.resize(byte_width(sub.type));
+  }
+  if (sub.low_limit) object.low_limit = as_integer(*sub.low_limit);
+  if (sub.high_limit) object.high_limit = as_integer(*sub.high_limit);
+  return object;
+}
+
+}  // namespace
+
+DeviceTable compile_device(const NodeSource& node) {
+  const ObjectDictionary& dictionary = *node.dictionary;
+  DeviceTable table{.node = node.id,
+                    .name = node.spec->name,
+                    .objects = {},
+                    .granularity = dictionary.device.granularity,
+                    .dummy_usage = 0,
+                    .model = model_of(node),
+                    .quirks = node.spec->sim.quirks};
+  for (unsigned n = 0; n < dictionary.dummy_usage.size(); ++n) {
+    if (dictionary.dummy_usage[n]) table.dummy_usage |= static_cast<std::uint8_t>(1U << n);
+  }
+  for (const Object& object : dictionary.objects) {
+    for (const SubObject& sub : object.subs) table.objects.push_back(object_of(object.index, sub));
+  }
+  return table;
+}
+
+}  // namespace takt

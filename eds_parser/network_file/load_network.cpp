@@ -1,0 +1,152 @@
+#include "eds_parser/network_file/load_network.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <sstream>
+#include <system_error>
+#include <tuple>
+
+#include "eds_parser/eds.hpp"
+#include "eds_parser/network_compiler.hpp"
+#include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/yaml_tree.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The text; at most one byte more than a network file may have.
+std::optional<std::string> read_text(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  std::ifstream in{path, std::ios::binary};
+  if (!in) return {};
+  std::string text(YamlTree::max_text + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+class Loader {
+ public:
+  explicit Loader(const fs::path& path) : path_{path} {}
+
+  LoadedNetwork run() {
+    const auto text = read_text(path_);
+    if (!text) {
+      error({}, "no-file", "can't be read: no such file, or no permission");
+      return std::move(out_);
+    }
+    const NetworkSpec spec = read_network(*text, path_.string(), out_.findings);
+    note_placeholder(spec);
+    std::vector<const ObjectDictionary*> dictionaries;
+    for (const NodeSpec& node : spec.nodes) dictionaries.push_back(dictionary_of(spec, node));
+    CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings);
+    out_.plan = std::move(compiled.plan);
+    out_.devices = std::move(compiled.devices);
+    out_.realtime = spec.realtime;
+    out_.lcm = spec.lcm;
+    out_.bus_named = spec.bus.name.given || spec.bus.interface.given;
+    sort_findings();
+    return std::move(out_);
+  }
+
+ private:
+  void error(SourcePos pos, std::string_view rule, std::string message) {
+    out_.findings.push_back({path_.string(), pos, Severity::error, rule, std::move(message)});
+  }
+
+  static bool is_placeholder(const std::string& path) {
+    return path.find('@') != std::string::npos;
+  }
+
+  /// `@BUS_CONFIG_PATH@` is filled in by the build of ros2_canopen; here files are found beside.
+  void note_placeholder(const NetworkSpec& spec) {
+    if (!spec.dcf_path.given || !is_placeholder(*spec.dcf_path)) return;
+    out_.findings.push_back({path_.string(), spec.dcf_path.pos, Severity::note, "placeholder",
+                             "`dcf_path` " + *spec.dcf_path +
+                                 " is a placeholder of another build: files are looked for beside "
+                                 "this one"});
+  }
+
+  /// Where a device file may be: beside the network file, then in dcf_path of the node, of options.
+  std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node) const {
+    const fs::path folder = path_.parent_path();
+    std::vector<fs::path> paths{folder / *node.dcf};
+    for (const auto& extra : {node.dcf_path, spec.dcf_path}) {
+      if (extra.given && !is_placeholder(*extra)) paths.push_back(folder / *extra / *node.dcf);
+    }
+    return paths;
+  }
+
+  const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
+    if (!node.dcf.given || !node.id.given) return nullptr;
+    const std::vector<fs::path> paths = candidates(spec, node);
+    std::error_code ignored;
+    const auto found = std::ranges::find_if(
+        paths, [&](const fs::path& path) { return fs::is_regular_file(path, ignored); });
+    if (found == paths.end()) {
+      report_missing(node, paths);
+      return nullptr;
+    }
+    return read(*found, node);
+  }
+
+  void report_missing(const NodeSpec& node, const std::vector<fs::path>& paths) {
+    std::string where;
+    for (const fs::path& path : paths) where += (where.empty() ? "" : ", ") + path.string();
+    error(
+        node.dcf.pos, "no-device-file",
+        "node `" + node.name + "`: device file `" + *node.dcf + "` not found; looked for " + where);
+  }
+
+  const ObjectDictionary* read(const fs::path& path, const NodeSpec& node) {
+    const auto key = std::pair{path, *node.id};
+    const auto known = files_.find(key);
+    if (known != files_.end()) return known->second.readable ? &known->second.dictionary : nullptr;
+    EdsFile& file = files_[key];
+    file = read_eds_file(path, NodeId::from(*node.id));
+    for (const Finding& finding : file.findings) add_device_finding(finding);
+    if (!file.readable) {
+      error(node.dcf.pos, "no-device-file",
+            "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF");
+      return nullptr;
+    }
+    return &file.dictionary;
+  }
+
+  /// What is wrong in a device file does not make the network file wrong; `takt eds check` judges
+  /// it. It is told once, however many nodes share the file.
+  void add_device_finding(Finding finding) {
+    if (!told_.emplace(finding.file, finding.pos, finding.rule).second) return;
+    if (finding.severity == Severity::error) finding.severity = Severity::warning;
+    out_.findings.push_back(std::move(finding));
+  }
+
+  /// Device files first, then the network file by position; what many nodes share is told once.
+  void sort_findings() {
+    const std::string own = path_.string();
+    std::ranges::stable_sort(out_.findings, {}, [&](const Finding& finding) {
+      return std::tuple{finding.file == own, finding.file == own ? finding.pos : SourcePos{}};
+    });
+    std::set<std::tuple<std::string, SourcePos, std::string>> seen;
+    std::erase_if(out_.findings, [&](const Finding& finding) {
+      return !seen.emplace(finding.file, finding.pos, finding.message).second;
+    });
+  }
+
+  fs::path path_;
+  LoadedNetwork out_;
+  std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
+  std::set<std::tuple<std::string, SourcePos, std::string_view>> told_;
+};
+
+}  // namespace
+
+LoadedNetwork load_network(const fs::path& path) { return Loader{path}.run(); }
+
+}  // namespace takt

@@ -1,0 +1,298 @@
+#include "eds_parser/pdo_compiler.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/mapping_compiler.hpp"
+#include "eds_parser/pdo_description.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint8_t event_driven = 255;
+constexpr std::uint8_t dam_mpdo = 0xFF;
+constexpr std::uint8_t sam_mpdo = 0xFE;
+
+bool is_writable(const SubObject* sub) {
+  return sub != nullptr && sub->access != Access::ro && sub->access != Access::constant;
+}
+
+bool usable_type(std::uint8_t type) { return type <= 240 || type >= 254; }
+
+class PdoCompiler {
+ public:
+  PdoCompiler(const NodeSource& node, NetworkReport& report) : node_{node}, report_{report} {}
+
+  EffectivePdo compile(const PdoDescription& device, const PdoSpec* spec) {
+    EffectivePdo pdo = of_device(device);
+    if (spec == nullptr) {
+      if (!device.valid) pdo.use = written_by_sdo(pdo) ? PdoUse::off : PdoUse::ignored;
+      judge_unnamed(device, pdo);
+      return pdo;
+    }
+    overlay(device, *spec, pdo);
+    return pdo;
+  }
+
+ private:
+  std::string label(const EffectivePdo& pdo) const {
+    return pdo.label() + " of node `" + node_.spec->name + "`";
+  }
+  const SubObject* sub(std::uint16_t index, std::uint8_t sub_index) const {
+    return node_.dictionary->find(ObjectKey{index, sub_index});
+  }
+
+  bool written_by_sdo(const EffectivePdo& pdo) const {
+    const ObjectKey key{pdo.communication_index(), 1};
+    return std::ranges::find(node_.spec->sdo, key, &SdoSpec::object) != node_.spec->sdo.end();
+  }
+
+  EffectivePdo of_device(const PdoDescription& device) const {
+    EffectivePdo pdo;
+    pdo.number = device.number;
+    pdo.is_tpdo = device.is_tpdo;
+    pdo.pos = node_.spec->pos;
+    pdo.cob_id_pos = node_.spec->pos;
+    const std::uint16_t index = device.communication_index();
+    pdo.transmission = device.transmission_type.value_or(event_driven);
+    pdo.inhibit_time = static_cast<std::uint16_t>(device.inhibit_time_us / 100);
+    pdo.event_timer = device.event_timer_ms;
+    pdo.sync_start = device.sync_start.value_or(0);
+    pdo.has_inhibit = is_writable(sub(index, 3)) && device.is_tpdo;
+    pdo.has_event_timer = is_writable(sub(index, 5));
+    pdo.has_sync_start = is_writable(sub(index, 6)) && device.is_tpdo;
+    const SubObject* count = sub(device.mapping_index(), 0);
+    pdo.fixed_mapping = node_.dictionary->device.granularity == 0 || !is_writable(count);
+    pdo.mapping = mapping_of(node_, device, node_.spec->pos);
+    pdo.bits = device.bits;
+    take_cob_id(device, pdo);
+    return pdo;
+  }
+
+  static void take_cob_id(const PdoDescription& device, EffectivePdo& pdo) {
+    const auto id = device.cob_id();
+    if (!id || *id == 0) {
+      pdo.origin = CobIdOrigin::automatic;
+      return;
+    }
+    pdo.has_cob_id = true;
+    pdo.cob_id = device.extended ? CobId::extended(*id) : CobId::base(*id);
+  }
+
+  /// A PDO of the device file alone: used where that is possible, else left out with a word.
+  void judge_unnamed(const PdoDescription& device, EffectivePdo& pdo) {
+    if (pdo.use != PdoUse::exchanged) return;
+    const auto leave_out = [&](const std::string& why) {
+      pdo.use = PdoUse::ignored;
+      report_.note(node_.spec->pos, "pdo-left-out",
+                   label(pdo) + " is valid in " + node_.dictionary->file + " but " + why +
+                       "; it is not part of the image");
+    };
+    if (device.mapping_count == dam_mpdo || device.mapping_count == sam_mpdo) {
+      leave_out("is a multiplexed PDO");
+    } else if (!usable_type(pdo.transmission)) {
+      leave_out("has transmission type " + std::to_string(pdo.transmission));
+    } else if (pdo.mapping.empty()) {
+      leave_out("maps nothing");
+    } else if (pdo.bits > 64) {
+      leave_out("maps " + std::to_string(pdo.bits) + " bits, more than 64");
+    } else if (std::ranges::any_of(pdo.mapping, [](const auto& e) { return e.bits == 0; })) {
+      leave_out("maps an entry of no bits");
+    }
+  }
+
+  void overlay(const PdoDescription& device, const PdoSpec& spec, EffectivePdo& pdo) {
+    pdo.named = true;
+    pdo.pos = spec.pos;
+    pdo.cob_id_pos = spec.cob_id.given ? spec.cob_id.pos : spec.pos;
+    if (!*spec.enabled) {
+      pdo.use = PdoUse::off;
+      return;
+    }
+    overlay_cob_id(spec, pdo);
+    overlay_times(spec, pdo);
+    if (spec.mapping.given) {
+      overlay_mapping(spec, pdo);
+    } else {
+      if (device.mapping_count == dam_mpdo || device.mapping_count == sam_mpdo) pdo.mapping.clear();
+      for (EffectiveEntry& entry : pdo.mapping) entry.pos = spec.pos;
+    }
+    judge_named(spec, pdo);
+  }
+
+  void overlay_cob_id(const PdoSpec& spec, EffectivePdo& pdo) {
+    if (!spec.cob_id.given) return;
+    if (!spec.cob_id.value) {
+      pdo.has_cob_id = false;
+      pdo.origin = CobIdOrigin::automatic;
+      return;
+    }
+    const std::uint32_t raw = *spec.cob_id.value;
+    if ((raw & 0x8000'0000) != 0) {
+      pdo.use = PdoUse::off;
+      return;
+    }
+    const bool extended = (raw & 0x2000'0000) != 0;
+    if (!extended && (raw & 0x1FFF'FFFF) > 0x7FF) {
+      report_.error(
+          spec.cob_id.pos, "cob-id",
+          "`cob_id` " + hex(raw) + " of " + label(pdo) +
+              " needs 29 bits: set bit 29 (0x2...) for an extended frame, or use an id up "
+              "to 0x7FF");
+      return;
+    }
+    pdo.has_cob_id = true;
+    pdo.origin = CobIdOrigin::network_file;
+    pdo.cob_id = extended ? CobId::extended(raw) : CobId::base(raw);
+  }
+
+  /// event_timer is the sender's, event_deadline the receiver's (as dcfgen means them).
+  void overlay_times(const PdoSpec& spec, EffectivePdo& pdo) {
+    if (spec.transmission.given) pdo.transmission = *spec.transmission;
+    if (pdo.is_tpdo) {
+      if (spec.inhibit_time.given) pdo.inhibit_time = *spec.inhibit_time;
+      if (spec.event_timer.given) pdo.event_timer = *spec.event_timer;
+      if (spec.sync_start.given) pdo.sync_start = *spec.sync_start;
+      pdo.master_timer = *spec.event_deadline;
+      demand(spec.inhibit_time, pdo, 3, "inhibit_time", pdo.has_inhibit);
+      demand(spec.event_timer, pdo, 5, "event_timer", pdo.has_event_timer);
+      demand(spec.sync_start, pdo, 6, "sync_start", pdo.has_sync_start);
+      return;
+    }
+    if (spec.event_deadline.given) pdo.event_timer = *spec.event_deadline;
+    pdo.master_timer = *spec.event_timer;
+    pdo.master_inhibit = *spec.inhibit_time;
+    demand(spec.event_deadline, pdo, 5, "event_deadline", pdo.has_event_timer);
+    if (spec.sync_start.given && *spec.sync_start != 0) {
+      report_.error(spec.sync_start.pos, "wrong-direction",
+                    "`sync_start` of " + label(pdo) + ": only a TPDO has a SYNC start value");
+    }
+  }
+
+  template <class T>
+  void demand(const Sourced<T>& value, const EffectivePdo& pdo, std::uint8_t sub_index,
+              const char* key, bool has) {
+    if (!value.given || *value == 0 || has) return;
+    report_.error(value.pos, "no-such-object",
+                  "`" + std::string{key} + "` of " + label(pdo) + " needs " +
+                      to_string(ObjectKey{pdo.communication_index(), sub_index}) + ", which " +
+                      node_.dictionary->file + " does not have as a writable object");
+  }
+
+  void overlay_mapping(const PdoSpec& spec, EffectivePdo& pdo) {
+    std::vector<EffectiveEntry> wanted = compile_mapping(node_, pdo, spec.mapping, report_);
+    const bool complete = wanted.size() == spec.mapping->size();
+    const bool same =
+        std::ranges::equal(wanted, pdo.mapping, {}, &EffectiveEntry::raw, &EffectiveEntry::raw);
+    if (pdo.fixed_mapping && complete && !same) {
+      std::string fixed;
+      for (const EffectiveEntry& entry : pdo.mapping) {
+        fixed += (fixed.empty() ? "" : ", ") + takt::label(*node_.dictionary, entry.object);
+      }
+      report_.error(spec.mapping.pos, "fixed-mapping",
+                    label(pdo) + " can't be mapped anew, the device fixes it to: " + fixed);
+    }
+    const Object* record = node_.dictionary->find(pdo.mapping_index());
+    const std::size_t places =
+        record == nullptr ? 0
+                          : static_cast<std::size_t>(std::ranges::count_if(
+                                record->subs, [](const SubObject& s) { return s.sub != 0; }));
+    if (!pdo.fixed_mapping && wanted.size() > places) {
+      report_.error(spec.mapping.pos, "too-many",
+                    label(pdo) + " maps " + std::to_string(wanted.size()) + " objects, " +
+                        hex(pdo.mapping_index()) + " of " + node_.dictionary->file +
+                        " has room for " + std::to_string(places));
+    }
+    pdo.mapping = std::move(wanted);
+    pdo.bits = 0;
+    for (const EffectiveEntry& entry : pdo.mapping) pdo.bits += entry.bits;
+  }
+
+  void judge_named(const PdoSpec& spec, EffectivePdo& pdo) {
+    if (pdo.use == PdoUse::off) return;
+    if (pdo.mapping.empty() && (!spec.mapping.given || spec.mapping->empty())) {
+      report_.error(spec.mapping.given ? spec.mapping.pos : spec.pos, "maps-nothing",
+                    label(pdo) +
+                        " maps nothing: list what it carries under `mapping:`, or switch "
+                        "it off with `enabled: false`");
+    }
+    if (!spec.transmission.given && !usable_type(pdo.transmission)) {
+      report_.error(spec.pos, "transmission-type",
+                    label(pdo) + " has transmission type " + std::to_string(pdo.transmission) +
+                        " in " + node_.dictionary->file +
+                        ", which takt does not use: write "
+                        "`transmission:` 0..240, 254 or 255");
+    }
+    if (!spec.mapping.given && pdo.bits > 64) {
+      report_.error(spec.pos, "too-long",
+                    label(pdo) + " maps " + std::to_string(pdo.bits) + " bits in " +
+                        node_.dictionary->file + ", a PDO holds 64: write `mapping:`");
+    }
+    if (pdo.bits > 64) pdo.use = PdoUse::ignored;
+  }
+
+  const NodeSource& node_;
+  NetworkReport& report_;
+};
+
+const PdoSpec* find_spec(const NodeSpec& node, const PdoDescription& device) {
+  const auto& list = device.is_tpdo ? node.tpdos : node.rpdos;
+  const auto found = std::ranges::find(list, device.number, &PdoSpec::number);
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// Every PDO of the network file has to be one of the device.
+void report_missing(const NodeSource& node, bool is_tpdo,
+                    const std::vector<PdoDescription>& devices, NetworkReport& report) {
+  const std::string kind = is_tpdo ? "TPDO" : "RPDO";
+  std::size_t count = 0;
+  std::uint16_t last = 0;
+  for (const PdoDescription& device : devices) {
+    if (device.is_tpdo != is_tpdo) continue;
+    ++count;
+    last = std::max(last, device.number);
+  }
+  for (const PdoSpec& spec : is_tpdo ? node.spec->tpdos : node.spec->rpdos) {
+    const auto same = [&](const PdoDescription& device) {
+      return device.is_tpdo == is_tpdo && device.number == spec.number;
+    };
+    if (std::ranges::any_of(devices, same) || !*spec.enabled) continue;
+    const auto index = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + spec.number - 1);
+    report.error(spec.pos, "no-such-pdo",
+                 node.dictionary->file + " has no " + kind + std::to_string(spec.number) + " (" +
+                     hex(index) + ")" +
+                     (count == 0 ? ", and no " + kind + " at all"
+                                 : "; its " + std::to_string(count) + " " + kind +
+                                       "s end with number " + std::to_string(last)));
+  }
+}
+
+}  // namespace
+
+std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& report) {
+  const ObjectDictionary effective = with_pdo_writes(*node.dictionary, *node.spec);
+  const std::vector<PdoDescription> devices = describe_pdos(effective);
+  std::vector<EffectivePdo> pdos;
+  PdoCompiler compiler{node, report};
+  report_missing(node, false, devices, report);
+  report_missing(node, true, devices, report);
+  for (const PdoDescription& device : devices) {
+    pdos.push_back(compiler.compile(device, find_spec(*node.spec, device)));
+  }
+  return pdos;
+}
+
+ObjectDictionary with_pdo_writes(const ObjectDictionary& dictionary, const NodeSpec& spec) {
+  ObjectDictionary copy = dictionary;
+  for (const SdoSpec& sdo : spec.sdo) {
+    if (!is_pdo_parameter(sdo.object.index)) continue;
+    const auto* value = std::get_if<std::int64_t>(&sdo.value);
+    const auto object = std::ranges::find(copy.objects, sdo.object.index, &Object::index);
+    if (value == nullptr || object == copy.objects.end()) continue;
+    for (SubObject& sub : object->subs) {
+      if (sub.sub == sdo.object.sub) sub.parameter_value = static_cast<std::uint64_t>(*value);
+    }
+  }
+  return copy;
+}
+
+}  // namespace takt
