@@ -1,3 +1,8 @@
+#include <algorithm>
+
+#include "master/sim/drive402.hpp"
+#include "master/sim/encoder406.hpp"
+#include "master/sim/io401.hpp"
 #include "master/sim/model.hpp"
 
 namespace takt::sim {
@@ -6,12 +11,14 @@ namespace {
 /// Only communicates; its objects keep what is written into them.
 class PlainModel final : public Model {
  public:
+  explicit PlainModel(EmcyProducer& emcy) : emcy_{emcy} {}
+
   void reset(Time) noexcept override {}
   void advance(Time) noexcept override {}
   void outputs(Time) noexcept override {}
-  void fail(std::uint16_t code, Time) noexcept override { emcy_.tell(code); }
-
-  explicit PlainModel(EmcyProducer& emcy) : emcy_{emcy} {}
+  void fail(std::uint16_t code, Time) noexcept override {
+    emcy_.raise(code, ErrorBit::manufacturer);
+  }
 
  private:
   EmcyProducer& emcy_;
@@ -19,7 +26,14 @@ class PlainModel final : public Model {
 
 }  // namespace
 
-std::unique_ptr<Model> make_model(const DeviceTable&, ObjectStore&, EmcyProducer& emcy, Random) {
+std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy,
+                                  Random random) {
+  if (table.model == "drive402") return std::make_unique<Drive402>(store, emcy, random);
+  if (table.model == "encoder406") return std::make_unique<Encoder406>(store, emcy, random);
+  if (table.model == "io401") {
+    const bool loopback = std::ranges::find(table.quirks, "loopback") != table.quirks.end();
+    return std::make_unique<Io401>(store, emcy, random, loopback);
+  }
   return std::make_unique<PlainModel>(emcy);
 }
 

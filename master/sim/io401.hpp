@@ -1,0 +1,40 @@
+#pragma once
+#include <vector>
+
+#include "master/sim/model.hpp"
+
+namespace takt::sim {
+
+/// An I/O module: digital (0x6000, 0x6200) and analogue (0x6401, 0x6411) channels. Inputs change in
+/// a seeded pattern, or repeat the outputs where the device has the quirk "loopback". CiA 401.
+class Io401 final : public Model {
+ public:
+  Io401(ObjectStore& store, EmcyProducer& emcy, Random random, bool loopback);
+
+  void reset(Time now) noexcept override;
+  void advance(Time now) noexcept override;
+  void outputs(Time now) noexcept override;
+  /// Outputs take their error values (0x6206, 0x6207).
+  void connection_lost(Time now) noexcept override;
+  void fail(std::uint16_t code, Time now) noexcept override;
+  Time next_change() const noexcept override { return loopback_ ? never : next_change_; }
+
+ private:
+  struct Channel {
+    Object* input = nullptr;
+    const Object* output = nullptr;
+  };
+
+  void change_an_input() noexcept;
+  void repeat_outputs() noexcept;
+
+  ObjectStore& store_;
+  EmcyProducer& emcy_;
+  Random random_;
+  bool loopback_;
+  std::vector<Channel> digital_;
+  std::vector<Channel> analogue_;
+  Time next_change_ = never;
+};
+
+}  // namespace takt::sim
