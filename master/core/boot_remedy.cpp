@@ -1,0 +1,213 @@
+#include <string>
+
+#include "master/core/boot_report.hpp"
+#include "master/core/report_text.hpp"
+#include "master/core/request.hpp"
+#include "master/wire/bytes.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+namespace {
+
+bool is_mapping_entry(ObjectKey object) noexcept {
+  const bool mapping = (object.index >= 0x1600 && object.index <= 0x17FF) ||
+                       (object.index >= 0x1A00 && object.index <= 0x1BFF);
+  return mapping;
+}
+
+/// "TPDO2" of a communication or mapping object, "the PDO" of others.
+std::string pdo_name(ObjectKey object) {
+  const unsigned area = object.index & 0xFE00U;
+  const std::string number = std::to_string((object.index & 0x1FFU) + 1);
+  if (area == 0x1800 || area == 0x1A00) return "TPDO" + number;
+  if (area == 0x1400 || area == 0x1600) return "RPDO" + number;
+  return "the PDO";
+}
+
+/// The object that a mapping entry maps: "6077:00"; else the written object itself.
+std::string mapped_object(const BootStep& step) {
+  if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
+    return to_string(step.object);
+  }
+  const auto entry = load_le<std::uint32_t>(std::span{step.value});
+  return to_string(ObjectKey{static_cast<std::uint16_t>(entry >> 16),
+                             static_cast<std::uint8_t>(entry >> 8 & 0xFF)});
+}
+
+std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
+  const std::string id = std::to_string(int{node.id.value()});
+  if (failure.node_state == NmtState::unknown) {
+    const std::string bus = plan.interface.empty() ? "can0" : plan.interface;
+    return "nothing at all was heard of node " + id +
+           ": is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? "
+           "Is "
+           "its node id " +
+           id + " and its bit rate " + std::to_string(plan.bitrate / 1000) +
+           " kbit/s? `takt scan --bus " + bus + "` lists who answers";
+  }
+  if (failure.node_state == NmtState::stopped) {
+    return "the node is in NMT state STOPPED, where it answers no SDO: let the boot reset it "
+           "(reset_communication: true), or stop whoever stops it";
+  }
+  return "the node is alive on the bus but its SDO server keeps silent: does it need longer to "
+         "start (raise the node's boot timeout)? Is a second node or a second master using node "
+         "id " +
+         id + "?";
+}
+
+std::string against_identity(const NodePlan& node, const BootFailure& failure) {
+  const std::string id = std::to_string(int{node.id.value()});
+  switch (failure.letter) {
+    case 'N':
+      return "the device has another firmware or hardware revision than " + node.description_file +
+             ": use the EDS of this revision, or drop revision_number from the network file if the "
+             "difference doesn't matter";
+    case 'O':
+      return "another specimen of the device is connected: enter its serial number in the network "
+             "file, or drop serial_number there";
+    default:
+      return "another device than " + node.description_file + " describes answers at node id " +
+             id +
+             ": check the node ids and the wiring, or name the EDS of the device that is there";
+  }
+}
+
+std::string against_refused_mapping(const BootStep& step, const BootFailure& failure) {
+  const std::string pdo = pdo_name(step.object);
+  const std::string object = mapped_object(step);
+  switch (failure.abort_code) {
+    case abort_code::not_mappable:
+    case abort_code::write_only:
+      return "the device does not let " + object + " be mapped into " + pdo +
+             ", whatever its EDS says: take " + object + " out of the mapping of " + pdo +
+             " in the network file, or map a related object";
+    case abort_code::mapping_too_long:
+      return "the device can't hold so much in " + pdo +
+             ": map fewer or shorter objects, or spread them over two PDOs";
+    case abort_code::no_object:
+    case abort_code::no_sub_index:
+      return step.object.sub == 0 || object == to_string(step.object)
+                 ? "the device has no " + to_string(step.object) +
+                       ": it has fewer PDOs or entries than its EDS says; use another PDO number"
+                 : "the device has no object " + object +
+                       ": its firmware is older than the EDS; take it out of the mapping of " + pdo;
+    case abort_code::read_only:
+      return "the mapping of " + pdo +
+             " is fixed in this device: remove `mapping` for it in the network file, so that the "
+             "device's own mapping is used";
+    default:
+      return "the device refuses to change " + pdo +
+             " now: it may want to be reset first (reset_communication: true), or its mapping is "
+             "fixed; then remove `mapping` for it in the network file";
+  }
+}
+
+std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  const std::string object = to_string(failure.object);
+  const std::string verb = failure.downloading ? "written" : "read";
+  if (failure.downloading && is_mapping_entry(step.object)) {
+    return against_refused_mapping(step, failure);
+  }
+  switch (failure.abort_code) {
+    case abort_code::no_object:
+    case abort_code::no_sub_index:
+      return "the device has no " + object + ", although " + node.description_file +
+             " may list it: compare the firmware with the EDS, or remove the entry from the "
+             "network file";
+    case abort_code::read_only:
+      return object + " can't be written: remove it from the network file";
+    case abort_code::write_only:
+      return object + " can't be read: write it without comparing";
+    case abort_code::length_mismatch:
+    case abort_code::length_too_high:
+    case abort_code::length_too_low:
+      return "the device holds " + object +
+             " in another data type than the EDS says: give the data type in the network file";
+    case abort_code::invalid_value:
+    case abort_code::value_too_high:
+    case abort_code::value_too_low:
+    case abort_code::incompatible_parameters:
+      return "the device does not take this value for " + object +
+             ": look up its range in the manual and correct the network file";
+    case abort_code::cannot_store:
+    case abort_code::local_control:
+    case abort_code::device_state:
+      return object + " can't be " + verb +
+             " in the present state of the device: disable the drive, leave local control, or let "
+             "the boot reset it (reset_communication: true, or reset_node)";
+    case abort_code::hardware_error:
+      return "the device reports a hardware error: power it off and on; if that does not help, its "
+             "storage may be worn";
+    default:
+      return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
+             " in the manual of the device";
+  }
+}
+
+std::string against_mismatch(const NodePlan& node, const BootStep& step,
+                             const BootFailure& failure) {
+  if (failure.letter == 'C' || failure.letter == 'D' || failure.letter >= 'M') {
+    return against_identity(node, failure);
+  }
+  if (step.action == BootAction::verify) {
+    return "the device took the write but holds another value (it rounds, limits or ignores it): "
+           "enter the value it keeps in the network file";
+  }
+  return "the device holds another value in " + to_string(failure.object) +
+         " than the network file expects: correct whichever is wrong";
+}
+
+std::string against_timeout(const BusPlan& plan, const NodePlan& node, const BootStep& step,
+                            const BootFailure& failure) {
+  switch (step.action) {
+    case BootAction::await_heartbeat:
+      return failure.node_state == NmtState::unknown
+                 ? "the device produces no heartbeat: is 0x1017 not zero after the boot? Set "
+                   "heartbeat_producer for this node, or heartbeat_consumer: false to go without"
+                 : "the heartbeat is slower than expected: raise heartbeat_multiplier or lower "
+                   "heartbeat_producer of this node";
+    case BootAction::await_operational:
+      return "the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its "
+             "EMCY messages, 0x1001 and 0x1003), or a second master holds it back";
+    default:
+      break;
+  }
+  if (failure.downloading) {
+    return "the device needs longer than " + time_text(step.timeout) + " for " +
+           to_string(failure.object) +
+           " (flash memory takes seconds): raise the SDO timeout of this node. The write was not "
+           "repeated, because it might act twice";
+  }
+  return against_silence(plan, node, failure);
+}
+
+}  // namespace
+
+std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
+  if (failure.step >= node.boot_plan.steps.size()) return {};
+  const BootStep& step = node.boot_plan.steps[failure.step];
+  switch (failure.fault) {
+    case SdoFault::none:
+      return against_mismatch(node, step, failure);
+    case SdoFault::aborted_by_device:
+      return against_abort(node, step, failure);
+    case SdoFault::aborted_by_master:
+      return "the answers break the SDO protocol: a second SDO client may be talking to the node "
+             "at "
+             "the same time (stop other masters and tools), or two nodes share the id";
+    case SdoFault::timeout:
+      return against_timeout(plan, node, step, failure);
+    case SdoFault::too_long:
+      return to_string(failure.object) + " is longer than " + std::to_string(request_bytes) +
+             " bytes: remove it from the network file";
+    case SdoFault::cancelled:
+      return "the node restarts again and again while it is booted: weak supply, its watchdog, or "
+             "another master that resets it";
+    case SdoFault::no_such_node:
+    case SdoFault::refused:
+      break;
+  }
+  return {};
+}
+
+}  // namespace takt

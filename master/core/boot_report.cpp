@@ -1,0 +1,174 @@
+#include "master/core/boot_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "master/core/report_text.hpp"
+#include "master/wire/bytes.hpp"
+#include "master/wire/emcy_text.hpp"
+#include "master/wire/sdo_abort.hpp"
+#include "master/wire/sdo_codec.hpp"
+
+namespace takt {
+namespace {
+
+/// One line of the explanation: "  sent      605  40 ...".
+void add_line(std::string& text, std::string_view label, const std::string& content) {
+  if (content.empty()) return;
+  text += "\n  ";
+  text += label;
+  text.append(label.size() < 10 ? 10 - label.size() : 1, ' ');
+  text += content;
+}
+
+/// "0x0000015A (346)", or the bytes where there are more than eight.
+std::string value_text(std::span<const std::uint8_t> bytes, std::size_t size) {
+  if (size == 0) return "nothing (zero bytes)";
+  if (size > 8) {
+    std::string text = std::to_string(size) + " bytes:";
+    for (const std::uint8_t byte : bytes) text += " " + hex(byte, 2).substr(2);
+    return text + (size > bytes.size() ? " ..." : "");
+  }
+  const auto value = load_le<std::uint64_t>(bytes.first(std::min(size, bytes.size())));
+  std::string digits;
+  for (std::size_t i = size; i-- > 0;) digits += hex(bytes[i], 2).substr(2);
+  return "0x" + digits + " (" + std::to_string(value) + ")";
+}
+
+std::string wanted_text(const BootStep& step) {
+  std::vector<std::uint8_t> bytes;
+  for (const std::byte byte : step.value) bytes.push_back(static_cast<std::uint8_t>(byte));
+  std::string text = value_text(bytes, bytes.size());
+  if (step.mask != 0xFFFF'FFFF && bytes.size() <= 4) text += " under the mask " + hex(step.mask, 8);
+  return text;
+}
+
+std::string sent_text(const NodePlan& node, const BootFailure& failure) {
+  if (failure.sent_size == 0) return {};
+  const auto bytes = std::span{failure.sent}.first(std::min<std::size_t>(failure.sent_size, 8));
+  return frame_text(sdo_request_cob_id(node.id), bytes) + "   " +
+         (failure.downloading ? "write " : "read ") + to_string(failure.object);
+}
+
+std::string silence_text(const BootStep& step, const BootFailure& failure) {
+  std::string text = "nothing within " + time_text(step.timeout);
+  if (step.action != BootAction::probe && failure.attempts > 1) {
+    text += ", asked " + std::to_string(int{failure.attempts}) + " times";
+  }
+  if (failure.downloading) text += "; a write is not repeated";
+  return text;
+}
+
+std::string received_text(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  switch (step.action) {
+    case BootAction::await_heartbeat:
+      return "no heartbeat on " + to_string(CobId::base(0x700U + node.id.value())) + " within " +
+             time_text(step.timeout);
+    case BootAction::await_operational:
+      return "heartbeats that say " + std::string{name(failure.node_state)} + " for " +
+             time_text(step.timeout);
+    default:
+      break;
+  }
+  if (failure.fault == SdoFault::cancelled) {
+    return std::to_string(int{failure.restarts}) +
+           " boot-up messages while the node was being booted";
+  }
+  if (failure.received_size == 0) return silence_text(step, failure);
+  const auto bytes =
+      std::span{failure.received}.first(std::min<std::size_t>(failure.received_size, 8));
+  return frame_text(sdo_answer_cob_id(node.id), bytes);
+}
+
+std::string meaning_text(const BootFailure& failure) {
+  switch (failure.fault) {
+    case SdoFault::none:
+      return failure.sent_size == 0
+                 ? std::string{}
+                 : value_text(
+                       std::span{failure.value}.first(std::min<std::size_t>(failure.value_size, 8)),
+                       failure.value_size);
+    case SdoFault::aborted_by_device:
+      return "abort " + abort_digits(failure.abort_code) + ": " +
+             std::string{abort_text(failure.abort_code)};
+    case SdoFault::aborted_by_master:
+    case SdoFault::too_long:
+      return "the master aborted with " + abort_digits(failure.abort_code) + ": " +
+             std::string{abort_text(failure.abort_code)};
+    case SdoFault::timeout:
+    case SdoFault::cancelled:
+    case SdoFault::no_such_node:
+    case SdoFault::refused:
+      return {};
+  }
+  return {};
+}
+
+std::string step_title(const BootStep& step) {
+  if (!step.purpose.empty()) return step.purpose;
+  return step.object == ObjectKey{} ? "unnamed step" : "object " + to_string(step.object);
+}
+
+std::string heard_text(const BootFailure& failure) {
+  if (failure.node_state == NmtState::unknown) return "no boot-up message and no heartbeat";
+  const bool only_bootup = failure.node_state == NmtState::bootup;
+  std::string text = failure.bootup_seen ? "its boot-up message" : "";
+  if (only_bootup) return text;
+  return text + (text.empty() ? "" : ", then ") + "heartbeats that say " +
+         std::string{name(failure.node_state)};
+}
+
+}  // namespace
+
+std::string_view letter_text(char letter) noexcept {
+  static constexpr std::array<std::string_view, 15> texts{
+      "the node is not in the network list",
+      "no answer to the read of 0x1000",
+      "device type differs",
+      "vendor id differs",
+      "no heartbeat from a node that should be alive",
+      "no guarding answer from a node that should be alive",
+      "software version can't be checked",
+      "software update needed but not allowed",
+      "software update failed",
+      "configuration failed",
+      "no heartbeat at the start of error control",
+      "the node was operational already",
+      "product code differs",
+      "revision number differs",
+      "serial number differs",
+  };
+  if (letter < 'A' || letter > 'O') return "unknown status";
+  return texts[static_cast<std::size_t>(letter - 'A')];
+}
+
+std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailure& failure) {
+  if (node_index >= plan.nodes.size()) return "boot failed on a node that is not in the plan";
+  const NodePlan& node = plan.nodes[node_index];
+  const auto& steps = node.boot_plan.steps;
+  if (failure.step >= steps.size()) return node_text(node) + " failed to boot";
+  const BootStep& step = steps[failure.step];
+
+  std::string text = node_text(node) + " failed to boot at step " +
+                     std::to_string(failure.step + 1) + " of " + std::to_string(steps.size()) +
+                     " (" + step_title(step) + ") after " + time_text(failure.elapsed);
+  add_line(text, "sent", sent_text(node, failure));
+  add_line(text, "received", received_text(node, step, failure));
+  add_line(text, "meaning", meaning_text(failure));
+  if (failure.fault == SdoFault::none && failure.sent_size != 0) {
+    add_line(text, "expected", wanted_text(step));
+  }
+  add_line(
+      text, "status",
+      std::string{failure.letter} + " of CiA 302-2: " + std::string{letter_text(failure.letter)});
+  add_line(text, "heard", heard_text(failure));
+  if (failure.emcy != 0) {
+    add_line(text, "EMCY", hex(failure.emcy) + ": " + std::string{emcy_text(failure.emcy)});
+  }
+  add_line(text, "EDS", step.eds_note);
+  add_line(text, "try", remedy(plan, node, failure));
+  return text;
+}
+
+}  // namespace takt

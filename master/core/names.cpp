@@ -1,0 +1,123 @@
+#include "master/core/boot_report.hpp"
+
+namespace takt {
+
+std::string_view name(EventKind kind) noexcept {
+  switch (kind) {
+    case EventKind::boot_started:
+      return "boot_started";
+    case EventKind::boot_done:
+      return "boot_done";
+    case EventKind::boot_failed:
+      return "boot_failed";
+    case EventKind::node_state:
+      return "node_state";
+    case EventKind::heartbeat_lost:
+      return "heartbeat_lost";
+    case EventKind::heartbeat_back:
+      return "heartbeat_back";
+    case EventKind::bootup_again:
+      return "bootup_again";
+    case EventKind::emcy:
+      return "emcy";
+    case EventKind::pdo_missing:
+      return "pdo_missing";
+    case EventKind::pdo_back:
+      return "pdo_back";
+    case EventKind::pdo_length:
+      return "pdo_length";
+    case EventKind::cycles_missed:
+      return "cycles_missed";
+    case EventKind::receive_overrun:
+      return "receive_overrun";
+    case EventKind::command_refused:
+      return "command_refused";
+    case EventKind::fallback_begun:
+      return "fallback_begun";
+    case EventKind::fallback_ended:
+      return "fallback_ended";
+    case EventKind::outputs_held:
+      return "outputs_held";
+    case EventKind::bus_error_passive:
+      return "bus_error_passive";
+    case EventKind::bus_error_active:
+      return "bus_error_active";
+    case EventKind::bus_off:
+      return "bus_off";
+    case EventKind::bus_recovered:
+      return "bus_recovered";
+    case EventKind::send_buffer_full:
+      return "send_buffer_full";
+    case EventKind::interface_down:
+      return "interface_down";
+    case EventKind::interface_up:
+      return "interface_up";
+    case EventKind::foreign_sync:
+      return "foreign_sync";
+    case EventKind::foreign_nmt:
+      return "foreign_nmt";
+    case EventKind::duplicate_cob_id:
+      return "duplicate_cob_id";
+    case EventKind::stopping:
+      return "stopping";
+    case EventKind::stopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+std::string_view name(NmtState state) noexcept {
+  switch (state) {
+    case NmtState::bootup:
+      return "boot-up";
+    case NmtState::stopped:
+      return "STOPPED";
+    case NmtState::operational:
+      return "OPERATIONAL";
+    case NmtState::preoperational:
+      return "PRE-OPERATIONAL";
+    case NmtState::unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+std::string_view name(BootState state) noexcept {
+  switch (state) {
+    case BootState::idle:
+      return "idle";
+    case BootState::booting:
+      return "booting";
+    case BootState::ready:
+      return "ready";
+    case BootState::failed:
+      return "failed";
+    case BootState::lost:
+      return "lost";
+  }
+  return "unknown";
+}
+
+std::string_view name(SdoFault fault) noexcept {
+  switch (fault) {
+    case SdoFault::none:
+      return "none";
+    case SdoFault::aborted_by_device:
+      return "aborted by the device";
+    case SdoFault::aborted_by_master:
+      return "aborted by the master";
+    case SdoFault::timeout:
+      return "timeout";
+    case SdoFault::too_long:
+      return "answer too long";
+    case SdoFault::cancelled:
+      return "cancelled";
+    case SdoFault::no_such_node:
+      return "no such node";
+    case SdoFault::refused:
+      return "refused";
+  }
+  return "unknown";
+}
+
+}  // namespace takt

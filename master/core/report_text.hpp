@@ -1,0 +1,47 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+// Small pieces of the reports' text.
+
+/// "605  40 18 10 01 00 00 00 00"
+inline std::string frame_text(CobId id, std::span<const std::uint8_t> bytes) {
+  std::string text = hex(id.id(), 3).substr(2) + " ";
+  for (const std::uint8_t byte : bytes) text += " " + hex(byte, 2).substr(2);
+  return text;
+}
+
+/// "0604 0041", as CiA 301 prints abort codes.
+inline std::string abort_digits(std::uint32_t code) {
+  const std::string digits = hex(code, 8).substr(2);
+  return digits.substr(0, 4) + " " + digits.substr(4);
+}
+
+/// "2.5 s", "300 ms", "40 us"
+inline std::string time_text(Time time) {
+  const auto count = [](std::int64_t whole, std::int64_t tenth, std::string_view unit) {
+    std::string text = std::to_string(whole);
+    if (tenth != 0) text += "." + std::to_string(tenth);
+    return text.append(" ").append(unit);
+  };
+  const std::int64_t us = std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+  if (us >= 1'000'000) return count(us / 1'000'000, us / 100'000 % 10, "s");
+  if (us >= 1'000) return count(us / 1'000, us < 10'000 ? us / 100 % 10 : 0, "ms");
+  return count(us, 0, "us");
+}
+
+/// "node 5 'shoulder'"
+inline std::string node_text(const NodePlan& node) {
+  return "node " + std::to_string(int{node.id.value()}) + " '" + node.name + "'";
+}
+
+}  // namespace takt
