@@ -70,10 +70,15 @@ class EdsReader {
 
   void place(const SectionName& name, std::uint32_t at) {
     const auto& section = file_.sections[at];
-    if (name.odd_form) {
-      report_.note(section.pos, "section-name-form",
-                   "section " + quoted(section.name) +
-                       ": CiA 306 writes indices without 0x and sub-indices without leading zero");
+    if (name.prefixed) {
+      report_.warning(section.pos, "section-name-form",
+                      "section " + quoted(section.name) +
+                          " is read as that of an object; CiA 306 writes the index without 0x");
+    }
+    if (name.leading_zero) {
+      report_.note(
+          section.pos, "section-name-form",
+          "section " + quoted(section.name) + ": CiA 306 writes sub-indices without leading zero");
     }
     switch (name.kind) {
       case SectionKind::object:

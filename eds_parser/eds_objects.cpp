@@ -280,8 +280,8 @@ Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
   const auto pos = fields.pos(Keyword::access_type, section.pos);
   const auto bare = without_comment(text);
   if (const auto access = access_of(bare)) {
-    report_.note(pos, "inline-comment",
-                 to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
+    report_.warning(pos, "inline-comment",
+                    to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
     return *access;
   }
   if (!(is_domain && bare.empty())) {

@@ -53,7 +53,7 @@ SectionName classify_suffix(std::string_view suffix, std::uint16_t index) noexce
     if (!good) return {};
     name.kind = SectionKind::sub_object;
     name.sub = static_cast<std::uint8_t>(sub);
-    name.odd_form = count > 1 && digits.front() == '0';
+    name.leading_zero = count > 1 && digits.front() == '0';
     return name;
   }
   name.kind = same_word(suffix, "name")          ? SectionKind::name_list
@@ -96,7 +96,7 @@ SectionName classify_section(std::string_view name) noexcept {
   const auto count = take_hex(digits, 4, index);
   if (count == 4) {
     auto found = classify_suffix(digits.substr(4), static_cast<std::uint16_t>(index));
-    found.odd_form = found.odd_form || prefixed;
+    found.prefixed = prefixed;
     if (found.kind != SectionKind::unknown) return found;
   } else if (count > 0 && count == digits.size()) {
     return {.kind = SectionKind::short_object, .index = static_cast<std::uint16_t>(index)};

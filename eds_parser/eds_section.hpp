@@ -41,7 +41,8 @@ struct SectionName {
   std::uint8_t sub = 0;
   std::uint16_t module = 0;        ///< x of [Mx...]
   std::string_view module_part{};  ///< "Fixed6000sub1" of [M1Fixed6000sub1]
-  bool odd_form = false;           ///< [0x2000], [2000sub01]
+  bool prefixed = false;           ///< [0x2000]
+  bool leading_zero = false;       ///< [2000sub01]
 };
 
 SectionName classify_section(std::string_view name) noexcept;

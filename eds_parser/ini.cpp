@@ -75,9 +75,9 @@ class Reader {
       read_entry(rest);
     }
     if (line_.size() > longest_line && report_.wants("long-line")) {
-      report_.note({number_, 1}, "long-line",
-                   "line of " + std::to_string(line_.size()) +
-                       " characters; CiA 306 allows 255, other tools may cut it");
+      report_.warning({number_, 1}, "long-line",
+                      "line of " + std::to_string(line_.size()) +
+                          " characters; CiA 306 allows 255, other tools may cut it");
     }
   }
 

@@ -51,9 +51,9 @@ Parsed read_unusual(std::string_view text) noexcept {
     if (number) return number;
   }
   ParsedNumber number;
-  // `1E3` could be 1000 or 0x1E3
-  const bool clear =
-      text.find_first_of("0123456789") != std::string_view::npos && !parse_real(text);
+  // a name in hex digits (`DEAD`) is none; `1E3` could be 1000 or 0x1E3
+  const bool has_digit = text.find_first_of("0123456789") != std::string_view::npos;
+  const bool clear = has_digit && !(all_of(text, "0123456789eE") && parse_real(text));
   if (clear && read_digits(text, 16, number.magnitude) == Digits::good) {
     number.hex = true;
     number.quirks = bit(NumberQuirk::hex_without_prefix);

@@ -32,7 +32,7 @@ constexpr QuirkText quirk_texts[] = {
      "read as hexadecimal; write 0x in front"},
     {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
      "decimal point in an integer value; write it without"},
-    {NumberQuirk::comment, Severity::note, "inline-comment",
+    {NumberQuirk::comment, Severity::warning, "inline-comment",
      "text behind ';' or '#' was taken for a comment; CiA 306 has no comments behind values"},
     {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},
 };
@@ -286,6 +286,11 @@ std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std:
                     std::string{key} + ": " + quoted(text) + " is not a number of 0.." +
                         std::to_string(highest) + "; it was left out");
     return std::nullopt;
+  }
+  if (number->has(NumberQuirk::comment)) {
+    report_.warning(
+        pos, "inline-comment",
+        std::string{key} + ": text behind ';' or '#' was taken for a comment: " + quoted(text));
   }
   if (number->has(NumberQuirk::octal)) {
     report_.warning(pos, "octal-number",

@@ -57,16 +57,18 @@ std::optional<CobIdEntry> entry_of(const ObjectDictionary& dictionary, ObjectKey
 
 std::string start(const CobIdEntry& entry) { return section_name(entry.key) + ": COB-ID "; }
 
-/// With a node id added, the first and the last node are looked at.
-void check_restricted(const CobIdEntry& entry, Report& report) {
-  const auto lowest = entry.id() + (entry.relative ? 1 : 0);
-  const auto highest = entry.id() + (entry.relative ? 127 : 0);
+/// Where the node id is added but unknown, the first and the last node are looked at.
+void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Report& report) {
+  const std::uint32_t first = node ? node->value() : 1;
+  const std::uint32_t last = node ? node->value() : 127;
+  const auto lowest = entry.id() + (entry.relative ? first : 0);
+  const auto highest = entry.id() + (entry.relative ? last : 0);
   const auto* range = restriction_of(lowest);
   if (range == nullptr) range = restriction_of(highest);
   const bool too_high = highest > 0x7FF;
   if (entry.extended() || (range == nullptr && !too_high)) return;
   report.error(entry.pos, "cob-id-restricted",
-               start(entry) + hex(lowest, 3) + (entry.relative ? ".." + hex(highest, 3) : "") +
+               start(entry) + hex(lowest, 3) + (highest != lowest ? ".." + hex(highest, 3) : "") +
                    (range == nullptr ? " needs more than 11 bits"
                                      : " is restricted (" + std::string{range->use} + ")"));
 }
@@ -107,7 +109,7 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
   for (const auto& pdo : describe_pdos(dictionary)) {
     auto entry = entry_of(dictionary, {pdo.communication_index(), 1});
     if (!entry || !entry->on()) continue;
-    check_restricted(*entry, report);
+    check_restricted(*entry, dictionary.node_id, report);
     check_bits(*entry, report);
     check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
@@ -118,7 +120,7 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     if (!entry || entry->id() == 0) continue;
     if (index == 0x1014 && !entry->on()) continue;
     entry->constant &= 0x3FFF'FFFF;
-    check_restricted(*entry, report);
+    check_restricted(*entry, dictionary.node_id, report);
     if (index == 0x1014) check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }

@@ -1,0 +1,69 @@
+#include "eds_parser/ini.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/unit/eds/eds_text.hpp"
+
+namespace takt {
+namespace {
+
+struct Read {
+  explicit Read(std::string_view text) : report{"t"}, file{read_ini(text, report)} {}
+  Report report;
+  IniFile file;
+};
+
+TEST(Ini, KeepsNamesKeysValuesAndTheirPlaces) {
+  Read read{"; comment\n[One]\nkey=value\n  spaced = a = b ;c  \n\n[Two]\n"};
+
+  ASSERT_EQ(read.file.sections.size(), 2U);
+  EXPECT_EQ(read.file.sections[0].name, "One");
+  EXPECT_EQ(read.file.sections[0].pos, (SourcePos{2, 1}));
+  const auto entries = read.file.entries(read.file.sections[0]);
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0].pos(), (SourcePos{3, 5}));
+  EXPECT_EQ(entries[1].key, "spaced");
+  EXPECT_EQ(entries[1].key_pos(), (SourcePos{4, 3}));
+  EXPECT_EQ(entries[1].value, "a = b ;c");
+  EXPECT_TRUE(read.file.entries(read.file.sections[1]).empty());
+  EXPECT_TRUE(read.report.take().empty());
+}
+
+TEST(Ini, TakesEveryLineEnd) {
+  Read read{"[a]\r\nx=1\ry=2\n\rz=3"};
+
+  const auto entries = read.file.entries(read.file.sections[0]);
+  ASSERT_EQ(entries.size(), 3U);
+  EXPECT_EQ(entries[0].line, 2U);
+  EXPECT_EQ(entries[1].line, 3U);
+  EXPECT_EQ(entries[2].line, 5U);
+  EXPECT_EQ(entries[2].value, "3");
+}
+
+TEST(Ini, TellsOfLinesItCannotUse) {
+  Read read{"early=1\n[a\nnonsense\n[b] tail\nx=1\n# remark\n"};
+
+  const auto findings = read.report.take();
+  EXPECT_EQ(test::find(findings, "entry-outside-section")->pos.line, 1U);
+  EXPECT_EQ(test::find(findings, "section-not-closed")->pos.line, 2U);
+  EXPECT_EQ(test::find(findings, "no-equals")->pos.line, 3U);
+  EXPECT_EQ(test::find(findings, "text-after-section")->pos, (SourcePos{4, 5}));
+  EXPECT_EQ(test::find(findings, "hash-comment")->pos.line, 6U);
+  ASSERT_EQ(read.file.sections.size(), 1U);
+  EXPECT_EQ(read.file.entries(read.file.sections[0]).size(), 1U);
+}
+
+TEST(Ini, ReadsUtf16AndSkipsTheMark) {
+  const std::string little{"\xFF\xFE[\0a\0]\0\n\0x\0=\0\xE4\0", 16};
+  const std::string big{"\xFE\xFF\0[\0a\0]\0\n\0x\0=\0\xE4", 16};
+  for (const auto& text : {little, big}) {
+    Read read{text};
+    ASSERT_EQ(read.file.sections.size(), 1U);
+    EXPECT_EQ(read.file.entries(read.file.sections[0])[0].value, "\xC3\xA4");
+  }
+  Read marked{"\xEF\xBB\xBF[a]\nx=1\n"};
+  EXPECT_EQ(marked.file.sections[0].pos, (SourcePos{1, 1}));
+}
+
+}  // namespace
+}  // namespace takt
