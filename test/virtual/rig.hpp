@@ -1,0 +1,169 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "master/master.hpp"
+#include "master/sim/sim_port.hpp"
+#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/sim/sample_device.hpp"
+
+namespace takt::test {
+
+/// A device whose TPDO1 gives back what its RPDO1 brought: 6040 and 607A. Its PDOs are valid from
+/// the start.
+inline DeviceTable loopback_device(NodeId node, const PdoRow& tpdo, const PdoRow& rpdo) {
+  using enum DataType;
+  sim::SampleDevice device = sim::communicating(node);
+  device.object(0x6040, 0, unsigned16, Access::rww, 0, true)
+      .object(0x607A, 0, integer32, Access::rww, 0, true);
+  const std::vector<std::uint32_t> mapping{0x6040'0010, 0x607A'0020};
+  device.pdo(0x1400, rpdo.cob_id.id(), rpdo.transmission, mapping);
+  device.pdo(0x1800, tpdo.cob_id.id(), tpdo.transmission, mapping);
+  return device.build();
+}
+
+inline BootStep boot_step(BootAction action, Time timeout = std::chrono::milliseconds{200}) {
+  return {.action = action,
+          .object = {},
+          .value = {},
+          .timeout = timeout,
+          .purpose = {},
+          .eds_note = {}};
+}
+
+/// Reset, boot-up, device type, heartbeat of 20 ms, start.
+inline BootPlan short_boot() {
+  BootPlan plan;
+  plan.steps.push_back(boot_step(BootAction::nmt));
+  plan.steps.back().command = NmtCommand::reset_communication;
+  plan.steps.push_back(boot_step(BootAction::await_bootup, std::chrono::milliseconds{500}));
+  plan.steps.push_back(boot_step(BootAction::expect));
+  plan.steps.back().object = {0x1000, 0};
+  plan.steps.back().value = sim::little_endian(0x0002'0192, 4);
+  plan.steps.push_back(boot_step(BootAction::write));
+  plan.steps.back().object = {0x1017, 0};
+  plan.steps.back().value = sim::little_endian(20, 2);
+  plan.steps.push_back(boot_step(BootAction::nmt));
+  plan.steps.back().command = NmtCommand::start;
+  plan.steps.push_back(boot_step(BootAction::await_operational));
+  return plan;
+}
+
+/// Writes down everything that was on the wire.
+class Recorder final : public sim::BusObserver {
+ public:
+  void on_wire(const sim::WireFrame& frame) noexcept override {
+    if (keep) frames.push_back(frame);
+  }
+  std::vector<sim::WireFrame> with(std::uint32_t id) const {
+    std::vector<sim::WireFrame> found;
+    std::ranges::copy_if(frames, std::back_inserter(found), [&](const sim::WireFrame& wire) {
+      return wire.frame.id.id() == id && wire.result == sim::WireResult::sent;
+    });
+    return found;
+  }
+
+  std::vector<sim::WireFrame> frames;
+  bool keep = true;
+};
+
+struct RigOptions {
+  sim::WorldOptions world{};
+  sim::RemotePortOptions port{};
+  MasterOptions master{};
+};
+
+/// A whole master on the simulated bus, in virtual time.
+class Rig {
+ public:
+  explicit Rig(BusPlan plan, RigOptions options = {}) {
+    std::vector<DeviceTable> devices;
+    for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+      NodePlan& node = plan.nodes[i];
+      node.boot_plan = short_boot();
+      node.heartbeat_timeout = std::chrono::milliseconds{60};
+      node.reboot_delay = std::chrono::milliseconds{100};
+      node.sdo_timeout = std::chrono::milliseconds{100};
+      devices.push_back(loopback_device(node.id, plan.pdos.tpdos[i], plan.pdos.rpdos[i]));
+    }
+    axes_ = plan.nodes.size();
+    world = std::make_unique<sim::World>(devices, options.world);
+    world->observe(&recorder);
+    port = std::make_unique<sim::SimPort>(*world, options.port);
+    master = std::make_unique<Master>(std::move(plan), options.master);
+    master->attach(*port);
+    master->begin();
+  }
+
+  /// One cycle, and what the front thread does after it.
+  void cycle() {
+    master->cycle();
+    for (Event event; master->take(event);) events.push_back(event);
+    ImageView image;
+    while (master->take(image)) {
+      if (on_image) on_image(image);
+      last_image.assign(image.values.begin(), image.values.end());
+      last_stale.assign(image.stale_bits.begin(), image.stale_bits.end());
+      last = image;
+    }
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) cycle();
+  }
+  /// Until all nodes exchange PDOs; false: not within two seconds.
+  bool boot() {
+    for (int i = 0; i < 2000; ++i) {
+      cycle();
+      if (all_ready()) return true;
+    }
+    return false;
+  }
+  bool all_ready() {
+    StatusSnapshot snapshot;
+    master->status(snapshot);
+    return std::ranges::all_of(snapshot.nodes, [](const NodeStatus& node) {
+      return node.boot == BootState::ready && node.nmt == NmtState::operational;
+    });
+  }
+  BusStatus status() {
+    StatusSnapshot snapshot;
+    master->status(snapshot);
+    return snapshot.bus;
+  }
+  NodeStatus node(std::size_t index) {
+    StatusSnapshot snapshot;
+    master->status(snapshot);
+    return snapshot.nodes[index];
+  }
+
+  void command(std::size_t axis, std::int64_t controlword, std::int64_t target,
+               std::uint32_t ttl = 0) {
+    master->set(static_cast<SignalIndex>(2 * axes_ + axis), controlword, ttl);
+    master->set(static_cast<SignalIndex>(3 * axes_ + axis), target, ttl);
+    master->publish_outputs(world->now());
+  }
+  void command_all(std::int64_t controlword, std::int64_t target, std::uint32_t ttl = 0) {
+    for (std::size_t axis = 0; axis < axes_; ++axis) command(axis, controlword, target, ttl);
+  }
+  long count(EventKind kind) const { return std::ranges::count(events, kind, &Event::kind); }
+  bool stale(std::size_t signal) const {
+    return ((last_stale[signal / 64] >> (signal % 64)) & 1) != 0;
+  }
+
+  Recorder recorder;
+  std::unique_ptr<sim::World> world;
+  std::unique_ptr<sim::SimPort> port;
+  std::unique_ptr<Master> master;
+  std::function<void(const ImageView&)> on_image;
+  std::vector<Event> events;
+  std::vector<std::int64_t> last_image;
+  std::vector<std::uint64_t> last_stale;
+  ImageView last;
+
+ private:
+  std::size_t axes_ = 0;
+};
+
+}  // namespace takt::test
