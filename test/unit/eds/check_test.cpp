@@ -1,0 +1,180 @@
+#include "eds_parser/check/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/unit/eds/eds_text.hpp"
+
+namespace takt {
+namespace {
+
+using test::find;
+using test::has;
+using test::line_of;
+using test::read;
+
+std::string entry(std::string_view section, std::string_view type, std::string_view value,
+                  std::string_view access = "rw", bool mappable = false) {
+  return "[" + std::string{section} + "]\nParameterName=x\nDataType=" + std::string{type} +
+         "\nAccessType=" + std::string{access} + "\nPDOMapping=" + (mappable ? "1" : "0") +
+         "\nDefaultValue=" + std::string{value} + "\n";
+}
+
+constexpr std::uint32_t entry_lines = 6;
+
+/// A TPDO (or RPDO) 1 whose mapping maps `first`, and the objects of a drive.
+std::string pdo(bool is_tpdo, std::string_view cob_id, std::string_view type,
+                std::string_view first) {
+  const std::string communication = is_tpdo ? "1800" : "1400";
+  const std::string mapping = is_tpdo ? "1A00" : "1600";
+  return entry(mapping + "sub1", "7", first) + entry(mapping + "sub0", "5", "1") +
+         entry(communication + "sub0", "5", "2") + entry(communication + "sub1", "7", cob_id) +
+         entry(communication + "sub2", "5", type) + entry("6040", "6", "0", "rww", true) +
+         entry("6041", "6", "0", "ro", true) + entry("6064", "4", "0", "ro", false) +
+         entry("60FD", "7", "0", "wo", true);
+}
+
+Findings tpdo(std::string_view first, std::string_view cob_id = "$NODEID+0x180",
+              std::string_view type = "1") {
+  return check(read(pdo(true, cob_id, type, first)).dictionary);
+}
+
+Findings rpdo(std::string_view first, std::string_view cob_id = "$NODEID+0x200",
+              std::string_view type = "1") {
+  return check(read(pdo(false, cob_id, type, first)).dictionary);
+}
+
+TEST(Check, SaysNothingOfAGoodDevice) {
+  EXPECT_TRUE(check(read("").dictionary).empty());
+  EXPECT_FALSE(has_error(tpdo("0x60410010")));
+  EXPECT_FALSE(has_error(rpdo("0x60400010")));
+}
+
+TEST(Check, NamesTheMappingEntryThatADeviceWouldRefuse) {
+  const auto findings = tpdo("0x60640020");
+
+  const auto* finding = find(findings, "pdo-not-mappable");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->severity, Severity::error);
+  EXPECT_EQ(finding->pos, (SourcePos{line_of(entry_lines), 14}));
+  EXPECT_EQ(to_string(*finding), "t.eds:" + std::to_string(line_of(entry_lines)) +
+                                     ":14: error: 1A00sub1: object 6064:00 is not PDO-mappable "
+                                     "(PDOMapping=0) [pdo-not-mappable]");
+}
+
+TEST(Check, JudgesMappingEntries) {
+  EXPECT_TRUE(has(tpdo("0x60990010"), "pdo-object-missing"));
+  EXPECT_TRUE(has(tpdo("0x60410110"), "pdo-object-missing"));
+  EXPECT_TRUE(has(tpdo("0x60410020"), "pdo-entry-length"));
+  EXPECT_TRUE(has(tpdo("0x60FD0020"), "pdo-direction"));
+  EXPECT_TRUE(has(rpdo("0x60410010"), "pdo-direction"));
+  EXPECT_TRUE(has(tpdo("0x60400010"), "pdo-direction-hint"));
+  EXPECT_FALSE(has(rpdo("0x00050008"), "pdo-dummy"));  // allowed by [DummyUsage]
+  EXPECT_TRUE(has(rpdo("0x00060010"), "pdo-dummy"));
+  EXPECT_TRUE(has(rpdo("0x00050010"), "pdo-entry-length"));
+  EXPECT_TRUE(has(tpdo("0x00050008"), "pdo-dummy"));
+}
+
+TEST(Check, CountsTheBitsOfAPdo) {
+  const auto file =
+      read(pdo(true, "$NODEID+0x180", "1", "0x60410010") + entry("1A01sub0", "5", "3") +
+           entry("1A01sub1", "7", "0x60640020") + entry("1A01sub2", "7", "0x60FD0020") +
+           entry("1A01sub3", "7", "0x60410010") + entry("1801sub0", "5", "1") +
+           entry("1801sub1", "7", "$NODEID+0x280"));
+  const auto findings = check(file.dictionary);
+
+  ASSERT_TRUE(has(findings, "pdo-too-long"));
+  EXPECT_EQ(find(findings, "pdo-too-long")->message,
+            "TPDO2: the mapped objects need 80 bits, a PDO has 64");
+  EXPECT_TRUE(has(findings, "pdo-count"));
+}
+
+TEST(Check, KnowsTheTransmissionTypesOfEachDirection) {
+  EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x180", "240"), "pdo-transmission-type"));
+  EXPECT_TRUE(has(tpdo("0x60410010", "$NODEID+0x180", "241"), "pdo-transmission-type"));
+  EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x180", "253"), "pdo-transmission-type"));
+  EXPECT_TRUE(has(rpdo("0x60400010", "$NODEID+0x200", "253"), "pdo-transmission-type"));
+  EXPECT_FALSE(has(rpdo("0x60400010", "$NODEID+0x200", "254"), "pdo-transmission-type"));
+}
+
+TEST(Check, KnowsTheRestrictedCobIds) {
+  const auto restricted = [](std::string_view cob_id) {
+    return has(tpdo("0x60410010", cob_id), "cob-id-restricted");
+  };
+
+  // CiA 301, 7.3.5, table 40
+  EXPECT_TRUE(restricted("0x000"));
+  EXPECT_TRUE(restricted("0x07F"));
+  EXPECT_TRUE(restricted("0x101"));
+  EXPECT_TRUE(restricted("0x180"));
+  EXPECT_FALSE(restricted("0x181"));
+  EXPECT_FALSE(restricted("0x580"));
+  EXPECT_TRUE(restricted("0x581"));
+  EXPECT_TRUE(restricted("0x67F"));
+  EXPECT_FALSE(restricted("0x680"));
+  EXPECT_TRUE(restricted("0x6E0"));
+  EXPECT_FALSE(restricted("0x700"));
+  EXPECT_TRUE(restricted("0x7E5"));
+  EXPECT_FALSE(restricted("0x80000000"));  // off
+  EXPECT_FALSE(restricted("0x20000000"));  // 29 bits
+  EXPECT_TRUE(restricted("$NODEID+0x580"));
+}
+
+TEST(Check, LooksAtTheFirstAndLastNodeWhereTheNodeIdIsUnknown) {
+  const auto text = pdo(true, "$NODEID+0x540", "1", "0x60410010");
+
+  EXPECT_TRUE(has(check(read(text, std::nullopt).dictionary), "cob-id-restricted"));
+  EXPECT_FALSE(has(check(read(text, 5_node).dictionary), "cob-id-restricted"));
+}
+
+TEST(Check, FindsTwoUsersOfOneCobId) {
+  const auto twice = entry("1801sub0", "5", "1") + entry("1801sub1", "7", "$NODEID+0x180");
+  const auto sync = entry("1005", "7", "0x80") + entry("1014", "7", "0x80");
+
+  EXPECT_TRUE(has(check(read(pdo(true, "$NODEID+0x180", "1", "0x60410010") + twice).dictionary),
+                  "cob-id-twice"));
+  EXPECT_TRUE(has(check(read(sync).dictionary), "cob-id-twice"));
+  EXPECT_TRUE(has(tpdo("0x60410010", "0x185"), "cob-id-absolute"));
+  EXPECT_FALSE(has(tpdo("0x60410010"), "cob-id-absolute"));
+}
+
+TEST(Check, ComparesValuesWithLimits) {
+  const auto limits = std::string{"LowLimit=-5\nHighLimit=5\n"};
+
+  EXPECT_FALSE(
+      has(check(read(entry("2000", "3", "-5") + limits).dictionary), "default-outside-limits"));
+  EXPECT_TRUE(
+      has(check(read(entry("2000", "3", "-6") + limits).dictionary), "default-outside-limits"));
+  const auto value =
+      check(read(entry("2000", "3", "0") + limits + "ParameterValue=6\n").dictionary);
+  EXPECT_EQ(find(value, "value-outside-limits")->severity, Severity::error);
+  EXPECT_TRUE(has(value, "parameter-value-in-eds"));
+}
+
+TEST(Check, DemandsTheObjectsOfTheProfile) {
+  const auto missing = [](std::string_view device_type, std::string_view objects) {
+    const auto text = "[1000]\nParameterName=t\nDataType=7\nAccessType=ro\nDefaultValue=" +
+                      std::string{device_type} + "\n" + std::string{objects};
+    const auto findings = check(read_eds(text, "t.eds").dictionary);
+    return std::ranges::count(findings, "profile-object-missing", &Finding::rule);
+  };
+
+  EXPECT_EQ(missing("0x00020192", ""), 4);
+  EXPECT_EQ(missing("0xFFFF0192", ""), 0);  // several axes: not at the usual indices
+  EXPECT_EQ(missing("0x00010191", ""), 1);
+  EXPECT_EQ(missing("0x00010191", entry("6000sub1", "5", "0")), 0);
+  EXPECT_EQ(missing("0x00010196", ""), 4);
+  EXPECT_EQ(missing("0", ""), 0);
+}
+
+TEST(Check, ComparesIdentityAndMandatoryObjects) {
+  const auto bare = check(read_eds(entry("2000", "5", "1"), "t.eds").dictionary);
+  EXPECT_EQ(std::ranges::count(bare, "mandatory-object-missing", &Finding::rule), 3);
+
+  const auto other = read_eds("[DeviceInfo]\nVendorNumber=2\n" + entry("1018sub1", "7", "3"), "t");
+  EXPECT_TRUE(has(check(other.dictionary), "identity-mismatch"));
+  const auto open = read_eds("[DeviceInfo]\nVendorNumber=2\n" + entry("1018sub1", "7", "0"), "t");
+  EXPECT_FALSE(has(check(open.dictionary), "identity-mismatch"));  // 0: not given
+}
+
+}  // namespace
+}  // namespace takt

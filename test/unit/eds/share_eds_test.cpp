@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+
+#include "eds_parser/pdo_description.hpp"
+#include "test/unit/eds/eds_text.hpp"
+
+namespace takt {
+namespace {
+
+class ShareEds : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShareEds, IsWithoutAFinding) {
+  const auto path = std::string{TAKT_SOURCE_DIR "/share/eds/"} + GetParam();
+  for (const auto node :
+       {std::optional<NodeId>{}, std::optional{1_node}, std::optional{127_node}}) {
+    const auto file = read_eds_file(path, node);
+
+    ASSERT_TRUE(file.readable);
+    for (const auto& finding : file.findings) ADD_FAILURE() << to_string(finding);
+    for (const auto& finding : check(file.dictionary)) ADD_FAILURE() << to_string(finding);
+    EXPECT_EQ(describe_pdos(file.dictionary).size(),
+              file.dictionary.device.nr_rx_pdo + file.dictionary.device.nr_tx_pdo);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, ShareEds,
+                         testing::Values("takt_drive402.eds", "takt_io401.eds",
+                                         "takt_encoder406.eds"));
+
+}  // namespace
+}  // namespace takt
