@@ -6,7 +6,7 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   int exit_code = 0;
   takt::add_eds(app, exit_code);
-  takt::add_dump(app, exit_code);
+  takt::add_plan(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,163 @@
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan_names.hpp"
+
+namespace takt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double us(Time time) { return static_cast<double>(time.count()) / 1000.0; }
+
+Json cycle_json(const BusPlan& plan) {
+  const CyclePlan& c = plan.cycle;
+  const TimeBudget budget = time_budget(plan);
+  return {{"period_us", us(c.period)},
+          {"sync", c.sync},
+          {"sync_cob_id", c.sync_cob_id.id()},
+          {"sync_overflow", c.sync_overflow},
+          {"receive_window_us", us(c.receive_window)},
+          {"output_deadline_us", us(c.output_deadline)},
+          {"quiet_before_sync_us", us(c.quiet_before_sync)},
+          {"sync_window_us", us(c.sync_window)},
+          {"service_frames", c.service_frames},
+          {"inputs_wire_us", us(budget.inputs_wire)},
+          {"outputs_wire_us", us(budget.outputs_wire)},
+          {"compute_from_us", us(budget.earliest)},
+          {"compute_until_us", us(budget.latest)},
+          {"acts_at_sync", budget.next_sync ? "k+1" : "k+2"}};
+}
+
+Json pdo_json(const BusPlan& plan, const PdoRow& row) {
+  Json fields = Json::array();
+  for (std::uint16_t i = 0; i < row.field_count; ++i) {
+    const PdoField& field = plan.pdos.fields[row.first_field + i];
+    const Signal& signal = plan.layout.signals[field.signal];
+    fields.push_back({{"signal", field.signal},
+                      {"name", signal.name},
+                      {"index", signal.object.index},
+                      {"sub", signal.object.sub},
+                      {"bit_offset", field.bit_offset},
+                      {"bits", field.bits}});
+  }
+  return {{"number", row.number},
+          {"cob_id", row.cob_id.id()},
+          {"extended", row.cob_id.is_extended()},
+          {"transmission_type", row.transmission},
+          {"length", row.length},
+          {"sync_start", row.sync_start},
+          {"inhibit_us", us(row.inhibit)},
+          {"event_timer_us", us(row.event_timer)},
+          {"deadline_us", us(row.deadline)},
+          {"fields", std::move(fields)}};
+}
+
+Json pdos_json(const BusPlan& plan, const std::vector<PdoRow>& rows, std::size_t node_index) {
+  Json list = Json::array();
+  for (const PdoRow& row : rows) {
+    if (row.node_index == node_index) list.push_back(pdo_json(plan, row));
+  }
+  return list;
+}
+
+Json step_json(const BootStep& step, std::size_t number, NodeId node) {
+  Json out{{"step", number},
+           {"action", action_name(step.action)},
+           {"letter", std::string(1, step.letter)},
+           {"purpose", step.purpose},
+           {"timeout_us", us(step.timeout)}};
+  if (step.action == BootAction::nmt) out["command"] = command_name(step.command);
+  if (step.action == BootAction::skip_if_same) out["target"] = step.target + 1;
+  if (step.object.index != 0) {
+    out["index"] = step.object.index;
+    out["sub"] = step.object.sub;
+  }
+  if (!step.value.empty()) out["value"] = value_text(step);
+  if (step.mask != 0xFFFF'FFFF) out["mask"] = step.mask;
+  if (step.optional) out["optional"] = true;
+  const std::string frame = frame_text(step, node);
+  if (!frame.empty()) out["frame"] = frame;
+  return out;
+}
+
+Json node_json(const BusPlan& plan, std::size_t index) {
+  const NodePlan& node = plan.nodes[index];
+  Json steps = Json::array();
+  for (std::size_t i = 0; i < node.boot_plan.steps.size(); ++i) {
+    steps.push_back(step_json(node.boot_plan.steps[i], i + 1, node.id));
+  }
+  return {{"id", node.id.value()},
+          {"name", node.name},
+          {"file", node.description_file},
+          {"product_name", node.product_name},
+          {"boot", node.boot},
+          {"mandatory", node.mandatory},
+          {"cia402", node.cia402},
+          {"heartbeat_timeout_us", us(node.heartbeat_timeout)},
+          {"sdo_timeout_us", us(node.sdo_timeout)},
+          {"reboot_delay_us", us(node.reboot_delay)},
+          {"tpdos", pdos_json(plan, plan.pdos.tpdos, index)},
+          {"rpdos", pdos_json(plan, plan.pdos.rpdos, index)},
+          {"boot_plan", std::move(steps)}};
+}
+
+Json signal_json(const BusPlan& plan, std::size_t index) {
+  const Signal& signal = plan.layout.signals[index];
+  Json out{{"signal", index},
+           {"node", plan.nodes[signal.node_index].name},
+           {"node_id", signal.node.value()},
+           {"name", signal.name},
+           {"index", signal.object.index},
+           {"sub", signal.object.sub},
+           {"direction", signal.output ? "out" : "in"},
+           {"data_type", name(signal.type)},
+           {"bits", signal.bits},
+           {"unit", signal.unit},
+           {"scale", signal.scale},
+           {"offset", signal.offset}};
+  if (!signal.output) return out;
+  out["fallback"] = signal.fallback == Fallback::hold ? "hold" : "value";
+  if (signal.fallback == Fallback::value) out["fallback_value"] = signal.fallback_value;
+  out["fallback_cycles"] = signal.fallback_cycles;
+  out["safe_value"] = signal.safe_value ? Json(*signal.safe_value) : Json(nullptr);
+  out["seeded_from"] = signal.seeded_from ? Json(*signal.seeded_from) : Json(nullptr);
+  return out;
+}
+
+}  // namespace
+
+void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what) {
+  Json nodes = Json::array();
+  Json signals = Json::array();
+  Json channels = Json::array();
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    if (!what.node || *what.node == plan.nodes[i].id) nodes.push_back(node_json(plan, i));
+  }
+  for (std::size_t i = 0; i < plan.layout.signals.size(); ++i) {
+    const bool wanted = !what.node || *what.node == plan.layout.signals[i].node;
+    if (wanted) signals.push_back(signal_json(plan, i));
+  }
+  for (const LcmChannel& channel : lcm_channels(plan)) {
+    channels.push_back({{"channel", channel.name}, {"type", channel.type}});
+  }
+  const Json document{{"bus", plan.name},
+                      {"interface", plan.interface},
+                      {"bitrate", plan.bitrate},
+                      {"master_id", plan.master_id.value()},
+                      {"master_heartbeat_us", us(plan.master_heartbeat)},
+                      {"start_nodes", plan.start_nodes},
+                      {"cycle", cycle_json(plan)},
+                      {"nodes", std::move(nodes)},
+                      {"image",
+                       {{"inputs", plan.layout.inputs},
+                        {"outputs", plan.layout.outputs()},
+                        {"hash", plan.layout.hash},
+                        {"signals", std::move(signals)}}},
+                      {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}};
+  out << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+}  // namespace takt

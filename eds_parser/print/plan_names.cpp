@@ -1,0 +1,171 @@
+#include "eds_parser/print/plan_names.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace takt {
+namespace {
+
+void add_byte(std::string& out, unsigned value) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  out += digits[(value >> 4) & 0xF];
+  out += digits[value & 0xF];
+}
+
+void add_object(std::string& out, ObjectKey object) {
+  add_byte(out, object.index);
+  add_byte(out, object.index >> 8U);
+  add_byte(out, object.sub);
+}
+
+/// Initiate upload. CiA 301, 7.2.4.3.5.
+std::string upload(ObjectKey object) {
+  std::string out = "40";
+  add_object(out, object);
+  return out + "00000000";
+}
+
+/// Initiate download: expedited up to 4 bytes, else segmented with its size. CiA 301, 7.2.4.3.3.
+std::string download(ObjectKey object, const std::vector<std::byte>& value) {
+  std::string out;
+  const bool expedited = !value.empty() && value.size() <= 4;
+  add_byte(out, expedited ? 0x23U | static_cast<unsigned>((4 - value.size()) << 2U) : 0x21U);
+  add_object(out, object);
+  for (unsigned i = 0; i < 4; ++i) {
+    const unsigned byte = expedited ? (i < value.size() ? std::to_integer<unsigned>(value[i]) : 0U)
+                                    : static_cast<unsigned>(value.size() >> (8 * i));
+    add_byte(out, byte);
+  }
+  return out;
+}
+
+std::string capitals(std::string_view text) {
+  std::string out{text};
+  std::ranges::transform(out, out.begin(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ? static_cast<char>(std::toupper(c)) : '_';
+  });
+  return out;
+}
+
+}  // namespace
+
+std::string_view action_name(BootAction action) noexcept {
+  switch (action) {
+    case BootAction::nmt:
+      return "NMT";
+    case BootAction::await_bootup:
+      return "await boot-up";
+    case BootAction::probe:
+      return "probe";
+    case BootAction::expect:
+      return "expect";
+    case BootAction::compare:
+      return "compare";
+    case BootAction::skip_if_same:
+      return "skip if same";
+    case BootAction::disable_pdo:
+      return "disable PDO";
+    case BootAction::write:
+      return "write";
+    case BootAction::enable_pdo:
+      return "enable PDO";
+    case BootAction::verify:
+      return "verify";
+    case BootAction::write_if_differs:
+      return "write if differs";
+    case BootAction::await_heartbeat:
+      return "await heartbeat";
+    case BootAction::await_operational:
+      return "await OPERATIONAL";
+    case BootAction::pause:
+      return "pause";
+  }
+  return "";
+}
+
+std::string_view command_name(NmtCommand command) noexcept {
+  switch (command) {
+    case NmtCommand::start:
+      return "start";
+    case NmtCommand::stop:
+      return "stop";
+    case NmtCommand::enter_preoperational:
+      return "enter pre-operational";
+    case NmtCommand::reset_node:
+      return "reset node";
+    case NmtCommand::reset_communication:
+      return "reset communication";
+  }
+  return "";
+}
+
+std::string frame_text(const BootStep& step, NodeId node) {
+  switch (step.action) {
+    case BootAction::nmt: {
+      std::string out = "000#";
+      add_byte(out, static_cast<unsigned>(step.command));
+      add_byte(out, node.value());
+      return out;
+    }
+    case BootAction::write:
+      return hex(0x600U + node.value(), 3).substr(2) + "#" + download(step.object, step.value);
+    case BootAction::probe:
+    case BootAction::expect:
+    case BootAction::compare:
+    case BootAction::verify:
+    case BootAction::write_if_differs:
+    case BootAction::disable_pdo:
+    case BootAction::enable_pdo:
+      return hex(0x600U + node.value(), 3).substr(2) + "#" + upload(step.object);
+    case BootAction::await_bootup:
+    case BootAction::skip_if_same:
+    case BootAction::await_heartbeat:
+    case BootAction::await_operational:
+    case BootAction::pause:
+      return {};
+  }
+  return {};
+}
+
+std::string value_text(const BootStep& step) {
+  if (step.value.empty()) return {};
+  std::string out;
+  if (step.value.size() <= 8) {
+    std::uint64_t number = 0;
+    for (std::size_t i = 0; i < step.value.size(); ++i) {
+      number |= std::to_integer<std::uint64_t>(step.value[i]) << (8 * i);
+    }
+    for (std::size_t i = step.value.size(); i-- > 0;) {
+      add_byte(out, static_cast<unsigned>(number >> (8 * i)));
+    }
+    return "0x" + out;
+  }
+  for (const std::byte byte : step.value) add_byte(out, std::to_integer<unsigned>(byte));
+  return out;
+}
+
+std::string us_text(Time time) {
+  return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) +
+         " us";
+}
+
+std::string span_text(Time time) {
+  if (time % std::chrono::milliseconds{1} != Time{}) return us_text(time);
+  return std::to_string(time / std::chrono::milliseconds{1}) + " ms";
+}
+
+std::vector<LcmChannel> lcm_channels(const BusPlan& plan) {
+  const std::string bus = capitals(plan.name);
+  return {
+      {bus + "_IMAGE", "takt.image_t", "every cycle: all values, raw, in the order of the layout"},
+      {bus + "_LAYOUT", "takt.layout_t", "at start and once a second: what the values mean"},
+      {bus + "_COMMAND", "takt.command_t", "set-points from applications"},
+      {bus + "_STATUS", "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
+      {bus + "_TIMING", "takt.timing_t", "1 Hz: histograms of jitter and latency"},
+      {bus + "_EVENT", "takt.event_t", "boot reports, EMCY, state changes, faults"},
+      {bus + "_REQUEST", "takt.request_t", "SDO and NMT on behalf of applications"},
+      {bus + "_REPLY", "takt.reply_t", "their answers"},
+  };
+}
+
+}  // namespace takt
