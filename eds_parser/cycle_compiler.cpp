@@ -55,8 +55,9 @@ class CycleCompiler {
     return plan_.cycle.sync ? spec_.master.sync_period_us.pos : spec_.master.pos;
   }
 
-  /// Twice the worst wire time and a frame in the way, at least half a period; at most 80 % of it,
-  /// and never beyond the outputs.
+  /// The middle of the time between the earliest arrival of all inputs and the outputs: a device
+  /// may be late by half of it, and an application still has the other half. At most 80 % of the
+  /// period.
   void set_receive_window(const TimeBudget& wire) {
     if (spec_.receive_window_us.given) {
       cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
@@ -68,17 +69,15 @@ class CycleCompiler {
       }
       return;
     }
-    const Time wanted =
-        std::max<Time>(2 * wire.inputs_wire + frame_time(plan_.bitrate), cycle_.period / 2);
+    const Time middle = wire.earliest + (cycle_.output_deadline - wire.earliest) / 2;
     cycle_.receive_window =
-        std::min<Time>({wanted, cycle_.period * 4 / 5,
-                        std::max<Time>(cycle_.output_deadline, cycle_.period / 10)});
+        std::min<Time>(std::max<Time>(wire.earliest, middle), cycle_.period * 4 / 5);
   }
 
-  /// SDO requests with their answers in the bits that nothing else needs, a tenth kept free.
+  /// SDO requests with their answers in the time that nothing else needs.
   void set_service_frames(const TimeBudget& wire) {
-    const Time left = cycle_.period - cycle_.period / 10 - wire.inputs_wire - wire.outputs_wire -
-                      cycle_.quiet_before_sync;
+    const Time left =
+        cycle_.period - wire.inputs_wire - wire.outputs_wire - cycle_.quiet_before_sync;
     const Time pair = wire_time(service_pair_bits, plan_.bitrate);
     const Time::rep pairs = left / pair;
     cycle_.service_frames =
