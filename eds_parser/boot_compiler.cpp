@@ -54,7 +54,7 @@ class BootCompiler {
   }
 
   void probe() {
-    BootStep& step = steps_.integer(BootAction::probe, {0x1000, 0}, 0, "does it answer SDO?");
+    BootStep& step = steps_.integer(BootAction::probe, {0x1000, 0}, 0, "the node answers SDO");
     step.value.clear();
     step.letter = 'B';
     step.timeout = context_.boot_timeout;

@@ -49,6 +49,10 @@ class PdoBoot {
            (entry.dummy ? "gap" : label(dictionary_, entry.object)) + ", " +
            std::to_string(entry.bits) + " bits";
   }
+  std::string count_text() const {
+    return std::to_string(pdo_.mapping.size()) +
+           (pdo_.mapping.size() == 1 ? " object" : " objects");
+  }
   std::string type_text() const {
     const std::string text = pdo_.label() + " type " + std::to_string(pdo_.transmission);
     if (pdo_.transmission == 0) return text + ": after SYNC, on change";
@@ -69,7 +73,7 @@ class PdoBoot {
     }
     parameters(BootAction::compare);
     steps_.integer(BootAction::compare, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
-                   pdo_.label() + " maps " + std::to_string(pdo_.mapping.size()) + " objects", 1);
+                   pdo_.label() + " maps " + count_text(), 1);
     for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
       steps_.integer(BootAction::compare, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
     }
@@ -85,9 +89,8 @@ class PdoBoot {
     for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
       steps_.integer(BootAction::write, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
     }
-    steps_.integer(
-        BootAction::write, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
-        pdo_.label() + " mapping on, " + std::to_string(pdo_.mapping.size()) + " objects", 1);
+    steps_.integer(BootAction::write, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+                   pdo_.label() + " mapping on, " + count_text(), 1);
   }
 
   void write_parameters() {

@@ -61,14 +61,14 @@ std::optional<std::int64_t> written_value(const std::vector<SdoSpec>& list, cons
 }
 
 /// The value before the first command: `safe_values`, what `sdo:` or the DCF writes, and for drives
-/// a controlword and rates of 0.
+/// a controlword and rates of 0. A position to go to is never taken from a file that does not call
+/// it safe: it is where the axis is.
 std::optional<std::int64_t> safe_value(const NodeSource& node, bool cia402, const Signal& signal) {
   if (auto value = written_value(node.spec->safe_values, signal)) return value;
+  const Role role = role_of(signal.object);
+  if (cia402 && role == Role::position_target) return {};
+  if (cia402 && (role == Role::controlword || role == Role::rate_target)) return 0;
   if (auto value = written_value(node.spec->sdo, signal)) return value;
-  if (cia402) {
-    const Role role = role_of(signal.object);
-    if (role == Role::controlword || role == Role::rate_target) return 0;
-  }
   const SubObject* sub = node.dictionary->find(signal.object);
   if (sub != nullptr && sub->parameter_value) return as_integer(*sub->parameter_value);
   return {};

@@ -34,8 +34,8 @@ YamlNode with_defaults(const YamlNode& node, const YamlNode* defaults) {
 
 class NetworkReader {
  public:
-  NetworkReader(const YamlNode& root, NetworkSpec& spec, NetworkReport& report)
-      : root_{root}, spec_{spec}, report_{report} {}
+  NetworkReader(const YamlNode& root, NetworkSpec& spec, Findings& findings)
+      : root_{root}, spec_{spec}, findings_{findings}, report_{spec.file, findings} {}
 
   void run() {
     if (root_.kind != YamlNode::Kind::map) {
@@ -99,25 +99,31 @@ class NetworkReader {
       return;
     }
     const YamlNode merged = with_defaults(*pair.value, root_.find("defaults"));
+    const std::size_t first = findings_.size();
     spec_.nodes.push_back(read_node(merged, pair.key, pair.key_pos, report_));
+    drop_repeated(first);
+  }
+
+  /// What stands in `defaults` is read once a node; it is told once.
+  void drop_repeated(std::size_t first) {
+    const auto begin = findings_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto repeated = [&](const Finding& finding) {
+      return told_.contains({finding.pos, finding.rule});
+    };
+    findings_.erase(std::remove_if(begin, findings_.end(), repeated), findings_.end());
+    for (auto it = findings_.begin() + static_cast<std::ptrdiff_t>(first); it != findings_.end();
+         ++it) {
+      told_.emplace(it->pos, it->rule);
+    }
   }
 
   const YamlNode& root_;
   NetworkSpec& spec_;
-  NetworkReport& report_;
+  Findings& findings_;
+  NetworkReport report_;
+  std::set<std::pair<SourcePos, std::string_view>> told_;
   bool found_node_ = false;
 };
-
-/// What stands in `defaults` was read once a node; it is told once.
-void drop_repeated(Findings& findings, std::size_t first) {
-  std::set<std::pair<SourcePos, std::string_view>> seen;
-  const auto repeated = [&](const Finding& finding) {
-    return !seen.emplace(finding.pos, finding.rule).second;
-  };
-  findings.erase(std::remove_if(findings.begin() + static_cast<std::ptrdiff_t>(first),
-                                findings.end(), repeated),
-                 findings.end());
-}
 
 }  // namespace
 
@@ -126,10 +132,7 @@ NetworkSpec read_network(std::string_view text, const std::string& file, Finding
   spec.file = file;
   const YamlTree tree = YamlTree::parse(text, file, findings);
   if (tree.root() == nullptr) return spec;
-  const std::size_t first = findings.size();
-  NetworkReport report{file, findings};
-  NetworkReader{*tree.root(), spec, report}.run();
-  drop_repeated(findings, first);
+  NetworkReader{*tree.root(), spec, findings}.run();
   return spec;
 }
 
