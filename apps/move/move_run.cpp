@@ -38,8 +38,8 @@ int MoveRun::run() {
     progress_.say(fmt::format("--to has {} values for {} axes", targets, axes_.size()));
     return exit_wrong_use;
   }
-  good_ = enable() && move();
-  if (!restarted_) disable();
+  good_ = devices_answer() && enable() && move();
+  if (commanding_ && !restarted_) disable();
   return sum_up();
 }
 
@@ -77,18 +77,31 @@ bool MoveRun::hold_until(const std::function<bool()>& done, double seconds) {
     if (input != Input::fresh) continue;
     progress_.states(group_);
     if (done()) return true;
-    group_.send();
+    if (commanding_) group_.send();
+  }
+  return false;
+}
+
+bool MoveRun::devices_answer() {
+  const auto answers = [this](AxisControl::Index axis) {
+    return !axes_.stale(axis) && axes_.drive(axis).state() != State402::not_ready_to_switch_on;
+  };
+  const auto all_answer = [&] {
+    for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+      if (!answers(i)) return stop_ != 0;
+    }
+    return true;
+  };
+  if (hold_until(all_answer, options_.wait_seconds)) return stop_ == 0;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    if (!answers(i)) progress_.say(axes_.name(i) + ": no sign of the device (did it boot?)");
   }
   return false;
 }
 
 bool MoveRun::enable() {
+  commanding_ = true;
   axes_.set_mode(DriveMode::cyclic_position);
-  const auto devices_answer = [&] { return stop_ != 0 || !axes_.any_stale(); };
-  if (!hold_until(devices_answer, options_.wait_seconds)) {
-    progress_.say("not all axes send their state");
-    return false;
-  }
   axes_.reset_faults();
   axes_.set_goal(DriveGoal::enabled);
   const auto ready = [&] { return stop_ != 0 || (axes_.all_enabled() && axes_.in_mode()); };

@@ -24,6 +24,7 @@ class MoveRun {
   using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
 
   bool find_axes();
+  bool devices_answer();
   bool enable();
   bool move();
   bool follow(const char* what, double duration, const Trajectory& trajectory);
@@ -45,6 +46,7 @@ class MoveRun {
   MoveSizes sizes_{};
   std::string unit_;
   bool good_ = true;
+  bool commanding_ = false;  // before its devices answer, takt-move only listens
   bool restarted_ = false;
   Hold holding_ = Hold::no;
   int stale_images_ = 0;
