@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -42,6 +43,8 @@ void NodeSession::boot(BootRunner::From from, Time now) noexcept {
   status_.boot = BootState::booting;
   retry_at_ = never;
   silent_ = false;
+  heartbeats_out_ = 0;
+  wanted_ = NmtState::unknown;
   state_at_boot_ = status_.nmt;
   emcys_at_boot_ = status_.emcy_count;
   runner_.start(from, now);
@@ -53,9 +56,7 @@ void NodeSession::advance(Time now) noexcept {
   if (booting()) follow_boot(now);
   if (booting()) return;
   follow_request(now);
-  if (waits_to_boot() && active_ == nullptr && now >= retry_at_) {
-    boot(BootRunner::From::beginning, now);
-  }
+  if (waits_to_boot() && active_ == nullptr && now >= retry_at_) boot(retry_from_, now);
 }
 
 void NodeSession::follow_boot(Time now) noexcept {
@@ -74,8 +75,7 @@ void NodeSession::follow_boot(Time now) noexcept {
 
 void NodeSession::on_boot_failed(Time now) noexcept {
   runner_.stop();
-  status_.boot = BootState::failed;
-  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
+  retry_later(BootState::failed, BootRunner::From::beginning, now);
   BootFailure failure = runner_.failure();
   if (failure.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
   if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
@@ -126,16 +126,31 @@ void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
 void NodeSession::on_heartbeat(NmtState state, Time now) noexcept {
   const auto sign = watch_.on_heartbeat(state, now, status_);
   if (sign == NodeWatch::Sign::bootup) return on_bootup(now);
-  if (silent_) {
-    silent_ = false;
-    if (managed_ == Managed::no) tell(EventKind::heartbeat_back, now);
-  }
   if (sign == NodeWatch::Sign::new_state) {
     tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
   }
+  if (std::exchange(silent_, false)) {
+    if (managed_ == Managed::no) tell(EventKind::heartbeat_back, now);
+    if (status_.boot == BootState::lost) retry_at_ = now;
+  }
   if (booting()) runner_.on_heartbeat(state);
-  if (status_.boot == BootState::lost && waits_to_boot()) retry_at_ = now;
+  look_for_fall(state, now);
   advance(now);
+}
+
+/// A node that leaves OPERATIONAL unasked (it missed the master's heartbeat, say) is brought back.
+/// The first such heartbeat may have been under way while the node was started.
+void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
+  const bool out = status_.boot == BootState::ready && wanted_ == NmtState::operational &&
+                   (state == NmtState::preoperational || state == NmtState::stopped);
+  heartbeats_out_ = out ? heartbeats_out_ + 1 : 0;
+  if (heartbeats_out_ >= 2) retry_later(BootState::lost, BootRunner::From::bootup, now);
+}
+
+void NodeSession::retry_later(BootState state, BootRunner::From from, Time now) noexcept {
+  status_.boot = state;
+  retry_from_ = from;
+  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
 }
 
 void NodeSession::on_bootup(Time now) noexcept {
@@ -178,14 +193,19 @@ void NodeSession::assume(NmtState state, Time now) noexcept {
   tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
 }
 
+void NodeSession::want(NmtState state, Time now) noexcept {
+  wanted_ = state;
+  assume(state, now);
+}
+
 void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
   switch (command) {
     case NmtCommand::start:
-      return assume(NmtState::operational, now);
+      return want(NmtState::operational, now);
     case NmtCommand::stop:
-      return assume(NmtState::stopped, now);
+      return want(NmtState::stopped, now);
     case NmtCommand::enter_preoperational:
-      return assume(NmtState::preoperational, now);
+      return want(NmtState::preoperational, now);
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:
       break;
@@ -194,8 +214,8 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
   assume(NmtState::unknown, now);
   if (managed_ == Managed::no || stopping_ || status_.boot == BootState::idle) return;
   if (booting()) return boot(BootRunner::From::beginning, now);
-  status_.boot = BootState::lost;  // until its boot-up message, or for the pause
-  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
+  // Until its boot-up message, or for the pause.
+  retry_later(BootState::lost, BootRunner::From::beginning, now);
 }
 
 void NodeSession::look_for_silence(Time now) noexcept {
@@ -205,9 +225,9 @@ void NodeSession::look_for_silence(Time now) noexcept {
   silent_ = true;
   if (status_.boot == BootState::failed) return;
   tell(EventKind::heartbeat_lost, now, silence->count());
-  if (status_.boot != BootState::ready) return;
-  status_.boot = BootState::lost;
-  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
+  if (status_.boot == BootState::ready) {
+    retry_later(BootState::lost, BootRunner::From::beginning, now);
+  }
 }
 
 bool NodeSession::on_time(Time now, Outbox& out) noexcept {

@@ -57,8 +57,11 @@ class NodeSession {
   void on_boot_failed(Time now) noexcept;
   void on_bootup(Time now) noexcept;
   void look_for_silence(Time now) noexcept;
+  void look_for_fall(NmtState state, Time now) noexcept;
+  void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
   void node_was_reset() noexcept;
   void assume(NmtState state, Time now) noexcept;
+  void want(NmtState state, Time now) noexcept;
   void send_nmt(Time now, Outbox& out) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
   bool booting() const noexcept { return status_.boot == BootState::booting; }
@@ -76,6 +79,9 @@ class NodeSession {
   NodeWatch watch_;
   RequestSlot* active_ = nullptr;
   Time retry_at_ = never;
+  BootRunner::From retry_from_ = BootRunner::From::beginning;
+  NmtState wanted_ = NmtState::unknown;  // by the newest NMT command
+  int heartbeats_out_ = 0;               // in a row, of a ready node that should be operational
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
   std::uint32_t same_failures_ = 0;  // in a row

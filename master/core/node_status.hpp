@@ -14,7 +14,7 @@ enum class BootState : std::uint8_t {
   booting,  ///< its plan is running
   ready,    ///< its plan has succeeded; its PDOs are exchanged
   failed,   ///< its plan has failed; tried again after a pause or with the next boot-up message
-  lost,     ///< it was ready and its heartbeat has ended
+  lost,     ///< it was ready and has fallen silent, or out of OPERATIONAL; booted again
 };
 
 /// What is known of one node. Trivially copyable: it crosses threads.

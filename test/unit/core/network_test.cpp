@@ -154,6 +154,35 @@ TEST_F(NetworkTest, FollowsTheStateInTheHeartbeat) {
   EXPECT_EQ(find(EventKind::node_state)->value, 0x7F);
 }
 
+TEST_F(NetworkTest, BringsBackANodeThatLeftOperationalByItself) {
+  add_drive();
+  start();
+  run(200ms);
+  sent.clear();
+  device().state = 0x7F;
+  run(1s);
+  EXPECT_EQ(status().boot, BootState::lost);
+  run(200ms);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 0);  // its configuration is read back, not reset
+  EXPECT_EQ(sent_count(nmt({0x01, 0x05})), 1);
+  EXPECT_TRUE(network->exchanges_pdos(0));
+}
+
+TEST_F(NetworkTest, LeavesANodeWhereAnApplicationHasPutIt) {
+  add_drive();
+  start();
+  run(200ms);
+  sent.clear();
+  network->submit(
+      {.id = 1, .kind = RequestKind::nmt, .node = 5, .command = NmtCommand::enter_preoperational},
+      now);
+  run(5s);
+  EXPECT_EQ(sent.size(), 1U);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(status().nmt, NmtState::preoperational);
+}
+
 TEST_F(NetworkTest, OnlyWatchesANodeThatIsNotBooted) {
   add_drive().boot = false;
   start();
