@@ -7,6 +7,8 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   takt::add_eds(app, exit_code);
   takt::add_plan(app, exit_code);
+  takt::add_sim(app, exit_code);
+  takt::add_simulate(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -46,6 +46,10 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
              " bytes, the most that a request carries";
     case SdoFault::cancelled:
       return "the node was reset or the master stops";
+    case SdoFault::no_such_node:
+      return "no such node in the network file";
+    case SdoFault::refused:
+      return "the request was refused";
   }
   return {};
 }

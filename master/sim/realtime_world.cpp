@@ -7,6 +7,7 @@ namespace takt::sim {
 namespace {
 
 constexpr Time longest_wait = std::chrono::milliseconds{10};
+constexpr Time longest_stall = std::chrono::seconds{1};
 
 Time monotonic() noexcept {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
@@ -32,8 +33,10 @@ void RealtimeWorld::stop() noexcept {
 }
 
 void RealtimeWorld::run() noexcept {
-  const Time start = monotonic();
+  Time start = monotonic();
   while (!stop_.load(std::memory_order_acquire)) {
+    const Time behind = monotonic() - start - world_.now();
+    if (behind > longest_stall) start += behind;  // this process was stopped: so were the devices
     world_.advance_to(monotonic() - start);
     if (!carry_out()) break;
     const Time wait = std::clamp(world_.next_event() - (monotonic() - start), Time{}, longest_wait);

@@ -1,0 +1,30 @@
+#pragma once
+#include <utility>
+
+#include "master/linux/frame_channel.hpp"
+#include "master/sim/frame_channel.hpp"
+
+namespace takt {
+
+/// The simulated devices' way onto a bus of this machine. An interface that is down only drops
+/// frames: it may come back.
+class DeviceChannel final : public sim::FrameChannel {
+ public:
+  explicit DeviceChannel(takt::FrameChannel channel) : channel_{std::move(channel)} {}
+
+  bool send(const Frame& frame) noexcept override {
+    channel_.send(frame);
+    return true;
+  }
+  sim::ChannelRead receive(Frame& frame, Time timeout) noexcept override {
+    StampedFrame stamped;
+    if (!channel_.receive(stamped, timeout)) return sim::ChannelRead::nothing;
+    frame = stamped.frame;
+    return sim::ChannelRead::frame;
+  }
+
+ private:
+  takt::FrameChannel channel_;
+};
+
+}  // namespace takt

@@ -1,0 +1,233 @@
+#include "apps/simulate/fault_file.hpp"
+
+#include <array>
+#include <charconv>
+#include <span>
+#include <string_view>
+#include <yaml-cpp/yaml.h>
+
+#include "apps/simulate/duration.hpp"
+#include "eds_parser/number.hpp"
+#include "eds_parser/suggest.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::array<std::string_view, 12> keys{"kind",   "node",   "at",          "for",
+                                                "until",  "time",   "probability", "ppm",
+                                                "cob_id", "object", "abort_code",  "value"};
+constexpr std::array<std::string_view, 2> more_keys{"emcy_code", "data"};
+constexpr std::array<std::string_view, 22> kinds{
+    "loss",          "duplicate",     "delay",        "error_frames",  "babble",
+    "power_off",     "drift",         "mute_sdo",     "refuse_object", "override_value",
+    "late_bootup",   "no_bootup",     "no_heartbeat", "bootup_storm",  "self_start",
+    "fixed_mapping", "mute_pdo",      "device_error", "reset",         "bus_off",
+    "stall_master",  "interface_down"};
+
+std::vector<std::byte> little_endian(std::uint64_t value) {
+  std::vector<std::byte> bytes;
+  for (unsigned i = 0; i < 8; ++i) bytes.push_back(std::byte(value >> (8 * i) & 0xFF));
+  return bytes;
+}
+
+std::optional<std::uint64_t> integer(const std::string& text) {
+  const auto number = parse_number(text);
+  if (!number || number->relative()) return std::nullopt;
+  return number->negative ? ~number->magnitude + 1 : number->magnitude;
+}
+
+/// `1018:01`, `0x1018:1`, `6040`: index and sub-index in hex.
+std::optional<ObjectKey> object_key(std::string_view text) {
+  if (text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
+  unsigned index = 0;
+  unsigned sub = 0;
+  const char* end = text.data() + text.size();
+  auto [at, error] = std::from_chars(text.data(), end, index, 16);
+  if (error != std::errc{} || index > 0xFFFF) return std::nullopt;
+  if (at != end && *at == ':') {
+    const auto rest = std::from_chars(at + 1, end, sub, 16);
+    if (rest.ec != std::errc{} || sub > 0xFF) return std::nullopt;
+    at = rest.ptr;
+  }
+  if (at != end) return std::nullopt;
+  return ObjectKey{static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
+}
+
+/// Reads one list entry after the other and collects what is wrong.
+class Reader {
+ public:
+  Reader(std::string file, const BusPlan& plan) : file_{std::move(file)}, plan_{plan} {}
+
+  FaultFile take() { return std::move(result_); }
+
+  void error(const YAML::Mark& mark, std::string_view rule, std::string message) {
+    SourcePos pos;
+    if (mark.line >= 0) {
+      pos = {static_cast<std::uint32_t>(mark.line + 1),
+             static_cast<std::uint32_t>(mark.column + 1)};
+    }
+    result_.findings.push_back({.file = file_,
+                                .pos = pos,
+                                .severity = Severity::error,
+                                .rule = rule,
+                                .message = std::move(message)});
+  }
+
+  void read(const YAML::Node& root) {
+    if (!root.IsMap() || root.size() != 1 || !root["faults"] || !root["faults"].IsSequence()) {
+      error(root.Mark(), "fault-file", "a fault file is a list under `faults:`");
+      return;
+    }
+    for (const YAML::Node& entry : root["faults"]) read_fault(entry);
+  }
+
+ private:
+  void read_fault(const YAML::Node& entry) {
+    if (!entry.IsMap()) {
+      error(entry.Mark(), "fault-file", "a fault is a map with at least `kind:`");
+      return;
+    }
+    sim::Fault fault;
+    bool has_kind = false;
+    for (const auto& item : entry) {
+      const auto key = item.first.as<std::string>("");
+      has_kind |= key == "kind";
+      if (!item.second.IsScalar()) {
+        error(item.second.Mark(), "fault-value", "`" + key + "` wants a single value");
+        continue;
+      }
+      read_key(fault, key, item.second, item.first.Mark());
+    }
+    if (!has_kind) error(entry.Mark(), "fault-kind", "`kind` is missing");
+    if (fault.until != never && !until_is_absolute_) fault.until += fault.at;
+    until_is_absolute_ = false;
+    result_.faults.push_back(std::move(fault));
+  }
+
+  void read_key(sim::Fault& fault, const std::string& key, const YAML::Node& value,
+                const YAML::Mark& mark) {
+    const auto text = value.as<std::string>("");
+    if (key == "kind") return read_kind(fault, text, value.Mark());
+    if (key == "node") return read_node(fault, text, value.Mark());
+    if (key == "at") return read_time(fault.at, text, value.Mark());
+    if (key == "for") return read_time(fault.until, text, value.Mark());
+    if (key == "time") return read_time(fault.time, text, value.Mark());
+    if (key == "until") {
+      until_is_absolute_ = true;
+      return read_time(fault.until, text, value.Mark());
+    }
+    if (key == "object") {
+      fault.object = object_key(text);
+      if (!fault.object) refuse(value.Mark(), text, "an object like 6041:00");
+      return;
+    }
+    if (key == "probability") return read_probability(fault, text, value.Mark());
+    if (key == "data") return read_data(fault, text, value.Mark());
+    read_number(fault, key, value, mark);
+  }
+
+  void read_number(sim::Fault& fault, const std::string& key, const YAML::Node& value,
+                   const YAML::Mark& mark) {
+    const auto text = value.as<std::string>("");
+    const auto number = integer(text);
+    const auto small = static_cast<std::int64_t>(number.value_or(0));
+    if (key == "value") {
+      if (number) {
+        fault.value = little_endian(*number);
+      } else {
+        const auto bytes = std::as_bytes(std::span{text});
+        fault.value.assign(bytes.begin(), bytes.end());
+      }
+      return;
+    }
+    bool in_range = true;
+    if (key == "ppm") {
+      in_range = small >= -50'000 && small <= 50'000;
+      fault.ppm = static_cast<int>(small);
+    } else if (key == "cob_id") {
+      in_range = small >= 0 && small <= 0x1FFF'FFFF;
+      const auto id = static_cast<std::uint32_t>(small);
+      fault.cob_id = id > 0x7FF ? CobId::extended(id) : CobId::base(id);
+    } else if (key == "abort_code") {
+      in_range = small > 0 && small <= 0xFFFF'FFFF;
+      fault.abort_code = static_cast<std::uint32_t>(small);
+    } else if (key == "emcy_code") {
+      in_range = small > 0 && small <= 0xFFFF;
+      fault.emcy_code = static_cast<std::uint16_t>(small);
+    } else {
+      const bool late = !did_you_mean(key, more_keys).empty();
+      error(mark, "unknown-key",
+            "unknown key `" + key + "`" +
+                (late ? did_you_mean(key, more_keys) : did_you_mean(key, keys)));
+      return;
+    }
+    if (!number || !in_range) refuse(value.Mark(), text, "a number in the range of `" + key + "`");
+  }
+
+  void read_kind(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
+    const auto kind = sim::fault_kind(text);
+    if (kind) {
+      fault.kind = *kind;
+    } else {
+      error(mark, "fault-kind", "unknown kind `" + text + "`" + did_you_mean(text, kinds));
+    }
+  }
+
+  void read_node(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
+    const auto number = integer(text);
+    for (const NodePlan& node : plan_.nodes) {
+      if (node.name == text || (number && node.id.value() == *number)) fault.node = node.id;
+    }
+    if (!fault.node) refuse(mark, text, "a node of the network, by name or number");
+  }
+
+  void read_time(Time& time, const std::string& text, const YAML::Mark& mark) {
+    const auto parsed = parse_duration(text);
+    if (!parsed) return refuse(mark, text, "a time like 500ms, 2s or 100us");
+    time = *parsed;
+  }
+
+  void read_probability(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
+    const auto parsed = parse_real(text);
+    if (!parsed || !(*parsed >= 0.0 && *parsed <= 1.0)) return refuse(mark, text, "0 to 1");
+    fault.probability = *parsed;
+  }
+
+  void read_data(sim::Fault& fault, const std::string& text, const YAML::Mark& mark) {
+    unsigned byte = 0;
+    for (std::size_t i = 0; i + 1 < text.size() + 1; i += 2) {
+      const char* begin = text.data() + i;
+      const char* end = text.data() + std::min(i + 2, text.size());
+      const auto parsed = std::from_chars(begin, end, byte, 16);
+      if (parsed.ec != std::errc{} || parsed.ptr != end || i >= 16) {
+        return refuse(mark, text, "up to eight bytes in hex, like 0102FF");
+      }
+      fault.value.push_back(std::byte(byte));
+    }
+  }
+
+  void refuse(const YAML::Mark& mark, const std::string& text, const std::string& wanted) {
+    error(mark, "fault-value", "`" + text + "` is not " + wanted);
+  }
+
+  std::string file_;
+  const BusPlan& plan_;
+  FaultFile result_;
+  bool until_is_absolute_ = false;
+};
+
+}  // namespace
+
+FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan) {
+  Reader reader{path.string(), plan};
+  try {
+    reader.read(YAML::LoadFile(path.string()));
+  } catch (const YAML::BadFile&) {
+    reader.error(YAML::Mark::null_mark(), "fault-file", "can't be read");
+  } catch (const YAML::Exception& exception) {
+    reader.error(exception.mark, "yaml", exception.msg);
+  }
+  return reader.take();
+}
+
+}  // namespace takt

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "apps/simulate/outcome_report.hpp"
+#include "master/core/boot_report.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t shown_events = 40;
+
+double us(Time time) { return static_cast<double>(time.count()) / 1e3; }
+double seconds(Time time) { return std::chrono::duration<double>(time).count(); }
+
+void print_bus(std::ostream& out, const SimulationOutcome& outcome) {
+  const double bits = static_cast<double>(outcome.wire.bits);
+  const double rate = outcome.bitrate;
+  const double worst = static_cast<double>(outcome.worst_cycle_bits);
+  out << fmt::format("{}: {:.3f} s of bus at {} kbit/s, seed {}\n", outcome.bus,
+                     seconds(outcome.simulated), outcome.bitrate / 1000, outcome.seed)
+      << fmt::format("  cycles       {} of {:.0f} us, {} missed, {} with an incomplete image\n",
+                     outcome.loop.beats, us(outcome.period), outcome.loop.cycles_missed,
+                     outcome.loop.images_incomplete)
+      << fmt::format("  frames       {} ({} SDO, {} EMCY), {} error frames\n", outcome.wire.frames,
+                     outcome.sdo_frames, outcome.emcy_frames, outcome.wire.error_frames)
+      << fmt::format("  bus load     {:.1f} %, fullest cycle {:.1f} %\n",
+                     100 * bits / (rate * seconds(outcome.simulated)),
+                     100 * worst / (rate * seconds(outcome.period)));
+  if (outcome.wire.lost + outcome.wire.duplicated + outcome.wire.overflowed != 0) {
+    out << fmt::format("  faults       {} frames lost, {} doubled, {} found a full queue\n",
+                       outcome.wire.lost, outcome.wire.duplicated, outcome.wire.overflowed);
+  }
+}
+
+void print_sync(std::ostream& out, const SyncOnWire& sync) {
+  if (sync.count < 2) {
+    out << "  SYNC         none on the wire\n";
+    return;
+  }
+  out << fmt::format(
+      "  SYNC         distance {:.0f} to {:.0f} us, off by p50 {:.0f} p99 {:.0f} max {:.0f} us, "
+      "{} gaps\n",
+      us(sync.shortest), us(sync.longest), us(sync.quantile(0.5)), us(sync.quantile(0.99)),
+      us(sync.quantile(1.0 - 1e-12)), sync.gaps);
+}
+
+void print_nodes(std::ostream& out, const SimulationOutcome& outcome) {
+  out << fmt::format("\n  {:>3}  {:16} {:16} {:8} {:>9} {:>9} {:>7} {:>6} {:>10} {:>9} {:>5}\n",
+                     "id", "node", "state", "boot", "boot ms", "TPDOs", "missing", "late",
+                     "worst us", "RPDOs", "EMCY");
+  for (const NodeOutcome& node : outcome.nodes) {
+    const std::string boot =
+        node.first_boot ? fmt::format("{:.1f}", us(*node.first_boot) / 1e3) : "-";
+    out << fmt::format("  {:>3}  {:16} {:16} {:8} {:>9} {:>9} {:>7} {:>6} {:>10.0f} {:>9} {:>5}\n",
+                       node.id, node.name, name(node.status.nmt), name(node.status.boot), boot,
+                       node.tpdo_frames, node.tpdo_missing, node.tpdo_late, us(node.worst_tpdo),
+                       node.rpdo_frames, node.status.emcy_count);
+  }
+}
+
+void print_events(std::ostream& out, const SimulationOutcome& outcome) {
+  out << fmt::format("\n  {} events{}\n", outcome.events_total,
+                     outcome.events_total > shown_events
+                         ? fmt::format(", the first {} (--json: more)", shown_events)
+                         : "");
+  for (std::size_t i = 0; i < std::min(shown_events, outcome.events.size()); ++i) {
+    out << fmt::format("  {:>11.3f} ms  {}\n", us(outcome.events[i].when) / 1e3,
+                       outcome.events[i].text);
+  }
+}
+
+}  // namespace
+
+void print_text(std::ostream& out, const SimulationOutcome& outcome) {
+  print_bus(out, outcome);
+  print_sync(out, outcome.sync);
+  if (outcome.move) {
+    out << fmt::format("  set-points   built-in sine, no application; {} axes moved\n",
+                       outcome.axes_moved);
+  } else {
+    out << "  set-points   none (no application; --move gives a built-in sine)\n";
+  }
+  out << fmt::format("  stop         {}\n", outcome.stopped ? "in order" : "NOT in its time");
+  print_nodes(out, outcome);
+  print_events(out, outcome);
+}
+
+}  // namespace takt

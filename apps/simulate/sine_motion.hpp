@@ -1,0 +1,45 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "apps/axis/drive_sequence.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/rt/controller.hpp"
+
+namespace takt {
+
+/// Set-points without an application: enables every CiA 402 axis whose PDOs carry controlword,
+/// statusword, target position and actual position, and moves it as a sine about where it stands.
+/// All other outputs are zero.
+class SineMotion final : public Controller {
+ public:
+  explicit SineMotion(const BusPlan& plan);
+
+  void update(const ImageView& image, OutputWriter& outputs) noexcept override;
+  std::size_t axes() const noexcept { return axes_.size(); }
+  /// How many axes have been moving at the same time, at most.
+  std::size_t most_moving() const noexcept { return most_moving_; }
+
+ private:
+  struct Axis {
+    SignalIndex controlword = 0;
+    SignalIndex statusword = 0;
+    SignalIndex target = 0;
+    SignalIndex actual = 0;
+    std::optional<SignalIndex> mode{};
+    double amplitude = 0;  ///< counts
+    DriveSequence sequence{};
+    bool fault = false;  ///< a reset has been asked for
+    std::optional<Time> since{};
+    double centre = 0;
+  };
+
+  void find_axes(const BusPlan& plan);
+  void update(Axis& axis, const ImageView& image, OutputWriter& outputs) noexcept;
+
+  std::vector<Axis> axes_;
+  std::vector<SignalIndex> others_;
+  std::size_t most_moving_ = 0;
+};
+
+}  // namespace takt

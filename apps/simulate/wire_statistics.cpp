@@ -1,0 +1,82 @@
+#include "apps/simulate/wire_statistics.hpp"
+
+#include <algorithm>
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t interframe_bits = 3;
+
+}  // namespace
+
+Time SyncOnWire::quantile(double part) const {
+  std::uint64_t all = 0;
+  for (const std::uint64_t bucket : deviation) all += bucket;
+  auto left = static_cast<std::uint64_t>(static_cast<double>(all) * part);
+  for (std::size_t us = 0; us < deviation.size(); ++us) {
+    if (deviation[us] > left) return std::chrono::microseconds{us};
+    left -= deviation[us];
+  }
+  return std::chrono::microseconds{all == 0 ? 0 : deviation.size() - 1};
+}
+
+WireStatistics::WireStatistics(const BusPlan& plan)
+    : plan_{plan}, tpdos_(plan.pdos.tpdos.size()), rpdos_(plan.pdos.rpdos.size()) {
+  rpdo_route_.fill(PdoTable::no_row);
+  for (std::size_t row = 0; row < rpdos_.size(); ++row) {
+    const CobId id = plan.pdos.rpdos[row].cob_id;
+    if (!id.is_extended()) rpdo_route_[id.id()] = static_cast<std::uint16_t>(row);
+  }
+}
+
+void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
+  cycle_bits_ += wire.bits + interframe_bits;
+  if (wire.result != sim::WireResult::sent || wire.frame.rtr) return;
+  const CobId id = wire.frame.id;
+  if (id == plan_.cycle.sync_cob_id) return on_sync(wire.start);
+  if (id.is_extended()) return;
+  if (const std::uint16_t row = plan_.pdos.route[id.id()]; row != PdoTable::no_row) {
+    return on_tpdo(tpdos_[row], plan_.pdos.tpdos[row], wire.end);
+  }
+  if (const std::uint16_t row = rpdo_route_[id.id()]; row != PdoTable::no_row) {
+    ++rpdos_[row].frames;
+    return;
+  }
+  count_service(id);
+}
+
+void WireStatistics::count_service(CobId id) noexcept {
+  const std::uint32_t function = id.id() & 0x780;
+  sdo_frames_ += function == 0x580 || function == 0x600;
+  emcy_frames_ += function == 0x080;
+}
+
+void WireStatistics::on_sync(Time start) noexcept {
+  worst_bits_ = std::max(worst_bits_, cycle_bits_);
+  cycle_bits_ = 0;
+  if (sync_.count++ != 0) {
+    const Time distance = start - last_sync_;
+    sync_.shortest = std::min(sync_.shortest, distance);
+    sync_.longest = std::max(sync_.longest, distance);
+    if (2 * distance >= 3 * plan_.cycle.period) {
+      ++sync_.gaps;
+    } else {
+      const auto us = std::chrono::round<std::chrono::microseconds>(
+          distance > plan_.cycle.period ? distance - plan_.cycle.period
+                                        : plan_.cycle.period - distance);
+      const auto bucket = static_cast<std::size_t>(us.count());
+      ++sync_.deviation[std::min(bucket, sync_.deviation.size() - 1)];
+    }
+  }
+  last_sync_ = start;
+}
+
+void WireStatistics::on_tpdo(PdoOnWire& pdo, const PdoRow& row, Time end) noexcept {
+  ++pdo.frames;
+  if (!row.cyclic() || sync_.count == 0) return;
+  const Time after = end - last_sync_;
+  pdo.worst = std::max(pdo.worst, after);
+  pdo.late += after > plan_.cycle.receive_window;
+}
+
+}  // namespace takt

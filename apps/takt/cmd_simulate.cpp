@@ -1,0 +1,96 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "apps/simulate/duration.hpp"
+#include "apps/simulate/fault_file.hpp"
+#include "apps/simulate/outcome_report.hpp"
+#include "apps/simulate/simulation.hpp"
+#include "apps/takt/commands.hpp"
+
+namespace takt {
+namespace {
+
+struct Arguments {
+  std::string network;
+  std::string run_for = "10s";
+  std::string faults;
+  std::string jitter = "0us";
+  SimulationOptions simulation;
+  bool json = false;
+};
+
+bool tell(const Findings& findings) {
+  for (const Finding& finding : findings) std::cerr << to_string(finding) << '\n';
+  return has_error(findings);
+}
+
+int run(Arguments& arguments) {
+  const LoadedNetwork network = load_network(arguments.network);
+  if (tell(network.findings)) return 2;
+  SimulationOptions& options = arguments.simulation;
+  if (!arguments.faults.empty()) {
+    FaultFile file = read_fault_file(arguments.faults, network.plan);
+    if (tell(file.findings)) return 2;
+    options.faults = std::move(file.faults);
+  }
+  options.duration = *parse_duration(arguments.run_for);
+  options.wake_jitter = *parse_duration(arguments.jitter);
+
+  const auto start = std::chrono::steady_clock::now();
+  const SimulationOutcome outcome = simulate(network, options);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  if (arguments.json) {
+    print_json(std::cout, outcome);
+  } else {
+    print_text(std::cout, outcome);
+  }
+  const double simulated = std::chrono::duration<double>(outcome.simulated).count();
+  std::cerr << "simulated " << simulated << " s in " << took.count()
+            << " s: " << static_cast<long>(simulated / took.count()) << " times real time\n";
+  return outcome.mandatory_failed ? 4 : 0;
+}
+
+std::string check_duration(const std::string& text) {
+  return parse_duration(text) ? "" : "'" + text + "' is not a time like 100s, 500ms or 2h";
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  auto* command = app.add_subcommand("simulate", "master and devices in virtual time");
+  command->add_option("NET.yaml", arguments->network, "network file")->required();
+  command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
+      ->check(check_duration)
+      ->capture_default_str();
+  command->add_option("--seed", arguments->simulation.seed, "same seed, same run")
+      ->capture_default_str();
+  command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
+  command->add_flag("--move", arguments->simulation.move,
+                    "built-in sine set-points for all CiA 402 axes, in place of an application");
+  command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
+      ->check(check_duration)
+      ->capture_default_str();
+  command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
+  command->add_flag("--json", arguments->json, "one JSON document; equal for equal seeds");
+  command->footer(
+      "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss duplicate "
+      "delay\n"
+      "error_frames (probability, time), babble (cob_id, data, time), power_off, drift (ppm),\n"
+      "mute_sdo, refuse_object (object, abort_code), override_value (object, value), late_bootup\n"
+      "(time), no_bootup, no_heartbeat, bootup_storm (time), self_start, fixed_mapping, mute_pdo,\n"
+      "device_error (emcy_code), reset, bus_off, stall_master, interface_down.\n\n"
+      "Example:\n  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
+      "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
+  command->callback([arguments, &exit_code] {
+    try {
+      exit_code = run(*arguments);
+    } catch (const std::exception& exception) {
+      std::cerr << "takt simulate: " << exception.what() << '\n';
+      exit_code = 2;
+    }
+  });
+}
+
+}  // namespace takt
