@@ -5,6 +5,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   int exit_code = 0;
+  takt::add_dump(app, exit_code);
   takt::add_eds(app, exit_code);
   takt::add_plan(app, exit_code);
   takt::add_sim(app, exit_code);

@@ -47,10 +47,11 @@ std::string against_silence(const BusPlan& plan, const NodePlan& node, const Boo
   }
   if (failure.node_state == NmtState::stopped) {
     return "the node is in NMT state STOPPED, where it answers no SDO: let the boot reset it "
-           "(reset_communication: true), or stop whoever stops it";
+           "(`reset: communication`), or stop whoever stops it";
   }
   return "the node is alive on the bus but its SDO server keeps silent: does it need longer to "
-         "start (raise the node's boot timeout)? Is a second node or a second master using node "
+         "start (raise `boot_timeout_ms` of the node)? Is a second node or a second master using "
+         "node "
          "id " +
          id + "?";
 }
@@ -60,11 +61,12 @@ std::string against_identity(const NodePlan& node, const BootFailure& failure) {
   switch (failure.letter) {
     case 'N':
       return "the device has another firmware or hardware revision than " + node.description_file +
-             ": use the EDS of this revision, or drop revision_number from the network file if the "
+             ": use the EDS of this revision, or drop `revision_number` from the network file if "
+             "the "
              "difference doesn't matter";
     case 'O':
       return "another specimen of the device is connected: enter its serial number in the network "
-             "file, or drop serial_number there";
+             "file, or drop `serial_number` there";
     default:
       return "another device than " + node.description_file + " describes answers at node id " +
              id +
@@ -93,12 +95,12 @@ std::string against_refused_mapping(const BootStep& step, const BootFailure& fai
                        ": its firmware is older than the EDS; take it out of the mapping of " + pdo;
     case abort_code::read_only:
       return "the mapping of " + pdo +
-             " is fixed in this device: remove `mapping` for it in the network file, so that the "
+             " is fixed in this device: remove its `mapping` from the network file, so that the "
              "device's own mapping is used";
     default:
       return "the device refuses to change " + pdo +
-             " now: it may want to be reset first (reset_communication: true), or its mapping is "
-             "fixed; then remove `mapping` for it in the network file";
+             " now: it may want to be reset first (`reset: communication`), or its mapping is "
+             "fixed; then remove its `mapping` from the network file";
   }
 }
 
@@ -134,7 +136,7 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
     case abort_code::device_state:
       return object + " can't be " + verb +
              " in the present state of the device: disable the drive, leave local control, or let "
-             "the boot reset it (reset_communication: true, or reset_node)";
+             "the boot reset it (`reset: communication`, or `reset: node`)";
     case abort_code::hardware_error:
       return "the device reports a hardware error: power it off and on; if that does not help, its "
              "storage may be worn";
@@ -163,9 +165,9 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
     case BootAction::await_heartbeat:
       return failure.node_state == NmtState::unknown
                  ? "the device produces no heartbeat: is 0x1017 not zero after the boot? Set "
-                   "heartbeat_producer for this node, or heartbeat_consumer: false to go without"
-                 : "the heartbeat is slower than expected: raise heartbeat_multiplier or lower "
-                   "heartbeat_producer of this node";
+                   "`heartbeat_producer` of this node in ms, or 0 to go without"
+                 : "the heartbeat is slower than expected: raise `heartbeat_multiplier` or lower "
+                   "`heartbeat_producer` of this node";
     case BootAction::await_operational:
       return "the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its "
              "EMCY messages, 0x1001 and 0x1003), or a second master holds it back";
@@ -175,7 +177,7 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
   if (failure.downloading) {
     return "the device needs longer than " + time_text(step.timeout) + " for " +
            to_string(failure.object) +
-           " (flash memory takes seconds): raise the SDO timeout of this node. The write was not "
+           " (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The write was not "
            "repeated, because it might act twice";
   }
   return against_silence(plan, node, failure);

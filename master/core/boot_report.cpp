@@ -159,9 +159,11 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
   if (failure.fault == SdoFault::none && failure.sent_size != 0) {
     add_line(text, "expected", wanted_text(step));
   }
-  add_line(
-      text, "status",
-      std::string{failure.letter} + " of CiA 302-2: " + std::string{letter_text(failure.letter)});
+  if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for that
+    add_line(
+        text, "status",
+        std::string{failure.letter} + " of CiA 302-2: " + std::string{letter_text(failure.letter)});
+  }
   add_line(text, "heard", heard_text(failure));
   if (failure.emcy != 0) {
     add_line(text, "EMCY", hex(failure.emcy) + ": " + std::string{emcy_text(failure.emcy)});

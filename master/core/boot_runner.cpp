@@ -31,6 +31,8 @@ void BootRunner::start(From from, Time now) noexcept {
   state_ = State::running;
   began_ = now;
   restarts_ = 0;
+  differs_ = false;
+  cob_id_object_.reset();
   reset_sent_ = false;
   bootup_seen_ = from == From::bootup;
   heartbeat_seen_ = false;
@@ -54,6 +56,7 @@ void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
   client.drop();
   if (++restarts_ > max_restarts) return fail({.fault = SdoFault::cancelled}, now, client);
   cob_id_object_.reset();
+  differs_ = false;
   go_to(current().action == BootAction::probe ? step_ : after_reset_);
 }
 

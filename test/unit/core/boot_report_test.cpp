@@ -125,7 +125,7 @@ TEST_F(BootReport, OfAMissingHeartbeat) {
   received  no heartbeat on 0x705 within 300 ms
   status    K of CiA 302-2: no heartbeat at the start of error control
   heard     no boot-up message and no heartbeat
-  try       the device produces no heartbeat: is 0x1017 not zero after the boot? Set heartbeat_producer for this node, or heartbeat_consumer: false to go without)");
+  try       the device produces no heartbeat: is 0x1017 not zero after the boot? Set `heartbeat_producer` of this node in ms, or 0 to go without)");
 }
 
 TEST_F(BootReport, OfAWriteThatTakesTooLong) {
@@ -138,7 +138,7 @@ TEST_F(BootReport, OfAWriteThatTakesTooLong) {
   received  nothing within 500 ms; a write is not repeated
   status    J of CiA 302-2: configuration failed
   heard     no boot-up message and no heartbeat
-  try       the device needs longer than 500 ms for 1010:01 (flash memory takes seconds): raise the SDO timeout of this node. The write was not repeated, because it might act twice)");
+  try       the device needs longer than 500 ms for 1010:01 (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The write was not repeated, because it might act twice)");
 }
 
 TEST_F(BootReport, OfANodeThatDoesNotStart) {
@@ -154,7 +154,6 @@ TEST_F(BootReport, OfANodeThatDoesNotStart) {
   EXPECT_EQ(report(std::move(steps), 500ms),
             R"(node 5 'shoulder' failed to boot at step 2 of 2 (OPERATIONAL) after 300 ms
   received  heartbeats that say PRE-OPERATIONAL for 300 ms
-  status    L of CiA 302-2: the node was operational already
   heard     heartbeats that say PRE-OPERATIONAL
   EMCY      0x8210: PDO not processed: its length is wrong
   try       the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its EMCY messages, 0x1001 and 0x1003), or a second master holds it back)");

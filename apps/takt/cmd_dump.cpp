@@ -1,0 +1,199 @@
+#include <csignal>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <unistd.h>
+
+#include "apps/frame_text/candump_line.hpp"
+#include "apps/frame_text/frame_text.hpp"
+#include "apps/frame_text/value_text.hpp"
+#include "apps/takt/commands.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "master/linux/clock.hpp"
+#include "master/linux/frame_channel.hpp"
+
+namespace takt {
+namespace {
+
+constexpr int good = 0;
+constexpr int usage = 2;
+constexpr int bus_trouble = 3;
+
+constexpr const char* example = R"(Examples:
+  takt dump --bus can0                 what goes over the bus now
+  takt dump lift.yaml --bus can0       with the names, values and units of the network file
+  takt dump lift.yaml trace.log        a recording of `candump -L` or of `candump`
+  candump -L can0 | takt dump          the same from a pipe)";
+
+struct Options {
+  std::vector<std::string> files;
+  std::string bus;
+  std::uint64_t count = 0;  // 0: no limit
+  bool json = false;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+bool is_network(const std::string& file) {
+  return file.ends_with(".yaml") || file.ends_with(".yml");
+}
+
+/// Prints frames until enough are printed.
+class Printer {
+ public:
+  Printer(const Options& options, const LoadedNetwork* network)
+      : options_{options},
+        reader_{network == nullptr ? std::make_unique<FrameText>()
+                                   : std::make_unique<FrameText>(*network)} {}
+
+  /// False: that was the last one.
+  bool print(const CandumpLine& line) {
+    const FrameMeaning meaning =
+        line.error_frame ? FrameMeaning{.service = "ERROR", .text = "error frame of the controller"}
+                         : reader_->meaning(line.frame);
+    if (options_.json) {
+      print_json(line, meaning);
+    } else {
+      fmt::print("{:<62}  {:<9} {}\n", to_string(line), meaning.service, meaning.text);
+    }
+    return ++printed_ != options_.count;
+  }
+
+ private:
+  static void print_json(const CandumpLine& line, const FrameMeaning& meaning) {
+    nlohmann::ordered_json out;
+    if (!line.stamp.empty()) out["time"] = line.stamp;
+    out["bus"] = line.interface;
+    out["id"] = line.frame.id.id();
+    out["extended"] = line.frame.id.is_extended();
+    out["rtr"] = line.frame.rtr;
+    out["data"] =
+        bytes_text(line.frame.rtr ? std::span<const std::uint8_t>{} : line.frame.payload());
+    out["service"] = meaning.service;
+    if (meaning.node != 0) out["node"] = meaning.node;
+    out["text"] = meaning.text;
+    fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
+
+  const Options& options_;
+  std::unique_ptr<FrameText> reader_;
+  std::uint64_t printed_ = 0;
+};
+
+int dump_log(std::istream& in, const std::string& name, Printer& printer) {
+  std::string text;
+  std::uint64_t line_number = 0;
+  std::uint64_t strange = 0;
+  while (std::getline(in, text)) {
+    ++line_number;
+    const auto line = parse_candump(text);
+    if (line) {
+      if (!printer.print(*line)) break;
+    } else if (!text.empty() && ++strange <= 3) {
+      fmt::print(stderr, "{}:{}: not a line of candump (or CAN FD), left out\n", name, line_number);
+    }
+  }
+  if (strange > 3) fmt::print(stderr, "{}: {} lines left out\n", name, strange);
+  return good;
+}
+
+int dump_file(const std::string& name, Printer& printer) {
+  if (name == "-") return dump_log(std::cin, "stdin", printer);
+  std::ifstream file{name};
+  if (!file) {
+    fmt::print(stderr, "{}: cannot be read: {}\n", name, std::strerror(errno));
+    return usage;
+  }
+  return dump_log(file, name, printer);
+}
+
+std::string stamp_text(Time monotonic) {
+  const Time real = monotonic + realtime_offset();
+  const auto micros = std::chrono::duration_cast<std::chrono::microseconds>(real).count();
+  return fmt::format("{}.{:06}", micros / 1'000'000, micros % 1'000'000);
+}
+
+int dump_bus(const std::string& bus, Printer& printer) {
+  auto channel = FrameChannel::open(bus);
+  if (!channel) {
+    fmt::print(stderr, "takt dump: {}\n", channel.error().message);
+    return bus_trouble;
+  }
+  const auto stop = [](int) { interrupted = 1; };
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  StampedFrame got;
+  std::uint32_t lost = 0;
+  bool down = false;
+  while (interrupted == 0) {
+    const bool received = channel->receive(got, std::chrono::milliseconds{100});
+    const PortNews news = channel->news();
+    if (news.interface_down != down) {
+      down = news.interface_down;
+      fmt::print(stderr, "takt dump: {} is {}\n", bus, down ? "down" : "up again");
+    }
+    if (news.receive_overruns != lost) {
+      fmt::print(stderr, "takt dump: {} frames lost\n", news.receive_overruns - lost);
+      lost = news.receive_overruns;
+    }
+    if (!received) {
+      std::fflush(stdout);
+      continue;
+    }
+    const CandumpLine line{.stamp = stamp_text(got.when), .interface = bus, .frame = got.frame};
+    if (!printer.print(line)) break;
+    if (isatty(STDOUT_FILENO) != 0) std::fflush(stdout);
+  }
+  return good;
+}
+
+int run(const Options& options) {
+  std::optional<LoadedNetwork> network;
+  std::optional<std::string> log;
+  for (const std::string& file : options.files) {
+    if (is_network(file) && !network) {
+      network = load_network(file);
+      for (const Finding& finding : network->findings) {
+        if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", to_string(finding));
+      }
+      if (has_error(network->findings)) return usage;
+    } else if (!log) {
+      log = file;
+    } else {
+      fmt::print(stderr, "takt dump: one network file and one recording at most\n");
+      return usage;
+    }
+  }
+  if (log && !options.bus.empty()) {
+    fmt::print(stderr, "takt dump: either --bus or a recording\n");
+    return usage;
+  }
+  Printer printer{options, network ? &*network : nullptr};
+  if (log) return dump_file(*log, printer);
+  if (!options.bus.empty()) return dump_bus(options.bus, printer);
+  if (isatty(STDIN_FILENO) == 0) return dump_file("-", printer);
+  if (network && !network->plan.interface.empty()) {
+    return dump_bus(network->plan.interface, printer);
+  }
+  fmt::print(stderr, "takt dump: which bus? --bus can0, --bus unix:PATH, or a recording\n");
+  return usage;
+}
+
+}  // namespace
+
+void add_dump(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* dump = app.add_subcommand("dump", "CAN frames with their CANopen meaning");
+  dump->add_option("files", options->files, "network file (.yaml), recording of candump or -")
+      ->type_name("[NET.yaml] [FILE]");
+  dump->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
+  dump->add_option("-n,--count", options->count, "end after so many frames");
+  dump->add_flag("--json", options->json, "one JSON object a frame");
+  dump->footer(example);
+  dump->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

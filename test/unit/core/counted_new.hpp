@@ -1,0 +1,9 @@
+#pragma once
+#include <cstdint>
+
+namespace takt {
+
+/// Calls of operator new in this test program so far.
+std::uint64_t allocations() noexcept;
+
+}  // namespace takt

@@ -1,0 +1,87 @@
+#include "master/linux/can_link.hpp"
+#include "master/linux/diagnostic_socket.hpp"
+#include "master/linux/socket_can.hpp"
+#include "test/vcan/vcan_fixture.hpp"
+
+namespace takt {
+namespace {
+
+const Frame sync_frame = make_frame(CobId::base(0x080), {});
+const Frame tpdo = make_frame(CobId::base(0x185), {1, 2});
+
+class DiagnosticOnVcan : public testing::Test {
+ protected:
+  DiagnosticOnVcan()
+      : port_{*SocketCanPort::open("vcan0", plan_, {}, sent_.get())},
+        socket_{*DiagnosticSocket::open("vcan0", plan_, *sent_)} {}
+
+  std::vector<Event> events() {
+    socket_.poll([this](const StampedFrame& frame) { heard_.push_back(frame.frame); });
+    std::vector<Event> all;
+    for (Event event; socket_.take(event);) all.push_back(event);
+    return all;
+  }
+
+  BusPlan plan_;
+  std::unique_ptr<SentFrames> sent_ = std::make_unique<SentFrames>();
+  SocketCanPort port_;
+  DiagnosticSocket socket_;
+  std::vector<Frame> heard_;
+};
+
+TEST_F(DiagnosticOnVcan, HearsTheBusThreadAndTheOthersAndAccusesNobody) {
+  Peer peer{"vcan0"};
+  for (int i = 0; i < 50; ++i) {
+    port_.send({&sync_frame, 1});
+    peer.send(0x185, {1, 2});
+    EXPECT_TRUE(events().empty());
+  }
+
+  ASSERT_EQ(heard_.size(), 100U);
+  EXPECT_EQ(heard_[0], sync_frame);
+  EXPECT_EQ(heard_[1], tpdo);
+  EXPECT_EQ(socket_.traffic().frames, 100U);
+  EXPECT_EQ(socket_.traffic().bits, 50U * (47 + 1) + 50U * (63 + 1));
+}
+
+TEST_F(DiagnosticOnVcan, TellsAnotherProgramThatSendsSyncOrNmt) {
+  Peer other{"vcan0"};
+  port_.send({&sync_frame, 1});
+  EXPECT_TRUE(events().empty());
+
+  other.send(0x080, {});
+  other.send(0x000, {0x81, 0x00});
+
+  const auto told = events();
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].kind, EventKind::foreign_nmt);
+  EXPECT_EQ(told[0].bytes[0], 0x81);
+  EXPECT_EQ(told[1].kind, EventKind::foreign_sync);
+}
+
+TEST_F(DiagnosticOnVcan, CountsErrorFramesOfAllClasses) {
+  Peer controller{"vcan0"};
+
+  controller.send(CAN_ERR_FLAG | 0x008, {0, 0, 0x04, 0x0A, 0, 0, 0, 0});  // stuff error
+
+  EXPECT_TRUE(events().empty());
+  EXPECT_EQ(socket_.traffic().error_frames, 1U);
+  EXPECT_EQ(socket_.traffic().frames, 0U);
+}
+
+TEST(CanLinkOnVcan, ReadsAVirtualInterface) {
+  run("ip link set vcan0 txqueuelen 17");
+
+  const auto link = read_can_link("vcan0");
+
+  ASSERT_TRUE(link) << link.error().message;
+  EXPECT_TRUE(link->is_can);
+  EXPECT_TRUE(link->up);
+  EXPECT_EQ(link->kind, "vcan");
+  EXPECT_EQ(link->tx_queue_length, 17U);
+  EXPECT_FALSE(link->bitrate);
+  EXPECT_FALSE(link->state);
+}
+
+}  // namespace
+}  // namespace takt
