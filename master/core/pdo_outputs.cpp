@@ -85,9 +85,10 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
     const SetPoint& set_point = set_points[output_of(field.signal)];
     if (set_point.generation != output.generation && !stopping_ && !output.forced) {
       if (output.fallen && row.risen++ == 0) row.first_risen = field.signal;
-      take(output, field.signal, set_point, moment.cycle);
+      take(output, field.signal, set_point, moment);
       ++fresh_commands_;
-    } else if (moment.cycle >= output.expires && !output.fallen && !output.forced) [[unlikely]] {
+    }
+    if (moment.cycle >= output.expires && !output.fallen && !output.forced) [[unlikely]] {
       fall(output, field.signal);
       if (row.fallen++ == 0) row.first_fallen = field.signal;
     }
@@ -165,12 +166,16 @@ void PdoOutputs::sent(std::size_t count, Time now) noexcept {
 }
 
 void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
-                         std::uint64_t cycle) noexcept {
+                         OutputMoment moment) noexcept {
   if (signal < inputs_count_ || output_of(signal) >= outputs_.size()) return;
   Output& output = outputs_[output_of(signal)];
   if (stopping_ || output.forced) return;
   take(output, signal,
-       {.value = value, .generation = output.generation, .time_to_live = time_to_live}, cycle);
+       {.value = value,
+        .generation = output.generation,
+        .time_to_live = time_to_live,
+        .when = moment.now},
+       moment);
 }
 
 void PdoOutputs::fall_back() noexcept {

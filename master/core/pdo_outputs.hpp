@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,7 +39,7 @@ class PdoOutputs {
 
   /// A command from within the bus thread; `signal` counts in the whole layout.
   void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
-               std::uint64_t cycle) noexcept;
+               OutputMoment moment) noexcept;
 
   /// Ordered stop: every commanded output takes its fallback and commands are no longer heard.
   void fall_back() noexcept;
@@ -84,16 +85,28 @@ class PdoOutputs {
 
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   void take(Output& output, SignalIndex signal, const SetPoint& set_point,
-            std::uint64_t cycle) noexcept {
+            OutputMoment moment) noexcept {
     // The shorter of the two times to live that are set.
     std::uint32_t limit = set_point.time_to_live;
     if (limit == 0 || (output.limit != 0 && output.limit < limit)) limit = output.limit;
     output.generation = set_point.generation;
-    output.expires = limit == 0 ? no_end : cycle + limit;
+    output.expires =
+        limit == 0 ? no_end : moment.cycle + limit - std::min(limit, age(set_point, moment));
     output.known = true;
     output.commanded = true;
     output.fallen = false;
     image_.values[signal] = set_point.value;
+  }
+  /// Cycles since the front thread handed the command over; 0 where that was since the outputs
+  /// before these, which may have been a quarter of a period early.
+  std::uint32_t age(const SetPoint& set_point, OutputMoment moment) const noexcept {
+    const Time period = plan_.cycle.period;
+    const Time passed = moment.now - set_point.when - period / 4;
+    if (passed < period) [[likely]] {
+      return 0;
+    }
+    constexpr std::int64_t most = 0xFFFF'FFFF;
+    return static_cast<std::uint32_t>(std::min(passed / period, most));
   }
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;

@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "eds_parser/table/time.hpp"
+
 namespace takt {
 
 /// The newest command for one output, as the front thread left it.
@@ -9,7 +11,8 @@ struct SetPoint {
   std::int64_t value = 0;          ///< raw
   std::uint32_t generation = 0;    ///< another number with each command; 0: never commanded
   std::uint32_t time_to_live = 0;  ///< cycles; 0: the configured one
+  Time when{};                     ///< handed over by the front thread
 };
-static_assert(sizeof(SetPoint) == 16 && std::is_trivially_copyable_v<SetPoint>);
+static_assert(sizeof(SetPoint) == 24 && std::is_trivially_copyable_v<SetPoint>);
 
 }  // namespace takt

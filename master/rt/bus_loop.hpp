@@ -17,6 +17,7 @@
 #include "master/rt/port.hpp"
 #include "master/rt/port_watch.hpp"
 #include "master/rt/service_queue.hpp"
+#include "master/rt/sync_gate.hpp"
 #include "master/rt/wire_time.hpp"
 
 namespace takt {
@@ -52,6 +53,7 @@ class BusLoop {
 
   void follow_nodes() noexcept;
   void wait_for_beat() noexcept;
+  void look_at_wire() noexcept;
   void send_sync() noexcept;
   void receive() noexcept;
   void drain() noexcept;
@@ -82,6 +84,7 @@ class BusLoop {
   ServiceQueue services_;
   BeatClock clock_;
   SyncCounter counter_;
+  SyncGate gate_;
   ArrivalPrediction prediction_;
   WireTime wire_;
   std::vector<StampedFrame> received_;
@@ -91,9 +94,10 @@ class BusLoop {
   Request request_;
   bool reply_waits_ = false;
   bool done_ = false;
+  bool gate_open_ = true;   ///< frames may be sent in this cycle
+  std::uint64_t held_ = 0;  ///< cycles since it was open
   Time sync_sent_{};        ///< of this cycle
   Time sync_time_{};        ///< the same, by its echo where there is one
-  Time wire_busy_until_{};  ///< our own frames may be on the wire until then
   Time last_status_{};
 };
 

@@ -17,6 +17,7 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       port_watch_{events_},
       clock_{plan.cycle.period},
       counter_{plan.cycle.sync_overflow},
+      gate_{plan.cycle.period},
       prediction_{plan.cycle.sync ? plan.cycle.receive_window : Time{0}},
       wire_{plan.bitrate},
       received_(batch) {}
@@ -75,6 +76,21 @@ void BusLoop<P, N>::wait_for_beat() noexcept {
     now = port_.now();
   }
   sync_sent_ = now;
+  look_at_wire();
+}
+
+/// Frames that could not leave yet must not be followed by others.
+template <Port P, class N>
+void BusLoop<P, N>::look_at_wire() noexcept {
+  if (gate_.doubtful(port_.news())) drain();
+  gate_open_ = gate_.open(port_.news(), sync_sent_);
+  if (!gate_open_) {
+    ++held_;
+    ++status_.cycles_missed;
+  } else if (held_ != 0) {
+    tell(EventKind::cycles_missed, sync_sent_, static_cast<std::int64_t>(held_));
+    held_ = 0;
+  }
 }
 
 template <Port P, class N>
@@ -87,7 +103,10 @@ void BusLoop<P, N>::send_sync() noexcept {
     const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
                                        : sync_frame(plan_.cycle.sync_cob_id);
     heard = send({&sync, 1}) == 1;
-    if (heard) counter_.sent();
+    if (heard) {
+      counter_.sent();
+      gate_.sent(sync_sent_);
+    }
   }
   pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
   status_.beats += heard;
@@ -139,10 +158,9 @@ template <Port P, class N>
 void BusLoop<P, N>::publish() noexcept {
   const PortNews news = port_.news();
   status_.port = news;
-  sync_time_ = news.last_sync_echo >= sync_sent_ ? news.last_sync_echo : sync_sent_;
-  if (news.last_sync_echo >= sync_sent_) {
-    exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
-  }
+  const bool echoed = news.last_sync_echo >= sync_sent_;
+  sync_time_ = echoed ? news.last_sync_echo : sync_sent_;
+  if (echoed) exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
   const Time now = port_.now();
   const std::uint32_t missing = pdos_.inputs().close(now);
   status_.images_incomplete += missing != 0;
@@ -157,7 +175,7 @@ void BusLoop<P, N>::publish() noexcept {
   predict_next_publish();
   port_watch_.on_news(news, now);
   if (options_.controller != nullptr) {
-    OutputWriter writer{pdos_.outputs(), clock_.cycle()};
+    OutputWriter writer{pdos_.outputs(), {.cycle = clock_.cycle(), .now = now}};
     options_.controller->update({.cycle = stamp.cycle,
                                  .beat = stamp.beat,
                                  .sync_time = stamp.sync_time,
@@ -297,6 +315,7 @@ void BusLoop<P, N>::write_status() noexcept {
 
 template <Port P, class N>
 std::size_t BusLoop<P, N>::send(std::span<const Frame> frames) noexcept {
+  if (!gate_open_) return 0;
   const SendResult result = port_.send(frames);
   for (const Frame& frame : frames.first(result.sent)) {
     status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(frame));

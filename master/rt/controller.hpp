@@ -10,16 +10,16 @@ namespace takt {
 /// Sets outputs from within the cycle. Values act at the next SYNC.
 class OutputWriter {
  public:
-  OutputWriter(PdoOutputs& outputs, std::uint64_t cycle) noexcept
-      : outputs_{outputs}, cycle_{cycle} {}
+  OutputWriter(PdoOutputs& outputs, OutputMoment moment) noexcept
+      : outputs_{outputs}, moment_{moment} {}
   /// `signal` counts in the whole layout; `time_to_live` in cycles, 0: as configured.
   void set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live = 0) noexcept {
-    outputs_.command(signal, value, time_to_live, cycle_);
+    outputs_.command(signal, value, time_to_live, moment_);
   }
 
  private:
   PdoOutputs& outputs_;
-  std::uint64_t cycle_;
+  OutputMoment moment_;
 };
 
 /// A control law inside the bus thread, for those who need less latency than LCM has. Must not

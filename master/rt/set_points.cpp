@@ -5,7 +5,7 @@
 
 namespace takt {
 
-SetPoints::SetPoints(std::size_t outputs) : staged_(outputs) {
+SetPoints::SetPoints(std::size_t outputs) : staged_(outputs), handed_(outputs, 0) {
   for (SetPointFrame& frame : frames_) frame.points.resize(outputs);
 }
 
@@ -18,6 +18,11 @@ void SetPoints::set(std::size_t output, std::int64_t value, std::uint32_t time_t
 }
 
 void SetPoints::publish(Time now) noexcept {
+  for (std::size_t i = 0; i < staged_.size(); ++i) {
+    if (staged_[i].generation == handed_[i]) continue;
+    handed_[i] = staged_[i].generation;
+    staged_[i].when = now;
+  }
   SetPointFrame& frame = frames_[back_];
   std::ranges::copy(staged_, frame.points.begin());
   frame.when = now;

@@ -36,8 +36,9 @@ class SetPoints {
   static constexpr unsigned fresh = 4;  ///< flag beside the index: not yet read
 
   std::array<SetPointFrame, 3> frames_;
-  std::vector<SetPoint> staged_;  // front thread's
-  unsigned back_ = 0;             // front thread's
+  std::vector<SetPoint> staged_;       // front thread's
+  std::vector<std::uint32_t> handed_;  // front thread's: generations at the last publish()
+  unsigned back_ = 0;                  // front thread's
   alignas(64) std::atomic<unsigned> middle_{1};
   alignas(64) unsigned front_ = 2;  // bus thread's
 };

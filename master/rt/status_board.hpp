@@ -16,10 +16,11 @@ namespace takt {
 /// Counters of the bus thread, since the start. Trivially copyable: it crosses threads.
 struct BusStatus {
   Time when{};
-  std::uint64_t cycle = 0;            ///< number of the newest cycle
-  std::uint64_t beats = 0;            ///< SYNCs sent (cycles run where there is no SYNC)
-  std::uint64_t cycles_missed = 0;    ///< periods that were skipped
-  std::uint64_t cycles_late = 0;      ///< SYNCs later than a tenth of the period
+  std::uint64_t cycle = 0;  ///< number of the newest cycle
+  std::uint64_t beats = 0;  ///< SYNCs sent (cycles run where there is no SYNC)
+  std::uint64_t cycles_missed =
+      0;                          ///< periods without SYNC: skipped, or held while the bus was off
+  std::uint64_t cycles_late = 0;  ///< SYNCs later than a tenth of the period
   std::uint64_t outputs_skipped = 0;  ///< cycles whose outputs could not end before the next SYNC
   std::uint64_t images_incomplete = 0;
   std::uint64_t frames_received = 0;

@@ -57,7 +57,10 @@ void send_pdo(benchmark::State& state) {
   for (auto _ : state) {
     ++moment.cycle;
     moment.now += 1ms;
-    for (SetPoint& point : points) ++point.generation;
+    for (SetPoint& point : points) {
+      ++point.generation;
+      point.when = moment.now;
+    }
     const auto frames = pdos.outputs().pack(points, moment);
     benchmark::DoNotOptimize(frames.data());
     pdos.outputs().sent(frames.size(), moment.now);

@@ -96,6 +96,12 @@ class Rig {
     master->attach(*port);
     master->begin();
   }
+  /// The same with another port between: `other` forwards to `*port`.
+  template <class P>
+  void use(P& other) {
+    master->attach(other);
+    master->begin();
+  }
 
   /// One cycle, and what the front thread does after it.
   void cycle() {

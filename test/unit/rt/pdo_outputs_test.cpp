@@ -23,7 +23,7 @@ class Outputs {
   }
 
   void command(std::size_t output, std::int64_t value, std::uint32_t ttl = 0) {
-    points[output] = {value, points[output].generation + 1, ttl};
+    points[output] = {value, points[output].generation + 1, ttl, now_ + Time{1ms}};
   }
   void feedback(unsigned node, std::initializer_list<std::uint8_t> bytes) {
     pdos.inputs().receive({.frame = make_frame(CobId::base(0x180 + node), bytes), .when = now_});
@@ -184,6 +184,15 @@ TEST(PdoOutputs, CountMissedPeriodsAsAge) {
   EXPECT_EQ(out.pack().at(0).data[0], 0x02);
 }
 
+TEST(PdoOutputs, CountTheAgeFromWhenTheCommandWasHandedOver) {
+  Outputs out{one_axis()};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.skip(25);  // the bus thread did not run meanwhile
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  EXPECT_EQ(out.told(), std::vector{EventKind::fallback_begun});
+}
+
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {
   BusPlan plan = one_axis();
   for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
@@ -268,11 +277,11 @@ TEST(PdoOutputs, TryAgainWhatTheInterfaceDidNotTake) {
 
 TEST(PdoOutputs, CommandFromTheCycleItselfIsAsGoodAsAnyOther) {
   Outputs out{one_axis()};
-  out.pdos.outputs().command(2, 0x0F, 0, 1);
-  out.pdos.outputs().command(3, 77, 0, 1);
+  out.pdos.outputs().command(2, 0x0F, 0, {.cycle = 1});
+  out.pdos.outputs().command(3, 77, 0, {.cycle = 1});
   EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x0F, 0, 77, 0, 0, 0}));
-  out.pdos.outputs().command(0, 1, 0, 1);     // an input
-  out.pdos.outputs().command(9999, 1, 0, 1);  // nothing
+  out.pdos.outputs().command(0, 1, 0, {.cycle = 1});     // an input
+  out.pdos.outputs().command(9999, 1, 0, {.cycle = 1});  // nothing
 }
 
 TEST(PdoOutputs, WhileStoppingHearNoCommandAndSendWhatIsForced) {

@@ -12,6 +12,7 @@
 #include "master/rt/service_queue.hpp"
 #include "master/rt/spsc_ring.hpp"
 #include "master/rt/status_board.hpp"
+#include "master/rt/sync_gate.hpp"
 #include "master/rt/wire_time.hpp"
 
 namespace takt {
@@ -91,6 +92,40 @@ TEST(Histogram, TellsPercentilesAndOctaves) {
   // 10 us = 80 * 125 ns: octave 6; 1 ms = 8000 * 125 ns: octave 12
   EXPECT_EQ(all.by_octave()[6], 99U);
   EXPECT_EQ(all.by_octave()[12], 1U);
+}
+
+TEST(SyncGate, HoldsWhileTheNewestSyncIsNotOnTheWire) {
+  SyncGate gate{2ms};
+  EXPECT_TRUE(gate.open({.last_sync_echo = 1s}, 1s));
+  gate.sent(2s);
+  EXPECT_FALSE(gate.open({.last_sync_echo = 1s}, 2002ms));
+  EXPECT_FALSE(gate.open({.last_sync_echo = 1s}, 2004ms));
+  EXPECT_TRUE(gate.open({.last_sync_echo = 2s}, 2006ms));
+}
+
+TEST(SyncGate, TriesAgainEverLessOftenWhereTheEchoStaysAway) {
+  SyncGate gate{2ms};
+  gate.sent(1s);
+  int tries = 0;
+  for (Time now = 1s; now < 11s; now += 2ms) {
+    if (!gate.open({.last_sync_echo = 1ms}, now)) continue;
+    gate.sent(now);
+    ++tries;
+  }
+  EXPECT_EQ(tries, 6);  // after 0.1, 0.3, 0.7, 1.5, 3.1, 6.3 s
+}
+
+TEST(SyncGate, IsHeldByBusOffAlone) {
+  SyncGate gate{2ms};
+  EXPECT_TRUE(gate.open({}, 1s));
+  for (Time now = 1s; now < 9s; now += 10ms) EXPECT_FALSE(gate.open({.bus_off = true}, now));
+  EXPECT_TRUE(gate.open({}, 10s));
+}
+
+TEST(SyncGate, KnowsNoDoubtWithoutEchoes) {
+  SyncGate gate{2ms};
+  gate.sent(1s);
+  EXPECT_TRUE(gate.open({}, 2s));
 }
 
 TEST(ServiceQueue, SendsInOrderWhatIsLeft) {

@@ -40,6 +40,16 @@ TEST(SetPoints, KeepWhatWasStagedBefore) {
   EXPECT_EQ(newest.points[1].value, 2);
 }
 
+TEST(SetPoints, StampEachCommandWhenItIsHandedOver) {
+  SetPoints points{2};
+  points.set(0, 1);
+  points.publish(1ms);
+  points.set(1, 2);
+  points.publish(9ms);
+  EXPECT_EQ(points.newest().points[0].when, 1ms);
+  EXPECT_EQ(points.newest().points[1].when, 9ms);
+}
+
 TEST(SetPoints, EqualValueIsANewCommand) {
   SetPoints points{1};
   points.set(0, 7);

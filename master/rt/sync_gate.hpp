@@ -1,0 +1,54 @@
+#pragma once
+#include <algorithm>
+
+#include "eds_parser/table/time.hpp"
+#include "master/rt/port.hpp"
+
+namespace takt {
+
+/// Keeps SYNCs and outputs from piling up in the queue of an interface whose bus is off or where
+/// nobody acknowledges: they would all go out at once, and too old, when the bus comes back. While
+/// the echo of the newest SYNC is outstanding the next one is held; now and then one is tried, in
+/// case only the echo was lost. Ports without echo are held by bus-off alone. Bus thread only.
+class SyncGate {
+ public:
+  explicit SyncGate(Time period) noexcept : tolerance_{period / 4} {}
+
+  /// The newest SYNC has not been seen on the wire.
+  bool doubtful(const PortNews& news) const noexcept {
+    return news.last_sync_echo > Time{0} && news.last_sync_echo + tolerance_ < last_sent_;
+  }
+
+  /// May the frames of this cycle be handed to the interface?
+  bool open(const PortNews& news, Time now) noexcept {
+    if (!news.bus_off && !doubtful(news)) {
+      holding_ = false;
+      pause_ = first_pause;
+      return true;
+    }
+    if (!holding_) {
+      holding_ = true;
+      try_at_ = now + pause_;
+      return false;
+    }
+    if (news.bus_off || now < try_at_) return false;
+    pause_ = std::min(2 * pause_, longest_pause);
+    try_at_ = now + pause_;
+    return true;
+  }
+
+  /// A SYNC was handed over.
+  void sent(Time now) noexcept { last_sent_ = now; }
+
+ private:
+  static constexpr Time first_pause = std::chrono::milliseconds{100};
+  static constexpr Time longest_pause = std::chrono::seconds{30};
+
+  Time tolerance_;  // of the kernel's stamps against our own clock reading
+  Time last_sent_{};
+  Time try_at_{};
+  Time pause_ = first_pause;
+  bool holding_ = false;
+};
+
+}  // namespace takt

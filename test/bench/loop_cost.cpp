@@ -1,0 +1,106 @@
+// What one cycle of the bus loop costs, the port itself not counted.
+//
+//   loop_cost NODES [--inputs-only]     one line: system calls and allocations per cycle
+//   valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady cycles
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string_view>
+#include <valgrind/callgrind.h>
+
+#include "master/rt/bus_loop.hpp"
+#include "test/bench/eight_u8.hpp"
+#include "test/bench/memory_port.hpp"
+#include "test/proof/allocation_trap.hpp"
+
+namespace {
+
+using namespace takt;
+
+bool collecting = false;
+
+struct PauseCallgrind {
+  void enter() noexcept {
+    if (collecting) CALLGRIND_TOGGLE_COLLECT;
+  }
+  void leave() noexcept {
+    if (collecting) CALLGRIND_TOGGLE_COLLECT;
+  }
+};
+
+class Bench {
+ public:
+  Bench(unsigned nodes, bool rpdos)
+      : plan_{bench::eight_u8(
+            {.nodes = nodes, .rpdos = rpdos, .period = std::chrono::milliseconds{40}})},
+        port{nodes},
+        exchange_{std::make_unique<Exchange>(plan_)},
+        loop_{std::make_unique<Loop>(plan_, port, *exchange_)} {
+    loop_->start();
+    run(20);  // heartbeats: every node is OPERATIONAL
+    port.alive = true;
+    run(50);  // the arrival of the PDOs is learned
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      for (std::size_t o = 0; o < plan_.layout.outputs(); ++o) exchange_->set_points.set(o, i);
+      exchange_->set_points.publish(port.now());
+      const std::uint64_t before = port.calls;
+      if (count) proof::count_allocations(true);
+      if (collect) {
+        collecting = true;
+        CALLGRIND_TOGGLE_COLLECT;
+      }
+      loop_->cycle();
+      if (collect) {
+        CALLGRIND_TOGGLE_COLLECT;
+        collecting = false;
+      }
+      proof::count_allocations(false);
+      most_calls = std::max(most_calls, port.calls - before);
+      ImageView image;
+      while (exchange_->images.take(image)) {
+      }
+    }
+  }
+
+ private:
+  using Loop = BusLoop<bench::MemoryPort<PauseCallgrind>>;
+  BusPlan plan_;
+
+ public:
+  bench::MemoryPort<PauseCallgrind> port;
+  bool collect = false;
+  bool count = false;
+  std::uint64_t most_calls = 0;
+
+ private:
+  std::unique_ptr<Exchange> exchange_;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto nodes = static_cast<unsigned>(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 8);
+  if (nodes < 1 || nodes > 127) return 2;
+  Bench bench{nodes, argc < 3 || std::string_view{argv[2]} != "--inputs-only"};
+  constexpr int cycles = 100;
+
+  bench.collect = bench.count = true;
+  bench.most_calls = 0;
+  const std::uint64_t before = bench.port.calls;
+  bench.run(cycles);
+  const double calls = static_cast<double>(bench.port.calls - before) / cycles;
+  bench.collect = false;
+
+  bench.most_calls = 0;
+  bench.port.silent = 1;
+  bench.run(cycles);
+  std::printf(
+      "%u nodes: %.2f system calls a cycle, at most %llu with a missing PDO, %.2f allocations\n",
+      nodes, calls, static_cast<unsigned long long>(bench.most_calls),
+      static_cast<double>(proof::allocations()) / cycles);
+  return 0;
+}

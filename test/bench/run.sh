@@ -1,0 +1,58 @@
+#!/bin/sh
+# Builds and runs the benchmarks and prints the README's performance table in Markdown.
+#   sh test/bench/run.sh [BUILD_FOLDER]
+# Instructions need valgrind; without it their rows are left out.
+set -eu
+source=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1:-$source/build/bench}
+programs="pdo_benchmark loop_cost sync_lateness virtual_factor"
+
+cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTAKT_BENCHMARKS=ON >/dev/null
+# shellcheck disable=SC2086
+cmake --build "$build" --target $programs >&2
+bin=$build/bin
+
+row() { printf '| %s | %s | %s |\n' "$1" "$2" "$3"; }
+
+# nanoseconds of processor time of one benchmark
+nanoseconds() {
+  "$bin/pdo_benchmark" --benchmark_filter="^$1\$" --benchmark_format=csv \
+    --benchmark_repetitions=5 --benchmark_report_aggregates_only=true 2>/dev/null |
+    awk -F, -v per="$2" '$1 ~ /_median"?$/ { printf "%.1f ns", $4 / per }'
+}
+
+# instructions of one cycle, the port not counted
+instructions() {
+  valgrind --tool=callgrind --collect-atstart=no --callgrind-out-file=/dev/null \
+    "$bin/loop_cost" "$@" 2>&1 >/dev/null | awk '/Collected/ { printf "%d", $NF / 100 }'
+}
+
+echo "| what | takt | peer (Lely) |"
+echo "|---|---|---|"
+row "unpack a PDO of eight u8" "$(nanoseconds unpack_pdo 1)" "1,050 ns"
+row "receive that PDO: look-up, length, expected set, values" "$(nanoseconds receive_pdo 1)" "1,050 ns"
+row "send a PDO of eight u8, each a new command" "$(nanoseconds send_pdo 32)" "666-762 ns"
+
+if command -v valgrind >/dev/null; then
+  for nodes in 1 8 32 120; do
+    case $nodes in 1) peer=21,892 ;; 8) peer=116,075 ;; 32) peer=451,975 ;; *) peer=- ;; esac
+    row "instructions a cycle, $nodes nodes, TPDO and RPDO of eight u8" "$(instructions "$nodes")" "$peer"
+  done
+  few=$(instructions 8 --inputs-only)
+  many=$(instructions 120 --inputs-only)
+  row "instructions per received PDO, receive call to published image" "$(((many - few) / 112))" "13,700"
+fi
+
+for nodes in 1 8 32 120; do
+  counts=$("$bin/loop_cost" "$nodes")
+  calls=$(echo "$counts" | sed 's/.*: \([0-9.]*\) system calls.*/\1/')
+  most=$(echo "$counts" | sed 's/.*at most \([0-9]*\) .*/\1/')
+  allocations=$(echo "$counts" | sed 's/.*, \([0-9.]*\) allocations/\1/')
+  row "system calls a cycle, $nodes nodes (with a missing PDO)" "$calls ($most)" "$((11 + 2 * nodes))"
+  row "allocations a cycle, $nodes nodes" "$allocations" "$((9 * nodes)) with drivers"
+done
+
+"$bin/sync_lateness" 2>/dev/null | while IFS= read -r line; do
+  row "SYNC lateness, ${line%%:*}" "${line#*: }" "-"
+done
+row "virtual time, $("$bin/virtual_factor" | sed 's/: .*//')" "$("$bin/virtual_factor" | sed 's/.*: //')" "-"
