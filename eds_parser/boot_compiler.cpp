@@ -60,12 +60,14 @@ class BootCompiler {
     step.timeout = context_.boot_timeout;
   }
 
-  /// The value of the network file, else of the device file; 0 is not checked.
+  /// The value of the network file, else of the device file; 0 is not checked. An object that the
+  /// device file does not have is asked for only where the network file wants it.
   std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key,
                          std::uint32_t fallback = 0) const {
     if (wanted.given) return *wanted;
     const SubObject* sub = dictionary_.find(key);
-    if (sub == nullptr || !sub->value()) return fallback;
+    if (sub == nullptr) return 0;
+    if (!sub->value()) return fallback;
     return static_cast<std::uint32_t>(as_integer(*sub->value()).value_or(0));
   }
 
@@ -110,6 +112,11 @@ class BootCompiler {
     } else if (spec_.heartbeat_producer.given && *spec_.heartbeat_producer == 0 &&
                steps_.writable({0x1017, 0})) {
       steps_.integer(BootAction::write_if_differs, {0x1017, 0}, 0, "no heartbeat");
+    } else if (spec_.heartbeat_producer.given && *spec_.heartbeat_producer != 0 &&
+               !steps_.has({0x1017, 0})) {
+      report_.error(spec_.heartbeat_producer.pos, "no-such-object",
+                    "`heartbeat_producer` of node `" + spec_.name + "` needs 1017:00, which " +
+                        dictionary_.file + " does not have");
     }
     watch_master();
     for (const SdoSpec& sdo : spec_.error_behavior) {

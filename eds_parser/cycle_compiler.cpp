@@ -10,6 +10,7 @@ namespace {
 constexpr unsigned longest_data = 8;
 constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
 constexpr std::uint16_t most_service_frames = 16;
+constexpr int event_share = 4;  ///< event-driven outputs get at most a quarter of the period
 constexpr Time shortest_margin = std::chrono::microseconds{20};
 constexpr Time longest_margin = std::chrono::microseconds{200};
 
@@ -41,8 +42,8 @@ class CycleCompiler {
   void run() {
     cycle_.quiet_before_sync = quiet_time(plan_);
     const TimeBudget wire = time_budget(plan_);
-    cycle_.output_deadline =
-        std::max<Time>(cycle_.period - cycle_.quiet_before_sync - wire.outputs_wire, Time{});
+    cycle_.output_deadline = std::max<Time>(
+        cycle_.period - cycle_.quiet_before_sync - wire.outputs_wire, wire.inputs_wire);
     set_receive_window(wire);
     set_service_frames(wire);
     judge(wire);
@@ -86,13 +87,14 @@ class CycleCompiler {
 
   void judge(const TimeBudget& wire) {
     if (!plan_.cycle.sync) return;
-    const Time total = wire.inputs_wire + wire.outputs_wire;
     const std::string frames = std::to_string(us(wire.inputs_wire)) + " us of SYNC and TPDOs and " +
                                std::to_string(us(wire.outputs_wire)) + " us of RPDOs at " +
                                std::to_string(plan_.bitrate / 1000) + " kbit/s";
-    if (total > cycle_.period) {
+    if (wire.inputs_wire + wire.outputs_wire + cycle_.quiet_before_sync > cycle_.period) {
       report_.error(period_pos(), "does-not-fit",
-                    frames + " do not fit into a period of " + std::to_string(us(cycle_.period)) +
+                    frames + ", and " + std::to_string(us(cycle_.quiet_before_sync)) +
+                        " us of quiet before SYNC, do not fit into a period of " +
+                        std::to_string(us(cycle_.period)) +
                         " us: a longer `sync_period`, fewer or shorter PDOs, or slower types (n "
                         "SYNCs)");
       return;
@@ -163,7 +165,12 @@ TimeBudget time_budget(const BusPlan& plan) noexcept {
   for (const PdoRow& row : plan.pdos.tpdos) {
     if (row.cyclic()) budget.inputs_wire += row_time(row, plan.bitrate);
   }
-  for (const PdoRow& row : plan.pdos.rpdos) budget.outputs_wire += row_time(row, plan.bitrate);
+  Time by_event{};
+  for (const PdoRow& row : plan.pdos.rpdos) {
+    (row.synchronous() ? budget.outputs_wire : by_event) += row_time(row, plan.bitrate);
+  }
+  // Not all event-driven frames change in one cycle; those that find no room go out in the next.
+  budget.outputs_wire += std::min<Time>(by_event, plan.cycle.period / event_share);
   budget.earliest = budget.inputs_wire + frame_time(plan.bitrate);
   budget.latest = plan.cycle.output_deadline;
   budget.next_sync = budget.latest > budget.earliest;

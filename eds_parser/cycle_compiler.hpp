@@ -11,8 +11,9 @@ namespace takt {
 /// When the application can compute: between the publication of the image of SYNC k and the last
 /// moment for its outputs.
 struct TimeBudget {
-  Time inputs_wire{};   ///< SYNC and all synchronous TPDOs, worst stuffing
-  Time outputs_wire{};  ///< all RPDOs, worst stuffing
+  Time inputs_wire{};  ///< SYNC and all synchronous TPDOs, worst stuffing
+  Time
+      outputs_wire{};  ///< RPDOs, worst stuffing; event-driven ones at most a quarter of the period
   Time earliest{};  ///< worst-case arrival of the last input after SYNC, if devices answer at once
   Time latest{};    ///< output deadline
   bool next_sync = true;  ///< outputs act at SYNC k+1; false: at k+2

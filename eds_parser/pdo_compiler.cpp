@@ -33,6 +33,22 @@ class PdoCompiler {
     return pdo;
   }
 
+  /// One word on all PDOs that are on and carry nothing.
+  void report_unmapped() {
+    if (unmapped_.empty()) return;
+    std::string list = unmapped_[0];
+    for (std::size_t i = 1; i < unmapped_.size(); ++i) {
+      if (i == 8) {
+        list += ", ... (" + std::to_string(unmapped_.size()) + " in all)";
+        break;
+      }
+      list += ", " + unmapped_[i];
+    }
+    report_.note(node_.spec->pos, "pdo-left-out",
+                 list + " of node `" + node_.spec->name + "`: valid in " + node_.dictionary->file +
+                     ", but nothing is mapped; not part of the image");
+  }
+
  private:
   std::string label(const EffectivePdo& pdo) const {
     return pdo.label() + " of node `" + node_.spec->name + "`";
@@ -92,7 +108,8 @@ class PdoCompiler {
     } else if (!usable_type(pdo.transmission)) {
       leave_out("has transmission type " + std::to_string(pdo.transmission));
     } else if (pdo.mapping.empty()) {
-      leave_out("maps nothing");
+      pdo.use = PdoUse::ignored;
+      unmapped_.push_back(pdo.label());
     } else if (pdo.bits > 64) {
       leave_out("maps " + std::to_string(pdo.bits) + " bits, more than 64");
     } else if (std::ranges::any_of(pdo.mapping, [](const auto& e) { return e.bits == 0; })) {
@@ -232,6 +249,7 @@ class PdoCompiler {
 
   const NodeSource& node_;
   NetworkReport& report_;
+  std::vector<std::string> unmapped_;
 };
 
 const PdoSpec* find_spec(const NodeSpec& node, const PdoDescription& device) {
@@ -278,6 +296,7 @@ std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& re
   for (const PdoDescription& device : devices) {
     pdos.push_back(compiler.compile(device, find_spec(*node.spec, device)));
   }
+  compiler.report_unmapped();
   return pdos;
 }
 
