@@ -136,8 +136,8 @@ TEST(PdoCompiler, RemoteRequestAndMultiplexedPdosOfTheEdsAreLeftOutWithANote) {
   EXPECT_THAT(net.said("pdo-left-out"),
               HasSubstr("TPDO1 of node `arm` is valid in tiny.eds but has "
                         "transmission type 253"));
-  EXPECT_THAT(net.said("pdo-left-out"), HasSubstr("TPDO2 of node `arm` is valid in tiny.eds but "
-                                                  "maps nothing"));
+  EXPECT_THAT(net.said("pdo-left-out"),
+              HasSubstr("TPDO2 of node `arm`: valid in tiny.eds, but nothing is mapped"));
 }
 
 TEST(PdoCompiler, PdoParametersWrittenBySdoCount) {

@@ -126,13 +126,14 @@ struct Compiled {
 };
 
 /// Compiles a network file whose nodes all have the device of `eds`.
-inline Compiled compile(std::string_view yaml, const std::string& eds = tiny_eds()) {
+inline Compiled compile(std::string_view yaml, const std::string& eds = tiny_eds(),
+                        const std::string& file = "tiny.eds") {
   Compiled out;
   out.spec = read_network(yaml, "net.yaml", out.findings);
   std::deque<EdsFile> files;
   std::vector<const ObjectDictionary*> dictionaries;
   for (const NodeSpec& node : out.spec.nodes) {
-    files.push_back(read_eds(eds, "tiny.eds", NodeId::from(*node.id)));
+    files.push_back(read_eds(eds, file, NodeId::from(*node.id)));
     dictionaries.push_back(&files.back().dictionary);
   }
   CompiledNetwork compiled = compile_network(out.spec, dictionaries, out.findings);

@@ -1,0 +1,178 @@
+#include "eds_parser/network_file/load_network.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <unistd.h>
+
+#include "eds_parser/print/plan.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const fs::path source = TAKT_SOURCE_DIR;
+
+std::string read(const fs::path& path) {
+  std::ifstream in{path};
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+std::vector<std::string> findings(const LoadedNetwork& network, Severity least) {
+  std::vector<std::string> out;
+  for (const Finding& finding : network.findings) {
+    if (finding.severity >= least) out.push_back(to_string(finding));
+  }
+  return out;
+}
+
+/// A folder that goes away again.
+class Folder {
+ public:
+  Folder() : path_{fs::temp_directory_path() / ("takt_plan_" + std::to_string(::getpid()))} {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream{path_ / name} << text;
+    return path_ / name;
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+TEST(LoadNetwork, TheDemoLoadsWithoutAFinding) {
+  const auto network = load_network(source / "share/demo/two_axes.yaml");
+
+  EXPECT_THAT(findings(network, Severity::note), IsEmpty());
+  EXPECT_EQ(network.plan.name, "demo");
+  EXPECT_TRUE(network.bus_named);
+  ASSERT_EQ(network.devices.size(), 3U);
+  EXPECT_EQ(network.devices[0].model, "drive402");
+  EXPECT_EQ(network.devices[2].model, "io401");
+  EXPECT_EQ(network.devices[2].node, 10_node);
+}
+
+/// Read by a person when it changes: `takt plan share/demo/two_axes.yaml > two_axes.plan.txt`.
+TEST(LoadNetwork, ThePlanOfTheDemoIsTheGoldenOne) {
+  const auto network = load_network(source / "share/demo/two_axes.yaml");
+
+  std::ostringstream out;
+  print_plan_text(out, network.plan,
+                  {.node = {}, .realtime = network.realtime, .lcm = network.lcm});
+
+  EXPECT_EQ(out.str(), read(source / "test/unit/plan/data/two_axes.plan.txt"));
+}
+
+TEST(LoadNetwork, ThePlanAsJsonSaysTheSame) {
+  const auto network = load_network(source / "share/demo/two_axes.yaml");
+
+  std::ostringstream out;
+  print_plan_json(out, network.plan, {.node = {}, .realtime = {}, .lcm = {}});
+  const auto json = nlohmann::json::parse(out.str());
+
+  EXPECT_EQ(json["bus"], "demo");
+  EXPECT_EQ(json["cycle"]["period_us"], 2000.0);
+  EXPECT_EQ(json["cycle"]["acts_at_sync"], "k+1");
+  EXPECT_EQ(json["nodes"][1]["name"], "elbow");
+  EXPECT_EQ(json["nodes"][1]["tpdos"][0]["cob_id"], 0x182);
+  EXPECT_EQ(json["nodes"][0]["boot_plan"][0]["frame"], "000#8201");
+  EXPECT_EQ(json["image"]["signals"].size(), network.plan.layout.signals.size());
+  EXPECT_EQ(json["image"]["hash"], network.plan.layout.hash);
+  EXPECT_EQ(json["lcm"]["channels"][0]["channel"], "DEMO_IMAGE");
+}
+
+TEST(LoadNetwork, ABusYmlOfOtherMastersRunsUnchanged) {
+  const auto network = load_network(source / "test/unit/plan/data/bus.yml");
+
+  EXPECT_THAT(findings(network, Severity::warning), IsEmpty());
+  ASSERT_EQ(network.plan.nodes.size(), 2U);
+  EXPECT_EQ(network.plan.bitrate, 500'000U);
+  EXPECT_EQ(network.plan.layout.signals.size(), 16U);
+  EXPECT_EQ(network.plan.nodes[1].heartbeat_timeout, std::chrono::milliseconds{500});
+  EXPECT_TRUE(network.plan.nodes[1].mandatory);
+  EXPECT_FALSE(network.bus_named);
+}
+
+TEST(LoadNetwork, BusFilesOfTheWildLoadWithoutError) {
+  const char* folder = std::getenv("TAKT_BUS_YML");
+  const fs::path root = folder != nullptr ? fs::path{folder} : source / "../shared/bus_yml";
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator{root, error}) {
+    if (!fs::exists(entry.path() / "bus.yml")) continue;
+    const auto network = load_network(entry.path() / "bus.yml");
+    const auto errors = findings(network, Severity::error);
+    if (entry.path().filename() == "cia402_multichannel_system") {
+      ASSERT_EQ(errors.size(), 1U);
+      EXPECT_THAT(errors[0], HasSubstr("bus.yml:18:10: error: node `cia402_multichannel_device`: "
+                                       "device file `cia402_slave_multichannel.eds` not found"));
+    } else {
+      EXPECT_THAT(errors, IsEmpty()) << entry.path();
+      EXPECT_FALSE(network.plan.layout.signals.empty());
+    }
+  }
+}
+
+TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
+  const Folder folder;
+  const std::string eds = read(source / "share/eds/takt_io401.eds");
+  fs::create_directories(folder.path() / "eds");
+  folder.write("near.eds", eds);
+  folder.write("eds/far.eds", eds);
+  const auto file = folder.write("net.yaml",
+                                 "options: {dcf_path: eds}\n"
+                                 "master: {sync_period: 10000}\n"
+                                 "nodes:\n"
+                                 "  a: {node_id: 1, dcf: near.eds}\n"
+                                 "  b: {node_id: 2, dcf: far.eds}\n"
+                                 "  c: {node_id: 3, dcf: gone.eds}\n");
+
+  const auto network = load_network(file);
+
+  EXPECT_EQ(network.plan.nodes.size(), 2U);
+  const auto errors = findings(network, Severity::error);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_THAT(errors[0], HasSubstr("net.yaml:6:24: error: node `c`: device file `gone.eds` not "
+                                   "found; looked for"));
+  EXPECT_THAT(errors[0], HasSubstr("eds/gone.eds"));
+}
+
+TEST(LoadNetwork, WhatIsNoFileIsAnErrorNotACrash) {
+  EXPECT_TRUE(has_error(load_network("/nonexistent/net.yaml").findings));
+  EXPECT_TRUE(has_error(load_network("/").findings));
+  EXPECT_TRUE(has_error(load_network("/dev/null").findings));
+}
+
+/// Every prefix and every single-byte change of a real file ends with findings, never with a crash.
+TEST(LoadNetwork, SurvivesDamagedFiles) {
+  const Folder folder;
+  folder.write("d.eds", read(source / "share/eds/takt_io401.eds"));
+  const std::string good =
+      "bus: {name: x}\nmaster: &m {sync_period: 5000}\nnodes:\n  a:\n    node_id: 1\n"
+      "    dcf: d.eds\n    tpdo: {1: {mapping: [{index: 0x6000, sub_index: 1}]}}\n"
+      "    units: {position: {scale: 1.5e-3, unit: m}}\n";
+
+  for (std::size_t i = 0; i < good.size(); i += 3) {
+    for (const char c : {'\0', '*', '[', ':', '\xFF', '-'}) {
+      std::string bad = good;
+      bad[i] = c;
+      static_cast<void>(load_network(folder.write("net.yaml", bad)));
+    }
+    static_cast<void>(load_network(folder.write("net.yaml", good.substr(0, i))));
+  }
+}
+
+}  // namespace
+}  // namespace takt
