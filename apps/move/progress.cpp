@@ -25,8 +25,16 @@ void Progress::states(AxisGroup& group) {
                     axes.statusword(i)));
   }
   for (const event_t& event : group.take_events()) {
-    if (event.severity > 0) say(fmt::format("{:<12} {}", event.node, event.text));
+    if (event.severity > 0 && !told_lately(event)) say(event.text);
   }
+}
+
+bool Progress::told_lately(const event_t& event) {
+  const auto now = Clock::now();
+  auto& last = last_of_kind_[{event.node_id, event.kind}];
+  const bool lately = last != Clock::time_point{} && now - last < std::chrono::seconds{2};
+  if (!lately) last = now;
+  return lately;
 }
 
 void Progress::positions(const AxisControl& axes, const Following& following,

@@ -1,6 +1,10 @@
 #pragma once
 #include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/axis/axis_group.hpp"
@@ -13,7 +17,8 @@ namespace takt {
 class Progress {
  public:
   void say(std::string_view text);
-  /// States that changed since the last call, and what the daemon told.
+  /// States that changed since the last call, and the daemon's warnings: one a kind and node in
+  /// two seconds.
   void states(AxisGroup& group);
   /// At most four lines a second.
   void positions(const AxisControl& axes, const Following& following, std::string_view what);
@@ -21,9 +26,12 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  bool told_lately(const event_t& event);
+
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_positions_{};
   std::vector<State402> told_;
+  std::map<std::pair<std::int16_t, std::string>, Clock::time_point> last_of_kind_;
   std::string unit_;
 };
 
