@@ -229,7 +229,7 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
   }
   if (silent) return fail(result, now, client);
   if (result.fault == SdoFault::none) remember_cob_id();
-  const bool same = result.fault == SdoFault::none ? same_value(received(), step)
+  const bool same = result.fault == SdoFault::none ? same_value(received(), step.value, step.mask)
                                                    : may_be_missing(step, result.abort_code);
   switch (step.action) {
     case BootAction::compare:
@@ -266,19 +266,23 @@ void BootRunner::write_cob_id() noexcept {
   phase_ = Phase::download_next;
 }
 
+void BootRunner::on_written() noexcept {
+  if (is_pdo_cob_id(current().object) && to_write_.size() == 4) {
+    cob_id_object_ = current().object;
+    cob_id_ = load_le<std::uint32_t>(to_write_);
+  }
+  next();
+}
+
 void BootRunner::on_downloaded(const SdoResult& result, Time now,
                                const SdoClient& client) noexcept {
   const BootStep& step = current();
-  if (result.fault == SdoFault::none) {
-    if (is_pdo_cob_id(step.object) && to_write_.size() == 4) {
-      cob_id_object_ = step.object;
-      cob_id_ = load_le<std::uint32_t>(to_write_);
-    }
-    return next();
-  }
+  if (result.fault == SdoFault::none) return on_written();
+  // A write is never repeated. Where its answer stays away, or the device calls it redundant, a
+  // look at the object tells whether it has worked.
   const bool refused = result.fault == SdoFault::aborted_by_device;
   if (refused && may_be_missing(step, result.abort_code)) return next();
-  if (!refused || !may_be_redundant(step, result.abort_code)) return fail(result, now, client);
+  if (refused && !may_be_redundant(step, result.abort_code)) return fail(result, now, client);
   refused_ = result;
   refused_sent_ = client.last_sent();
   refused_received_ = client.last_received();
@@ -286,7 +290,9 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
 }
 
 void BootRunner::on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept {
-  if (result.fault == SdoFault::none && same_value(received(), current())) return next();
+  if (result.fault == SdoFault::none && same_value(received(), to_write_, 0xFFFF'FFFF)) {
+    return on_written();
+  }
   fail(refused_, now, client);
 }
 

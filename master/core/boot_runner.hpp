@@ -55,7 +55,7 @@ class BootRunner {
     upload,
     download_next,
     download,
-    confirm_next,  // a refused redundant write is read back
+    confirm_next,  // a write that was refused as redundant, or not answered, is read back
     confirm,
   };
   static constexpr std::uint8_t max_restarts = 5;
@@ -77,6 +77,7 @@ class BootRunner {
   void on_probed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_downloaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_written() noexcept;
   void remember_cob_id() noexcept;
   void write_cob_id() noexcept;
   void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept;

@@ -14,17 +14,17 @@ inline bool all_zero(std::span<const std::byte> value) noexcept {
   return std::ranges::all_of(value, [](std::byte byte) { return byte == std::byte{0}; });
 }
 
-/// Is what the device gave what the step wants? Numbers are compared by their low bytes under the
+/// Is what the device gave what is wanted? Numbers are compared by their low bytes under the
 /// mask, because devices answer with more or fewer bytes than the EDS says; strings and other long
 /// values without trailing zeros.
-inline bool same_value(std::span<const std::byte> got, const BootStep& step) noexcept {
-  const std::span<const std::byte> want{step.value};
+inline bool same_value(std::span<const std::byte> got, std::span<const std::byte> want,
+                       std::uint32_t mask) noexcept {
   if (want.size() <= 4) {
     const auto width = std::min<std::size_t>(want.size(), got.size());
     const auto low = [width](std::span<const std::byte> bytes) {
       return load_le<std::uint32_t>(bytes.first(std::min(width, bytes.size())));
     };
-    return (low(got) & step.mask) == (low(want) & step.mask) && all_zero(want.subspan(width));
+    return (low(got) & mask) == (low(want) & mask) && all_zero(want.subspan(width));
   }
   const auto common = std::min(want.size(), got.size());
   return std::ranges::equal(want.first(common), got.first(common)) &&

@@ -132,8 +132,8 @@ TEST_F(BootReport, OfAWriteThatTakesTooLong) {
   prepare = [](FakeNode& node) { node.mute_sdo = true; };
   Steps steps;
   steps.add(with(writing({0x1010, 1}, bytes({0x73, 0x61, 0x76, 0x65})), "store parameters"));
-  EXPECT_EQ(report(std::move(steps), 600ms),
-            R"(node 5 'shoulder' failed to boot at step 1 of 1 (store parameters) after 500 ms
+  EXPECT_EQ(report(std::move(steps), 1100ms),
+            R"(node 5 'shoulder' failed to boot at step 1 of 1 (store parameters) after 1 s
   sent      605  23 10 10 01 73 61 76 65   write 1010:01
   received  nothing within 500 ms; a write is not repeated
   status    J of CiA 302-2: configuration failed

@@ -297,14 +297,24 @@ TEST_F(Boot, GivesUpAnUploadAfterThreeAttempts) {
   EXPECT_EQ(failure().attempts, 3);
 }
 
-TEST_F(Boot, NeverRepeatsADownload) {
+TEST_F(Boot, LooksWhetherAnUnansweredWriteHasWorkedInsteadOfRepeatingIt) {
   prepare = [](FakeNode& node) { node.swallow = 1; };
+  Steps steps;
+  steps.object(BootAction::write, 'J', {0x2000, 0}, bytes({5}));
+  boot(std::move(steps), 500ms);
+  EXPECT_EQ(device().writes.size(), 1U);
+  EXPECT_EQ(status().boot, BootState::ready);
+}
+
+TEST_F(Boot, NeverRepeatsADownload) {
+  prepare = [](FakeNode& node) { node.mute_sdo = true; };
   Steps steps;
   steps.object(BootAction::write, 'J', {0x2000, 0}, bytes({5}));
   boot(std::move(steps), 500ms);
   EXPECT_EQ(device().writes.size(), 1U);
   EXPECT_EQ(failure().fault, SdoFault::timeout);
   EXPECT_TRUE(failure().downloading);
+  EXPECT_EQ(failure().sent[0], 0x2F);
 }
 
 TEST_F(Boot, TakesAnswersLongerAndShorterThanTheEdsSays) {
