@@ -60,14 +60,12 @@ class BootCompiler {
     step.timeout = context_.boot_timeout;
   }
 
-  /// The value of the network file, else of the device file; 0 is not checked. An object that the
-  /// device file does not have is asked for only where the network file wants it.
-  std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key,
-                         std::uint32_t fallback = 0) const {
+  /// The value of the network file, else of the device file; 0 is not checked. [DeviceInfo] is not
+  /// believed: its product number is wrong in one of 25 files.
+  std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key) const {
     if (wanted.given) return *wanted;
     const SubObject* sub = dictionary_.find(key);
-    if (sub == nullptr) return 0;
-    if (!sub->value()) return fallback;
+    if (sub == nullptr || !sub->value()) return 0;
     return static_cast<std::uint32_t>(as_integer(*sub->value()).value_or(0));
   }
 
@@ -78,11 +76,8 @@ class BootCompiler {
 
   void identity() {
     expect({0x1000, 0}, expected(spec_.device_type, {0x1000, 0}), 'C', "device type");
-    expect({0x1018, 1}, expected(spec_.vendor_id, {0x1018, 1}, dictionary_.device.vendor_number),
-           'D', "vendor id");
-    expect({0x1018, 2},
-           expected(spec_.product_code, {0x1018, 2}, dictionary_.device.product_number), 'M',
-           "product code");
+    expect({0x1018, 1}, expected(spec_.vendor_id, {0x1018, 1}), 'D', "vendor id");
+    expect({0x1018, 2}, expected(spec_.product_code, {0x1018, 2}), 'M', "product code");
     expect({0x1018, 3}, *spec_.revision_number, 'N', "revision number");
     expect({0x1018, 4}, *spec_.serial_number, 'O', "serial number");
   }
@@ -131,6 +126,21 @@ class BootCompiler {
     }
   }
 
+  /// Values that follow from the plan are not forced upon a device whose limits exclude them.
+  bool takes(ObjectKey key, std::int64_t value, SourcePos pos, const std::string& consequence) {
+    const SubObject* sub = dictionary_.find(key);
+    const auto low = sub->low_limit ? as_integer(*sub->low_limit) : std::nullopt;
+    const auto high = sub->high_limit ? as_integer(*sub->high_limit) : std::nullopt;
+    if ((!low || value >= *low) && (!high || value <= *high)) return true;
+    report_.warning(pos == SourcePos{} ? spec_.pos : pos, "limits",
+                    "node `" + spec_.name + "`: " + label(dictionary_, key) + " = " +
+                        std::to_string(value) + " is outside the limits " +
+                        (low ? std::to_string(*low) : "") + ".." +
+                        (high ? std::to_string(*high) : "") + " of " + dictionary_.file +
+                        "; it is not written" + (consequence.empty() ? "" : ", ") + consequence);
+    return false;
+  }
+
   /// 0x1016: an entry that already names the master, else the first one.
   void watch_master() {
     if (context_.master_consumer_ms == 0 || !*spec_.heartbeat_consumer) return;
@@ -146,6 +156,9 @@ class BootCompiler {
     if (!steps_.writable(key)) return;
     const std::int64_t value =
         (std::int64_t{context_.master_id.value()} << 16) | context_.master_consumer_ms;
+    if (!takes(key, value, spec_.heartbeat_consumer.pos, "the device would not watch the master")) {
+      return;
+    }
     steps_.integer(BootAction::write_if_differs, key, value,
                    "the device watches the master (node " +
                        std::to_string(context_.master_id.value()) + ") for " +
@@ -161,7 +174,7 @@ class BootCompiler {
           .mask = 0x7FFF'FFFF;
     }
     sync_counter();
-    if (steps_.writable({0x1006, 0})) {
+    if (steps_.writable({0x1006, 0}) && takes({0x1006, 0}, context_.sync_period_us, {}, "")) {
       steps_.integer(BootAction::write_if_differs, {0x1006, 0}, context_.sync_period_us,
                      "SYNC period " + std::to_string(context_.sync_period_us) + " us");
     }

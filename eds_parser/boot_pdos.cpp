@@ -11,11 +11,20 @@ class PdoBoot {
   PdoBoot(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps)
       : dictionary_{dictionary}, pdo_{pdo}, steps_{steps} {}
 
+  /// First the mapping, then the communication parameters. A PDO whose mapping was written is off,
+  /// so its COB-ID differs and the second half switches it on again.
   void exchange() {
-    compare_all();
+    if (!pdo_.fixed_mapping) {
+      mapping_steps(BootAction::compare, "");
+      const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is mapped as it should be");
+      disable();
+      write_mapping();
+      steps_.land(skip);
+    }
+    compare_communication();
+    if (pdo_.fixed_mapping) mapping_steps(BootAction::compare, "");
     const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is as it should be");
     disable();
-    if (!pdo_.fixed_mapping) write_mapping();
     write_parameters();
     if (steps_.writable(cob_id_key())) {
       steps_.integer(BootAction::enable_pdo, cob_id_key(), cob_id_value(),
@@ -61,7 +70,7 @@ class PdoBoot {
     return text + ": by event";
   }
 
-  void compare_all() {
+  void compare_communication() {
     if (steps_.has(cob_id_key())) {
       steps_
           .integer(BootAction::compare, cob_id_key(), cob_id_value(),
@@ -72,10 +81,16 @@ class PdoBoot {
       steps_.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
     }
     parameters(BootAction::compare);
-    steps_.integer(BootAction::compare, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
-                   pdo_.label() + " maps " + count_text(), 1);
+  }
+
+  /// Count and entries. A fixed count may cover empty entries, which the plan leaves out.
+  void mapping_steps(BootAction action, const std::string& suffix) {
+    if (!pdo_.fixed_mapping) {
+      steps_.integer(action, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+                     pdo_.label() + " maps " + count_text() + suffix, 1);
+    }
     for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
-      steps_.integer(BootAction::compare, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
+      steps_.integer(action, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i) + suffix);
     }
   }
 
@@ -122,12 +137,7 @@ class PdoBoot {
                    pdo_.label() + " COB-ID read back")
           .mask = all_but_rtr;
     }
-    steps_.integer(BootAction::verify, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
-                   pdo_.label() + " number of mapped objects read back", 1);
-    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
-      steps_.integer(BootAction::verify, mapping(i), pdo_.mapping[i - 1].raw(),
-                     entry_text(i) + ", read back");
-    }
+    mapping_steps(BootAction::verify, ", read back");
   }
 
   const ObjectDictionary& dictionary_;

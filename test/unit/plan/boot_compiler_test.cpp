@@ -60,16 +60,17 @@ TEST(BootCompiler, WholeBootOfATinyDriveInOrder) {
           "write if differs 1005:00 0x00000080", "compare 1019:00 0x00", "skip if same",
           "write 1006:00 0x00000000", "write 1019:00 0x00", "write if differs 1006:00 0x00002710",
           "write if differs 60C2:01 0x0A", "write if differs 60C2:02 0xFD",
-          "write if differs 6081:00 0x000003E8", "compare 1400:01 0x00000205",
-          "compare 1400:02 0x01", "compare 1400:05 0x0000", "compare 1600:00 0x01",
+          "write if differs 6081:00 0x000003E8", "compare 1600:00 0x01",
           "compare 1600:01 0x60400010", "skip if same", "disable PDO 1400:01", "write 1600:00 0x00",
-          "write 1600:01 0x60400010", "write 1600:00 0x01", "write if differs 1400:02 0x01",
-          "write if differs 1400:05 0x0000", "enable PDO 1400:01 0x00000205",
-          "verify 1400:01 0x00000205", "verify 1600:00 0x01", "verify 1600:01 0x60400010",
-          "compare 1800:01 0x00000185", "compare 1800:02 0x01", "compare 1800:03 0x0000",
-          "compare 1800:05 0x0000", "compare 1800:06 0x00", "compare 1A00:00 0x01",
-          "compare 1A00:01 0x60410010", "skip if same", "disable PDO 1800:01", "write 1A00:00 0x00",
-          "write 1A00:01 0x60410010", "write 1A00:00 0x01", "write if differs 1800:02 0x01",
+          "write 1600:01 0x60400010", "write 1600:00 0x01", "compare 1400:01 0x00000205",
+          "compare 1400:02 0x01", "compare 1400:05 0x0000", "skip if same", "disable PDO 1400:01",
+          "write if differs 1400:02 0x01", "write if differs 1400:05 0x0000",
+          "enable PDO 1400:01 0x00000205", "verify 1400:01 0x00000205", "verify 1600:00 0x01",
+          "verify 1600:01 0x60400010", "compare 1A00:00 0x01", "compare 1A00:01 0x60410010",
+          "skip if same", "disable PDO 1800:01", "write 1A00:00 0x00", "write 1A00:01 0x60410010",
+          "write 1A00:00 0x01", "compare 1800:01 0x00000185", "compare 1800:02 0x01",
+          "compare 1800:03 0x0000", "compare 1800:05 0x0000", "compare 1800:06 0x00",
+          "skip if same", "disable PDO 1800:01", "write if differs 1800:02 0x01",
           "write if differs 1800:03 0x0000", "write if differs 1800:05 0x0000",
           "write if differs 1800:06 0x00", "enable PDO 1800:01 0x00000185",
           "verify 1800:01 0x00000185", "verify 1A00:00 0x01", "verify 1A00:01 0x60410010",
@@ -124,12 +125,25 @@ TEST(BootCompiler, AnIdentityThatTheEdsDoesNotHaveIsNotAskedFor) {
                           test::entry("1000", "Device type", 7, "ro", "0") +
                           test::record("1018", "Identity", 2) +
                           test::entry("1018sub0", "n", 5, "const", "1") +
-                          test::entry("1018sub1", "Vendor", 7, "ro", "");
+                          test::entry("1018sub1", "Vendor", 7, "ro", "0x55");
 
   const auto net = compile("arm: {node_id: 5, dcf: x}\n", eds);
 
   EXPECT_THAT(steps(net), ElementsAre("NMT", "await boot-up", "probe 1000:00",
                                       "expect 1018:01 0x00000055", "NMT"));
+}
+
+TEST(BootCompiler, LimitsOfTheEdsKeepPlannedValuesOutWithAWarning) {
+  std::string eds = test::tiny_eds();
+  for (const std::string section : {"[1006]\n", "[1016sub1]\n"}) {
+    eds.insert(eds.find(section) + section.size(), "HighLimit=9999\n");
+  }
+
+  const auto net = compile(arm(), eds);
+
+  EXPECT_THAT(net.complaints(), ElementsAre("2:1 warning [limits]", "2:1 warning [limits]"));
+  EXPECT_THAT(steps(net), testing::Not(testing::Contains(HasSubstr("differs 1016:01"))));
+  EXPECT_THAT(steps(net), testing::Not(testing::Contains(HasSubstr("differs 1006:00"))));
 }
 
 TEST(BootCompiler, ResetPoliciesAreHonoured) {
