@@ -94,15 +94,15 @@ void Network::send_commands(Time now, Outbox& out) noexcept {
 
 void Network::run_sessions(Time now, Outbox& out) noexcept {
   // A session may have a second frame for the same moment, hence the rounds; `out` ends them.
-  for (bool again = true; again;) {
+  bool again = first_deadline() <= now;
+  while (again) {
     again = false;
-    const std::size_t first = turn_;
-    for (std::size_t k = 0; k < sessions_.size(); ++k) {
-      const std::size_t i = (first + k) % sessions_.size();
+    std::size_t i = turn_;
+    for (std::size_t left = sessions_.size(); left != 0; --left, i = following(i)) {
       if (deadlines_[i] > now) continue;
       if (sessions_[i].on_time(now, out)) {
         again = true;
-        turn_ = (i + 1) % sessions_.size();
+        turn_ = following(i);
       }
       touched(i);
     }
@@ -110,10 +110,19 @@ void Network::run_sessions(Time now, Outbox& out) noexcept {
   }
 }
 
+std::size_t Network::following(std::size_t index) const noexcept {
+  return index + 1 == sessions_.size() ? 0 : index + 1;
+}
+
+Time Network::first_deadline() const noexcept {
+  Time first = never;
+  for (const Time deadline : deadlines_) first = std::min(first, deadline);
+  return first;
+}
+
 Time Network::deadline() const noexcept {
   if (command_ != nullptr || requests_.has_waiting(0)) return at_once;
-  const auto first = std::ranges::min_element(deadlines_);
-  return std::min(heartbeat_at_, first == deadlines_.end() ? never : *first);
+  return std::min(heartbeat_at_, first_deadline());
 }
 
 bool Network::submit(const Request& request, Time now) noexcept {

@@ -63,6 +63,8 @@ class Network {
   void send_heartbeat(Time now, Outbox& out) noexcept;
   void send_commands(Time now, Outbox& out) noexcept;
   void run_sessions(Time now, Outbox& out) noexcept;
+  Time first_deadline() const noexcept;
+  std::size_t following(std::size_t index) const noexcept;
 
   const BusPlan& plan_;
   bool observe_;
