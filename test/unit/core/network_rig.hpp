@@ -2,6 +2,7 @@
 #include <deque>
 #include <gtest/gtest.h>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -78,13 +79,16 @@ class NetworkRig {
     for (const Frame& frame : out.frames()) {
       sent.push_back(frame);
       log.push_back(frame);
+      if (loses()) continue;
       for (auto& device : devices) device.on_frame(frame, now);
     }
     collect();
   }
   void deliver() {
     for (auto& device : devices) {
-      for (const Frame& frame : device.take(now)) hear(frame);
+      for (const Frame& frame : device.take(now)) {
+        if (!loses()) hear(frame);
+      }
     }
   }
   void hear(const Frame& frame) {
@@ -93,6 +97,16 @@ class NetworkRig {
     network->on_frame(frame, now, out);
     EXPECT_TRUE(out.empty());
     collect();
+  }
+  /// Frames vanish in both directions, by a seed.
+  void lose_one_in(unsigned frames, unsigned seed) {
+    lose_one_in_ = frames;
+    random_.seed(seed);
+  }
+  bool loses() {
+    const bool gone = lose_one_in_ != 0 && random_() % lose_one_in_ == 0;
+    lost += gone;
+    return gone;
   }
   void collect() {
     for (Event event; network->take(event);) events.push_back(event);
@@ -115,6 +129,11 @@ class NetworkRig {
   std::vector<Event> events;
   std::vector<Reply> replies;
   std::size_t most_frames = 0;
+  int lost = 0;
+
+ private:
+  unsigned lose_one_in_ = 0;
+  std::mt19937 random_;
 };
 
 }  // namespace takt

@@ -129,6 +129,40 @@ TEST_P(Noise, NeitherConfusesNorStopsTheMaster) {
   for (const auto& [id, count] : answers) EXPECT_EQ(count, 1) << "request " << id;
 }
 
+TEST_P(Noise, AndLossOfOneFrameInFiftyOnlyDelayTheBoot) {
+  NetworkRig rig;
+  for (std::uint8_t id = 1; id <= 8; ++id) {
+    Steps steps;
+    steps.nmt(NmtCommand::reset_communication)
+        .wait(BootAction::await_bootup, 'B', 100ms)
+        .object(BootAction::probe, 'B', {0x1000, 0});
+    for (std::uint16_t i = 0; i < 40; ++i) {
+      const auto index = static_cast<std::uint16_t>(0x2000 + i);
+      steps.object(BootAction::write_if_differs, 'J', {index, 0}, bytes({1u + i, 0}));
+    }
+    steps.nmt(NmtCommand::start).wait(BootAction::await_operational, 'K', 200ms);
+    NodePlan& node = rig.add(id, steps.plan);
+    node.heartbeat_timeout = 1s;
+    node.reboot_delay = 100ms;
+    rig.devices.back().objects[{0x1000, 0}] = bytes({0x92, 0x01, 0x02, 0x00});
+    for (std::uint16_t i = 0; i < 40; ++i) {
+      rig.devices.back().objects[{static_cast<std::uint16_t>(0x2000 + i), 0}] = bytes({0, 0});
+    }
+    rig.devices.back().heartbeats(rig.now, 50ms);
+  }
+  rig.lose_one_in(50, GetParam());
+  rig.start();
+  rig.run(60s);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_GE(rig.status(i).boot_count, 1U) << "node " << i + 1;
+    for (std::uint16_t k = 0; k < 40; ++k) {
+      const ObjectKey key{static_cast<std::uint16_t>(0x2000 + k), 0};
+      EXPECT_EQ(rig.device(i).objects[key], bytes({1u + k, 0}));
+    }
+  }
+  EXPECT_GT(rig.lost, 100);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Noise, testing::Values(1U, 2U, 3U));
 
 }  // namespace
