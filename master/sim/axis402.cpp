@@ -61,12 +61,12 @@ void Axis402::on_sync(Time now) noexcept {
 }
 
 double Axis402::interpolation_period() const noexcept {
-  const auto measured = sync_distance_ < std::chrono::seconds{1} ? sync_distance_ : Time{};
+  if (sync_distance_ > Time{} && sync_distance_ < std::chrono::seconds{1}) {
+    return static_cast<double>(sync_distance_.count()) * 1e-9;
+  }
   const auto exponent = std::clamp<std::int64_t>(objects_.period_exponent.get(), -9, 0);
   const double told = static_cast<double>(objects_.period_value.get()) *
                       std::pow(10.0, static_cast<double>(exponent));
-  const double seconds = static_cast<double>(measured.count()) * 1e-9;
-  if (seconds > 0) return seconds;
   return std::clamp(told, 0.001, 1.0);
 }
 
@@ -149,6 +149,8 @@ void Axis402::enter(DriveState next) noexcept {
   settled_ = false;
   stopping_to_ = DriveState::operation_enabled;
   if (!is_powered(next) || !was_powered) demand_ = {motor_.position, 0};
+  const bool brakes = next == DriveState::quick_stop || next == DriveState::fault_reaction;
+  if (brakes) demand_ = {motor_.position, motor_.velocity};
   if (next == DriveState::operation_enabled) start_mode();
 }
 

@@ -10,6 +10,7 @@ BusNode::BusNode(BusNodeOptions node_options) : options{node_options} {
 
 bool BusNode::push(const QueuedFrame& frame) noexcept {
   if (queue_.size() >= options.capacity) return false;
+  if (frame.expires != never) may_expire_ = true;
   queue_.push_back(frame);
   return true;
 }
@@ -25,6 +26,7 @@ void BusNode::put_back(const QueuedFrame& frame) noexcept {
 }
 
 std::size_t BusNode::drop_expired(Time now) noexcept {
+  if (!may_expire_) return 0;
   return std::erase_if(queue_, [now](const QueuedFrame& frame) { return frame.expires < now; });
 }
 

@@ -95,6 +95,7 @@ class BusNode {
 
  private:
   std::vector<QueuedFrame> queue_;  ///< never beyond its first capacity
+  bool may_expire_ = false;
   std::uint32_t receive_errors_ = 0;
   std::uint64_t receive_errors_at_ = 0;
 };

@@ -167,6 +167,7 @@ void Device::enter(DeviceState state, Time now) noexcept {
   const DeviceState old = std::exchange(state_, state);
   if (old == DeviceState::operational) {
     stop_pdos();
+    sync_.reset();  // who is told to leave does not miss SYNC
     model_->advance(now);
     model_->connection_lost(now);
   }

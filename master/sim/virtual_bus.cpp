@@ -182,9 +182,9 @@ void VirtualBus::finish(Time now, WireFrame& wire) noexcept {
   } else {
     finish_bad(now);
   }
-  BusNode& sender = nodes_[sender_];
-  if (sender.error_passive(counters_.frames)) {
-    sender.suspended_until = idle_from_ + bit_time(suspend_bits);
+  for (const BusNodeIndex index : {sender_, rival_}) {
+    if (index == nobody || !nodes_[index].error_passive(counters_.frames)) continue;
+    nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
   }
 }
 

@@ -72,7 +72,7 @@ void World::apply(const Fault& fault, bool begins) {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     if (fault.node && devices_[i]->device.node() != *fault.node) continue;
     apply_to_device(i, fault, begins);
-    after_call(i);
+    if (devices_[i]->device.state() != DeviceState::off) after_call(i);
   }
   tell_bus_changes();
 }

@@ -277,7 +277,6 @@ TEST_F(Drive, TellsTorqueOfTheSignOfItsAcceleration) {
 
 TEST_F(Drive, FaultsWhenTheTargetJumpsAway) {
   set(0x6065, 200);
-  set(0x607F, 0);
   enable(8);
   sync(0);
   sync(0);
