@@ -56,6 +56,11 @@ std::string against_silence(const BusPlan& plan, const NodePlan& node, const Boo
          id + "?";
 }
 
+std::string identity_key(char letter) {
+  if (letter == 'C') return "device_type";
+  return letter == 'D' ? "vendor_id" : "product_code";
+}
+
 std::string against_identity(const NodePlan& node, const BootFailure& failure) {
   const std::string id = std::to_string(int{node.id.value()});
   switch (failure.letter) {
@@ -68,9 +73,11 @@ std::string against_identity(const NodePlan& node, const BootFailure& failure) {
       return "another specimen of the device is connected: enter its serial number in the network "
              "file, or drop `serial_number` there";
     default:
-      return "another device than " + node.description_file + " describes answers at node id " +
-             id +
-             ": check the node ids and the wiring, or name the EDS of the device that is there";
+      return "another device than the one that was configured answers at node id " + id +
+             ": check the node ids and the wiring, name the EDS of the device that is there "
+             "instead of " +
+             node.description_file + ", or correct `" + identity_key(failure.letter) +
+             "` where the network file gives it";
   }
 }
 

@@ -65,7 +65,7 @@ TEST_F(BootReport, OfAWrongVendor) {
   status    D of CiA 302-2: vendor id differs
   heard     no boot-up message and no heartbeat
   EDS       VendorNumber=0x42 in [DeviceInfo]
-  try       another device than drive.eds describes answers at node id 5: check the node ids and the wiring, or name the EDS of the device that is there)");
+  try       another device than the one that was configured answers at node id 5: check the node ids and the wiring, name the EDS of the device that is there instead of drive.eds, or correct `vendor_id` where the network file gives it)");
 }
 
 TEST_F(BootReport, OfARefusedMapping) {
