@@ -1,0 +1,91 @@
+#include "apps/simulate/fault_file.hpp"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "apps/simulate/duration.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+class FaultFileTest : public testing::Test {
+ protected:
+  FaultFile read(const std::string& text) {
+    const std::string path = testing::TempDir() + "takt_faults.yaml";
+    std::ofstream{path} << text;
+    plan_.nodes.push_back({.name = "elbow", .id = 2_node});
+    return read_fault_file(path, plan_);
+  }
+
+  BusPlan plan_;
+};
+
+TEST_F(FaultFileTest, ReadsEveryKey) {
+  const FaultFile file = read(
+      "faults:\n"
+      "  - {kind: power_off, node: elbow, at: 2s, for: 500ms}\n"
+      "  - {kind: override_value, node: 2, object: 1018:01, value: 0x43}\n"
+      "  - {kind: babble, cob_id: 0x7F, data: 01FF, time: 100us, at: 1s, until: 2s}\n"
+      "  - {kind: refuse_object, object: 0x1A00:0, abort_code: 0x06010002}\n"
+      "  - {kind: drift, ppm: -200}\n"
+      "  - {kind: error_frames, probability: 0.25}\n"
+      "  - {kind: device_error, emcy_code: 0x3210}\n");
+
+  for (const Finding& finding : file.findings) ADD_FAILURE() << to_string(finding);
+  ASSERT_EQ(file.faults.size(), 7u);
+  EXPECT_EQ(file.faults[0].kind, sim::FaultKind::power_off);
+  EXPECT_EQ(file.faults[0].node, 2_node);
+  EXPECT_EQ(file.faults[0].at, 2s);
+  EXPECT_EQ(file.faults[0].until, 2500ms);
+  EXPECT_EQ(file.faults[1].object, (ObjectKey{0x1018, 1}));
+  EXPECT_EQ(file.faults[1].value[0], std::byte{0x43});
+  EXPECT_EQ(file.faults[2].cob_id, CobId::base(0x7F));
+  EXPECT_EQ(file.faults[2].value, (std::vector{std::byte{0x01}, std::byte{0xFF}}));
+  EXPECT_EQ(file.faults[2].until, 2s);
+  EXPECT_EQ(file.faults[3].object, (ObjectKey{0x1A00, 0}));
+  EXPECT_EQ(file.faults[3].abort_code, 0x0601'0002u);
+  EXPECT_EQ(file.faults[4].ppm, -200);
+  EXPECT_EQ(file.faults[5].probability, 0.25);
+  EXPECT_EQ(file.faults[6].emcy_code, 0x3210);
+}
+
+TEST_F(FaultFileTest, ListsAllErrorsWithTheirLines) {
+  const FaultFile file = read(
+      "faults:\n"
+      "  - {kind: power_of, node: knee}\n"
+      "  - {node: 2, at: 2}\n"
+      "  - {kind: loss, probability: 1.5, objekt: 1018}\n"
+      "  - {kind: babble, data: 0x1}\n");
+
+  ASSERT_EQ(file.findings.size(), 7u);
+  EXPECT_EQ(file.findings[0].pos.line, 2u);
+  EXPECT_TRUE(file.findings[0].message.contains("power_off")) << file.findings[0].message;
+  EXPECT_EQ(file.findings[1].pos.line, 2u);
+  EXPECT_EQ(file.findings[2].pos.line, 3u);
+  EXPECT_EQ(file.findings[4].pos.line, 4u);
+  EXPECT_TRUE(file.findings[5].message.contains("object")) << file.findings[5].message;
+  EXPECT_EQ(file.findings[6].pos.line, 5u);
+}
+
+TEST_F(FaultFileTest, SurvivesWhatIsNoFaultFile) {
+  for (const char* text :
+       {"", "[]", "faults: 3", "faults: [[1]]", "a: [", "faults: [{kind: [1]}]", "\xFF\xFE\x00"}) {
+    EXPECT_TRUE(has_error(read(text).findings)) << text;
+  }
+  EXPECT_TRUE(has_error(read_fault_file("/nonexistent/faults.yaml", plan_).findings));
+}
+
+TEST(Duration, WantsAUnit) {
+  EXPECT_EQ(parse_duration("10s"), 10s);
+  EXPECT_EQ(parse_duration("1.5ms"), 1500us);
+  EXPECT_EQ(parse_duration("2min"), 120s);
+  EXPECT_EQ(parse_duration("1h"), 3600s);
+  for (const char* text : {"", "10", "s", "-1s", "10 s", "10s ", "1e99h", "nans", "infs"}) {
+    EXPECT_EQ(parse_duration(text), std::nullopt) << text;
+  }
+}
+
+}  // namespace
+}  // namespace takt
