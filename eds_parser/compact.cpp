@@ -157,6 +157,7 @@ void apply_compact_list(Object& object, CompactList list, std::span<const IniEnt
                     ? find_sub(object, static_cast<unsigned>(number->magnitude))
                     : nullptr;
     if (sub == nullptr) {
+      if (!report.wants("unknown-sub-object")) continue;
       report.warning(entry.key_pos(), "unknown-sub-object",
                      "object " + hex(object.index) + " has no sub-object " + quoted(entry.key) +
                          " (decimal); the entry was left out");

@@ -62,7 +62,7 @@ void ObjectLists::read(ObjectList list, const IniSection& section,
       ++found;
       highest = std::max(highest, *number);
       add(list, entry);
-    } else {
+    } else if (report_.wants("unknown-key")) {
       report_.warning(entry.key_pos(), "unknown-key",
                       "key " + quoted(entry.key) + " of [" + to_utf8(section.name) +
                           "] is neither SupportedObjects nor a decimal number; it was left out");
@@ -96,12 +96,14 @@ void ObjectLists::add(ObjectList list, const IniEntry& entry) {
   const auto index = read_index(entry, static_cast<std::uint16_t>(*number));
   check_place(list, index, entry);
   if (!described_[index]) {
+    if (!report_.wants("listed-without-section")) return;
     report_.warning(entry.pos(), "listed-without-section",
                     "object " + hex(index) + " is listed but has no section [" +
                         hex(index).substr(2) + "]; it does not exist in this file");
     return;
   }
   if (membership_[index] != ObjectList::unlisted) {
+    if (!report_.wants("listed-twice")) return;
     report_.warning(entry.pos(), "listed-twice", "object " + hex(index) + " is listed twice");
     return;
   }
@@ -129,7 +131,7 @@ std::uint16_t ObjectLists::read_index(const IniEntry& entry, std::uint16_t decim
 
 void ObjectLists::check_place(ObjectList list, std::uint16_t index, const IniEntry& entry) {
   const bool manufacturer = index >= 0x2000 && index < 0x6000;
-  if (manufacturer == (list == ObjectList::manufacturer)) return;
+  if (manufacturer == (list == ObjectList::manufacturer) || !report_.wants("wrong-list")) return;
   report_.warning(entry.pos(), "wrong-list",
                   "object " + hex(index) + " belongs into [" +
                       (manufacturer ? "ManufacturerObjects" : "OptionalObjects") + ']');

@@ -174,7 +174,7 @@ ObjectFields::ObjectFields(std::span<const IniEntry> entries, std::string_view s
     auto& slot = slots_[static_cast<std::size_t>(keyword)];
     if (slot == nullptr) {
       slot = &entry;
-    } else if (slot->value != entry.value) {
+    } else if (slot->value != entry.value && report.wants("duplicate-key")) {
       report.warning(entry.pos(), "duplicate-key",
                      "key " + quoted(entry.key) + " of [" + to_utf8(section) +
                          "] repeated with another value; the first one counts, " +

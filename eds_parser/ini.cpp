@@ -84,12 +84,10 @@ class Reader {
   void read_header(std::string_view rest) {
     const auto close = rest.find(']');
     if (close == std::string_view::npos) {
-      report_.warning(here(rest), "section-not-closed",
-                      "']' is missing; the line is left out: " + quoted(rest));
-      return;
+      return leave_out("section-not-closed", "']' is missing", rest);
     }
     const auto behind = trim(rest.substr(close + 1));
-    if (!behind.empty() && behind.front() != ';') {
+    if (!behind.empty() && behind.front() != ';' && report_.wants("text-after-section")) {
       report_.note(here(behind), "text-after-section",
                    "text behind ']' is left out: " + quoted(behind));
     }
@@ -101,20 +99,21 @@ class Reader {
   void read_entry(std::string_view rest) {
     const auto* equals = static_cast<const char*>(std::memchr(rest.data(), '=', rest.size()));
     if (equals == nullptr) {
-      report_.warning(here(rest), "no-equals",
-                      "neither [section] nor key=value; the line is left out: " + quoted(rest));
-      return;
+      return leave_out("no-equals", "neither [section] nor key=value", rest);
     }
     const auto length = static_cast<std::size_t>(equals - rest.data());
     const auto key = trim(rest.substr(0, length));
     auto value = rest.substr(length + 1);
     while (!value.empty() && is_blank(value.front())) value.remove_prefix(1);
     if (file_.sections.empty()) {
-      report_.warning(here(rest), "entry-outside-section",
-                      "entry before the first [section] is left out: " + quoted(rest));
-      return;
+      return leave_out("entry-outside-section", "entry before the first [section]", rest);
     }
     file_.all_entries.push_back({key, value, number_, column(rest), column(value)});
+  }
+
+  void leave_out(std::string_view rule, std::string_view why, std::string_view line) {
+    if (!report_.wants(rule)) return;
+    report_.warning(here(line), rule, std::string{why} + "; the line is left out: " + quoted(line));
   }
 
   void close_section() noexcept {
