@@ -11,6 +11,7 @@
 #include "eds_parser/eds_objects.hpp"
 #include "eds_parser/eds_section.hpp"
 #include "eds_parser/ini.hpp"
+#include "eds_parser/modules.hpp"
 #include "eds_parser/text.hpp"
 #include "eds_parser/value_reader.hpp"
 
@@ -31,7 +32,8 @@ struct Outline {
 
 class EdsReader {
  public:
-  EdsReader(const IniFile& file, Report& report) noexcept : file_{file}, report_{report} {}
+  EdsReader(const IniFile& file, Report& report) noexcept
+      : file_{file}, report_{report}, modules_{file} {}
 
   EdsFile read(std::string file_name, std::optional<NodeId> node) {
     outline();
@@ -118,9 +120,11 @@ class EdsReader {
       case SectionKind::tools:
       case SectionKind::dynamic_channels:
       case SectionKind::supported_modules:
-      case SectionKind::connected_modules:
-      case SectionKind::module:
         return;
+      case SectionKind::connected_modules:
+        return modules_.set_connected(section);
+      case SectionKind::module:
+        return modules_.add(name, at);
     }
   }
 
@@ -186,11 +190,13 @@ class EdsReader {
       lists.tell_unlisted(object);
       at = end;
     }
+    modules_.expand(dictionary, reader, report_);
   }
 
   const IniFile& file_;
   Report& report_;
   Outline outline_;
+  ModuleSections modules_;
 };
 
 EdsFile unreadable(std::string file_name, std::string_view message) {

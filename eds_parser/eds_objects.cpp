@@ -103,6 +103,16 @@ Object ObjectReader::read(std::span<const ObjectSection> group) {
   return object;
 }
 
+SubExtension ObjectReader::read_extension(const IniSection& section, std::uint16_t index) {
+  const ObjectFields fields{file_.entries(section), section.name, report_};
+  SubExtension extension{.pattern = read_sub(fields, {index, 1}, section),
+                         .count = fields.text(Keyword::module_count)};
+  const auto extend = values_.read_count(fields.text(Keyword::module_extend), 254, "ObjExtend",
+                                         fields.pos(Keyword::module_extend, section.pos));
+  extension.last_sub = extend.value_or(0);
+  return extension;
+}
+
 void ObjectReader::read_main(Object& object, const Parts& parts) {
   const auto& section = *parts.main;
   const ObjectFields fields{file_.entries(section), section.name, report_};

@@ -28,6 +28,13 @@ struct ObjectSection {
   std::uint8_t sub() const noexcept { return static_cast<std::uint8_t>(role() - first_sub_role); }
 };
 
+/// What [MxSubExtxxxx] says. CiA 306, 6.
+struct SubExtension {
+  SubObject pattern;
+  std::string_view count;  ///< Count, as written
+  unsigned last_sub = 0;   ///< ObjExtend: behind this sub-index the next object goes on; 0: never
+};
+
 /// Builds objects from their sections.
 class ObjectReader {
  public:
@@ -37,6 +44,7 @@ class ObjectReader {
   /// `group`: all sections of one index in ascending order. A false `Object::subs.empty()` is not
   /// promised: a record without sub-objects stays in the dictionary.
   Object read(std::span<const ObjectSection> group);
+  SubExtension read_extension(const IniSection& section, std::uint16_t index);
 
  private:
   struct Parts;

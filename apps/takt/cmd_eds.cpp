@@ -4,6 +4,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "eds_parser/check/check.hpp"
+#include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/print/dictionary.hpp"
 
@@ -20,6 +21,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   unsigned node = 0;
   bool quiet = false;
+  bool rules = false;
 };
 
 /// Reads and judges one file: the reader's findings and those of the checks, by place.
@@ -42,6 +44,14 @@ int show(const ShowOptions& options) {
     print_json(std::cout, file.dictionary, file.findings);
   } else {
     print_text(std::cout, file.dictionary);
+  }
+  return 0;
+}
+
+int print_rules() {
+  for (const auto& rule : eds_rules()) {
+    std::cout << rule.name << " (" << name(rule.severity) << ")\n    " << rule.meaning << '\n';
+    if (!rule.example.empty()) std::cout << "    e.g. " << rule.example << '\n';
   }
   return 0;
 }
@@ -73,7 +83,9 @@ void add_show(CLI::App& eds, int& exit_code) {
 void add_check(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   auto* command = eds.add_subcommand("check", "what is wrong with files");
-  command->add_option("FILE", options->files, "EDS or DCF")->required();
+  auto* rules = command->add_flag("--rules", options->rules, "list the rules, with examples");
+  auto* files = command->add_option("FILE", options->files, "EDS or DCF");
+  files->excludes(rules);
   command->add_option("--node", options->node, "node id that $NODEID stands for")
       ->check(CLI::Range(1U, 127U));
   command->add_flag("--quiet", options->quiet, "leave out notes");
@@ -84,7 +96,10 @@ void add_check(CLI::App& eds, int& exit_code) {
       "  note     style\n"
       "Exit code 1 if there is any error.\n\n"
       "Example:\n  takt eds check share/eds/*.eds");
-  command->callback([options, &exit_code] { exit_code = check_files(*options); });
+  command->callback([options, &exit_code] {
+    if (!options->rules && options->files.empty()) throw CLI::RequiredError{"FILE"};
+    exit_code = options->rules ? print_rules() : check_files(*options);
+  });
 }
 
 }  // namespace
