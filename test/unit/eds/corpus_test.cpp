@@ -44,7 +44,8 @@ EdsFile run(const fs::path& path, std::optional<NodeId> node) {
   print_json(json, file.dictionary, file.findings);
   print_text(text, file.dictionary);
   // the largest files only take time here
-  if (json.str().size() < 300'000) EXPECT_TRUE(nlohmann::json::accept(json.str())) << path;
+  const bool small = json.str().size() < 300'000;
+  EXPECT_TRUE(!small || nlohmann::json::accept(json.str())) << path;
   EXPECT_TRUE(std::ranges::is_sorted(file.dictionary.objects, {}, &Object::index)) << path;
   for (const auto& object : file.dictionary.objects) {
     EXPECT_TRUE(std::ranges::is_sorted(object.subs, {}, &SubObject::sub)) << path;
