@@ -89,6 +89,7 @@ class BusLoop {
   WireTime wire_;
   std::vector<StampedFrame> received_;
   std::array<bool, 128> exchanging_{};
+  bool hearing_ = false;  ///< PDOs of some node are taken
   BusStatus status_;
   Reply reply_;
   Request request_;

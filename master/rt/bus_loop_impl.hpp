@@ -47,6 +47,7 @@ void BusLoop<P, N>::cycle() noexcept {
 /// Which nodes exchange PDOs in this cycle.
 template <Port P, class N>
 void BusLoop<P, N>::follow_nodes() noexcept {
+  hearing_ = false;
   for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
     const bool exchanging = network_.exchanges_pdos(i);
     if (exchanging != exchanging_[i]) {
@@ -60,6 +61,7 @@ void BusLoop<P, N>::follow_nodes() noexcept {
     // Without a SYNC of our own no cycle can wait for answers to it.
     const Reception heard = options_.observe ? Reception::listening : Reception::full;
     const bool listen = options_.observe || !plan_.nodes[i].boot;
+    hearing_ = hearing_ || exchanging || listen;
     const Reception unheard = listen ? Reception::listening : Reception::off;
     pdos_.inputs().set_reception(i, exchanging ? heard : unheard, sync_sent_);
   }
@@ -116,7 +118,10 @@ template <Port P, class N>
 void BusLoop<P, N>::receive() noexcept {
   const Time end = std::min(sync_sent_ + plan_.cycle.receive_window,
                             clock_.deadline() + plan_.cycle.output_deadline);
-  if (plan_.cycle.sync) port_.sleep_until(std::min(sync_sent_ + prediction_.predicted(), end));
+  // While no node exchanges PDOs (all still boot) the whole slack belongs to the services.
+  if (plan_.cycle.sync && hearing_) {
+    port_.sleep_until(std::min(sync_sent_ + prediction_.predicted(), end));
+  }
   drain();
   const bool in_time = pdos_.inputs().complete();
   if (!in_time) {
