@@ -10,6 +10,10 @@ int main(int argc, char** argv) {
   takt::add_plan(app, exit_code);
   takt::add_sim(app, exit_code);
   takt::add_simulate(app, exit_code);
+  takt::add_status(app, exit_code);
+  takt::add_top(app, exit_code);
+  takt::add_sdo(app, exit_code);
+  takt::add_nmt(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

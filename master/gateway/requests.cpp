@@ -44,12 +44,12 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
     case SdoFault::too_long:
       return "the value is longer than " + std::to_string(request_bytes) +
              " bytes, the most that a request carries";
+    case SdoFault::no_such_node:
+      return "the network file has no such node";
+    case SdoFault::refused:
+      return "the master only observes and sends nothing";
     case SdoFault::cancelled:
       return "the node was reset or the master stops";
-    case SdoFault::no_such_node:
-      return "no such node in the network file";
-    case SdoFault::refused:
-      return "the request was refused";
   }
   return {};
 }

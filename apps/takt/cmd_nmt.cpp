@@ -1,0 +1,74 @@
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/daemon_client.hpp"
+#include "eds_parser/table/boot_plan.hpp"
+#include "master/linux/frame_channel.hpp"
+
+namespace takt {
+namespace {
+
+struct NmtOptions {
+  LiveOptions live;
+  std::string command;
+  std::string node;
+  std::string bus;
+};
+
+const std::map<std::string, NmtCommand> commands{{"start", NmtCommand::start},
+                                                 {"stop", NmtCommand::stop},
+                                                 {"preop", NmtCommand::enter_preoperational},
+                                                 {"reset", NmtCommand::reset_node},
+                                                 {"reset-comm", NmtCommand::reset_communication}};
+
+int run_on_bus(const NmtOptions& options) {
+  const auto id = parse_node_id(options.node);
+  if (!id && options.node != "all") {
+    return complain("'" + options.node + "' is not a node id 1..127 or all", 2);
+  }
+  auto channel = FrameChannel::open(options.bus);
+  if (!channel) return complain(channel.error().message, 3);
+  const std::uint8_t node = id ? id->value() : std::uint8_t{0};
+  const Frame frame =
+      make_frame(CobId::base(0), {static_cast<std::uint8_t>(commands.at(options.command)), node});
+  if (!channel->send(frame)) return complain("the frame could not be sent on " + options.bus, 3);
+  return 0;
+}
+
+int run(const NmtOptions& options) {
+  if (!options.bus.empty()) return run_on_bus(options);
+  auto daemon = DaemonClient::find(options.live);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  const auto node = daemon->node(options.node);
+  if (!node) return complain(node.error().sentence, node.error().code);
+  request_t request{};
+  request.service = "nmt";
+  request.node_id = *node;
+  request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
+  const auto reply = daemon->ask(std::move(request), std::chrono::seconds{3});
+  if (!reply) return complain(reply.error().sentence, reply.error().code);
+  return reply->good != 0 ? 0 : complain(reply->text, 1);
+}
+
+}  // namespace
+
+void add_nmt(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("nmt", "start, stop, reset nodes");
+  verb->footer(
+      "Examples:\n  takt nmt reset 5\n  takt nmt preop all --bus-name lift\n"
+      "  takt nmt start 5 --bus can0      without a daemon");
+  auto options = std::make_shared<NmtOptions>();
+  verb->add_option("COMMAND", options->command, "start, stop, preop, reset, reset-comm")
+      ->required()
+      ->check(CLI::IsMember({"start", "stop", "preop", "reset", "reset-comm"}));
+  verb->add_option("NODE", options->node, "node id, name, or all")->required();
+  verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
+      ->type_name("IFACE");
+  add_live_options(*verb, options->live);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,218 @@
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/daemon_client.hpp"
+#include "apps/takt/sdo_direct.hpp"
+#include "apps/takt/sdo_value.hpp"
+#include "master/core/request.hpp"
+
+namespace takt {
+namespace {
+
+using Value = std::vector<std::byte>;
+
+struct SdoOptions {
+  LiveOptions live;
+  std::string bus;
+  std::string node;
+  std::string object;
+  std::string type;
+  std::string value;
+  std::string file;
+  int timeout_ms = 1000;
+};
+
+/// Where the transfers go: through the daemon, or directly onto the bus.
+class SdoAccess {
+ public:
+  static std::expected<SdoAccess, LiveError> open(const SdoOptions& options);
+
+  std::expected<Value, LiveError> upload(ObjectKey object);
+  std::expected<void, LiveError> download(ObjectKey object, const Value& value);
+  int node() const noexcept { return node_; }
+
+ private:
+  std::expected<reply_t, LiveError> ask(const char* service, ObjectKey object, const Value& value);
+
+  std::optional<SdoDirect> direct_;
+  std::optional<DaemonClient> daemon_;
+  std::int16_t node_ = 0;
+  int timeout_ms_ = 0;
+};
+
+std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
+  SdoAccess access;
+  access.timeout_ms_ = options.timeout_ms;
+  if (!options.bus.empty()) {
+    const auto id = parse_node_id(options.node);
+    if (!id) return std::unexpected{LiveError{"'" + options.node + "' is not a node id", 2}};
+    access.node_ = id->value();
+    access.direct_.emplace(options.bus, *id, std::chrono::milliseconds{options.timeout_ms});
+    return access;
+  }
+  auto daemon = DaemonClient::find(options.live);
+  if (!daemon) return std::unexpected{daemon.error()};
+  const auto node = daemon->node(options.node);
+  if (!node) return std::unexpected{node.error()};
+  if (*node == 0) return std::unexpected{LiveError{"an SDO goes to one node", 2}};
+  access.node_ = *node;
+  access.daemon_.emplace(std::move(*daemon));
+  return access;
+}
+
+std::expected<reply_t, LiveError> SdoAccess::ask(const char* service, ObjectKey object,
+                                                 const Value& value) {
+  request_t request{};
+  request.service = service;
+  request.node_id = node_;
+  request.index = object.index;
+  request.sub = object.sub;
+  request.timeout_ms = timeout_ms_;
+  request.size = static_cast<std::int32_t>(value.size());
+  for (const std::byte byte : value) request.data.push_back(std::to_integer<std::uint8_t>(byte));
+  // Other requests may be served before this one, and each of its segments may take the time-out.
+  auto reply = daemon_->ask(std::move(request),
+                            std::chrono::milliseconds{timeout_ms_} * 10 + std::chrono::seconds{2});
+  if (reply && reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
+  return reply;
+}
+
+std::expected<Value, LiveError> SdoAccess::upload(ObjectKey object) {
+  if (direct_) return direct_->upload(object);
+  const auto reply = ask("sdo_upload", object, {});
+  if (!reply) return std::unexpected{reply.error()};
+  Value value;
+  for (const std::uint8_t byte : reply->data) value.push_back(std::byte{byte});
+  return value;
+}
+
+std::expected<void, LiveError> SdoAccess::download(ObjectKey object, const Value& value) {
+  if (direct_) return direct_->download(object, value);
+  if (value.size() > request_bytes) {
+    return std::unexpected{LiveError{"the daemon takes at most " + std::to_string(request_bytes) +
+                                         " bytes; larger values with --bus and taktd stopped",
+                                     1}};
+  }
+  const auto reply = ask("sdo_download", object, value);
+  if (!reply) return std::unexpected{reply.error()};
+  return {};
+}
+
+int transfer_failed(const SdoOptions& options, ObjectKey object, const LiveError& error) {
+  return complain("node " + options.node + " " + to_string(object) + ": " + error.sentence,
+                  error.code);
+}
+
+int read(const SdoOptions& options) {
+  const auto object = parse_object(options.object);
+  if (!object) return complain("'" + options.object + "' is not an object like 6041 or 1018:1", 2);
+  const auto type =
+      options.type.empty() ? std::optional<DataType>{} : parse_data_type(options.type);
+  if (!type && !options.type.empty()) {
+    return complain("'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2);
+  }
+  auto access = SdoAccess::open(options);
+  if (!access) return complain(access.error().sentence, access.error().code);
+  const auto value = access->upload(*object);
+  if (!value) return transfer_failed(options, *object, value.error());
+  const std::string text = type ? value_text(*type, *value) : untyped_text(*value);
+  if (options.live.json) {
+    const nlohmann::json json{{"node", access->node()},   {"index", object->index},
+                              {"sub", object->sub},       {"size", value->size()},
+                              {"data", hex_text(*value)}, {"text", text}};
+    std::puts(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    std::puts(text.c_str());
+  }
+  return 0;
+}
+
+int download_value(const SdoOptions& options, ObjectKey object, const Value& value) {
+  auto access = SdoAccess::open(options);
+  if (!access) return complain(access.error().sentence, access.error().code);
+  const auto done = access->download(object, value);
+  return done ? 0 : transfer_failed(options, object, done.error());
+}
+
+int write(const SdoOptions& options) {
+  const auto object = parse_object(options.object);
+  if (!object) return complain("'" + options.object + "' is not an object like 6041 or 1018:1", 2);
+  const auto type = parse_data_type(options.type);
+  if (!type) {
+    return complain("'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2);
+  }
+  const auto value = value_bytes(*type, options.value);
+  if (!value) return complain(value.error(), 2);
+  return download_value(options, *object, *value);
+}
+
+int upload_file(const SdoOptions& options) {
+  const auto object = parse_object(options.object);
+  if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
+  auto access = SdoAccess::open(options);
+  if (!access) return complain(access.error().sentence, access.error().code);
+  const auto value = access->upload(*object);
+  if (!value) return transfer_failed(options, *object, value.error());
+  std::ofstream file{options.file, std::ios::binary};
+  file.write(reinterpret_cast<const char*>(value->data()),
+             static_cast<std::streamsize>(value->size()));
+  file.close();
+  return file ? 0 : complain(options.file + ": can't be written", 2);
+}
+
+int download_file(const SdoOptions& options) {
+  const auto object = parse_object(options.object);
+  if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
+  std::ifstream file{options.file, std::ios::binary};
+  const std::string content{std::istreambuf_iterator<char>{file}, {}};
+  if (!file.good() && content.empty()) return complain(options.file + ": can't be read", 2);
+  const auto bytes = std::as_bytes(std::span{content});
+  return download_value(options, *object, {bytes.begin(), bytes.end()});
+}
+
+CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
+                   const std::shared_ptr<SdoOptions>& options) {
+  auto* verb = sdo.add_subcommand(name, text);
+  verb->add_option("NODE", options->node, "node id or name")->required();
+  verb->add_option("OBJ", options->object, "6041, 1018:1; index and sub-index in hex")->required();
+  verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
+      ->type_name("IFACE");
+  verb->add_option("--timeout", options->timeout_ms, "longest silence of the device, ms")
+      ->check(CLI::Range(1, 60000))
+      ->type_name("MS");
+  add_live_options(*verb, options->live);
+  return verb;
+}
+
+}  // namespace
+
+void add_sdo(CLI::App& app, int& exit_code) {
+  auto* sdo = app.add_subcommand("sdo", "read and write objects of a device");
+  sdo->require_subcommand(1);
+  sdo->footer(
+      "Examples:\n  takt sdo read 5 6041 u16\n  takt sdo read shoulder 1008\n"
+      "  takt sdo write 5 6081 u32 1000\n  takt sdo upload 5 1021 drive.eds --bus can0\n"
+      "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
+  auto options = std::make_shared<SdoOptions>();
+  auto* reading = add_verb(*sdo, "read", "one value", options);
+  reading->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...");
+  reading->callback([options, &exit_code] { exit_code = read(*options); });
+  auto* writing = add_verb(*sdo, "write", "one value", options);
+  writing->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...")->required();
+  writing->add_option("VALUE", options->value, "decimal, 0x hex, or text")->required();
+  writing->callback([options, &exit_code] { exit_code = write(*options); });
+  auto* uploading = add_verb(*sdo, "upload", "from the device into a file", options);
+  uploading->add_option("FILE", options->file)->required();
+  uploading->callback([options, &exit_code] { exit_code = upload_file(*options); });
+  auto* downloading = add_verb(*sdo, "download", "from a file into the device", options);
+  downloading->add_option("FILE", options->file)->required();
+  downloading->callback([options, &exit_code] { exit_code = download_file(*options); });
+}
+
+}  // namespace takt

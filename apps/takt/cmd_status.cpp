@@ -1,0 +1,122 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/daemon_client.hpp"
+#include "apps/takt/screen.hpp"
+#include "apps/takt/top_frame.hpp"
+#include "master/gateway/names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time first_limit = std::chrono::milliseconds{2500};
+constexpr Time settle = std::chrono::milliseconds{250};  // other buses would be heard within this
+
+nlohmann::json to_json(const node_status_t& node) {
+  return {{"node_id", node.node_id},
+          {"name", node.name},
+          {"nmt_state", nmt_name(node.nmt_state)},
+          {"boot", boot_name(node)},
+          {"boot_state", node.boot_state},
+          {"boot_step", node.boot_step},
+          {"boot_steps", node.boot_steps},
+          {"heartbeat_age_ms", node.heartbeat_age_ms},
+          {"error_register", node.error_register},
+          {"last_emcy", node.last_emcy},
+          {"emcy_count", node.emcy_count},
+          {"boot_count", node.boot_count},
+          {"heartbeat_lost", node.heartbeat_lost},
+          {"sdo_aborts", node.sdo_aborts},
+          {"pdos_missing", node.pdos_missing},
+          {"holder", node.holder}};
+}
+
+nlohmann::json to_json(const status_t& status) {
+  nlohmann::json nodes = nlohmann::json::array();
+  for (const node_status_t& node : status.nodes) nodes.push_back(to_json(node));
+  return {{"bus", status.bus},
+          {"interface", status.interface},
+          {"bitrate", status.bitrate},
+          {"realtime", status.realtime},
+          {"session", status.session},
+          {"cycle", status.cycle},
+          {"period_ns", status.period_ns},
+          {"cycles_missed", status.cycles_missed},
+          {"cycles_late", status.cycles_late},
+          {"image_overruns", status.image_overruns},
+          {"event_overruns", status.event_overruns},
+          {"frames_received", status.frames_received},
+          {"frames_sent", status.frames_sent},
+          {"send_failures", status.send_failures},
+          {"receive_overruns", status.receive_overruns},
+          {"error_frames", status.error_frames},
+          {"commands_taken", status.commands_taken},
+          {"commands_refused", status.commands_refused},
+          {"bus_load", status.bus_load},
+          {"bus_state", status.bus_state},
+          {"tx_errors", status.tx_errors},
+          {"rx_errors", status.rx_errors},
+          {"nodes", std::move(nodes)}};
+}
+
+std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
+  std::vector<const BusView*> buses;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!view.status()) continue;
+    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) {
+      buses.push_back(&view);
+    }
+  }
+  return buses;
+}
+
+void print(const std::vector<const BusView*>& buses) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  const std::size_t width = terminal ? Screen::size().columns : 160;
+  for (const BusView* const bus : buses) {
+    for (const Line& line : status_lines(*bus->status())) {
+      std::printf("%s\n", line.render(width, terminal).c_str());
+    }
+    if (bus->two_daemons()) complain("two daemons run a bus of this name; stop one of them", 3);
+  }
+}
+
+void print_json(const std::vector<const BusView*>& buses) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const BusView* const bus : buses) all.push_back(to_json(*bus->status()));
+  const nlohmann::json document{{"buses", std::move(all)}};
+  std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+int run(const LiveOptions& options) {
+  auto lcm = LcmClient::open(options.lcm_url, {any_bus("STATUS")});
+  if (!lcm) return complain(lcm.error(), 3);
+  BusViews views;
+  listen(*lcm, views, monotonic_now() + first_limit,
+         [&] { return !chosen(views, options.bus_name).empty(); });
+  if (chosen(views, options.bus_name).empty()) {
+    const LiveError error = no_daemon(*lcm, options.bus_name);
+    return complain(error.sentence, error.code);
+  }
+  listen(*lcm, views, monotonic_now() + settle, [] { return false; });
+  const auto buses = chosen(views, options.bus_name);
+  options.json ? print_json(buses) : print(buses);
+  return 0;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("status", "state of the running daemon, its bus and its nodes");
+  verb->footer("Examples:\n  takt status\n  takt status --json --bus-name lift");
+  auto options = std::make_shared<LiveOptions>();
+  add_live_options(*verb, *options);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,114 @@
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/daemon_client.hpp"
+#include "apps/takt/screen.hpp"
+#include "apps/takt/top_frame.hpp"
+#include "master/gateway/names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time frame_period = std::chrono::milliseconds{100};
+constexpr Time first_limit = std::chrono::seconds{3};
+
+struct TopArguments {
+  LiveOptions live;
+  bool once = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+const BusView* chosen(const BusViews& views, const std::string& bus_name) {
+  for (const auto& [bus, view] : views.buses()) {
+    if (!view.status()) continue;
+    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) return &view;
+  }
+  return nullptr;
+}
+
+void print(const std::vector<Line>& lines) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  const std::size_t width = terminal ? Screen::size().columns : 160;
+  for (const Line& line : lines) std::printf("%s\n", line.render(width, terminal).c_str());
+}
+
+int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
+  const Time limit = monotonic_now() + first_limit;
+  listen(lcm, views, limit, [&] {
+    const BusView* const bus = chosen(views, bus_name);
+    return bus != nullptr && !bus->values().empty() && bus->timing();
+  });
+  const BusView* const bus = chosen(views, bus_name);
+  if (bus == nullptr) return complain(no_daemon(lcm, bus_name).sentence, 3);
+  print(top_frame(*bus, {.rows = 0}));
+  return 0;
+}
+
+/// False: quit.
+bool on_key(int key, TopOptions& options) {
+  if (key == 'q' || key == 'Q') return false;
+  if (key == Screen::key_down || key == 'j') ++options.first_signal;
+  if ((key == Screen::key_up || key == 'k') && options.first_signal > 0) --options.first_signal;
+  return true;
+}
+
+void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const Screen screen;
+  TopOptions options;
+  Time next_frame = monotonic_now();
+  while (!interrupted) {
+    while (const int key = Screen::key()) {
+      if (!on_key(key, options)) return;
+    }
+    next_frame = monotonic_now() + frame_period;
+    listen(lcm, views, next_frame, [] { return interrupted.load(); });
+    options.rows = Screen::size().rows;
+    const BusView* const bus = chosen(views, bus_name);
+    if (bus != nullptr) {
+      screen.show(top_frame(*bus, options));
+    } else {
+      screen.show({Line{}.add("no daemon answers on " + lcm.where() + " (q quits)", Paint::dim)});
+    }
+  }
+}
+
+int run(const TopArguments& arguments) {
+  auto lcm = LcmClient::open(arguments.live.lcm_url,
+                             {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
+                              any_bus("TIMING"), any_bus("EVENT")});
+  if (!lcm) return complain(lcm.error(), 3);
+  BusViews views;
+  const bool live = !arguments.once && ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0;
+  if (!live) return show_once(*lcm, views, arguments.live.bus_name);
+  show_live(*lcm, views, arguments.live.bus_name);
+  return 0;
+}
+
+}  // namespace
+
+void add_top(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("top", "live view of a running daemon");
+  verb->footer(
+      "Keys: q quits, arrows scroll the values.\nExamples:\n  takt top\n"
+      "  takt top --once            one frame, for scripts\n"
+      "  takt top --bus-name lift");
+  auto arguments = std::make_shared<TopArguments>();
+  verb->add_option("--lcm-url", arguments->live.lcm_url,
+                   "where the daemon is; else LCM_DEFAULT_URL")
+      ->type_name("URL");
+  verb->add_option("--bus-name", arguments->live.bus_name, "which bus, where there are several")
+      ->type_name("NAME");
+  verb->add_flag("--once", arguments->once, "print one frame and end");
+  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace takt

@@ -1,0 +1,132 @@
+#include "apps/takt/daemon_client.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <unistd.h>
+
+#include "master/gateway/names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time find_limit = std::chrono::milliseconds{2500};
+constexpr Time settle = std::chrono::milliseconds{250};  // another bus would be heard within this
+
+std::string names_of(const BusViews& views) {
+  std::string names;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!view.status()) continue;
+    names += (names.empty() ? "" : ", ") + view.status()->bus;
+  }
+  return names;
+}
+
+std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient& lcm,
+                                          const std::string& bus_name) {
+  const status_t* chosen = nullptr;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!view.status()) continue;
+    const bool wanted = bus_name.empty() || view.status()->bus == bus_name || bus == bus_name;
+    if (!wanted) continue;
+    if (view.two_daemons()) {
+      return std::unexpected{LiveError{
+          "two daemons run a bus named '" + view.status()->bus + "'; stop one of them", 3}};
+    }
+    if (chosen != nullptr) {
+      return std::unexpected{
+          LiveError{"several buses are there: " + names_of(views) + "; choose with --bus-name", 2}};
+    }
+    chosen = &*view.status();
+  }
+  if (chosen != nullptr) return *chosen;
+  const std::string others = names_of(views);
+  if (!others.empty()) {
+    return std::unexpected{LiveError{"no bus '" + bus_name + "', there are: " + others, 2}};
+  }
+  return std::unexpected{no_daemon(lcm, bus_name)};
+}
+
+/// Unique among all that may ask at the same time.
+std::int64_t new_request_id() { return realtime_now().count(); }
+
+}  // namespace
+
+LiveError no_daemon(const LcmClient& lcm, const std::string& bus_name) {
+  const std::string which = bus_name.empty() ? std::string{} : " for bus '" + bus_name + "'";
+  return {"no daemon" + which + " answers on " + lcm.where() +
+              ". Is taktd running? It says at its start which LCM_DEFAULT_URL to set",
+          3};
+}
+
+void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough) {
+  std::string told;
+  while (!enough() && monotonic_now() < until) {
+    lcm.serve(
+        [&](std::string_view channel, std::span<const std::byte> data) {
+          const std::string trouble = views.take(channel, data);
+          if (trouble.empty() || trouble == told) return;
+          told = trouble;
+          std::fprintf(stderr, "takt: %s\n", trouble.c_str());
+        },
+        until);
+  }
+}
+
+std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
+  auto lcm = LcmClient::open(options.lcm_url, {any_bus("STATUS"), any_bus("REPLY")});
+  if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
+  BusViews views;
+  const auto found = [&] {
+    for (const auto& [bus, view] : views.buses()) {
+      if (!view.status()) continue;
+      if (options.bus_name.empty() || view.status()->bus == options.bus_name) return true;
+    }
+    return false;
+  };
+  listen(*lcm, views, monotonic_now() + find_limit, found);
+  if (found()) listen(*lcm, views, monotonic_now() + settle, [] { return false; });
+  auto status = choose(views, *lcm, options.bus_name);
+  if (!status) return std::unexpected{status.error()};
+  return DaemonClient{std::move(*lcm), std::move(*status)};
+}
+
+std::expected<std::int16_t, LiveError> DaemonClient::node(const std::string& text) const {
+  if (text == "all") return std::int16_t{0};
+  const auto id = parse_node_id(text);
+  std::string known;
+  for (const node_status_t& node : status_.nodes) {
+    if (node.name == text || (id && node.node_id == id->value())) return node.node_id;
+    known += (known.empty() ? "" : ", ") + std::to_string(node.node_id) + " " + node.name;
+  }
+  return std::unexpected{
+      LiveError{"bus '" + status_.bus + "' has no node '" + text + "'; it has: " + known, 2}};
+}
+
+std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limit) {
+  std::vector<std::byte> buffer;
+  request.schema = message_schema;
+  request.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+  request.session = status_.session;
+  request.id = new_request_id();
+  request.sender = "takt-" + std::to_string(::getpid());
+  lcm_.publish(channel_name(status_.bus, "REQUEST"), encode(request, buffer));
+  const std::string answers = channel_name(status_.bus, "REPLY");
+  const Time until = monotonic_now() + limit;
+  std::optional<reply_t> answer;
+  while (!answer && monotonic_now() < until) {
+    lcm_.serve(
+        [&](std::string_view channel, std::span<const std::byte> data) {
+          if (channel != answers) return;
+          auto reply = decode<reply_t>(data);
+          const bool ours = reply && reply->id == request.id && reply->sender == request.sender;
+          if (ours) answer = std::move(*reply);
+        },
+        until);
+  }
+  if (answer) return std::move(*answer);
+  return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer", 3}};
+}
+
+}  // namespace takt

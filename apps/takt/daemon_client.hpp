@@ -1,0 +1,49 @@
+#pragma once
+#include <expected>
+#include <functional>
+#include <string>
+#include <takt/reply_t.hpp>
+#include <takt/request_t.hpp>
+#include <takt/status_t.hpp>
+#include <utility>
+
+#include "apps/takt/live_arguments.hpp"
+#include "master/gateway/bus_view.hpp"
+#include "master/gateway/lcm_client.hpp"
+
+namespace takt {
+
+/// Why there is no answer, and the exit code that says so.
+struct LiveError {
+  std::string sentence;
+  int code = 3;
+};
+
+/// A running daemon, found by its status messages.
+class DaemonClient {
+ public:
+  /// Waits until status of a bus has come (for the one that `options` name, if they name one);
+  /// several buses without a choice are an error.
+  static std::expected<DaemonClient, LiveError> find(const LiveOptions& options);
+
+  const status_t& status() const noexcept { return status_; }
+  /// Id of a node given as number or name; 0 for "all".
+  std::expected<std::int16_t, LiveError> node(const std::string& text) const;
+
+  /// Sends a request and waits for its answer. `limit` is beyond what the daemon itself waits.
+  std::expected<reply_t, LiveError> ask(request_t request, Time limit);
+
+ private:
+  DaemonClient(LcmClient lcm, status_t status) : lcm_{std::move(lcm)}, status_{std::move(status)} {}
+
+  LcmClient lcm_;
+  status_t status_;
+};
+
+/// "no daemon answers on ...", with what to try.
+LiveError no_daemon(const LcmClient& lcm, const std::string& bus_name);
+
+/// Feeds `views` until `enough` says so, at the latest until `until` (monotonic).
+void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough);
+
+}  // namespace takt

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstddef>
+#include <expected>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/takt/daemon_client.hpp"
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// SDO transfers on a bus of this machine, without a daemon. Not beside a daemon on the same bus:
+/// two SDO clients of one node confuse each other.
+class SdoDirect {
+ public:
+  SdoDirect(std::string bus, NodeId node, Time timeout)
+      : bus_{std::move(bus)}, node_{node}, timeout_{timeout} {}
+
+  std::expected<std::vector<std::byte>, LiveError> upload(ObjectKey object);
+  std::expected<void, LiveError> download(ObjectKey object, std::span<const std::byte> value);
+
+ private:
+  std::string bus_;
+  NodeId node_;
+  Time timeout_;
+};
+
+}  // namespace takt

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "apps/takt/screen.hpp"
+#include "master/gateway/bus_view.hpp"
+
+namespace takt {
+
+struct TopOptions {
+  std::size_t rows = 24;  ///< of the terminal; 0: as many as there is to tell
+  std::size_t first_signal = 0;
+};
+
+/// What `takt top` shows of one bus.
+std::vector<Line> top_frame(const BusView& bus, const TopOptions& options);
+
+/// The line of a bus and the table of its nodes: shared with `takt status`.
+std::vector<Line> status_lines(const status_t& status);
+
+std::string nmt_name(int state);                   ///< "operational"
+std::string boot_name(const node_status_t& node);  ///< "ready", "step 4 of 31"
+
+}  // namespace takt

@@ -1,0 +1,202 @@
+#include "apps/taktd/daemon.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <future>
+#include <utility>
+
+#include "apps/taktd/summary.hpp"
+#include "master/core/boot_report.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+constexpr std::size_t heap_bytes = 8 << 20;
+
+std::string bus_to_use(const DaemonOptions& options, const BusPlan& plan) {
+  if (options.bus) return *options.bus;
+  return plan.interface.empty() ? "sim" : plan.interface;
+}
+
+/// Not 0, and another one each time.
+std::int64_t new_session() {
+  const std::int64_t now = realtime_now().count();
+  return std::max<std::int64_t>(1, now & 0x7FFF'FFFF'FFFF'FFFF);
+}
+
+}  // namespace
+
+Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
+    : network_{std::move(network)},
+      options_{std::move(options)},
+      bus_name_{bus_to_use(options_, network_.plan)},
+      session_{new_session()},
+      wait_{signals_.wait_mask()},
+      reporter_{network_.plan} {
+  if (options_.rt) network_.realtime.mode = *options_.rt;
+}
+
+Exit Daemon::run() {
+  if (const auto trouble = open()) return *trouble;
+  if (const auto trouble = start()) return *trouble;
+  loop();
+  if (!master_->finished()) {
+    reporter_.say(Weight::error, StopSignal::count() > 1
+                                     ? "stopped at once: the axes were not brought to rest in order"
+                                     : "the ordered stop did not end in time");
+    std::_Exit(static_cast<int>(exit_ == Exit::good ? Exit::bus_trouble : exit_));
+  }
+  master_->join();
+  bridge_->serve();
+  reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),
+                                          reporter_.told(Weight::warning)));
+  return exit_;
+}
+
+std::optional<Exit> Daemon::open() {
+  if (!options_.events_file.empty() && !reporter_.open_events(options_.events_file)) {
+    reporter_.say(Weight::error, "--events " + options_.events_file + ": can't be written");
+    return Exit::wrong_use;
+  }
+  auto url = parse_lcm_url(choose_lcm_url(options_.lcm_url, network_.lcm.url));
+  if (!url) {
+    reporter_.say(Weight::error, url.error());
+    return Exit::wrong_use;
+  }
+  auto bus = DaemonBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
+  if (!bus) {
+    reporter_.say(Weight::error, bus.error().message);
+    return Exit::bus_trouble;
+  }
+  bus_ = std::move(*bus);
+  for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
+  const Channels channels{network_.plan.name};
+  link_ = std::make_unique<LcmLink>(
+      std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), channels.heard(),
+      [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
+  return std::nullopt;
+}
+
+std::thread Daemon::start_bus_thread(std::function<void()> body) {
+  std::promise<RtReport> promise;
+  auto report = promise.get_future();
+  std::thread thread{[options = network_.realtime, body = std::move(body),
+                      promise = std::move(promise)]() mutable {
+    ::pthread_setname_np(::pthread_self(), "takt-bus");
+    const RtReport granted = apply_realtime(options);
+    promise.set_value(granted);
+    if (granted.may_run()) body();
+  }};
+  realtime_ = report.get();
+  return thread;
+}
+
+/// Simulated devices answer as promptly as real ones: their thread gets real time too, one below
+/// the bus thread. It inherits that from the thread that makes it.
+void Daemon::power_on() {
+  RealtimeOptions options = network_.realtime;
+  options.priority = std::max(1, options.priority - 1);
+  options.cpu.reset();
+  std::thread{[&] {
+    apply_realtime(options);
+    bus_->power_on();
+  }}.join();
+}
+
+std::optional<Exit> Daemon::start() {
+  prefault_heap(heap_bytes);
+  master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = options_.observe});
+  bus_->attach(*master_);
+  power_on();
+  master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
+  reporter_.say(realtime_.complete() ? Weight::note : Weight::warning,
+                "real time: " + to_string(realtime_));
+  if (!realtime_.may_run()) {
+    reporter_.say(Weight::error, "--rt enforce: not started without the real time asked for");
+    master_->join();
+    return Exit::refused;
+  }
+  reporter_.say(Weight::note, plan_summary(network_) + "  on " + bus_name_ + ", LCM channels " +
+                                  Channels{network_.plan.name}.image + " ...");
+  bridge_ = std::make_unique<Bridge>(*master_, *link_,
+                                     BridgeOptions{.session = session_,
+                                                   .observe = options_.observe,
+                                                   .interface = bus_name_,
+                                                   .realtime = to_string(realtime_)},
+                                     [this](const Notice& notice) { on_notice(notice); });
+  if (options_.run_for > Time{0}) end_ = monotonic_now() + options_.run_for;
+  service_.ready("bus " + network_.plan.name + " on " + bus_name_);
+  return std::nullopt;
+}
+
+void Daemon::loop() {
+  std::vector<pollfd> descriptors;
+  while (!master_->finished()) {
+    const bool image = bridge_->serve();
+    if (image) hear_intruders();
+    const Time now = monotonic_now();
+    watch_conditions(now);
+    if (StopSignal::count() > 1 || stop_takes_too_long(now)) return;
+    descriptors.clear();
+    link_->watch(descriptors);
+    wait_.wait(descriptors, master_->next_publish(), std::min(bridge_->next_message(), end_));
+  }
+}
+
+void Daemon::hear_intruders() {
+  DiagnosticSocket* const ear = bus_->diagnostics();
+  if (ear == nullptr || options_.observe) return;
+  ear->poll();
+  Event event;
+  while (ear->take(event)) bridge_->tell(to_notice(network_.plan, event));
+}
+
+void Daemon::watch_conditions(Time now) {
+  const BusStatus& bus = bridge_->status().bus;
+  if (now - bus.when < std::chrono::seconds{1}) service_.alive(now);
+  if (stopping_) return;
+  if (StopSignal::count() > 0) return stop(Exit::good, "told to stop");
+  if (now >= end_) return stop(Exit::good, "the time of --for is over");
+  watch_lateness();
+}
+
+void Daemon::watch_lateness() {
+  const Time limit = network_.realtime.late_limit;
+  if (network_.realtime.mode != RtMode::enforce || limit == Time{0}) return;
+  const Time latest = master_->timing().sync_lateness.snapshot().maximum();
+  if (latest <= limit) return;
+  using std::chrono::microseconds;
+  stop(Exit::too_late,
+       "SYNC was up to " +
+           std::to_string(std::chrono::duration_cast<microseconds>(latest).count()) +
+           " us late, the limit is " +
+           std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
+}
+
+void Daemon::on_notice(const Notice& notice) {
+  reporter_.tell(notice);
+  if (notice.kind != name(EventKind::boot_failed)) return;
+  for (const NodePlan& node : network_.plan.nodes) {
+    if (node.id.value() == notice.node && node.mandatory) {
+      stop(Exit::node_missing, "node " + std::to_string(notice.node) + " (" + node.name +
+                                   ") is mandatory and did not boot");
+    }
+  }
+}
+
+void Daemon::stop(Exit reason, const std::string& why) {
+  if (stopping_) return;
+  stopping_ = true;
+  exit_ = reason;
+  stop_limit_ = monotonic_now() + network_.plan.stop_timeout + patience;
+  reporter_.say(reason == Exit::good ? Weight::note : Weight::error, why + "; stopping in order");
+  service_.stopping();
+  master_->request_stop();
+}
+
+bool Daemon::stop_takes_too_long(Time now) const { return stopping_ && now > stop_limit_; }
+
+}  // namespace takt

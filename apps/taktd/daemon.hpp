@@ -1,0 +1,72 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/taktd/daemon_bus.hpp"
+#include "apps/taktd/front_wait.hpp"
+#include "apps/taktd/options.hpp"
+#include "apps/taktd/reporter.hpp"
+#include "apps/taktd/service_notify.hpp"
+#include "apps/taktd/stop_signal.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "master/gateway/bridge.hpp"
+#include "master/gateway/lcm_link.hpp"
+#include "master/linux/rt_thread.hpp"
+#include "master/master.hpp"
+
+namespace takt {
+
+/// Exit codes of the contract.
+enum class Exit : int {
+  good = 0,
+  refused = 1,
+  wrong_use = 2,
+  bus_trouble = 3,
+  node_missing = 4,
+  too_late = 5,
+};
+
+/// taktd: one bus, from the compiled network to the end of the ordered stop. Its run() is the front
+/// thread; the bus thread is the Master's.
+class Daemon {
+ public:
+  Daemon(LoadedNetwork network, DaemonOptions options);
+
+  Exit run();
+
+ private:
+  std::optional<Exit> open();
+  std::optional<Exit> start();
+  void power_on();
+  void loop();
+  void hear_intruders();
+  void watch_conditions(Time now);
+  void watch_lateness();
+  void on_notice(const Notice& notice);
+  void stop(Exit reason, const std::string& why);
+  bool stop_takes_too_long(Time now) const;
+  std::thread start_bus_thread(std::function<void()> body);
+
+  LoadedNetwork network_;
+  DaemonOptions options_;
+  std::string bus_name_;
+  std::int64_t session_;
+  StopSignal signals_;
+  FrontWait wait_;
+  ServiceNotify service_;
+  Reporter reporter_;
+  RtReport realtime_;
+  std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
+  std::unique_ptr<Master> master_;
+  std::unique_ptr<LcmLink> link_;
+  std::unique_ptr<Bridge> bridge_;
+  Time end_ = never;         // of --for
+  Time stop_limit_ = never;  // when patience with the ordered stop ends
+  bool stopping_ = false;
+  Exit exit_ = Exit::good;
+};
+
+}  // namespace takt

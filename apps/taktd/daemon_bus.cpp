@@ -1,0 +1,56 @@
+#include "apps/taktd/daemon_bus.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "master/linux/bus_name.hpp"
+#include "master/linux/can_link.hpp"
+
+namespace takt {
+
+std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open_real(const std::string& name,
+                                                                         const BusPlan& plan,
+                                                                         Time spin) {
+  std::unique_ptr<DaemonBus> bus{new DaemonBus};
+  auto port = open_bus(name, plan, spin, &bus->sent_);
+  if (!port) return std::unexpected{port.error()};
+  bus->port_.emplace(std::move(*port));
+  auto diagnostics = DiagnosticSocket::open(name, plan, bus->sent_);
+  if (diagnostics) {
+    bus->diagnostics_.emplace(std::move(*diagnostics));
+  } else {
+    bus->warnings_.push_back("foreign masters will not be noticed: " + diagnostics.error().message);
+  }
+  const BusName parsed = BusName::parse(name);
+  if (parsed.kind != BusName::Kind::can_interface) return bus;
+  if (const auto link = read_can_link(parsed.name)) {
+    std::ranges::copy(link_warnings(*link, plan.bitrate, plan.pdos.rpdos.size() + 1),
+                      std::back_inserter(bus->warnings_));
+  }
+  return bus;
+}
+
+std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
+    const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices, Time spin) {
+  if (BusName::parse(name).kind != BusName::Kind::simulated) return open_real(name, plan, spin);
+  auto ends = make_socket_pair_bus(plan.cycle.sync_cob_id, spin);
+  std::unique_ptr<DaemonBus> bus{new DaemonBus};
+  bus->port_.emplace(std::move(ends.first));
+  bus->devices_end_ = std::make_unique<DeviceChannel>(FrameChannel{std::move(ends.second)});
+  sim::WorldOptions world;
+  world.bitrate = plan.bitrate;
+  bus->world_ = std::make_unique<sim::RealtimeWorld>(devices, world, *bus->devices_end_);
+  return bus;
+}
+
+void DaemonBus::attach(Master& master) {
+  std::visit([&](auto& port) { master.attach(port); }, *port_);
+}
+
+void DaemonBus::power_on() {
+  if (world_) world_->start();
+}
+
+}  // namespace takt

@@ -1,0 +1,42 @@
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "apps/taktd/daemon.hpp"
+#include "apps/taktd/options.hpp"
+#include "apps/taktd/reporter.hpp"
+#include "apps/taktd/summary.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+int run(const DaemonOptions& options) {
+  LoadedNetwork network = load_network(options.network_file);
+  for (const Finding& finding : network.findings) {
+    std::fprintf(stderr, "%s\n", to_string(finding).c_str());
+  }
+  if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
+  if (options.check) {
+    std::fputs(plan_summary(network).c_str(), stdout);
+    return static_cast<int>(Exit::good);
+  }
+  start_log();
+  Daemon daemon{std::move(network), options};
+  return static_cast<int>(daemon.run());
+}
+
+}  // namespace
+}  // namespace takt
+
+int main(int argc, char** argv) {
+  const auto options = takt::read_command_line(argc, argv);
+  if (!options) return options.error();
+  try {
+    return takt::run(*options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "taktd: %s\n", error.what());
+    return static_cast<int>(takt::Exit::bus_trouble);
+  }
+}

@@ -1,0 +1,89 @@
+#include "apps/taktd/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace takt {
+namespace {
+
+constexpr const char* description =
+    "taktd - CANopen master: boots the devices of a network file, beats SYNC, and carries the\n"
+    "process image to and from applications over LCM.";
+
+constexpr const char* footer = R"(
+Examples:
+  taktd lift.yaml                      on the interface that the file names
+  taktd lift.yaml --bus vcan0          on another one
+  taktd lift.yaml --bus sim --for 10s  simulated bus and devices, no hardware needed
+  taktd lift.yaml --check              compile everything, touch no bus
+  taktd lift.yaml --observe            listen only: send nothing at all
+
+Live views: takt top, takt status. SIGTERM or SIGINT (Ctrl-C) stops in order: axes to rest, nodes to
+pre-operational, SYNC off. A second one stops at once.
+
+Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
+3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken.)";
+
+const std::map<std::string, RtMode> rt_modes{
+    {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
+
+std::optional<double> seconds_in(std::string_view unit) noexcept {
+  if (unit.empty() || unit == "s") return 1.0;
+  if (unit == "ms") return 1e-3;
+  if (unit == "min" || unit == "m") return 60.0;
+  if (unit == "h") return 3600.0;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Time> parse_duration(const std::string& text) {
+  constexpr double longest = 1e9;  // 30 years
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const auto factor = seconds_in({rest, static_cast<std::size_t>(end - rest)});
+  if (error != std::errc{} || !factor || !(number >= 0) || number * *factor > longest) {
+    return std::nullopt;
+  }
+  return Time{std::llround(number * *factor * 1e9)};
+}
+
+std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
+  CLI::App app{description, "taktd"};
+  app.footer(footer);
+  app.get_formatter()->column_width(30);
+  DaemonOptions options;
+  std::string rt;
+  std::string run_for;
+  app.add_option("NET.yaml", options.network_file, "network file")->required();
+  app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
+  app.add_option("--rt", rt, "enforce: no start without real time; try: say what is missing; off")
+      ->check(CLI::IsMember({"enforce", "try", "off"}))
+      ->type_name("MODE");
+  app.add_option("--lcm-url", options.lcm_url, "instead of LCM_DEFAULT_URL and the file's")
+      ->type_name("URL");
+  app.add_option("--for", run_for, "ordered stop after this time: 10s, 500ms, 2min")
+      ->type_name("TIME");
+  app.add_option("--events", options.events_file, "append events as JSON, one a line")
+      ->type_name("FILE");
+  app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
+  app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
+  try {
+    app.parse(argc, argv);
+    if (!rt.empty()) options.rt = rt_modes.at(rt);
+    if (!run_for.empty()) {
+      const auto time = parse_duration(run_for);
+      if (!time) throw CLI::ValidationError("--for", "'" + run_for + "' is not a time like 10s");
+      options.run_for = *time;
+    }
+  } catch (const CLI::ParseError& error) {
+    return std::unexpected{app.exit(error) == 0 ? 0 : 2};
+  }
+  return options;
+}
+
+}  // namespace takt

@@ -1,0 +1,29 @@
+#pragma once
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "eds_parser/table/run_options.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// The command line of taktd.
+struct DaemonOptions {
+  std::string network_file;
+  std::optional<std::string> bus;  ///< else the network file's interface, else "sim"
+  std::optional<RtMode> rt;        ///< else the network file's
+  std::string lcm_url;
+  std::string events_file;
+  Time run_for{};  ///< 0: until a signal
+  bool check = false;
+  bool observe = false;
+};
+
+/// The options, or the exit code when the command line asks for help or is wrong (told already).
+std::expected<DaemonOptions, int> read_command_line(int argc, char** argv);
+
+/// `10s`, `500ms`, `2min`, `1h`, `10` (seconds); none: not a time.
+std::optional<Time> parse_duration(const std::string& text);
+
+}  // namespace takt

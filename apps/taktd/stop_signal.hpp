@@ -1,0 +1,21 @@
+#pragma once
+#include <csignal>
+
+namespace takt {
+
+/// SIGTERM and SIGINT as a counter. Blocked in all threads from here on, except while the front
+/// thread waits with wait_mask(), so none is ever lost between a look and a wait.
+class StopSignal {
+ public:
+  StopSignal();
+
+  /// How many have come.
+  static int count() noexcept;
+  /// The mask for ppoll: stop signals get through.
+  const sigset_t* wait_mask() const noexcept { return &wait_mask_; }
+
+ private:
+  sigset_t wait_mask_{};
+};
+
+}  // namespace takt

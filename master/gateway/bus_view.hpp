@@ -1,0 +1,78 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "master/gateway/messages.hpp"
+#include "master/gateway/units.hpp"
+
+namespace takt {
+
+/// One bus as its messages show it: parts put together, old sessions forgotten.
+class BusView {
+ public:
+  void take(const status_t& status);
+  void take(const layout_t& layout);
+  void take(const image_t& image);
+  void take(const timing_t& timing) { timing_ = timing; }
+  void take(event_t event);
+
+  /// All nodes of one status_t round; none before the first whole one.
+  const std::optional<status_t>& status() const noexcept { return status_; }
+  const std::optional<timing_t>& timing() const noexcept { return timing_; }
+  const std::deque<event_t>& events() const noexcept { return events_; }
+
+  /// Signals of the layout once all parts are there, else empty.
+  const std::vector<signal_t>& signals() const noexcept { return signals_; }
+  /// In the order of signals(); empty before the first whole image.
+  const std::vector<std::int64_t>& values() const noexcept { return values_; }
+  bool stale(std::size_t signal) const noexcept { return stale_[signal]; }
+  const Units& units() const noexcept { return units_; }
+  std::int64_t cycle() const noexcept { return cycle_; }
+  std::int64_t session() const noexcept { return session_; }
+  /// Images whose parts were all there.
+  std::uint64_t images() const noexcept { return images_; }
+  /// Messages that came from two daemons of the same bus name.
+  bool two_daemons() const noexcept { return two_daemons_; }
+
+ private:
+  void new_session(std::int64_t session);
+  void finish_layout();
+
+  std::optional<status_t> status_;
+  std::optional<status_t> status_parts_;  // growing
+  std::optional<timing_t> timing_;
+  std::deque<event_t> events_;
+  std::int64_t layout_hash_ = 0;
+  std::map<std::int32_t, signal_t> layout_parts_;  // growing
+  std::vector<signal_t> signals_;
+  Units units_;
+  std::vector<std::int64_t> values_;
+  std::vector<bool> stale_;
+  std::vector<std::int64_t> next_values_;  // growing
+  std::vector<bool> next_stale_;
+  std::int16_t next_part_ = 0;
+  std::int64_t next_cycle_ = 0;
+  std::int64_t cycle_ = 0;
+  std::int64_t session_ = 0;
+  std::int64_t earlier_session_ = 0;
+  std::uint64_t images_ = 0;
+  bool two_daemons_ = false;
+};
+
+/// All buses that messages arrive from, by the bus part of their channels.
+class BusViews {
+ public:
+  /// Bytes of any channel. Empty, or a sentence when they can't be read.
+  std::string take(std::string_view channel, Bytes data);
+  const std::map<std::string, BusView, std::less<>>& buses() const noexcept { return buses_; }
+
+ private:
+  std::map<std::string, BusView, std::less<>> buses_;
+};
+
+}  // namespace takt
