@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -24,12 +25,10 @@ class Seqlock {
   template <class T>
   void put(std::size_t word, const T& item) noexcept {
     static_assert(std::is_trivially_copyable_v<T>);
-    const auto* bytes = reinterpret_cast<const std::byte*>(&item);
-    for (std::size_t at = 0; at < sizeof(T); at += 8, ++word) {
-      std::uint64_t value = 0;
-      std::memcpy(&value, bytes + at, sizeof(T) - at < 8 ? sizeof(T) - at : 8);
-      words_[word].store(value, std::memory_order_relaxed);
-    }
+    std::array<std::uint64_t, (sizeof(T) + 7) / 8> raw{};
+    std::memcpy(raw.data(), &item, sizeof(T));
+    std::atomic<std::uint64_t>* const to = words_.data() + word;
+    for (std::size_t i = 0; i < raw.size(); ++i) to[i].store(raw[i], std::memory_order_relaxed);
   }
   void end() noexcept {
     version_.store(version_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
@@ -49,11 +48,11 @@ class Seqlock {
   template <class T>
   void get(std::size_t word, T& item) const noexcept {
     static_assert(std::is_trivially_copyable_v<T>);
-    auto* bytes = reinterpret_cast<std::byte*>(&item);
-    for (std::size_t at = 0; at < sizeof(T); at += 8, ++word) {
-      const std::uint64_t value = words_[word].load(std::memory_order_relaxed);
-      std::memcpy(bytes + at, &value, sizeof(T) - at < 8 ? sizeof(T) - at : 8);
+    std::array<std::uint64_t, (sizeof(T) + 7) / 8> raw;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      raw[i] = words_[word + i].load(std::memory_order_relaxed);
     }
+    std::memcpy(static_cast<void*>(&item), raw.data(), sizeof(T));
   }
 
  private:

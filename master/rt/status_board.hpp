@@ -50,7 +50,8 @@ class StatusBoard {
   void write(const BusStatus& bus, std::span<const NodeStatus> nodes, F&& tpdo) noexcept {
     lock_.begin();
     lock_.put(0, bus);
-    for (std::size_t i = 0; i < nodes.size() && i < nodes_; ++i) lock_.put(node_at(i), nodes[i]);
+    const std::size_t count = nodes.size() < nodes_ ? nodes.size() : nodes_;
+    for (std::size_t i = 0; i < count; ++i) lock_.put(node_at(i), nodes[i]);
     for (std::size_t i = 0; i < tpdos_; ++i) lock_.put(tpdo_at(i), tpdo(i));
     lock_.end();
   }

@@ -1,7 +1,8 @@
 // What one cycle of the bus loop costs, the port itself not counted.
 //
-//   loop_cost NODES [--inputs-only]     one line: system calls and allocations per cycle
-//   valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady cycles
+//   loop_cost NODES [--receive-path]    one line: system calls and allocations per cycle
+//   valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady cycles, or
+//       of them only the path from the return of receive() to the published image
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -20,12 +21,23 @@ using namespace takt;
 
 bool collecting = false;
 
+bool path_only = false;  // collect from the return of receive() to the published image
+int clock_reads = 0;     // until the image is published, counted from there
+
 struct PauseCallgrind {
   void enter() noexcept {
-    if (collecting) CALLGRIND_TOGGLE_COLLECT;
+    if (collecting && !path_only) CALLGRIND_TOGGLE_COLLECT;
   }
   void leave() noexcept {
-    if (collecting) CALLGRIND_TOGGLE_COLLECT;
+    if (collecting && !path_only) CALLGRIND_TOGGLE_COLLECT;
+  }
+  void on_received() noexcept {
+    if (!collecting || !path_only) return;
+    clock_reads = 2;  // the time of the image, and the next phase
+    CALLGRIND_TOGGLE_COLLECT;
+  }
+  void on_now() noexcept {
+    if (clock_reads != 0 && --clock_reads == 0) CALLGRIND_TOGGLE_COLLECT;
   }
 };
 
@@ -33,7 +45,7 @@ class Bench {
  public:
   Bench(unsigned nodes, bool rpdos)
       : plan_{bench::eight_u8(
-            {.nodes = nodes, .rpdos = rpdos, .period = std::chrono::milliseconds{40}})},
+            {.nodes = nodes, .rpdos = rpdos, .period = std::chrono::milliseconds{200}})},
         port{nodes},
         exchange_{std::make_unique<Exchange>(plan_)},
         loop_{std::make_unique<Loop>(plan_, port, *exchange_)} {
@@ -50,11 +62,11 @@ class Bench {
       if (count) proof::count_allocations(true);
       if (collect) {
         collecting = true;
-        CALLGRIND_TOGGLE_COLLECT;
+        if (!path_only) CALLGRIND_TOGGLE_COLLECT;
       }
       loop_->cycle();
       if (collect) {
-        CALLGRIND_TOGGLE_COLLECT;
+        if (!path_only) CALLGRIND_TOGGLE_COLLECT;
         collecting = false;
       }
       proof::count_allocations(false);
@@ -85,7 +97,8 @@ class Bench {
 int main(int argc, char** argv) {
   const auto nodes = static_cast<unsigned>(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 8);
   if (nodes < 1 || nodes > 127) return 2;
-  Bench bench{nodes, argc < 3 || std::string_view{argv[2]} != "--inputs-only"};
+  path_only = argc > 2 && std::string_view{argv[2]} == "--receive-path";
+  Bench bench{nodes, !path_only};
   constexpr int cycles = 100;
 
   bench.collect = bench.count = true;

@@ -7,7 +7,8 @@
 namespace takt::bench {
 
 /// A port in memory: every device answers each SYNC at once. Counts the calls that are system calls
-/// with a real port. `Hook` is told when the loop enters and leaves the port.
+/// with a real port. `Hook` is told when the loop enters and leaves the port, when it has received
+/// and when it reads the clock.
 template <class Hook>
 class MemoryPort {
  public:
@@ -19,7 +20,10 @@ class MemoryPort {
     }
   }
 
-  Time now() noexcept { return now_; }
+  Time now() noexcept {
+    hook_.on_now();
+    return now_;
+  }
   void sleep_until(Time until) noexcept {
     call([&] { pass(until); });
   }
@@ -38,6 +42,7 @@ class MemoryPort {
       for (; count < all; ++count) in[count] = {.frame = from[count].frame, .when = now_};
       pending_ = false;
     });
+    hook_.on_received();
     return count;
   }
   SendResult send(std::span<const Frame> out) noexcept {

@@ -38,8 +38,8 @@ if command -v valgrind >/dev/null; then
     case $nodes in 1) peer=21,892 ;; 8) peer=116,075 ;; 32) peer=451,975 ;; *) peer=- ;; esac
     row "instructions a cycle, $nodes nodes, TPDO and RPDO of eight u8" "$(instructions "$nodes")" "$peer"
   done
-  few=$(instructions 8 --inputs-only)
-  many=$(instructions 120 --inputs-only)
+  few=$(instructions 8 --receive-path)
+  many=$(instructions 120 --receive-path)
   row "instructions per received PDO, receive call to published image" "$(((many - few) / 112))" "13,700"
 fi
 
