@@ -2,6 +2,7 @@
 #include <string>
 
 #include "master/core/boot_report.hpp"
+#include "master/core/bus_trouble.hpp"
 #include "master/core/report_text.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/emcy_text.hpp"
@@ -106,12 +107,36 @@ std::string signal_line(const BusPlan& plan, const Event& event) {
   }
 }
 
+std::string missed_line(const Event& event) {
+  const std::string count = std::to_string(event.value);
+  if (event.detail == static_cast<std::uint32_t>(MissedBecause::wire_blocked)) {
+    return count +
+           " cycles without SYNC: the one before was not on the wire yet (bus-off, nobody "
+           "acknowledges, or too much traffic)";
+  }
+  return count + " cycles missed: the bus thread was late; they are skipped, not caught up";
+}
+
+std::string send_trouble_text(const Event& event, const std::string& interface) {
+  switch (static_cast<SendTrouble>(event.detail)) {
+    case SendTrouble::bus_off:
+      return "the CAN controller is bus-off";
+    case SendTrouble::nobody_acknowledges:
+      return "nobody acknowledges on the bus; check cable, termination, bit rate, and whether any "
+             "device has power";
+    case SendTrouble::queue_too_short:
+      break;
+  }
+  return "its queue is shorter than what one cycle sends: `ip link set " + interface +
+         " txqueuelen 1000`";
+}
+
 std::string bus_line(const BusPlan& plan, const Event& event) {
   const std::string count = std::to_string(event.value);
   const std::string interface = plan.interface.empty() ? "the interface" : plan.interface;
   switch (event.kind) {
     case EventKind::cycles_missed:
-      return count + " cycles missed: the bus thread was late; they are skipped, not caught up";
+      return missed_line(event);
     case EventKind::receive_overrun:
       return count + " received frames lost by the kernel";
     case EventKind::bus_error_passive:
@@ -124,10 +149,8 @@ std::string bus_line(const BusPlan& plan, const Event& event) {
     case EventKind::bus_recovered:
       return "recovered from bus-off";
     case EventKind::send_buffer_full:
-      return count +
-             " frames not sent, the send buffer is full (ENOBUFS): nobody acknowledges on "
-             "the bus, or raise it: `ip link set " +
-             interface + " txqueuelen 1000`";
+      return count + " frames not sent, the send buffer is full (ENOBUFS): " +
+             send_trouble_text(event, interface);
     case EventKind::interface_down:
       return interface + " is down (error " + std::to_string(event.detail) + ")";
     case EventKind::interface_up:

@@ -69,7 +69,7 @@ class BusLoop {
   void give_events() noexcept;
   void write_status() noexcept;
   std::size_t send(std::span<const Frame> frames) noexcept;
-  void tell(EventKind kind, Time now, std::int64_t value = 0) noexcept;
+  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
   P& port_;

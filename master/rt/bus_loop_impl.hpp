@@ -90,7 +90,8 @@ void BusLoop<P, N>::look_at_wire() noexcept {
     ++held_;
     ++status_.cycles_missed;
   } else if (held_ != 0) {
-    tell(EventKind::cycles_missed, sync_sent_, static_cast<std::int64_t>(held_));
+    tell(EventKind::cycles_missed, sync_sent_, static_cast<std::int64_t>(held_),
+         static_cast<std::uint32_t>(MissedBecause::wire_blocked));
     held_ = 0;
   }
 }
@@ -334,8 +335,10 @@ std::size_t BusLoop<P, N>::send(std::span<const Frame> frames) noexcept {
 }
 
 template <Port P, class N>
-void BusLoop<P, N>::tell(EventKind kind, Time now, std::int64_t value) noexcept {
-  events_.push({.when = now, .cycle = clock_.cycle(), .kind = kind, .value = value});
+void BusLoop<P, N>::tell(EventKind kind, Time now, std::int64_t value,
+                         std::uint32_t detail) noexcept {
+  events_.push(
+      {.when = now, .cycle = clock_.cycle(), .kind = kind, .detail = detail, .value = value});
 }
 
 }  // namespace takt

@@ -1,17 +1,12 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
+#include "master/core/bus_trouble.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {
-
-/// Why the interface took no more frames: Event::detail of `send_buffer_full`.
-enum class SendTrouble : std::uint32_t {
-  queue_too_short,      ///< healthy bus, txqueuelen below what one cycle sends
-  nobody_acknowledges,  ///< error passive: cable, bit rate, or no other node
-  bus_off,
-};
 
 /// Turns changes of PortNews and failed sends into events, each told once. Bus thread only.
 class PortWatch {
