@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <future>
+#include <sched.h>
 #include <utility>
 
 #include "apps/taktd/summary.hpp"
@@ -97,11 +98,10 @@ std::thread Daemon::start_bus_thread(std::function<void()> body) {
 /// Simulated devices answer as promptly as real ones: their thread gets real time too, one below
 /// the bus thread. It inherits that from the thread that makes it.
 void Daemon::power_on() {
-  RealtimeOptions options = network_.realtime;
-  options.priority = std::max(1, options.priority - 1);
-  options.cpu.reset();
+  const RealtimeOptions& options = network_.realtime;
   std::thread{[&] {
-    apply_realtime(options);
+    const sched_param below{.sched_priority = std::max(1, options.priority - 1)};
+    if (options.mode != RtMode::off) ::sched_setscheduler(0, SCHED_FIFO, &below);
     bus_->power_on();
   }}.join();
 }
