@@ -68,7 +68,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
 void UnixBusPort::State::echo(std::size_t count) noexcept {
   const std::int64_t now = monotonic_now().count();
   for (std::size_t i = 0; i < count; ++i) {
-    in.record(i).when = now;
+    if (in.record(i).when == 0) in.record(i).when = now;
     out.record(i) = in.record(i);
     out.record(i).own = 1;
   }
@@ -173,7 +173,11 @@ SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
   if (state.sent != nullptr) state.sent->add(out);
   while (result.sent < out.size() && result.error == 0) {
     const std::size_t count = std::min(out.size() - result.sent, batch_frames);
-    for (std::size_t i = 0; i < count; ++i) state.out.record(i) = to_record(out[result.sent + i]);
+    const std::int64_t now = monotonic_now().count();
+    for (std::size_t i = 0; i < count; ++i) {
+      state.out.record(i) = to_record(out[result.sent + i]);
+      state.out.record(i).when = now;  // a hub puts its own time there
+    }
     for (std::size_t done = 0; done < count;) {
       const int sent = state.out.send(state.socket.get(), done, count - done);
       if (sent <= 0) {

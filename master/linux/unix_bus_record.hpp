@@ -18,7 +18,7 @@ struct UnixBusRecord {
   std::uint16_t reserved = 0;
   std::uint32_t lost = 0;  ///< frames that this receiver was too slow for, since it connected
   std::uint8_t data[8]{};
-  std::int64_t when = 0;  ///< monotonic ns; 0 on the way to the hub
+  std::int64_t when = 0;  ///< monotonic ns: of the hub, between two members of the sender
 };
 static_assert(sizeof(UnixBusRecord) == 32);
 static_assert(std::is_trivially_copyable_v<UnixBusRecord>);

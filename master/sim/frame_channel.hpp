@@ -16,6 +16,11 @@ class FrameChannel {
   virtual bool send(const Frame& frame) noexcept = 0;
   /// Waits at most `timeout` (0: not at all) for one frame.
   virtual ChannelRead receive(Frame& frame, Time timeout) noexcept = 0;
+  /// The same with the monotonic time when the frame was on the bus; 0: not known.
+  virtual ChannelRead receive_stamped(StampedFrame& stamped, Time timeout) noexcept {
+    stamped.when = Time{};
+    return receive(stamped.frame, timeout);
+  }
 };
 
 }  // namespace takt::sim

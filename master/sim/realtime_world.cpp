@@ -33,23 +33,32 @@ void RealtimeWorld::stop() noexcept {
 }
 
 void RealtimeWorld::run() noexcept {
-  Time start = monotonic();
+  start_ = monotonic();
   while (!stop_.load(std::memory_order_acquire)) {
-    const Time behind = monotonic() - start - world_.now();
-    if (behind > longest_stall) start += behind;  // this process was stopped: so were the devices
-    world_.advance_to(monotonic() - start);
-    if (!carry_out()) break;
-    const Time wait = std::clamp(world_.next_event() - (monotonic() - start), Time{}, longest_wait);
-    Frame frame;
-    ChannelRead read = channel_.receive(frame, wait);
-    world_.advance_to(monotonic() - start);
-    while (read == ChannelRead::frame) {
-      port_.send({&frame, 1}, world_.now());
-      read = channel_.receive(frame, Time{});
-    }
-    if (read == ChannelRead::closed) break;
+    const Time behind = monotonic() - start_ - world_.now();
+    if (behind > longest_stall) start_ += behind;  // this process was stopped: so were the devices
+    const Time wait =
+        std::clamp(world_.next_event() - (monotonic() - start_), Time{}, longest_wait);
+    if (!carry_in(wait) || !carry_out()) break;
   }
   failed_.store(!stop_.load(std::memory_order_acquire), std::memory_order_release);
+}
+
+/// Frames first, each at its own time, then the time that is over by itself: a thread that wakes
+/// late does not let the devices miss what was on the bus in time.
+bool RealtimeWorld::carry_in(Time wait) noexcept {
+  StampedFrame stamped;
+  ChannelRead read = channel_.receive_stamped(stamped, wait);
+  Time quiet_until = monotonic();
+  while (read == ChannelRead::frame) {
+    const Time when = stamped.when == Time{} ? quiet_until : std::min(stamped.when, quiet_until);
+    world_.advance_to(when - start_);
+    port_.send({&stamped.frame, 1}, world_.now());
+    quiet_until = monotonic();
+    read = channel_.receive_stamped(stamped, Time{});
+  }
+  world_.advance_to(quiet_until - start_);
+  return read != ChannelRead::closed;
 }
 
 bool RealtimeWorld::carry_out() noexcept {

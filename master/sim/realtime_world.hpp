@@ -29,11 +29,13 @@ class RealtimeWorld {
 
  private:
   void run() noexcept;
+  bool carry_in(Time wait) noexcept;
   bool carry_out() noexcept;
 
   World world_;
   RemotePort& port_;
   FrameChannel& channel_;
+  Time start_{};  ///< monotonic time of the world's time 0
   std::atomic<bool> stop_{false};
   std::atomic<bool> failed_{false};
   std::thread thread_;

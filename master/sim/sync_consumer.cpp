@@ -1,5 +1,7 @@
 #include "master/sim/sync_consumer.hpp"
 
+#include <algorithm>
+
 #include "master/sim/cob_rules.hpp"
 
 namespace takt::sim {
@@ -7,6 +9,9 @@ namespace {
 
 constexpr std::uint16_t sync_missing = 0x8100;
 constexpr std::uint16_t sync_length = 0x8240;
+
+/// 1.5 periods, but not less: SYNCs of a master without real time come that late.
+constexpr Time least_patience = std::chrono::milliseconds{10};
 
 std::uint64_t value_of(const Object* object) noexcept {
   return object == nullptr ? 0 : object->value;
@@ -32,7 +37,8 @@ CobId SyncConsumer::id() const noexcept {
 
 std::uint8_t SyncConsumer::on_sync(const Frame& frame, Time now) noexcept {
   const std::uint64_t period = value_of(period_);
-  deadline_ = period == 0 ? never : now + std::chrono::nanoseconds{period * 1500};
+  const Time expected = std::chrono::microseconds{period};
+  deadline_ = period == 0 ? never : now + expected + std::max(expected / 2, least_patience);
   const std::uint64_t window = value_of(window_);
   window_end_ = window == 0 ? never : now + std::chrono::microseconds{window};
   last_sync_ = now;

@@ -271,15 +271,15 @@ TEST(Sync, OfAnUnexpectedLengthIsToldOnce) {
 
 TEST(Sync, IsMissedAfterOneAndAHalfPeriods) {
   Traffic device{with_tpdo(1)};
-  device.set(0x1006, 10'000);
+  device.set(0x1006, 100'000);
   device.start();
   device.run(device.now() + 1s);
   EXPECT_TRUE(device.of(0x085).empty()) << "supervision begins with the first SYNC";
 
   device.sync();
-  device.run(device.now() + 14ms);
+  device.run(device.now() + 149ms);
   EXPECT_TRUE(device.of(0x085).empty());
-  device.run(device.now() + 100ms);
+  device.run(device.now() + 2ms);
   EXPECT_EQ(device.of(0x085).size(), 1u);
 }
 
