@@ -1,8 +1,5 @@
 #include "eds_parser/ini.hpp"
 
-#include <algorithm>
-#include <cstring>
-
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -10,38 +7,33 @@ namespace {
 
 constexpr std::size_t longest_line = 255;  // CiA 306, 4.2
 
-/// Cuts a text into lines, whatever ends them.
+/// Cuts a text into lines, whatever ends them, and notes the first `=` of each on the way.
 class Lines {
  public:
   explicit Lines(std::string_view text) noexcept
-      : at_{text.data()}, end_{text.data() + text.size()} {
-    lf_ = next('\n');
-    cr_ = next('\r');
-  }
+      : at_{text.data()}, end_{text.data() + text.size()} {}
 
   bool done() const noexcept { return at_ == end_; }
+  /// Of the line taken last; nullptr where it has none.
+  const char* equals() const noexcept { return equals_; }
 
   std::string_view take() noexcept {
-    if (lf_ < at_) lf_ = next('\n');
-    if (cr_ < at_) cr_ = next('\r');
-    const char* stop = std::min(lf_, cr_);
-    const std::string_view line{at_, static_cast<std::size_t>(stop - at_)};
-    at_ = stop;
+    const char* const first = at_;
+    equals_ = nullptr;
+    const char* at = first;
+    for (; at != end_ && *at != '\n' && *at != '\r'; ++at) {
+      if (*at == '=' && equals_ == nullptr) equals_ = at;
+    }
+    at_ = at;
     if (at_ != end_ && *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
     if (at_ != end_) ++at_;
-    return line;
+    return {first, static_cast<std::size_t>(at - first)};
   }
 
  private:
-  const char* next(char c) const noexcept {
-    const auto* found = std::memchr(at_, c, static_cast<std::size_t>(end_ - at_));
-    return found == nullptr ? end_ : static_cast<const char*>(found);
-  }
-
   const char* at_;
   const char* end_;
-  const char* lf_ = nullptr;
-  const char* cr_ = nullptr;
+  const char* equals_ = nullptr;
 };
 
 class Reader {
@@ -53,6 +45,7 @@ class Reader {
     file_.sections.reserve(text.size() / 160 + 16);
     for (Lines lines{text}; !lines.done();) {
       line_ = lines.take();
+      equals_ = lines.equals();
       ++number_;
       read_line();
     }
@@ -97,11 +90,10 @@ class Reader {
   }
 
   void read_entry(std::string_view rest) {
-    const auto* equals = static_cast<const char*>(std::memchr(rest.data(), '=', rest.size()));
-    if (equals == nullptr) {
+    if (equals_ == nullptr) {
       return leave_out("no-equals", "neither [section] nor key=value", rest);
     }
-    const auto length = static_cast<std::size_t>(equals - rest.data());
+    const auto length = static_cast<std::size_t>(equals_ - rest.data());
     const auto key = trim(rest.substr(0, length));
     auto value = rest.substr(length + 1);
     while (!value.empty() && is_blank(value.front())) value.remove_prefix(1);
@@ -130,6 +122,7 @@ class Reader {
   IniFile& file_;
   Report& report_;
   std::string_view line_;
+  const char* equals_ = nullptr;  ///< first `=` of the line
   std::uint32_t number_ = 0;
 };
 

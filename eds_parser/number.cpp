@@ -141,6 +141,28 @@ std::size_t end_of_term(std::string_view text) noexcept {
   return std::string_view::npos;
 }
 
+/// The forms that nearly all numbers have, decimal and 0x; none where there is anything else.
+std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
+  ParsedNumber number;
+  if (text.size() > 2 && text[0] == '0' && fold(text[1]) == 'x') {
+    if (text.size() > 2 + 16) return std::nullopt;
+    number.hex = true;
+    for (const char c : text.substr(2)) {
+      const int digit = hex_digit(c);
+      if (digit < 0) return std::nullopt;
+      number.magnitude = number.magnitude << 4 | static_cast<unsigned>(digit);
+    }
+    return number;
+  }
+  const bool leading_zero = text.size() > 1 && text.front() == '0';
+  if (text.empty() || text.size() > 19 || leading_zero) return std::nullopt;
+  for (const char c : text) {
+    if (c < '0' || c > '9') return std::nullopt;
+    number.magnitude = number.magnitude * 10 + static_cast<unsigned>(c - '0');
+  }
+  return number;
+}
+
 Parsed read_sum(std::string_view text) noexcept {
   if (text.front() == '+') text = trim(text.substr(1));
   ParsedNumber sum;
@@ -162,6 +184,7 @@ Parsed read_sum(std::string_view text) noexcept {
 }  // namespace
 
 std::expected<ParsedNumber, NumberFault> parse_number(std::string_view text) noexcept {
+  if (const auto plain = plain_number(text)) return *plain;
   const auto bare = without_comment(trim(text));
   if (bare.empty()) return std::unexpected{NumberFault::empty};
   auto number = read_sum(bare);

@@ -71,8 +71,10 @@ bool is_ascii(std::string_view text) noexcept {
 }  // namespace
 
 std::string_view without_comment(std::string_view value) noexcept {
-  const auto at = value.find_first_of(";#");
-  return at == std::string_view::npos ? value : trim(value.substr(0, at));
+  for (std::size_t at = 0; at < value.size(); ++at) {
+    if (value[at] == ';' || value[at] == '#') return trim(value.substr(0, at));
+  }
+  return value;
 }
 
 bool is_utf8(std::string_view text) noexcept {
