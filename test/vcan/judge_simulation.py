@@ -4,6 +4,7 @@
 candump stands beside it; what it has recorded is judged: boot, SYNC, a node that leaves and comes back
 while the others keep cycling, and the ordered stop. Runs inside with-vcan. Exit code 1: a check failed.
 """
+import collections
 import json
 import pathlib
 import statistics
@@ -84,17 +85,19 @@ def main(binaries):
             process.terminate()
             process.wait()
         kinds = [json.loads(line)["kind"] for line in events.read_text().splitlines()]
-        check(kinds.count("boot_done") == len(NODES) + 1, f"three boots: {kinds}")
+        told = dict(collections.Counter(kinds))
+        check(told.get("boot_done") == len(NODES) + 1, f"three boots: {told}")
         check("foreign_nmt" in kinds, "the reset from outside was told as a foreign NMT command")
         frames = read_log(log)
         judge_sync(frames)
         judge_node_that_came_back(frames)
-        last_sync = times_of(frames, 0x080)[-1]
-        ends = [f for f in frames if f[1] == 0 and f[2][0] in (2, 128) and f[0] <= last_sync]
-        check(bool(ends), "the nodes left OPERATIONAL before the last SYNC")
-        told = subprocess.run([binaries / "takt", "dump", NETWORK, log], capture_output=True, text=True)
-        strange = [line for line in told.stdout.splitlines() if " ?  " in line or "unknown" in line]
-        check(told.returncode == 0 and not strange, f"takt dump reads every frame: {strange[:3]}")
+        starts = [f[0] for f in frames if f[1] == 0 and f[2][0] == 1]
+        ends = [f[0] for f in frames if f[1] == 0 and f[2][0] in (2, 128) and f[0] > starts[-1]]
+        check(bool(ends), "the nodes were taken out of OPERATIONAL")
+        check(times_of(frames, 0x080)[-1] < ends[-1] + 1 if ends else False, "and SYNC ended with that")
+        read = subprocess.run([binaries / "takt", "dump", NETWORK, log], capture_output=True, text=True)
+        strange = [line for line in read.stdout.splitlines() if " ?  " in line or "unknown" in line]
+        check(read.returncode == 0 and not strange, f"takt dump reads every frame: {strange[:3]}")
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 
