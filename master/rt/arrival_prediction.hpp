@@ -13,6 +13,7 @@ class ArrivalPrediction {
   explicit ArrivalPrediction(Time window) noexcept : window_{window}, predicted_{window} {}
 
   Time predicted() const noexcept { return predicted_; }
+  bool learned() const noexcept { return seen_ >= learning; }
 
   /// All expected PDOs were there at the first drain; the last one came at `arrival`.
   void in_time(Time arrival) noexcept {

@@ -48,13 +48,15 @@ class BusLoop {
   bool done() const noexcept { return done_; }
 
  private:
-  static constexpr std::size_t batch = 256;  ///< frames taken by one receive
+  static constexpr std::size_t batch = 256;              ///< frames taken by one receive
+  static constexpr unsigned patience_with_services = 2;  ///< cycles without room for them
   static constexpr Time status_interval = std::chrono::milliseconds{10};
 
   void follow_nodes() noexcept;
   void wait_for_beat() noexcept;
   void look_at_wire() noexcept;
   void send_sync() noexcept;
+  void relieve_services() noexcept;
   void receive() noexcept;
   void drain() noexcept;
   void learn(bool in_time) noexcept;
@@ -96,6 +98,7 @@ class BusLoop {
   bool reply_waits_ = false;
   bool done_ = false;
   bool gate_open_ = true;   ///< frames may be sent in this cycle
+  unsigned starved_ = 0;    ///< cycles in which service frames found no room
   std::uint64_t held_ = 0;  ///< cycles since it was open
   Time sync_sent_{};        ///< of this cycle
   Time sync_time_{};        ///< the same, by its echo where there is one

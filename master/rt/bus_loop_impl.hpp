@@ -113,6 +113,15 @@ void BusLoop<P, N>::send_sync() noexcept {
   }
   pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
   status_.beats += heard;
+  if (starved_ >= patience_with_services) relieve_services();
+}
+
+/// Cycles so full that no dialogue fits before the outputs must not keep nodes from booting: one
+/// service frame goes out right behind SYNC. PDOs have priority over it on the wire.
+template <Port P, class N>
+void BusLoop<P, N>::relieve_services() noexcept {
+  services_.drop(send(services_.first(1)));
+  starved_ = 0;
 }
 
 template <Port P, class N>
@@ -121,7 +130,10 @@ void BusLoop<P, N>::receive() noexcept {
                             clock_.deadline() + plan_.cycle.output_deadline);
   // While no node exchanges PDOs (all still boot) the whole slack belongs to the services.
   if (plan_.cycle.sync && hearing_) {
-    port_.sleep_until(std::min(sync_sent_ + prediction_.predicted(), end));
+    // Event-driven PDOs alone teach no arrival; half of the window leaves room for services.
+    const bool nothing_due = pdos_.inputs().expected() == 0 && !prediction_.learned();
+    const Time wait = nothing_due ? plan_.cycle.receive_window / 2 : prediction_.predicted();
+    port_.sleep_until(std::min(sync_sent_ + wait, end));
   }
   drain();
   const bool in_time = pdos_.inputs().complete();
@@ -225,7 +237,11 @@ bool BusLoop<P, N>::send_services(std::size_t& budget) noexcept {
   const auto fitting =
       static_cast<std::size_t>(std::max<std::int64_t>(0, room / wire_.worst_dialogue()));
   const std::span<const Frame> frames = services_.first(std::min(budget, fitting));
-  if (frames.empty()) return false;
+  if (frames.empty()) {
+    ++starved_;
+    return false;
+  }
+  starved_ = 0;
   const bool answered = std::ranges::any_of(
       frames, [](const Frame& frame) { return (frame.id.id() & 0x780) == 0x600; });
   const std::size_t count = send(frames);

@@ -294,6 +294,24 @@ TEST(BusLoop, SendsServiceFramesInTheSlackWithinTheirBudget) {
   EXPECT_EQ(bus.port.sent_with(0x000).size(), 10U);
 }
 
+TEST(BusLoop, LetsServicesThroughEvenWhereTheCycleHasNoSlack) {
+  BusPlan plan = test::axes();
+  plan.cycle.receive_window = plan.cycle.output_deadline = 1600us;
+  Loop bus{plan};
+  for (auto& answer : bus.port.answers) answer.after += 1100us;
+  bus.run(100);
+  bus.port.sent.clear();
+  for (int i = 0; i < 5; ++i) {
+    bus.network->to_send.push_back(make_frame(CobId::base(0x601), {0x40}));
+  }
+  bus.run(20);
+  const auto requests = bus.port.sent_with(0x601);
+  ASSERT_EQ(requests.size(), 5U);
+  for (const auto& request : requests) {
+    EXPECT_EQ((request.when - bus.start) % Time{2ms}, 0ns);  // right behind SYNC
+  }
+}
+
 TEST(BusLoop, TakesTheAnswerToAnSdoInTheSlack) {
   Loop bus;
   bus.run(40);
