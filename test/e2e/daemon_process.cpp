@@ -1,0 +1,186 @@
+#include "test/e2e/daemon_process.hpp"
+
+#include <chrono>
+#include <fcntl.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "master/core/node_status.hpp"
+#include "master/gateway/names.hpp"
+#include "master/gateway/tcpq_broker.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt::test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr Time generous = std::chrono::seconds{60};
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file{path};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+fs::path make_folder() {
+  std::string name = (fs::temp_directory_path() / "takt-e2e-XXXXXX").string();
+  return ::mkdtemp(name.data());
+}
+
+std::uint16_t free_port() { return TcpqBroker::listen(0).value()->port(); }
+
+pid_t spawn(std::vector<std::string> arguments, const fs::path& log) {
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  pid_t pid = -1;
+  const int error = ::posix_spawn(&pid, pointers[0], &actions, nullptr, pointers.data(), ::environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  EXPECT_EQ(error, 0);
+  return pid;
+}
+
+}  // namespace
+
+DaemonProcess::DaemonProcess(const fs::path& network, std::vector<std::string> arguments)
+    : folder_{make_folder()} {
+  const std::string url = "tcpq://127.0.0.1:" + std::to_string(free_port());
+  arguments.insert(arguments.begin(),
+                   {TAKTD, network.string(), "--lcm-url", url, "--events", event_file()});
+  pid_ = spawn(std::move(arguments), folder_ / "log");
+  lcm_ = LcmClient::open(url, {".*"}).value();
+}
+
+DaemonProcess::~DaemonProcess() {
+  if (pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  if (testing::Test::HasFailure()) std::fprintf(stderr, "taktd said:\n%s\n", log().c_str());
+  fs::remove_all(folder_);
+}
+
+std::optional<int> DaemonProcess::wait() {
+  const Time until = monotonic_now() + generous;
+  int status = 0;
+  while (::waitpid(pid_, &status, WNOHANG) == 0) {
+    if (monotonic_now() > until) return std::nullopt;
+    take();
+    std::this_thread::sleep_for(std::chrono::milliseconds{5});
+  }
+  pid_ = -1;
+  if (!WIFEXITED(status)) return std::nullopt;
+  return WEXITSTATUS(status);
+}
+
+void DaemonProcess::take() {
+  lcm_->serve([this](std::string_view channel,
+                     std::span<const std::byte> data) { views_.take(channel, data); },
+              monotonic_now() + std::chrono::milliseconds{20});
+}
+
+bool DaemonProcess::hear(const std::function<bool()>& done) {
+  return work([] {}, done);
+}
+
+bool DaemonProcess::work(const std::function<void()>& work, const std::function<bool()>& done) {
+  const Time until = monotonic_now() + generous;
+  while (!done()) {
+    if (monotonic_now() > until) return false;
+    take();
+    work();
+  }
+  return true;
+}
+
+const BusView& DaemonProcess::bus() {
+  static const BusView none;
+  return views_.buses().empty() ? none : views_.buses().begin()->second;
+}
+
+bool DaemonProcess::all_ready() {
+  const auto& status = bus().status();
+  if (!status || status->nodes.empty() || bus().values().empty()) return false;
+  for (const node_status_t& node : status->nodes) {
+    if (node.boot_state != static_cast<int>(BootState::ready) ||
+        node.nmt_state != static_cast<int>(NmtState::operational)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t DaemonProcess::signal_at(const std::string& node, const std::string& name,
+                                     bool output) {
+  const auto& signals = bus().signals();
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const bool same = signals[i].node == node && signals[i].name == name;
+    if (same && (signals[i].output != 0) == output) return i;
+  }
+  ADD_FAILURE() << "no signal " << node << '.' << name;
+  return 0;
+}
+
+std::int64_t DaemonProcess::value(const std::string& node, const std::string& name) {
+  const std::size_t at = signal_at(node, name, false);
+  return at < bus().values().size() ? bus().values()[at] : 0;
+}
+
+command_t DaemonProcess::command_for(
+    const std::string& sender, const std::vector<std::pair<std::string, std::int64_t>>& values) {
+  command_t message{};
+  message.schema = message_schema;
+  message.session = bus().session();
+  message.sender = sender;
+  message.cycle = bus().cycle();
+  message.time_to_live = 40;
+  for (const auto& [name, raw] : values) {
+    const std::size_t dot = name.find('.');
+    message.signals.push_back(
+        static_cast<std::int16_t>(signal_at(name.substr(0, dot), name.substr(dot + 1), true)));
+    message.values.push_back(raw);
+  }
+  message.num_values = static_cast<std::int32_t>(message.values.size());
+  return message;
+}
+
+void DaemonProcess::command(const command_t& command) {
+  std::vector<std::byte> buffer;
+  publish(channel_name(bus().status()->bus, "COMMAND"), encode(command, buffer));
+}
+
+std::size_t DaemonProcess::events(const std::string& kind, const std::string& part) {
+  std::size_t count = 0;
+  for (const event_t& event : bus().events()) {
+    count += event.kind == kind && event.text.find(part) != std::string::npos;
+  }
+  return count;
+}
+
+std::string DaemonProcess::event_file() const { return folder_ / "events.jsonl"; }
+std::string DaemonProcess::log() const { return read_file(folder_ / "log"); }
+
+fs::path slow_network(const fs::path& folder, const std::function<void(std::string&)>& edit) {
+  const fs::path demo = fs::path{TAKT_SOURCE_DIR} / "share/demo/two_axes.yaml";
+  std::string text = read_file(demo);
+  const auto replace = [&](const std::string& what, const std::string& with) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size()) {
+      text.replace(at, what.size(), with);
+    }
+  };
+  replace("../eds/", (fs::path{TAKT_SOURCE_DIR} / "share/eds/").string());
+  replace("sync_period: 2000 ", "sync_period: 10000 ");
+  if (edit) edit(text);
+  std::ofstream{folder / "network.yaml"} << text;
+  return folder / "network.yaml";
+}
+
+}  // namespace takt::test

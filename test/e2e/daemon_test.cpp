@@ -1,0 +1,156 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "master/gateway/names.hpp"
+#include "test/e2e/daemon_process.hpp"
+
+namespace takt::test {
+namespace {
+
+class Taktd : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "takt-e2e-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream{folder_ / name} << text;
+    return folder_ / name;
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// The next controlword on the way to Operation enabled. CiA 402-2.
+std::int64_t next_controlword(std::int64_t statusword) {
+  if ((statusword & 0x4F) == 0x40) return 0x06;
+  return (statusword & 0x6F) == 0x21 ? 0x07 : 0x0F;
+}
+
+TEST_F(Taktd, BootsTheDemoAndPublishesAnImageEachCycle) {
+  DaemonProcess daemon{slow_network(folder_)};
+
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const std::uint64_t images = daemon.bus().images();
+  const std::int64_t cycle = daemon.bus().cycle();
+  ASSERT_TRUE(daemon.hear([&] { return daemon.bus().cycle() >= cycle + 100; }));
+
+  EXPECT_GE(daemon.bus().images() - images, 90U);
+  EXPECT_EQ(daemon.events("boot_done"), 3U);
+}
+
+TEST_F(Taktd, CommandsMoveAnAxisAndEndWithTheirTimeToLive) {
+  DaemonProcess daemon{slow_network(folder_)};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+
+  std::int64_t target = daemon.value("shoulder", "position_actual_value");
+  std::int64_t cycle = 0;
+  const auto follow = [&] {
+    if (daemon.bus().cycle() == cycle) return;
+    cycle = daemon.bus().cycle();
+    const std::int64_t word = daemon.value("shoulder", "statusword");
+    if ((word & 0x6F) == 0x27 && target < 2000) target += 20;
+    daemon.command(daemon.command_for("e2e", {{"shoulder.controlword", next_controlword(word)},
+                                              {"shoulder.modes_of_operation", 8},
+                                              {"shoulder.target_position", target}}));
+  };
+
+  EXPECT_TRUE(daemon.work(
+      follow, [&] { return daemon.value("shoulder", "position_actual_value") >= 1990; }));
+  EXPECT_TRUE(daemon.hear([&] { return daemon.events("fallback_begun") > 0; }));
+  EXPECT_TRUE(daemon.hear([&] { return (daemon.value("shoulder", "statusword") & 0x6F) != 0x27; }))
+      << "the quick stop of the network file did not end operation";
+}
+
+TEST_F(Taktd, RefusesSecondSendersAndOldSessions) {
+  DaemonProcess daemon{slow_network(folder_)};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const auto both = [&] {
+    daemon.command(daemon.command_for("first", {{"io.outputs_1_to_8", 1}}));
+    daemon.command(daemon.command_for("second", {{"io.outputs_1_to_8", 2}}));
+    command_t replayed = daemon.command_for("third", {{"io.outputs_1_to_8", 3}});
+    replayed.session -= 1;
+    daemon.command(replayed);
+  };
+
+  EXPECT_TRUE(daemon.work(both, [&] {
+    return daemon.events("command_refused", "belong to 'first'") > 0 &&
+           daemon.events("command_refused", "another session") > 0;
+  }));
+}
+
+TEST_F(Taktd, SurvivesGarbageOnItsChannels) {
+  DaemonProcess daemon{slow_network(folder_)};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  std::vector<std::byte> garbage(300, std::byte{0xEE});
+  std::vector<std::byte> buffer;
+  command_t huge = daemon.command_for("e2e", {{"io.outputs_1_to_8", 1}});
+  std::vector<std::byte> damaged{encode(huge, buffer).begin(), encode(huge, buffer).end()};
+  damaged[damaged.size() - 14] = std::byte{0x7F};  // highest byte of num_values
+
+  const bool told = daemon.work(
+      [&] {
+        daemon.publish("DEMO_COMMAND", garbage);
+        daemon.publish("DEMO_REQUEST", garbage);
+        daemon.publish("DEMO_COMMAND", damaged);
+      },
+      [&] {
+        return daemon.events("bad_message", "another version") >= 2 &&
+               daemon.events("bad_message", "damaged") >= 1;
+      });
+
+  EXPECT_TRUE(told);
+  const std::int64_t cycle = daemon.bus().cycle();
+  EXPECT_TRUE(daemon.hear([&] { return daemon.bus().cycle() > cycle + 20; }));
+}
+
+TEST_F(Taktd, StopsInOrderOnSigterm) {
+  DaemonProcess daemon{slow_network(folder_)};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+
+  daemon.signal(SIGTERM);
+
+  EXPECT_EQ(daemon.wait(), 0);
+  EXPECT_NE(daemon.log().find("stopped"), std::string::npos);
+}
+
+TEST_F(Taktd, EndsAfterTheTimeOfFor) {
+  DaemonProcess daemon{slow_network(folder_), {"--bus", "sim", "--for", "500ms"}};
+
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST_F(Taktd, ExitsWith4AndNamesTheCauseWhenAMandatoryNodeIsAnother) {
+  const auto network = slow_network(folder_, [](std::string& text) {
+    const std::string elbow = "elbow: {<<: *axis, node_id: 2}";
+    text.replace(text.find(elbow), elbow.size(),
+                 "elbow: {<<: *axis, node_id: 2, vendor_id: 0x1234}");
+  });
+  DaemonProcess daemon{network};
+
+  EXPECT_EQ(daemon.wait(), 4);
+  EXPECT_NE(daemon.log().find("vendor"), std::string::npos);
+  EXPECT_NE(daemon.log().find("elbow"), std::string::npos);
+}
+
+TEST_F(Taktd, ExitsWith2OnABadNetworkFile) {
+  DaemonProcess daemon{write("bad.yaml", "master: {node_id: 127}\nnodes:\n  a: {nod_id: 5}\n")};
+
+  EXPECT_EQ(daemon.wait(), 2);
+  EXPECT_NE(daemon.log().find("bad.yaml:3:"), std::string::npos);
+}
+
+TEST_F(Taktd, ExitsWith3AndSaysWhatToDoWithoutItsInterface) {
+  DaemonProcess daemon{slow_network(folder_), {"--bus", "nocan7"}};
+
+  EXPECT_EQ(daemon.wait(), 3);
+  EXPECT_NE(daemon.log().find("nocan7"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace takt::test
