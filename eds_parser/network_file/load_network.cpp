@@ -110,21 +110,34 @@ class Loader {
     if (known != files_.end()) return known->second.readable ? &known->second.dictionary : nullptr;
     EdsFile& file = files_[key];
     file = read_eds_file(path, NodeId::from(*node.id));
-    for (const Finding& finding : file.findings) add_device_finding(finding);
     if (!file.readable) {
+      for (const Finding& finding : file.findings) {
+        if (finding.severity != Severity::note) out_.findings.push_back(finding);
+      }
       error(node.dcf.pos, "no-device-file",
             "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF");
       return nullptr;
     }
+    add_device_finding(path, file.findings);
     return &file.dictionary;
   }
 
   /// What is wrong in a device file does not make the network file wrong; `takt eds check` judges
   /// it. It is told once, however many nodes share the file.
-  void add_device_finding(Finding finding) {
-    if (!told_.emplace(finding.file, finding.pos, finding.rule).second) return;
-    if (finding.severity == Severity::error) finding.severity = Severity::warning;
-    out_.findings.push_back(std::move(finding));
+  void add_device_finding(const fs::path& path, const Findings& findings) {
+    const auto count = [&](Severity severity) {
+      return std::ranges::count(findings, severity, &Finding::severity);
+    };
+    const auto errors = count(Severity::error);
+    const auto warnings = count(Severity::warning);
+    if (errors + warnings == 0 || !told_.insert(path).second) return;
+    out_.findings.push_back({path.string(),
+                             {},
+                             errors > 0 ? Severity::warning : Severity::note,
+                             "device-file",
+                             std::to_string(errors) + " errors and " + std::to_string(warnings) +
+                                 " warnings in this device file; `takt eds check " + path.string() +
+                                 "` lists them"});
   }
 
   /// Device files first, then the network file by position; what many nodes share is told once.
@@ -142,7 +155,7 @@ class Loader {
   fs::path path_;
   LoadedNetwork out_;
   std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
-  std::set<std::tuple<std::string, SourcePos, std::string_view>> told_;
+  std::set<fs::path> told_;
 };
 
 }  // namespace
