@@ -149,6 +149,23 @@ TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
   EXPECT_THAT(errors[0], HasSubstr("eds/gone.eds"));
 }
 
+TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
+  const Folder folder;
+  std::string eds = read(source / "share/eds/takt_io401.eds");
+  eds.insert(eds.find("ParameterName=Device type"), "Nonsense=1\nPDOMapping=maybe\n");
+  folder.write("d.eds", eds);
+  const auto file = folder.write("net.yaml",
+                                 "master: {sync_period: 10000}\n"
+                                 "a: {node_id: 1, dcf: d.eds}\nb: {node_id: 2, dcf: d.eds}\n");
+
+  const auto network = load_network(file);
+
+  std::size_t lines = 0;
+  for (const Finding& finding : network.findings) lines += finding.rule == "device-file";
+  EXPECT_EQ(lines, 1U);
+  EXPECT_THAT(findings(network, Severity::error), IsEmpty());
+}
+
 TEST(LoadNetwork, WhatIsNoFileIsAnErrorNotACrash) {
   EXPECT_TRUE(has_error(load_network("/nonexistent/net.yaml").findings));
   EXPECT_TRUE(has_error(load_network("/").findings));
