@@ -2,6 +2,7 @@
 # demo.sh - from EDS files to axes that move: builds takt, runs its daemon on a simulated bus and moves two axes through
 # LCM for about 15 s. No CAN hardware, no root rights beyond missing Debian packages, no network.
 #   DEMO_NETWORK  another network file        DEMO_SECONDS  how long the axes move (15)
+#   TAKT_DEMO_BIN  programs that have been built already
 set -eu
 cd "$(dirname "$0")/.."
 network=${DEMO_NETWORK:-share/demo/two_axes.yaml}
@@ -9,17 +10,19 @@ seconds=${DEMO_SECONDS:-15}
 build=build/release
 say() { printf '\n== %s\n' "$*"; }
 
-sh share/install_packages.sh build run
-
-say "Building taktd, takt and takt-move"
-started=$(date +%s)
-mkdir -p $build
-{
+build_programs() {
+  sh share/install_packages.sh build run
+  say "Building taktd, takt and takt-move"
+  started=$(date +%s)
+  mkdir -p $build
   # Only what the demo runs, unless this folder has been configured before.
-  { [ -e $build/build.ninja ] || cmake --preset release -DTAKT_TESTS=OFF; } && ninja -C $build taktd takt takt-move
-} >$build/demo-build.log 2>&1 || { tail -n 60 $build/demo-build.log >&2; exit 1; }
-echo "built in $(($(date +%s) - started)) s"
-PATH=$PWD/$build/bin:$PATH
+  { [ -e $build/build.ninja ] || cmake --preset release -DTAKT_TESTS=OFF; } >$build/demo-build.log 2>&1 &&
+    ninja -C $build taktd takt takt-move >>$build/demo-build.log 2>&1 || { tail -n 60 $build/demo-build.log >&2; exit 1; }
+  echo "built in $(($(date +%s) - started)) s"
+}
+
+[ -n "${TAKT_DEMO_BIN:-}" ] || build_programs
+PATH=${TAKT_DEMO_BIN:-$PWD/$build/bin}:$PATH
 
 tmp=$(mktemp -d)
 daemon=

@@ -1,0 +1,20 @@
+#!/bin/sh
+# python_axes_test.sh BIN BUILD - the Python example of the README moves both axes of the demo.
+set -eu
+here=$(cd "$(dirname "$0")/../.." && pwd)
+bin=$1 build=$2
+tmp=$(mktemp -d)
+daemon=
+end() {
+  [ -z "$daemon" ] || { kill "$daemon" && wait "$daemon"; } 2>/dev/null || true
+  rm -rf "$tmp"
+}
+trap end EXIT
+python=$(sh "$here/test/vcan/python_environment.sh" "$build/judges")
+lcm-gen -p --ppath "$tmp" "$here"/share/lcm/*.lcm
+
+export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
+"$bin/taktd" "$here/share/demo/two_axes.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
+daemon=$!
+for _ in $(seq 50); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
+PYTHONPATH=$tmp timeout 40 "$python" "$here/apps/python/axes.py" demo 2 || { cat "$tmp/log" >&2; exit 1; }
