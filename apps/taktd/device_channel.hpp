@@ -17,9 +17,13 @@ class DeviceChannel final : public sim::FrameChannel {
   }
   sim::ChannelRead receive(Frame& frame, Time timeout) noexcept override {
     StampedFrame stamped;
-    if (!channel_.receive(stamped, timeout)) return sim::ChannelRead::nothing;
+    const sim::ChannelRead read = receive_stamped(stamped, timeout);
     frame = stamped.frame;
-    return sim::ChannelRead::frame;
+    return read;
+  }
+  sim::ChannelRead receive_stamped(StampedFrame& stamped, Time timeout) noexcept override {
+    const bool some = channel_.receive(stamped, timeout);
+    return some ? sim::ChannelRead::frame : sim::ChannelRead::nothing;
   }
 
  private:

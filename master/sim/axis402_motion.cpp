@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr Time longest_step = std::chrono::milliseconds{1};
+constexpr Time longest_step = std::chrono::milliseconds{2};
 constexpr Time::rep most_steps = 2000;
 constexpr std::uint16_t following_error_code = 0x8611;
 constexpr std::uint16_t halt_bit = 0x100;
