@@ -11,7 +11,7 @@ constexpr std::uint16_t sync_missing = 0x8100;
 constexpr std::uint16_t sync_length = 0x8240;
 
 /// 1.5 periods, but not less: SYNCs of a master without real time come that late.
-constexpr Time least_patience = std::chrono::milliseconds{10};
+constexpr Time least_patience = std::chrono::milliseconds{20};
 
 std::uint64_t value_of(const Object* object) noexcept {
   return object == nullptr ? 0 : object->value;
