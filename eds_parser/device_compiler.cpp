@@ -19,6 +19,15 @@ std::string model_of(const NodeSource& node) {
   }
 }
 
+constexpr std::uint64_t pdo_off = 0x8000'0000;
+
+bool is_pdo_cob_id(ObjectKey key) {
+  const bool communication =
+      (key.index >= 0x1400 && key.index <= 0x15FF) || (key.index >= 0x1800 && key.index <= 0x19FF);
+  return communication && key.sub == 1;
+}
+
+/// Read-only objects hold what a DCF says of them; a PDO of unknown COB-ID is off.
 DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   DeviceObject object{.key = {index, sub.sub},
                       .type = sub.type,
@@ -27,9 +36,13 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
                       .value = {},
                       .low_limit = {},
                       .high_limit = {}};
-  const auto& value = sub.default_value ? sub.default_value : sub.parameter_value;
+  const bool fixed = sub.access == Access::ro || sub.access == Access::constant;
+  const bool use_default = sub.default_value && !(fixed && sub.parameter_value);
+  const auto& value = use_default ? sub.default_value : sub.parameter_value;
   if (value) {
     object.value = to_bytes(*value, sub.type);
+  } else if (is_pdo_cob_id(object.key)) {
+    object.value = to_bytes(Value{pdo_off}, DataType::unsigned32);
   } else {
     object.value.resize(byte_width(sub.type));
   }
