@@ -20,7 +20,7 @@ install(FILES share/systemd/takt.conf DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/se
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
 install(EXPORT takt-targets NAMESPACE takt:: DESTINATION ${package_dir})
-configure_package_config_file(cmake/takt-config.cmake.in takt-config.cmake INSTALL_DESTINATION ${package_dir})
+configure_package_config_file(share/cmake/takt-config.cmake.in takt-config.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(takt-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/takt-config-version.cmake
         DESTINATION ${package_dir})
@@ -35,5 +35,5 @@ foreach(library IN LISTS libraries)
   endif()
 endforeach()
 file(RELATIVE_PATH TAKT_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(cmake/takt.pc.in takt.pc @ONLY)
+configure_file(share/cmake/takt.pc.in takt.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
