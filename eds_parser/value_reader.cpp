@@ -217,7 +217,8 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
 
 std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
   auto digits = without_comment(text);
-  if (digits == "0") return std::nullopt;  // how some tools write "nothing"
+  // how some tools write "nothing"
+  if (digits == "0" || digits == "0x0") return std::nullopt;
   bool odd_form = false;
   if (digits.size() >= 2 && digits[0] == '0' && fold(digits[1]) == 'x') {
     digits.remove_prefix(2);
