@@ -1,0 +1,20 @@
+// The example of the README: all axes creep forward for as long as images come.
+#include <chrono>
+
+#include "apps/axis/axis_group.hpp"
+#include "apps/axis/open_lcm.hpp"
+
+int main() {
+  using namespace std::chrono_literals;
+  auto lcm = takt::open_lcm("");  // LCM_DEFAULT_URL, else LCM's default
+  if (!lcm) return 3;
+  takt::AxisGroup group{std::move(*lcm), {.bus = "demo", .sender = "example"}};
+  group.wait(1s);  // the layout: Input::restarted
+  takt::AxisControl& axes = group.axes();
+  axes.set_goal(takt::DriveGoal::enabled);
+  while (group.wait(1s) == takt::Input::fresh) {  // the newest image; none in 1 s, or stale: ends
+    const Eigen::VectorXd next = axes.target_positions().array() + 1e-4;  // rad
+    if (axes.all_enabled()) axes.set_positions(next);
+    group.send();  // acts at the next SYNC
+  }
+}
