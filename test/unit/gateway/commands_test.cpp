@@ -1,0 +1,142 @@
+#include "master/gateway/commands.hpp"
+
+#include <gtest/gtest.h>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "test/unit/gateway/a_plan.hpp"
+
+namespace takt {
+namespace {
+
+class CommandsTest : public testing::Test {
+ protected:
+  CommandsTest() {
+    for (NodeStatus& node : nodes) {
+      node.nmt = NmtState::operational;
+      node.boot = BootState::ready;
+    }
+  }
+
+  command_t command(std::vector<std::int16_t> signals, std::vector<std::int64_t> values) {
+    command_t message{};
+    message.schema = 1;
+    message.session = 42;
+    message.sender = "move";
+    message.cycle = 100;
+    message.time_to_live = 5;
+    message.num_values = static_cast<std::int32_t>(values.size());
+    message.signals = std::move(signals);
+    message.values = std::move(values);
+    return message;
+  }
+
+  bool take(const command_t& message, std::uint64_t cycle = 100) {
+    return commands.take(message, {.cycle = cycle, .now = now, .nodes = nodes});
+  }
+  bool told(const std::string& part) const {
+    return !notices.empty() && notices.back().text.find(part) != std::string::npos;
+  }
+
+  BusPlan plan = test::a_plan();
+  std::vector<NodeStatus> nodes = std::vector<NodeStatus>(2);
+  std::map<SignalIndex, std::int64_t> outputs;
+  std::uint32_t last_time_to_live = 0;
+  std::vector<Notice> notices;
+  Time now = std::chrono::seconds{10};
+  Commands commands{plan,
+                    {.session = 42, .observe = false},
+                    [this](SignalIndex signal, std::int64_t value, std::uint32_t cycles) {
+                      outputs[signal] = value;
+                      last_time_to_live = cycles;
+                    },
+                    [this](const Notice& notice) { notices.push_back(notice); }};
+};
+
+TEST_F(CommandsTest, GoodCommandIsStagedWithWhatIsLeftOfItsTimeToLive) {
+  EXPECT_TRUE(take(command({1, 2}, {0x0F, -5}), 102));
+
+  EXPECT_EQ(outputs, (std::map<SignalIndex, std::int64_t>{{1, 0x0F}, {2, -5}}));
+  EXPECT_EQ(last_time_to_live, 3U);
+  EXPECT_EQ(commands.holder(0, 102), "move");
+  EXPECT_TRUE(notices.empty());
+}
+
+TEST_F(CommandsTest, InputsAndSignalsThatAreNotThereAreRefusedAsAWhole) {
+  for (const int wrong : {0, 4, -1, 32767}) {
+    EXPECT_FALSE(take(command({1, static_cast<std::int16_t>(wrong)}, {1, 1})));
+  }
+
+  EXPECT_TRUE(outputs.empty());
+  EXPECT_TRUE(told("not an output"));
+}
+
+TEST_F(CommandsTest, ValueThatDoesNotFitItsBitsIsRefusedAsAWhole) {
+  EXPECT_FALSE(take(command({2, 1}, {5, 65536})));
+
+  EXPECT_TRUE(outputs.empty());
+  EXPECT_TRUE(told("does not fit its 16 bits"));
+}
+
+TEST_F(CommandsTest, ReplayedLogDoesNotMoveTheMachine) {
+  command_t replayed = command({1}, {0x0F});
+  replayed.session = 41;
+
+  EXPECT_FALSE(take(replayed));
+  EXPECT_TRUE(outputs.empty());
+  EXPECT_TRUE(told("another session"));
+}
+
+TEST_F(CommandsTest, CommandThatWaitedLongerThanItsTimeToLiveIsRefused) {
+  EXPECT_FALSE(take(command({1}, {0x0F}), 105));
+
+  EXPECT_TRUE(told("too old"));
+}
+
+TEST_F(CommandsTest, NodeThatIsNotReadyTakesNothingAndTheOtherNodeDoes) {
+  nodes[0].boot = BootState::booting;
+
+  EXPECT_TRUE(take(command({1, 3}, {0x0F, 1})));
+
+  EXPECT_EQ(outputs, (std::map<SignalIndex, std::int64_t>{{3, 1}}));
+  EXPECT_TRUE(told("node 5 (shoulder): the node has not booted"));
+}
+
+TEST_F(CommandsTest, SecondSenderWaitsForTheEndOfTheLease) {
+  take(command({1}, {0x06}));
+  command_t other = command({1}, {0x0F});
+  other.sender = "other";
+
+  EXPECT_FALSE(take(other, 101));
+  EXPECT_TRUE(told("belong to 'move'"));
+  other.cycle = 105;
+  EXPECT_TRUE(take(other, 105));
+  EXPECT_EQ(outputs[1], 0x0F);
+}
+
+TEST_F(CommandsTest, SameRefusalIsToldOnceASecond) {
+  command_t replayed = command({1}, {0x0F});
+  replayed.session = 41;
+  for (int i = 0; i < 500; ++i) take(replayed);
+
+  EXPECT_EQ(notices.size(), 1U);
+  EXPECT_EQ(commands.refused(), 500U);
+
+  now += std::chrono::seconds{2};
+  take(replayed);
+  EXPECT_TRUE(told("499 more"));
+}
+
+TEST_F(CommandsTest, ObservingTakesNothing) {
+  Commands observing{plan,
+                     {.session = 42, .observe = true},
+                     [](SignalIndex, std::int64_t, std::uint32_t) { FAIL(); },
+                     [this](const Notice& notice) { notices.push_back(notice); }};
+
+  EXPECT_FALSE(observing.take(command({1}, {1}), {.cycle = 100, .now = now, .nodes = nodes}));
+  EXPECT_TRUE(told("only observes"));
+}
+
+}  // namespace
+}  // namespace takt

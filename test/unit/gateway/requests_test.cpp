@@ -1,0 +1,120 @@
+#include "master/gateway/requests.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "test/unit/gateway/a_plan.hpp"
+
+namespace takt {
+namespace {
+
+class RequestsTest : public testing::Test {
+ protected:
+  static request_t upload(std::int64_t id) {
+    request_t message{};
+    message.schema = 1;
+    message.id = id;
+    message.sender = "takt-1";
+    message.service = "sdo_upload";
+    message.node_id = 5;
+    message.index = 0x1018;
+    message.sub = 1;
+    return message;
+  }
+
+  BusPlan plan = test::a_plan();
+  std::vector<Request> submitted;
+  bool room = true;
+  Requests requests{plan, {.session = 42, .observe = false}, [this](const Request& request) {
+                      if (room) submitted.push_back(request);
+                      return room;
+                    }};
+};
+
+TEST_F(RequestsTest, EachRequestIsAnsweredExactlyOnce) {
+  EXPECT_FALSE(requests.take(upload(7)));
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_EQ(submitted[0].object, (ObjectKey{0x1018, 1}));
+  Reply reply{.id = submitted[0].id};
+  reply.size = 2;
+  reply.data[0] = std::byte{0x34};
+  reply.data[1] = std::byte{0x12};
+
+  const auto answer = requests.finish(reply);
+
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->id, 7);
+  EXPECT_EQ(answer->sender, "takt-1");
+  EXPECT_NE(answer->good, 0);
+  EXPECT_EQ(answer->data, (std::vector<std::uint8_t>{0x34, 0x12}));
+  EXPECT_FALSE(requests.finish(reply));
+  EXPECT_EQ(requests.pending(), 0U);
+}
+
+TEST_F(RequestsTest, RepeatedRequestIsNotDoneTwice) {
+  requests.take(upload(7));
+
+  EXPECT_FALSE(requests.take(upload(7)));
+  EXPECT_EQ(submitted.size(), 1U);
+}
+
+TEST_F(RequestsTest, AbortIsToldInWords) {
+  requests.take(upload(1));
+
+  const auto answer = requests.finish(
+      {.id = submitted[0].id, .fault = SdoFault::aborted_by_device, .abort_code = 0x0602'0000});
+
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->good, 0);
+  EXPECT_EQ(answer->abort_code, 0x0602'0000);
+  EXPECT_NE(answer->text.find("0x06020000"), std::string::npos);
+}
+
+TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
+  std::int64_t id = 1;
+  const auto refused = [&](auto change) {
+    request_t message = upload(++id);
+    change(message);
+    const auto answer = requests.take(message);
+    return answer && answer->good == 0 && !answer->text.empty();
+  };
+
+  EXPECT_TRUE(refused([](request_t& m) { m.service = "reboot"; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.node_id = 128; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.node_id = 99; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.index = 0x10000; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.sub = -1; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.session = 41; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.schema = 2; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.data.resize(1025); }));
+  EXPECT_TRUE(refused([](request_t& m) {
+    m.service = "nmt";
+    m.nmt_command = 3;
+  }));
+  EXPECT_TRUE(submitted.empty());
+}
+
+TEST_F(RequestsTest, FullRingIsAnAnswerToo) {
+  room = false;
+
+  const auto answer = requests.take(upload(1));
+
+  ASSERT_TRUE(answer);
+  EXPECT_NE(answer->text.find("again later"), std::string::npos);
+}
+
+TEST_F(RequestsTest, NmtGoesToAllNodesOrOne) {
+  request_t message = upload(1);
+  message.service = "nmt";
+  message.node_id = 0;
+  message.nmt_command = 129;
+
+  EXPECT_FALSE(requests.take(message));
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_EQ(submitted[0].kind, RequestKind::nmt);
+  EXPECT_EQ(submitted[0].node, 0);
+  EXPECT_EQ(submitted[0].command, NmtCommand::reset_node);
+}
+
+}  // namespace
+}  // namespace takt
