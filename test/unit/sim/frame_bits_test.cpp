@@ -92,7 +92,7 @@ TEST(FrameBits, OfLongIdentifiersAreTheSameBitByBit) {
     Frame frame{.id = CobId::extended(id & 0x1FFF'FFFF)};
     frame.length = static_cast<std::uint8_t>(i % 9);
     for (std::size_t k = 0; k < 8; ++k) {
-      frame.data[k] = i % 3 == 0 ? 0 : static_cast<std::uint8_t>(id >> (3 * k));
+      frame.data[k] = static_cast<std::uint8_t>(i % 3 == 0 ? 0 : id >> (3 * k));
     }
     ASSERT_EQ(frame_bits(frame).total, slow_length(frame)) << to_string(frame.id);
   }
