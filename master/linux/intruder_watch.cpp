@@ -9,6 +9,7 @@ namespace {
 constexpr std::uint16_t none = 0xFFFF;
 constexpr std::uint32_t window_syncs = 32;
 constexpr std::uint8_t unasked_limit = 3;
+constexpr int most_asked = 8;  // a node that never answers gives no credit for ever
 constexpr std::size_t max_events = 64;
 constexpr Time tell_again = std::chrono::seconds{10};
 constexpr Time adjust_every = std::chrono::seconds{1};
@@ -72,13 +73,13 @@ void IntruderWatch::watch_sdo(const StampedFrame& stamped) {
   SdoServer& server = servers_[node];
   const unsigned command = stamped.frame.data[0] >> 5;
   if (function == 0x600) {
-    server.asked = true;
+    server.asked = static_cast<std::uint8_t>(std::min(server.asked + 1, most_asked));
     if (command == 5 || command == 6) server.block = true;
     if (command == 1 || command == 2) server.block = false;
     return;
   }
-  const bool expected = server.asked || server.block || stamped.frame.data[0] == sdo_abort;
-  server.asked = false;
+  const bool expected = server.asked > 0 || server.block || stamped.frame.data[0] == sdo_abort;
+  if (server.asked > 0) --server.asked;
   if (expected || ++server.unasked < unasked_limit) return;
   server.unasked = 0;
   tell(EventKind::duplicate_cob_id, stamped.frame.id, static_cast<std::uint8_t>(node),

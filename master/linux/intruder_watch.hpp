@@ -50,8 +50,8 @@ class IntruderWatch {
     std::uint32_t seen = 0;
   };
   struct SdoServer {
-    bool asked = false;
-    bool block = false;  // block transfer: several answers to one request
+    std::uint8_t asked = 0;  // requests whose answer may still come, however late
+    bool block = false;      // block transfer: several answers to one request
     std::uint8_t unasked = 0;
   };
 

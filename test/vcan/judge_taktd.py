@@ -71,9 +71,18 @@ class Application:
         command.num_values = len(command.signals)
         self.bus.publish("JUDGE_COMMAND", command.encode())
 
+    def there(self):
+        return all(self.positions.get(node, 0) >= 5000 for node in NODES)
+
     def run_while(self, process):
+        """Ends the daemon when the axes have arrived and have been watched for a while."""
+        images_after = None
         while process.poll() is None:
             self.bus.handle_timeout(50)
+            if self.there() and images_after is None:
+                images_after = self.images + 300
+            if images_after is not None and self.images > images_after:
+                process.terminate()
 
 
 def read_log(path):
@@ -143,7 +152,7 @@ def main(binaries):
         nodes = subprocess.Popen([sys.executable, HERE / "python_nodes.py", "vcan0", eds, *map(str, NODES)],
                                  stdout=subprocess.PIPE, text=True)
         nodes.stdout.readline()
-        taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", HERE / "python_axes.yaml", "--for", "10s", "--events", events])
+        taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", HERE / "python_axes.yaml", "--for", "60s", "--events", events])
         application.run_while(taktd)
         time.sleep(0.2)
         for process in (nodes, candump):

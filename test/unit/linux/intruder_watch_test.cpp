@@ -189,6 +189,21 @@ TEST_F(IntruderWatchTest, TellsTwoNodesThatBothAnswerSdoRequests) {
   EXPECT_EQ(told[0].node, 5);
 }
 
+TEST_F(IntruderWatchTest, LateAnswersOfASlowNodeAreNoSecondNode) {
+  events();
+  const Frame request = make_frame(CobId::base(0x605), {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0});
+  const Frame answer =
+      make_frame(CobId::base(0x585), {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00});
+  for (int i = 0; i < 4; ++i) {
+    send(request);
+    send(request);
+    see(answer, Origin::wire);
+    see(answer, Origin::wire);
+  }
+
+  EXPECT_TRUE(events().empty());
+}
+
 TEST_F(IntruderWatchTest, ASdoBlockUploadIsNoSecondNode) {
   events();
   send(make_frame(CobId::base(0x605), {0xA0, 0x08, 0x10, 0x00, 0x7F, 0, 0, 0}));
