@@ -76,13 +76,14 @@ class Application:
 
     def run_while(self, process):
         """Ends the daemon when the axes have arrived and have been watched for a while."""
-        images_after = None
+        enough = None
         while process.poll() is None:
             self.bus.handle_timeout(50)
-            if self.there() and images_after is None:
-                images_after = self.images + 300
-            if images_after is not None and self.images > images_after:
+            if enough is None and self.there():
+                enough = self.images + 300
+            if self.images == enough:
                 process.terminate()
+                enough = 0  # once: a second signal would end it without the ordered stop
 
 
 def read_log(path):
