@@ -37,6 +37,8 @@ class AxisGroup {
 
   /// Waits for the next image, `longest` at most, and steps the axes with it.
   Input wait(std::chrono::nanoseconds longest);
+  /// Of the commands from now on, in cycles; 0: as configured.
+  void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
   /// Sends the set-points of all axes. False: LCM did not take them.
   bool send();
 

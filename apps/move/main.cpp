@@ -1,5 +1,6 @@
 #include <csignal>
 #include <fmt/format.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include "apps/axis/axis_group.hpp"
@@ -13,6 +14,12 @@ volatile std::sig_atomic_t stop = 0;
 
 void on_signal(int) { stop = 1; }
 
+/// Ahead of ordinary programs and behind taktd, where the machine grants it.
+void ask_for_real_time() {
+  const sched_param parameters{.sched_priority = 20};
+  ::sched_setscheduler(0, SCHED_FIFO, &parameters);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -20,6 +27,7 @@ int main(int argc, char** argv) {
   if (exit_code) return *exit_code;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  ask_for_real_time();
   auto lcm = takt::open_lcm(options.lcm_url);
   if (!lcm) {
     fmt::print(stderr, "takt-move: {}\n", lcm.error());
@@ -28,7 +36,6 @@ int main(int argc, char** argv) {
   takt::AxisGroup group{std::move(*lcm),
                         {.bus = options.bus,
                          .sender = fmt::format("takt-move {}", ::getpid()),
-                         .stale_cycles = options.stale_cycles,
-                         .time_to_live = 2 * options.stale_cycles}};
+                         .stale_cycles = options.stale_cycles}};
   return takt::MoveRun{group, options, stop}.run();
 }

@@ -24,6 +24,8 @@ constexpr std::chrono::milliseconds tick{2};
 /// A drive may need so long for its brake and its DC link.
 constexpr double enable_seconds = 5.0;
 constexpr double disable_seconds = 2.0;
+/// How long a set-point lives when this program stalls, where the network file allows as much.
+constexpr std::chrono::milliseconds set_point_life{100};
 
 }  // namespace
 
@@ -59,6 +61,8 @@ bool MoveRun::find_axes() {
     sizes_ = sizes_for(options_, unit_);
     progress_.set_unit(unit_.empty() ? "counts" : unit_);
     following_ = Following{axes_.size()};
+    group_.set_time_to_live(
+        std::max(2 * options_.stale_cycles, static_cast<int>(set_point_life / group_.period())));
     progress_.say(fmt::format("bus {}: {} signals, {} axes, SYNC every {:g} ms", group_.bus(),
                               signals.size(), axes_.size(),
                               std::chrono::duration<double, std::milli>(group_.period()).count()));
