@@ -10,14 +10,21 @@ seconds=${DEMO_SECONDS:-15}
 build=build/release
 say() { printf '\n== %s\n' "$*"; }
 
+build_failed() {
+  tail -n 60 $build/demo-build.log >&2
+  exit 1
+}
+
 build_programs() {
   sh share/install_packages.sh build run
-  say "Building taktd, takt and takt-move"
+  say "Building taktd, takt and takt-move (some minutes the first time)"
   started=$(date +%s)
-  mkdir -p $build
+  mkdir -p $build && rm -f $build/demo-built
   # Only what the demo runs, unless this folder has been configured before.
-  { [ -e $build/build.ninja ] || cmake --preset release -DTAKT_TESTS=OFF; } >$build/demo-build.log 2>&1 &&
-    ninja -C $build taktd takt takt-move >>$build/demo-build.log 2>&1 || { tail -n 60 $build/demo-build.log >&2; exit 1; }
+  [ -e $build/build.ninja ] || cmake --preset release -DTAKT_TESTS=OFF >$build/demo-build.log 2>&1 || build_failed
+  { ninja -C $build taktd takt takt-move && touch $build/demo-built; } 2>&1 | tee $build/demo-build.log |
+    sed -un 's/^\(\[[0-9]*\(00\|25\|50\|75\)\/[0-9]*\]\).*/  \1/p'
+  [ -e $build/demo-built ] || build_failed
   echo "built in $(($(date +%s) - started)) s"
 }
 
