@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds tick{2};
 constexpr double enable_seconds = 5.0;
 constexpr double disable_seconds = 2.0;
 /// How long a set-point lives when this program stalls, where the network file allows as much.
-constexpr std::chrono::milliseconds set_point_life{100};
+constexpr std::chrono::milliseconds set_point_life{200};
 
 }  // namespace
 
