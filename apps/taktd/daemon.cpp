@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <future>
-#include <sched.h>
 #include <utility>
 
 #include "apps/taktd/summary.hpp"
@@ -95,22 +94,10 @@ std::thread Daemon::start_bus_thread(std::function<void()> body) {
   return thread;
 }
 
-/// Simulated devices answer as promptly as real ones: their thread gets real time too, one below
-/// the bus thread. It inherits that from the thread that makes it.
-void Daemon::power_on() {
-  const RealtimeOptions& options = network_.realtime;
-  std::thread{[&] {
-    const sched_param below{.sched_priority = std::max(1, options.priority - 1)};
-    if (options.mode != RtMode::off) ::sched_setscheduler(0, SCHED_FIFO, &below);
-    bus_->power_on();
-  }}.join();
-}
-
 std::optional<Exit> Daemon::start() {
   prefault_heap(heap_bytes);
   master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = options_.observe});
   bus_->attach(*master_);
-  power_on();
   master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
   reporter_.say(realtime_.complete() ? Weight::note : Weight::warning,
                 "real time: " + to_string(realtime_));

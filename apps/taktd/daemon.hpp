@@ -40,7 +40,6 @@ class Daemon {
  private:
   std::optional<Exit> open();
   std::optional<Exit> start();
-  void power_on();
   void loop();
   void hear_intruders();
   void watch_conditions(Time now);

@@ -35,22 +35,14 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open_real(const s
 std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
     const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices, Time spin) {
   if (BusName::parse(name).kind != BusName::Kind::simulated) return open_real(name, plan, spin);
-  auto ends = make_socket_pair_bus(plan.cycle.sync_cob_id, spin);
   std::unique_ptr<DaemonBus> bus{new DaemonBus};
-  bus->port_.emplace(std::move(ends.first));
-  bus->devices_end_ = std::make_unique<DeviceChannel>(FrameChannel{std::move(ends.second)});
-  sim::WorldOptions world;
-  world.bitrate = plan.bitrate;
-  bus->world_ = std::make_unique<sim::RealtimeWorld>(devices, world, *bus->devices_end_);
+  bus->simulated_ = std::make_unique<SimulatedBus>(devices, plan, spin);
   return bus;
 }
 
 void DaemonBus::attach(Master& master) {
+  if (simulated_) return master.attach(*simulated_);
   std::visit([&](auto& port) { master.attach(port); }, *port_);
-}
-
-void DaemonBus::power_on() {
-  if (world_) world_->start();
 }
 
 }  // namespace takt

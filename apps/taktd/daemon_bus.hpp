@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/taktd/device_channel.hpp"
+#include "apps/taktd/simulated_bus.hpp"
 #include "eds_parser/table/device_table.hpp"
 #include "master/linux/diagnostic_socket.hpp"
 #include "master/linux/open_bus.hpp"
 #include "master/master.hpp"
-#include "master/sim/realtime_world.hpp"
 
 namespace takt {
 
@@ -24,8 +23,6 @@ class DaemonBus {
       Time spin);
 
   void attach(Master& master);
-  /// Switches the simulated devices on; nothing elsewhere.
-  void power_on();
   /// Hears foreign masters and double senders; null on a simulated bus or where it can't be had.
   DiagnosticSocket* diagnostics() noexcept { return diagnostics_ ? &*diagnostics_ : nullptr; }
   /// What will hurt while running, with the command that mends it.
@@ -41,8 +38,7 @@ class DaemonBus {
   std::optional<AnyPort> port_;
   std::optional<DiagnosticSocket> diagnostics_;
   std::vector<std::string> warnings_;
-  std::unique_ptr<DeviceChannel> devices_end_;
-  std::unique_ptr<sim::RealtimeWorld> world_;
+  std::unique_ptr<SimulatedBus> simulated_;
 };
 
 }  // namespace takt

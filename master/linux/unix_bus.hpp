@@ -45,8 +45,8 @@ class UnixBusPort {
   std::unique_ptr<State> state_;
 };
 
-/// A bus of two members inside one process (`--bus sim`): the master's end and the devices' end.
-/// The devices' end echoes what it receives, so the master sees its SYNC on the wire.
+/// A bus of two members inside one process: the master's end and the devices' end. The devices'
+/// end echoes what it receives, so the master sees its SYNC on the wire.
 std::pair<UnixBusPort, UnixBusPort> make_socket_pair_bus(
     std::optional<CobId> sync_cob_id = CobId::base(0x080), Time spin = {});
 

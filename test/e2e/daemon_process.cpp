@@ -68,6 +68,12 @@ DaemonProcess::~DaemonProcess() {
   fs::remove_all(folder_);
 }
 
+void DaemonProcess::stop_for(std::chrono::milliseconds time) const {
+  signal(SIGSTOP);
+  std::this_thread::sleep_for(time);
+  signal(SIGCONT);
+}
+
 std::optional<int> DaemonProcess::wait() {
   const Time until = monotonic_now() + generous;
   int status = 0;
@@ -162,6 +168,14 @@ std::size_t DaemonProcess::events(const std::string& kind, const std::string& pa
   for (const event_t& event : bus().events()) {
     count += event.kind == kind && event.text.find(part) != std::string::npos;
   }
+  return count;
+}
+
+std::size_t DaemonProcess::events_in_file(const std::string& kind) const {
+  const std::string text = read_file(event_file());
+  const std::string word = '"' + kind + '"';
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) ++count;
   return count;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,8 @@ class DaemonProcess {
   DaemonProcess& operator=(const DaemonProcess&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  /// Lets none of its threads run for so long.
+  void stop_for(std::chrono::milliseconds time) const;
   /// Exit code within a generous time; none: it still runs, or a signal ended it.
   std::optional<int> wait();
 
@@ -44,6 +47,8 @@ class DaemonProcess {
 
   /// Events heard so far of a kind whose text holds `part`.
   std::size_t events(const std::string& kind, const std::string& part = {});
+  /// Events of a kind that its --events file holds: those before the first message was heard too.
+  std::size_t events_in_file(const std::string& kind) const;
   bool all_ready();
   std::string event_file() const;
   std::string log() const;  ///< its stderr so far

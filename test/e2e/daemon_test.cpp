@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -41,7 +42,21 @@ TEST_F(Taktd, BootsTheDemoAndPublishesAnImageEachCycle) {
   ASSERT_TRUE(daemon.hear([&] { return daemon.bus().cycle() >= cycle + 100; }));
 
   EXPECT_GE(daemon.bus().images() - images, 90U);
-  EXPECT_EQ(daemon.events("boot_done"), 3U);
+  EXPECT_EQ(daemon.events_in_file("boot_done"), 3U);
+}
+
+TEST_F(Taktd, HoldsItsSimulatedDevicesWhileItIsHeldItself) {
+  DaemonProcess daemon{slow_network(folder_)};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const std::size_t emcys = daemon.events("emcy");
+
+  daemon.stop_for(std::chrono::milliseconds{150});
+  ASSERT_TRUE(daemon.hear([&] { return daemon.events("cycles_missed") > 0; }));
+  const std::int64_t cycle = daemon.bus().cycle();
+  ASSERT_TRUE(daemon.hear([&] { return daemon.bus().cycle() >= cycle + 50; }));
+
+  EXPECT_EQ(daemon.events("emcy"), emcys) << "the devices missed the SYNC";
+  EXPECT_EQ(daemon.events("heartbeat_lost"), 0U);
 }
 
 TEST_F(Taktd, CommandsMoveAnAxisAndEndWithTheirTimeToLive) {
