@@ -30,8 +30,8 @@ void AxisControl::set_layout(const ImageInput& input) {
     Axis& axis = axes_.emplace_back();
     axis.signals = std::move(signals);
   }
-  for (Eigen::VectorXd* values : {&positions_, &velocities_, &torques_, &target_positions_,
-                                  &target_velocities_, &target_torques_}) {
+  for (Eigen::VectorXd* values : {&positions_, &velocities_, &torques_, &sent_positions_,
+                                  &target_positions_, &target_velocities_, &target_torques_}) {
     values->setZero(size());
   }
 }
@@ -48,6 +48,7 @@ void AxisControl::on_image(const ImageInput& input) {
     positions_(i) = read(axis.signals.position, input);
     velocities_(i) = read(axis.signals.velocity, input);
     torques_(i) = read(axis.signals.torque, input);
+    sent_positions_(i) = read(axis.signals.target_position, input);
     step(axis, input);
     rest(i);
   }

@@ -52,6 +52,8 @@ class AxisControl {
   bool all_reached() const noexcept;  ///< each axis is where set_goal() sent it
 
   const Eigen::VectorXd& positions() const noexcept { return positions_; }
+  /// Target positions as the image shows them: sent to the drives before its SYNC.
+  const Eigen::VectorXd& sent_positions() const noexcept { return sent_positions_; }
   const Eigen::VectorXd& velocities() const noexcept { return velocities_; }
   const Eigen::VectorXd& torques() const noexcept { return torques_; }
   const Eigen::VectorXd& target_positions() const noexcept { return target_positions_; }
@@ -95,6 +97,7 @@ class AxisControl {
   Eigen::VectorXd positions_;
   Eigen::VectorXd velocities_;
   Eigen::VectorXd torques_;
+  Eigen::VectorXd sent_positions_;
   Eigen::VectorXd target_positions_;
   Eigen::VectorXd target_velocities_;
   Eigen::VectorXd target_torques_;

@@ -5,15 +5,15 @@
 
 namespace takt {
 
-/// How well the axes follow: each position against the target that was to be reached by it. A
-/// target computed from image k is sent before SYNC k+1, acts at it, and is reached at SYNC k+2.
+/// How well the axes follow: each position against the target that was to be reached by it. What
+/// image k shows as sent acts at SYNC k and is reached at SYNC k+1.
 class Following {
  public:
-  static constexpr std::int64_t cycles_to_reach = 2;
+  static constexpr std::int64_t cycles_to_reach = 1;
 
   explicit Following(Eigen::Index axes);
 
-  /// The target computed from the image of this cycle.
+  /// The targets that the image of this cycle shows as sent.
   void sent(std::int64_t cycle, const Eigen::VectorXd& target);
   /// The position in the image of this cycle.
   void seen(std::int64_t cycle, const Eigen::VectorXd& position);

@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds tick{2};
 constexpr double enable_seconds = 5.0;
 constexpr double disable_seconds = 2.0;
 /// How long a set-point lives when this program stalls, where the network file allows as much.
-constexpr std::chrono::milliseconds set_point_life{200};
+constexpr std::chrono::milliseconds set_point_life{500};
 
 }  // namespace
 
@@ -157,7 +157,7 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
     group_.send();
     if (input != Input::fresh) continue;
     following_.seen(group_.input().cycle(), axes_.positions());
-    following_.sent(group_.input().cycle(), axes_.target_positions());
+    following_.sent(group_.input().cycle(), axes_.sent_positions());
     progress_.states(group_);
     progress_.positions(axes_, following_, what);
   }

@@ -7,11 +7,11 @@ namespace {
 
 using Vector = Eigen::Vector2d;
 
-TEST(Following, ComparesAPositionWithTheTargetOfTwoCyclesBefore) {
+TEST(Following, ComparesAPositionWithTheTargetThatActedAtTheSyncBefore) {
   Following following{2};
   following.sent(10, Vector{1.0, 2.0});
   following.sent(11, Vector{9.0, 9.0});
-  following.seen(12, Vector{1.25, 1.5});
+  following.seen(11, Vector{1.25, 1.5});
 
   EXPECT_DOUBLE_EQ(following.error()(0), 0.25);
   EXPECT_DOUBLE_EQ(following.error()(1), -0.5);
