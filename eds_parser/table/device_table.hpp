@@ -31,8 +31,9 @@ struct DeviceTable {
   std::vector<DeviceObject> objects;  ///< ascending key
   std::uint8_t granularity = 8;       ///< 0: mapping is fixed
   std::uint8_t dummy_usage = 0;       ///< bit n: data type n may be mapped as a dummy
-  std::string model;                  ///< "drive402", "io401", "encoder406", "plain"
+  std::string model;                  ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;    ///< "late_bootup", ...
+  std::string firmware{};             ///< "15.02.00"; empty: the newest that the model knows
 };
 
 }  // namespace takt

@@ -20,6 +20,7 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
       emcy_{store_, table.node},
       sdo_{*this, table.node},
       sync_{store_, emcy_},
+      sync_producer_{store_},
       heartbeat_{store_, table.node},
       watch_{store_, emcy_},
       storage_{store_} {
@@ -34,6 +35,9 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
   sdo_.set_latency(times_.sdo);
   routes_.reserve(3 + watch_.watches().size() + tpdos_.size() + rpdos_.size());
   model_ = make_model(table, store_, emcy_, random);
+  const DeviceTraits traits = model_->traits();
+  for (Tpdo& tpdo : tpdos_) tpdo.set_traits(traits);
+  sync_.set_may_produce(traits.produces_sync);
 }
 
 Device::~Device() = default;
@@ -48,6 +52,7 @@ void Device::power_off() noexcept {
   sdo_.reset();
   watch_.forget();
   sync_.reset();
+  sync_producer_.stop();
   state_ = DeviceState::off;
   boots_at_ = next_storm_ = tick_ = deadline_ = never;
   routes_.clear();
@@ -72,6 +77,7 @@ void Device::begin_reset(Time startup, Time now) noexcept {
   heartbeat_.stop();
   sdo_.reset();
   sync_.reset();
+  sync_producer_.stop();
   store_.reset(0x1000, 0x1FFF);
   emcy_.reset();
   watch_.forget();
@@ -88,6 +94,7 @@ void Device::boot(Time now) noexcept {
   send_bootup(now);
   state_ = DeviceState::preoperational;
   heartbeat_.start(now);
+  sync_producer_.start(now);
   build_routes();
   if (faults_.storm_period > Time{}) next_storm_ = now + faults_.storm_period;
   if (faults_.self_start) enter(DeviceState::operational, now);
@@ -175,8 +182,10 @@ void Device::enter(DeviceState state, Time now) noexcept {
   if (state == DeviceState::stopped) {
     sdo_.reset();
     sync_.reset();
+    sync_producer_.stop();
     watch_.forget();
   }
+  if (old == DeviceState::stopped) sync_producer_.start(now);
 }
 
 void Device::start_pdos(Time now) noexcept {
@@ -214,6 +223,7 @@ void Device::on_sync(const Frame& frame, Time now) noexcept {
   for (Rpdo& rpdo : rpdos_) {
     if (!rpdo.waits()) continue;
     rpdo.apply();
+    model_->received(rpdo.record().number(), now);
     fresh = true;
   }
   if (fresh) model_->outputs(now);
@@ -222,11 +232,32 @@ void Device::on_sync(const Frame& frame, Time now) noexcept {
 
 void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
   if (state_ != DeviceState::operational) return;
-  if (!rpdo.on_frame(frame, now, sync_.window_end(), emcy_)) return;
-  model_->advance(now);
-  rpdo.apply();
-  model_->outputs(now);
-  look_at_inputs(now);
+  const std::uint16_t number = rpdo.record().number();
+  if (rpdo.on_frame(frame, now, sync_.window_end(), emcy_)) {
+    model_->advance(now);
+    rpdo.apply();
+    model_->received(number, now);
+    model_->outputs(now);
+    look_at_inputs(now);
+    answer(number, now);
+  } else if (rpdo.waits()) {
+    answer(number, now);
+  }
+}
+
+void Device::answer(std::uint16_t number, Time now) noexcept {
+  if (faults_.mute_pdo) return;
+  for (Tpdo& tpdo : tpdos_) {
+    if (tpdo.record().number() == number) tpdo.answer(now + times_.pdo, out_);
+  }
+}
+
+/// A controller does not receive its own frames: whether the device acts on them is its own affair.
+void Device::make_sync(Time now) noexcept {
+  const auto frame = sync_producer_.on_time(now, model_->sync_transmit_id());
+  if (!frame) return;
+  out_.send(*frame, now);
+  if (model_->obeys_own_sync()) on_sync(*frame, now);
 }
 
 void Device::look_at_inputs(Time now) noexcept {
@@ -246,7 +277,8 @@ void Device::on_time(Time now) noexcept {
   heartbeat_.on_time(now, static_cast<std::uint8_t>(state_), faults_.no_heartbeat, out_);
   if (communicates()) {
     if (watch_.on_time(now)) communication_error(now);
-    sync_.on_time(now);
+    make_sync(now);
+    if (sync_.on_time(now)) model_->sync_lost(now);
     sdo_.on_time(now, out_);
   }
   if (state_ == DeviceState::operational) {
@@ -299,8 +331,8 @@ void Device::finish_call(Time now) noexcept {
     return;
   }
   plan_tick();
-  deadline_ = std::min(
-      {deadline_, tick_, watch_.deadline(), sync_.deadline(), sdo_.deadline(), emcy_.deadline()});
+  deadline_ = std::min({deadline_, tick_, watch_.deadline(), sync_.deadline(),
+                        sync_producer_.deadline(), sdo_.deadline(), emcy_.deadline()});
   if (state_ != DeviceState::operational) return;
   for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
   for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());

@@ -20,6 +20,7 @@
 #include "master/sim/rpdo.hpp"
 #include "master/sim/sdo_server.hpp"
 #include "master/sim/sync_consumer.hpp"
+#include "master/sim/sync_producer.hpp"
 #include "master/sim/tpdo.hpp"
 #include "master/sim/transmitter.hpp"
 #include "master/wire/frame.hpp"
@@ -98,7 +99,9 @@ class Device final : private Dictionary {
   void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
   void on_nmt(const Frame& frame, Time now) noexcept;
   void on_sync(const Frame& frame, Time now) noexcept;
+  void make_sync(Time now) noexcept;
   void on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept;
+  void answer(std::uint16_t number, Time now) noexcept;
   void enter(DeviceState state, Time now) noexcept;
   void reset_communication(Time now) noexcept;
   void begin_reset(Time startup, Time now) noexcept;
@@ -128,6 +131,7 @@ class Device final : private Dictionary {
   EmcyProducer emcy_;
   SdoServer sdo_;
   SyncConsumer sync_;
+  SyncProducer sync_producer_;
   HeartbeatProducer heartbeat_;
   HeartbeatConsumer watch_;
   ParameterStorage storage_;

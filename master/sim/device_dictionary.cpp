@@ -63,6 +63,8 @@ Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) no
 Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcept {
   const std::uint16_t index = object.key.index;
   if (index >= 0x2000) return model_->check_write(object, raw);
+  const Abort unfit = model_->check_communication(object, raw);
+  if (unfit != Abort::none) return unfit;
   if (between(index, 0x1600, 0x17FF) || between(index, 0x1A00, 0x1BFF)) {
     if (faults_.fixed_mapping) return Abort::read_only;
   }
@@ -92,8 +94,10 @@ void Device::written(const Object& object, Time now) noexcept {
   if (index == 0x1016) watch_.configure();
   if (index == 0x1003) emcy_.written(object);
   if (index == 0x1006) sync_.reset();
+  if (index == 0x1005 || index == 0x1006 || index == 0x1019) sync_producer_.start(now);
   if (between(index, 0x1400, 0x1BFF)) pdo_written(object.key, now);
   if (index == 0x1005 || index == 0x1016 || index >= 0x1400) build_routes();
+  model_->communication_written(object);
 }
 
 void Device::pdo_written(ObjectKey key, Time now) noexcept {

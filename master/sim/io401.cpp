@@ -9,6 +9,8 @@ constexpr std::uint16_t digital_error_mode = 0x6206;
 constexpr std::uint16_t digital_error_value = 0x6207;
 constexpr std::uint16_t analogue_in = 0x6401;
 constexpr std::uint16_t analogue_out = 0x6411;
+constexpr std::uint16_t analogue_error_mode = 0x6443;
+constexpr std::uint16_t analogue_error_value = 0x6444;
 
 constexpr Time shortest_pause = std::chrono::milliseconds{20};
 constexpr std::uint32_t pause_spread_us = 180'000;
@@ -69,6 +71,11 @@ void Io401::connection_lost(Time) noexcept {
     const Object* value = store_.find({digital_error_value, output.key.sub});
     if (output.key.sub == 0 || mode == nullptr || value == nullptr) continue;
     output.set((output.value & ~mode->value) | (value->value & mode->value));
+  }
+  for (Object& output : store_.range(analogue_out, analogue_out)) {
+    const Object* value = store_.find({analogue_error_value, output.key.sub});
+    const bool changes = store_.number({analogue_error_mode, output.key.sub}) == 1;
+    if (output.key.sub != 0 && changes && value != nullptr) output.set(value->value);
   }
 }
 

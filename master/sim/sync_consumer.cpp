@@ -52,17 +52,18 @@ std::uint8_t SyncConsumer::on_sync(const Frame& frame, Time now) noexcept {
   return counted ? frame.data[0] : 0;
 }
 
-void SyncConsumer::on_time(Time now) noexcept {
-  if (now < deadline_) return;
+bool SyncConsumer::on_time(Time now) noexcept {
+  if (now < deadline_) return false;
   deadline_ = never;
   emcy_.raise(sync_missing, ErrorBit::communication);
+  return true;
 }
 
 Abort SyncConsumer::check_write(const Object& object, std::uint64_t raw) const noexcept {
   if (&object == cob_) {
-    const bool produces = (raw & cob_bit30) != 0;  // a consumer only
+    const bool produces = (raw & cob_bit30) != 0;
     const bool bad = has_stray_bits(raw) || is_restricted(cob_id(raw));
-    return produces || bad ? Abort::value : Abort::none;
+    return (produces && !may_produce_) || bad ? Abort::value : Abort::none;
   }
   if (&object == overflow_) {
     if (raw == 1 || raw > 240) return Abort::value;

@@ -16,11 +16,13 @@ class SyncConsumer {
  public:
   SyncConsumer(ObjectStore& store, EmcyProducer& emcy);
 
+  void set_may_produce(bool may) noexcept { may_produce_ = may; }
   void reset() noexcept;
   CobId id() const noexcept;
   /// Counter of this SYNC; 0: it has none, or one that was not expected (EMCY 8240).
   std::uint8_t on_sync(const Frame& frame, Time now) noexcept;
-  void on_time(Time now) noexcept;
+  /// True: SYNC has stayed away for longer than 0x1006 lets it.
+  bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
   /// End of the synchronous window of the newest SYNC; `never`: no window.
   Time window_end() const noexcept { return window_end_; }
@@ -34,6 +36,7 @@ class SyncConsumer {
   Object* period_;
   Object* window_;
   Object* overflow_;
+  bool may_produce_ = false;  ///< bit 30 of 0x1005 may be set
   Time deadline_ = never;
   Time window_end_ = never;
   Time last_sync_{};

@@ -15,17 +15,37 @@ void Tpdo::reconfigure(Time now) noexcept {
   type_ = record_.type();
   count_ = 0;
   sampled_ = started_ = false;
-  pending_ = type_ == 0 || type_ >= 254;  // tells its state once
-  const Time period = record_.event_timer();
-  timer_ = type_ >= 254 && period != Time{} ? now + period : never;
+  seen_ = last_ = mapping_.pack();
+  pending_ = traits_.tells_state_at_start && !only_answers() && (type_ == 0 || type_ >= 254);
+  timer_ = runs_by_timer() ? now + record_.event_timer() : never;
   update_deadline();
+}
+
+bool Tpdo::runs_by_timer() const noexcept {
+  const bool uses_timer = type_ >= 254 || (type_ == 0 && traits_.timer_at_sync);
+  return uses_timer && record_.event_timer() != Time{};
+}
+
+bool Tpdo::only_answers() const noexcept {
+  return traits_.answers_255 && type_ == 255 && record_.event_timer() == Time{};
+}
+
+bool Tpdo::wants_events() const noexcept {
+  if (!running_ || !record_.valid() || (type_ != 0 && type_ < 254)) return false;
+  if (traits_.timer == DeviceTraits::Timer::alone && runs_by_timer()) return false;
+  return !only_answers();
+}
+
+Time Tpdo::inhibit() const noexcept {
+  const Time counted = record_.inhibit() / std::chrono::microseconds{100} * traits_.inhibit_unit;
+  return std::max(counted, traits_.inhibit_floor);
 }
 
 void Tpdo::update_deadline() noexcept {
   deadline_ = never;
-  if (!running_ || !record_.valid() || type_ < 254) return;
+  if (!running_ || !record_.valid()) return;
   deadline_ = timer_;
-  if (pending_) deadline_ = std::min(deadline_, allowed_from_);
+  if (pending_ && type_ >= 254) deadline_ = std::min(deadline_, allowed_from_);
 }
 
 void Tpdo::on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
@@ -65,15 +85,30 @@ void Tpdo::on_request(Time now, Transmitter& out) noexcept {
   }
 }
 
+void Tpdo::answer(Time ready, Transmitter& out) noexcept {
+  if (running_ && record_.valid() && only_answers()) send(mapping_.pack(), ready, never, out);
+}
+
 void Tpdo::notice(Time now, Transmitter& out) noexcept {
-  if (!wants_events() || type_ == 0) return;
-  if (mapping_.pack() != last_) pending_ = true;
-  if (pending_) event(now, out);
+  if (!wants_events()) return;
+  const std::uint64_t data = mapping_.pack();
+  if (type_ == 0) {
+    if (data != seen_ && !traits_.compares_samples) pending_ = true;
+  } else {
+    if (data != last_) pending_ = true;
+    if (pending_) event(now, out);
+  }
+  seen_ = data;
 }
 
 void Tpdo::on_time(Time now, Transmitter& out) noexcept {
   if (now < deadline_) return;
-  if (now >= timer_) pending_ = true;
+  if (now >= timer_) {
+    pending_ = true;
+    timer_ += record_.event_timer();
+    if (traits_.timer == DeviceTraits::Timer::alone) allowed_from_ = Time{};
+  }
+  if (type_ == 0) return update_deadline();  // SYNC comes first
   event(now, out);
 }
 
@@ -87,12 +122,13 @@ void Tpdo::send(std::uint64_t data, Time ready, Time expires, Transmitter& out) 
   Frame frame{.id = record_.id(), .length = mapping_.bytes()};
   for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(data >> (8 * i));
   out.send(frame, ready, expires);
-  last_ = data;
+  seen_ = last_ = data;
   if (type_ < 253) return;
   pending_ = false;
-  allowed_from_ = ready + record_.inhibit();
-  const Time period = record_.event_timer();
-  timer_ = type_ >= 254 && period != Time{} ? ready + period : never;
+  allowed_from_ = ready + inhibit();
+  if (runs_by_timer() && traits_.timer == DeviceTraits::Timer::restarts) {
+    timer_ = ready + record_.event_timer();
+  }
   update_deadline();
 }
 

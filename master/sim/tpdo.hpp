@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "eds_parser/table/time.hpp"
+#include "master/sim/device_traits.hpp"
 #include "master/sim/pdo_record.hpp"
 #include "master/sim/transmitter.hpp"
 
@@ -13,6 +14,7 @@ class Tpdo {
  public:
   explicit Tpdo(PdoRecord record) : record_{record} {}
 
+  void set_traits(const DeviceTraits& traits) noexcept { traits_ = traits; }
   const PdoRecord& record() const noexcept { return record_; }
   /// Back to the state on entering OPERATIONAL: an event is pending, counters are zero.
   void start(Time now) noexcept;
@@ -23,22 +25,26 @@ class Tpdo {
   /// `ready`: when the frame may be on the wire; `window_end`: dropped after it.
   void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
   void on_request(Time now, Transmitter& out) noexcept;
+  /// The RPDO of its number has come.
+  void answer(Time ready, Transmitter& out) noexcept;
   /// Mapped values may have changed.
   void notice(Time now, Transmitter& out) noexcept;
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
   /// Changes of its values are events.
-  bool wants_events() const noexcept {
-    return running_ && record_.valid() && (type_ == 0 || type_ == 254 || type_ == 255);
-  }
+  bool wants_events() const noexcept;
 
  private:
   bool counts_to_its_turn(std::uint8_t counter) noexcept;
   void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
   void event(Time now, Transmitter& out) noexcept;
+  bool runs_by_timer() const noexcept;
+  bool only_answers() const noexcept;
+  Time inhibit() const noexcept;
   void update_deadline() noexcept;
 
   PdoRecord record_;
+  DeviceTraits traits_;
   PdoMapping mapping_;
   std::uint8_t type_ = 255;
   bool running_ = false;
@@ -46,7 +52,8 @@ class Tpdo {
   bool sampled_ = false;    ///< type 252: sample_ holds something
   bool started_ = false;    ///< the SYNC start value has been seen
   std::uint8_t count_ = 0;  ///< SYNCs since the last transmission
-  std::uint64_t last_ = 0;
+  std::uint64_t last_ = 0;  ///< data of the newest frame
+  std::uint64_t seen_ = 0;  ///< data of the newest look
   std::uint64_t sample_ = 0;
   Time allowed_from_{};  ///< inhibit time
   Time timer_ = never;   ///< event timer

@@ -24,7 +24,8 @@ TEST_P(ShareEds, IsWithoutAFinding) {
 
 INSTANTIATE_TEST_SUITE_P(Files, ShareEds,
                          testing::Values("takt_drive402.eds", "takt_io401.eds",
-                                         "takt_encoder406.eds"));
+                                         "takt_encoder406.eds", "lenze8400.eds", "beckhoff_io.eds",
+                                         "plain301.eds", "astraada_drv28.eds"));
 
 }  // namespace
 }  // namespace takt

@@ -1,0 +1,42 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt::sim {
+
+/// A speed that follows its set-point with a limited slope. In counts of the device.
+class Ramp {
+ public:
+  explicit Ramp(std::int64_t counts_a_second) : slope_{counts_a_second} {}
+
+  void reset(Time now) noexcept {
+    value_ = target_ = 0;
+    last_ = now;
+  }
+  void aim(std::int64_t target) noexcept { target_ = target; }
+  void drop() noexcept { value_ = target_ = 0; }
+
+  /// Whole steps of 1 ms; the rest waits for the next call.
+  void advance(Time now) noexcept {
+    const std::int64_t steps = (now - last_) / step;
+    if (steps <= 0) return;
+    last_ += steps * step;
+    const std::int64_t reach = std::min<std::int64_t>(steps, 1'000'000) * slope_ / 1000;
+    value_ = std::clamp(target_, value_ - reach, value_ + reach);
+  }
+
+  std::int64_t value() const noexcept { return value_; }
+  Time next_change() const noexcept { return value_ == target_ ? never : last_ + step; }
+
+ private:
+  static constexpr Time step = std::chrono::milliseconds{1};
+
+  std::int64_t slope_;
+  std::int64_t value_ = 0;
+  std::int64_t target_ = 0;
+  Time last_{};
+};
+
+}  // namespace takt::sim
