@@ -51,7 +51,12 @@ std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
   access.timeout_ms_ = options.timeout_ms;
   if (!options.bus.empty()) {
     const auto id = parse_node_id(options.node);
-    if (!id) return std::unexpected{LiveError{"'" + options.node + "' is not a node id", 2}};
+    if (!id) {
+      return std::unexpected{LiveError{"'" + options.node +
+                                           "' is not a node id 1..127; names are "
+                                           "known to a daemon only, and --bus goes past it",
+                                       2}};
+    }
     access.node_ = id->value();
     access.direct_.emplace(options.bus, *id, std::chrono::milliseconds{options.timeout_ms});
     return access;
@@ -121,6 +126,9 @@ int read(const SdoOptions& options) {
   if (!access) return complain(access.error().sentence, access.error().code);
   const auto value = access->upload(*object);
   if (!value) return transfer_failed(options, *object, value.error());
+  if (type && !fits(*type, *value)) {
+    return transfer_failed(options, *object, {misfit_text(options.type, *type, *value), 1});
+  }
   const std::string text = type ? value_text(*type, *value) : untyped_text(*value);
   if (options.live.json) {
     const nlohmann::json json{{"node", access->node()},   {"index", object->index},

@@ -1,9 +1,49 @@
+#include <cstdio>
+#include <string>
+
 #include "apps/takt/commands.hpp"
+
+namespace {
+
+/// Names of the subcommands of `app`.
+std::string commands_of(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* verb : app.get_subcommands({})) names += ' ' + verb->get_name();
+  return names;
+}
+
+/// CLI11 says of `takt frob` that a subcommand is missing. False: a word that is none was told.
+bool commands_known(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* at = &app;
+  std::string path = app.get_name();
+  for (int i = 1; i < argc && !at->get_subcommands({}).empty(); ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with('-')) return true;
+    const auto verbs =
+        at->get_subcommands([&word](const CLI::App* verb) { return verb->check_name(word); });
+    if (verbs.empty()) {
+      std::fprintf(stderr, "%s: no command '%s'; there are:%s\n", path.c_str(), word.c_str(),
+                   commands_of(*at).c_str());
+      return false;
+    }
+    path += ' ' + word;
+    at = verbs.front();
+  }
+  return true;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"takt - CANopen from the command line", "takt"};
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
+  app.footer(
+      "Examples:\n  takt plan lift.yaml            what taktd will do with a network file\n"
+      "  takt simulate lift.yaml        try it in virtual time\n"
+      "  takt status                    ask the running daemon\n"
+      "Each command has a --help of its own. Exit codes: 0 good, 1 the answer is no, 2 wrong use\n"
+      "or network file, 3 bus trouble, 4 a mandatory node is missing, 5 real-time limit broken.");
   int exit_code = 0;
   takt::add_dump(app, exit_code);
   takt::add_eds(app, exit_code);
@@ -14,6 +54,7 @@ int main(int argc, char** argv) {
   takt::add_top(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
+  if (!commands_known(app, argc, argv)) return 2;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,14 +6,17 @@
 #include "master/gateway/requests.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
+#include "master/wire/sdo_codec.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::size_t largest_value = 16 << 20;
 
-std::expected<std::size_t, LiveError> run(SdoClient& client, FrameChannel& channel,
+/// Everything on the bus arrives here; only the answers of `node` are for the client.
+std::expected<std::size_t, LiveError> run(SdoClient& client, NodeId node, FrameChannel& channel,
                                           const std::string& bus) {
+  const CobId answers = sdo_answer_cob_id(node);
   Outbox out;
   for (;;) {
     if (const auto result = client.take_result()) {
@@ -28,7 +31,9 @@ std::expected<std::size_t, LiveError> run(SdoClient& client, FrameChannel& chann
     StampedFrame frame;
     const Time pause = std::clamp<Time>(client.deadline() - monotonic_now(), Time{0},
                                         std::chrono::milliseconds{100});
-    if (channel.receive(frame, pause)) client.on_frame(frame.frame, monotonic_now());
+    if (!channel.receive(frame, pause)) continue;
+    if (frame.frame.id == answers && !frame.frame.rtr)
+      client.on_frame(frame.frame, monotonic_now());
   }
 }
 
@@ -40,7 +45,7 @@ std::expected<std::vector<std::byte>, LiveError> SdoDirect::upload(ObjectKey obj
   std::vector<std::byte> buffer(largest_value);
   SdoClient client{node_};
   client.upload(object, buffer, timeout_);
-  const auto size = run(client, *channel, bus_);
+  const auto size = run(client, node_, *channel, bus_);
   if (!size) return std::unexpected{size.error()};
   buffer.resize(*size);
   return buffer;
@@ -52,7 +57,7 @@ std::expected<void, LiveError> SdoDirect::download(ObjectKey object,
   if (!channel) return std::unexpected{LiveError{channel.error().message, 3}};
   SdoClient client{node_};
   client.download(object, value, timeout_);
-  const auto size = run(client, *channel, bus_);
+  const auto size = run(client, node_, *channel, bus_);
   if (!size) return std::unexpected{size.error()};
   return {};
 }

@@ -169,6 +169,20 @@ std::string hex_text(std::span<const std::byte> bytes) {
   return text;
 }
 
+bool fits(DataType type, std::span<const std::byte> bytes) noexcept {
+  return is_bytes(type) || bytes.size() == byte_width(type);
+}
+
+std::string misfit_text(std::string_view name, DataType type, std::span<const std::byte> bytes) {
+  constexpr std::size_t shown = 16;
+  const bool long_value = bytes.size() > shown;
+  return fmt::format(
+      "the device sent {} bytes ({}{}), {} takes {}; without a type they are shown "
+      "as they are",
+      bytes.size(), hex_text(bytes.first(std::min(shown, bytes.size()))), long_value ? " ..." : "",
+      name, byte_width(type));
+}
+
 std::string value_text(DataType type, std::span<const std::byte> bytes) {
   if (type == DataType::visible_string) return string_of(bytes);
   if (is_bytes(type)) return hex_text(bytes);

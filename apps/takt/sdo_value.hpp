@@ -15,6 +15,11 @@ namespace takt {
 /// such type.
 std::optional<DataType> parse_data_type(std::string_view text);
 
+/// As many bytes as a value of this type has. Strings and domains have any number.
+bool fits(DataType type, std::span<const std::byte> bytes) noexcept;
+/// What the user is told where they do not fit the type that was called `name`.
+std::string misfit_text(std::string_view name, DataType type, std::span<const std::byte> bytes);
+
 /// Bytes of an SDO value as text: numbers in decimal, strings as they are, else hex.
 std::string value_text(DataType type, std::span<const std::byte> bytes);
 /// For whoever does not know the type: number, text and bytes, as far as they make sense.
