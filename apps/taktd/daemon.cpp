@@ -163,9 +163,12 @@ void Daemon::watch_lateness() {
            std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
 }
 
+/// A mandatory node that never was there keeps the bus from running. One that was ready and goes is
+/// booted again by its plan, and the others go on.
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
-  if (notice.kind != name(EventKind::boot_failed)) return;
+  if (notice.kind == name(EventKind::boot_done)) once_ready_.set(notice.node);
+  if (notice.kind != name(EventKind::boot_failed) || once_ready_[notice.node]) return;
   for (const NodePlan& node : network_.plan.nodes) {
     if (node.id.value() == notice.node && node.mandatory) {
       stop(Exit::node_missing, "node " + std::to_string(notice.node) + " (" + node.name +

@@ -1,4 +1,5 @@
 #pragma once
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -57,6 +58,7 @@ class Daemon {
   FrontWait wait_;
   ServiceNotify service_;
   Reporter reporter_;
+  std::bitset<256> once_ready_;  // nodes that have booted in this run
   RtReport realtime_;
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;
