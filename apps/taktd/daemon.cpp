@@ -138,7 +138,7 @@ void Daemon::hear_intruders() {
   if (ear == nullptr || options_.observe) return;
   ear->poll();
   Event event;
-  while (ear->take(event)) bridge_->tell(to_notice(network_.plan, event));
+  while (ear->take(event)) bridge_->tell(event);
 }
 
 void Daemon::watch_conditions(Time now) {

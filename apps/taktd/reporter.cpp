@@ -39,25 +39,8 @@ void Reporter::say(Weight weight, const std::string& sentence) {
 
 void Reporter::tell(const Notice& notice) {
   ++told_[static_cast<std::size_t>(notice.weight)];
-  show(notice);
+  say(notice.weight, notice.text);
   if (events_.is_open()) write(notice);
-}
-
-void Reporter::show(const Notice& notice) {
-  constexpr int most_a_second = 6;
-  Shown& shown = shown_[{notice.kind, notice.node}];
-  if (notice.when - shown.second >= std::chrono::seconds{1}) {
-    shown.second = notice.when;
-    shown.count = 0;
-  }
-  if (++shown.count > most_a_second) {
-    ++shown.kept_back;
-    return;
-  }
-  const std::uint64_t kept_back = std::exchange(shown.kept_back, 0);
-  say(notice.weight, kept_back == 0 ? notice.text
-                                    : notice.text + " (" + std::to_string(kept_back) +
-                                          " more of this kind before)");
 }
 
 void Reporter::write(const Notice& notice) {

@@ -2,17 +2,14 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
-#include <map>
 #include <string>
-#include <utility>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/gateway/notice.hpp"
 
 namespace takt {
 
-/// Tells people: events on stderr in words, a few a second of each kind and node; all of them as
-/// JSON lines in a file. Front thread.
+/// Tells people: notices on stderr in words, and as JSON lines in a file. Front thread.
 class Reporter {
  public:
   explicit Reporter(const BusPlan& plan) : plan_{plan} {}
@@ -29,16 +26,9 @@ class Reporter {
   }
 
  private:
-  struct Shown {
-    Time second{};  // that `count` counts in
-    int count = 0;
-    std::uint64_t kept_back = 0;
-  };
-  void show(const Notice& notice);
   void write(const Notice& notice);
 
   const BusPlan& plan_;
-  std::map<std::pair<std::string, std::uint8_t>, Shown> shown_;
   std::ofstream events_;
   std::array<std::uint64_t, 3> told_{};
 };

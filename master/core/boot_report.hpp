@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
 
 /// Error status of CiA 302-2 in words: "vendor id differs".
 std::string_view letter_text(char letter) noexcept;
+
+/// "node 5 'shoulder'"; 0: "bus 'lift'".
+std::string subject(const BusPlan& plan, std::uint8_t node);
 
 /// One line for any event; the explanation for boot_failed.
 std::string describe(const BusPlan& plan, const Event& event);

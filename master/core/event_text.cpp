@@ -10,14 +10,6 @@
 namespace takt {
 namespace {
 
-std::string node_name(const BusPlan& plan, const Event& event) {
-  if (event.node == 0) return "bus '" + plan.name + "'";
-  const auto found = std::ranges::find(plan.nodes, event.node,
-                                       [](const NodePlan& node) { return node.id.value(); });
-  if (found == plan.nodes.end()) return "node " + std::to_string(int{event.node});
-  return node_text(*found);
-}
-
 std::string signal_name(const BusPlan& plan, std::int64_t index) {
   const auto& signals = plan.layout.signals;
   if (index < 0 || static_cast<std::size_t>(index) >= signals.size()) {
@@ -188,6 +180,14 @@ std::string line(const BusPlan& plan, const Event& event) {
 
 }  // namespace
 
+std::string subject(const BusPlan& plan, std::uint8_t node) {
+  if (node == 0) return "bus '" + plan.name + "'";
+  const auto found =
+      std::ranges::find(plan.nodes, node, [](const NodePlan& each) { return each.id.value(); });
+  if (found == plan.nodes.end()) return "node " + std::to_string(int{node});
+  return node_text(*found);
+}
+
 std::string describe(const BusPlan& plan, const Event& event) {
   if (event.kind == EventKind::boot_failed) {
     const auto found = std::ranges::find(plan.nodes, event.node,
@@ -199,7 +199,7 @@ std::string describe(const BusPlan& plan, const Event& event) {
     }
     return text;
   }
-  return node_name(plan, event) + ": " + line(plan, event);
+  return subject(plan, event.node) + ": " + line(plan, event);
 }
 
 }  // namespace takt

@@ -45,6 +45,7 @@ Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, Noti
       requests_{master.plan(),
                 {.session = options_.session, .observe = options_.observe},
                 [this](const Request& request) { return master_.submit(request); }},
+      outages_{master.plan()},
       wall_minus_monotonic_{realtime_offset()} {
   master_.status(snapshot_);
 }
@@ -136,10 +137,31 @@ void Bridge::answer(reply_t reply) {
 
 void Bridge::take_events() {
   Event event;
-  while (master_.take(event)) tell(to_notice(master_.plan(), event));
+  while (master_.take(event)) tell(event);
+  for (const Notice& notice : outages_.take_due(monotonic_now())) send(notice);
+}
+
+void Bridge::tell(const Event& event) {
+  if (event.kind == EventKind::stopped) {
+    for (const Notice& notice : outages_.take_rest(event.when)) send(notice);
+  }
+  if (!PdoOutages::concerns(event.kind)) {
+    tell(to_notice(master_.plan(), event));
+  } else if (const auto notice = outages_.on_event(event)) {
+    send(*notice);
+  }
 }
 
 void Bridge::tell(Notice notice) {
+  const auto kept_back = limit_.allow(notice);
+  if (!kept_back) return;
+  if (*kept_back != 0) {
+    notice.text += " (" + std::to_string(*kept_back) + " more of this kind before)";
+  }
+  send(notice);
+}
+
+void Bridge::send(const Notice& notice) {
   event_t message = to_message(master_.plan(), notice);
   message.utime = wall_microseconds(notice.when);
   message.session = options_.session;

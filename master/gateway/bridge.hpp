@@ -8,6 +8,8 @@
 #include "master/gateway/image_messages.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
+#include "master/gateway/notice_limit.hpp"
+#include "master/gateway/pdo_outages.hpp"
 #include "master/gateway/requests.hpp"
 #include "master/gateway/status_messages.hpp"
 #include "master/gateway/transport.hpp"
@@ -34,14 +36,16 @@ struct BridgeOptions {
 /// become set-points and requests. Reads clocks, never waits.
 class Bridge {
  public:
-  /// `tell` hears every event and every notice of the gateway's own, after LCM has.
+  /// `tell` hears what LCM hears of events and of the gateway's own notices, after it has.
   Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell);
 
   /// Everything that can be done now. True: there was an image.
   bool serve();
   /// When status_t, layout_t or timing_t are due next.
   Time next_message() const noexcept;
-  /// A notice of somebody else: the diagnostic socket, the daemon.
+  /// An event of the bus thread or of the diagnostic socket.
+  void tell(const Event& event);
+  /// A notice of somebody else. Told to LCM and to `tell`, unless there are too many of its kind.
   void tell(Notice notice);
 
   const StatusSnapshot& status() const noexcept { return snapshot_; }
@@ -58,6 +62,7 @@ class Bridge {
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
   void on_request(Bytes data);
+  void send(const Notice& notice);
   void tell_damaged(const std::string& channel, DecodeFault fault);
   void publish_layout();
   void publish_status();
@@ -80,6 +85,8 @@ class Bridge {
   TimingMessages timing_messages_;
   Commands commands_;
   Requests requests_;
+  PdoOutages outages_;
+  NoticeLimit limit_;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
