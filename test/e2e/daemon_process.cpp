@@ -1,14 +1,9 @@
 #include "test/e2e/daemon_process.hpp"
 
 #include <chrono>
-#include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 #include "master/core/node_status.hpp"
 #include "master/gateway/names.hpp"
@@ -21,51 +16,20 @@ namespace {
 namespace fs = std::filesystem;
 constexpr Time generous = std::chrono::seconds{60};
 
-std::string read_file(const fs::path& path) {
-  std::ifstream file{path};
-  return {std::istreambuf_iterator<char>{file}, {}};
-}
-
-fs::path make_folder() {
-  std::string name = (fs::temp_directory_path() / "takt-e2e-XXXXXX").string();
-  return ::mkdtemp(name.data());
-}
-
 std::uint16_t free_port() { return TcpqBroker::listen(0).value()->port(); }
-
-pid_t spawn(std::vector<std::string> arguments, const fs::path& log) {
-  std::vector<char*> pointers;
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  pid_t pid = -1;
-  const int error = ::posix_spawn(&pid, pointers[0], &actions, nullptr, pointers.data(), ::environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  EXPECT_EQ(error, 0);
-  return pid;
-}
 
 }  // namespace
 
 DaemonProcess::DaemonProcess(const fs::path& network, std::vector<std::string> arguments)
-    : folder_{make_folder()} {
-  const std::string url = "tcpq://127.0.0.1:" + std::to_string(free_port());
+    : url_{"tcpq://127.0.0.1:" + std::to_string(free_port())} {
   arguments.insert(arguments.begin(),
-                   {TAKTD, network.string(), "--lcm-url", url, "--events", event_file()});
-  pid_ = spawn(std::move(arguments), folder_ / "log");
-  lcm_ = LcmClient::open(url, {".*"}).value();
+                   {TAKTD, network.string(), "--lcm-url", url_, "--events", event_file()});
+  process_.emplace(std::move(arguments), folder_ / "log");
+  lcm_ = LcmClient::open(url_, {".*"}).value();
 }
 
 DaemonProcess::~DaemonProcess() {
-  if (pid_ > 0) {
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
   if (testing::Test::HasFailure()) std::fprintf(stderr, "taktd said:\n%s\n", log().c_str());
-  fs::remove_all(folder_);
 }
 
 void DaemonProcess::stop_for(std::chrono::milliseconds time) const {
@@ -75,16 +39,7 @@ void DaemonProcess::stop_for(std::chrono::milliseconds time) const {
 }
 
 std::optional<int> DaemonProcess::wait() {
-  const Time until = monotonic_now() + generous;
-  int status = 0;
-  while (::waitpid(pid_, &status, WNOHANG) == 0) {
-    if (monotonic_now() > until) return std::nullopt;
-    take();
-    std::this_thread::sleep_for(std::chrono::milliseconds{5});
-  }
-  pid_ = -1;
-  if (!WIFEXITED(status)) return std::nullopt;
-  return WEXITSTATUS(status);
+  return process_->wait([this] { take(); });
 }
 
 void DaemonProcess::take() {
@@ -180,7 +135,6 @@ std::size_t DaemonProcess::events_in_file(const std::string& kind) const {
 }
 
 std::string DaemonProcess::event_file() const { return folder_ / "events.jsonl"; }
-std::string DaemonProcess::log() const { return read_file(folder_ / "log"); }
 
 fs::path slow_network(const fs::path& folder, const std::function<void(std::string&)>& edit) {
   const fs::path demo = fs::path{TAKT_SOURCE_DIR} / "share/demo/two_axes.yaml";

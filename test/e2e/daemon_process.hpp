@@ -1,15 +1,14 @@
 #pragma once
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 #include "master/gateway/bus_view.hpp"
 #include "master/gateway/lcm_client.hpp"
+#include "test/e2e/process.hpp"
 
 namespace takt::test {
 
@@ -23,7 +22,7 @@ class DaemonProcess {
   DaemonProcess(const DaemonProcess&) = delete;
   DaemonProcess& operator=(const DaemonProcess&) = delete;
 
-  void signal(int number) const { ::kill(pid_, number); }
+  void signal(int number) const { process_->signal(number); }
   /// Lets none of its threads run for so long.
   void stop_for(std::chrono::milliseconds time) const;
   /// Exit code within a generous time; none: it still runs, or a signal ended it.
@@ -51,13 +50,17 @@ class DaemonProcess {
   std::size_t events_in_file(const std::string& kind) const;
   bool all_ready();
   std::string event_file() const;
-  std::string log() const;  ///< its stderr so far
+  std::string log() const { return process_->output(); }
+  /// Waits for this text in the log. False: it never came.
+  bool says(const std::string& text) const { return process_->says(text); }
+  const std::string& lcm_url() const noexcept { return url_; }
 
  private:
   void take();
 
-  std::filesystem::path folder_;
-  pid_t pid_ = -1;
+  Folder folder_;
+  std::string url_;
+  std::optional<Process> process_;
   std::optional<LcmClient> lcm_;
   BusViews views_;
 };

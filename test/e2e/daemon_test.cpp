@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -13,18 +12,12 @@ namespace {
 
 class Taktd : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "takt-e2e-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& text) {
     std::ofstream{folder_ / name} << text;
     return folder_ / name;
   }
 
-  std::filesystem::path folder_;
+  Folder folder_;
 };
 
 /// The next controlword on the way to Operation enabled. CiA 402-2.
@@ -34,7 +27,7 @@ std::int64_t next_controlword(std::int64_t statusword) {
 }
 
 TEST_F(Taktd, BootsTheDemoAndPublishesAnImageEachCycle) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
 
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   const std::uint64_t images = daemon.bus().images();
@@ -46,7 +39,7 @@ TEST_F(Taktd, BootsTheDemoAndPublishesAnImageEachCycle) {
 }
 
 TEST_F(Taktd, HoldsItsSimulatedDevicesWhileItIsHeldItself) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   const std::size_t emcys = daemon.events("emcy");
 
@@ -60,7 +53,7 @@ TEST_F(Taktd, HoldsItsSimulatedDevicesWhileItIsHeldItself) {
 }
 
 TEST_F(Taktd, CommandsMoveAnAxisAndEndWithTheirTimeToLive) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
   std::int64_t target = daemon.value("shoulder", "position_actual_value");
@@ -83,7 +76,7 @@ TEST_F(Taktd, CommandsMoveAnAxisAndEndWithTheirTimeToLive) {
 }
 
 TEST_F(Taktd, RefusesSecondSendersAndOldSessions) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   const auto both = [&] {
     daemon.command(daemon.command_for("first", {{"io.outputs_1_to_8", 1}}));
@@ -100,7 +93,7 @@ TEST_F(Taktd, RefusesSecondSendersAndOldSessions) {
 }
 
 TEST_F(Taktd, SurvivesGarbageOnItsChannels) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   std::vector<std::byte> garbage(300, std::byte{0xEE});
   std::vector<std::byte> buffer;
@@ -125,7 +118,7 @@ TEST_F(Taktd, SurvivesGarbageOnItsChannels) {
 }
 
 TEST_F(Taktd, StopsInOrderOnSigterm) {
-  DaemonProcess daemon{slow_network(folder_)};
+  DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
   daemon.signal(SIGTERM);
@@ -135,13 +128,13 @@ TEST_F(Taktd, StopsInOrderOnSigterm) {
 }
 
 TEST_F(Taktd, EndsAfterTheTimeOfFor) {
-  DaemonProcess daemon{slow_network(folder_), {"--bus", "sim", "--for", "500ms"}};
+  DaemonProcess daemon{slow_network(folder_.path()), {"--bus", "sim", "--for", "500ms"}};
 
   EXPECT_EQ(daemon.wait(), 0);
 }
 
 TEST_F(Taktd, ExitsWith4AndNamesTheCauseWhenAMandatoryNodeIsAnother) {
-  const auto network = slow_network(folder_, [](std::string& text) {
+  const auto network = slow_network(folder_.path(), [](std::string& text) {
     const std::string elbow = "elbow: {<<: *axis, node_id: 2}";
     text.replace(text.find(elbow), elbow.size(),
                  "elbow: {<<: *axis, node_id: 2, vendor_id: 0x1234}");
@@ -161,7 +154,7 @@ TEST_F(Taktd, ExitsWith2OnABadNetworkFile) {
 }
 
 TEST_F(Taktd, ExitsWith3AndSaysWhatToDoWithoutItsInterface) {
-  DaemonProcess daemon{slow_network(folder_), {"--bus", "nocan7"}};
+  DaemonProcess daemon{slow_network(folder_.path()), {"--bus", "nocan7"}};
 
   EXPECT_EQ(daemon.wait(), 3);
   EXPECT_NE(daemon.log().find("nocan7"), std::string::npos);

@@ -1,0 +1,87 @@
+#include <chrono>
+#include <gtest/gtest.h>
+#include <regex>
+#include <string>
+
+#include "master/linux/clock.hpp"
+#include "master/linux/frame_channel.hpp"
+#include "test/e2e/daemon_process.hpp"
+#include "test/e2e/process.hpp"
+
+namespace takt::test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Follows the first RPDO of an axis (controlword, target position) on the bus.
+class WatchedAxis {
+ public:
+  WatchedAxis(FrameChannel& channel, CobId rpdo) : channel_{channel}, rpdo_{rpdo} {}
+
+  /// Takes frames until `done`, at most for a generous time.
+  template <class Done>
+  bool watch(Done done) {
+    const Time until = monotonic_now() + seconds{60};
+    while (!done()) {
+      if (monotonic_now() > until) return false;
+      StampedFrame got;
+      if (channel_.receive(got, milliseconds{20})) take(got.frame);
+    }
+    return true;
+  }
+  bool moving() const noexcept { return changes_ > 50 && (controlword_ & 0x0F) == 0x0F; }
+  /// CiA 402: bit 2 of the controlword at 0 demands the quick stop.
+  bool quick_stop() const noexcept { return (controlword_ & 0x06) == 0x02; }
+  /// SYNCs since the target changed for the last time.
+  int syncs_at_rest() const noexcept { return syncs_; }
+
+ private:
+  void take(const Frame& frame) {
+    if (frame.id == CobId::base(0x080)) ++syncs_;
+    if (frame.id != rpdo_ || frame.length != 6) return;
+    controlword_ = frame.data[0] | frame.data[1] << 8;
+    std::uint32_t target = 0;
+    for (std::size_t i = 6; i > 2; --i) target = target << 8 | frame.data[i - 1];
+    if (target == target_) return;
+    target_ = target;
+    ++changes_;
+    syncs_ = 0;
+  }
+
+  FrameChannel& channel_;
+  CobId rpdo_;
+  int controlword_ = 0;
+  std::uint32_t target_ = 0;
+  int changes_ = 0;
+  int syncs_ = 0;
+};
+
+TEST(StoppedApplication, ItsAxesQuickStopAfterTheTimeToLive) {
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path(), [](std::string& text) {
+    text = std::regex_replace(text, std::regex{"after_cycles: \\d+"}, "after_cycles: 20");
+  });
+  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
+  ASSERT_TRUE(devices.says("3 devices on"));
+  DaemonProcess daemon{network, {"--bus", bus}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  auto channel = FrameChannel::open(bus);
+  ASSERT_TRUE(channel.has_value());
+  WatchedAxis axis{*channel, CobId::base(0x201)};
+  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                     folder / "move"};
+  ASSERT_TRUE(axis.watch([&] { return axis.moving(); })) << move.output();
+  EXPECT_EQ(daemon.events("fallback_begun"), 0U);
+
+  move.signal(SIGSTOP);
+
+  EXPECT_TRUE(axis.watch([&] { return axis.quick_stop(); }));
+  EXPECT_GE(axis.syncs_at_rest(), 15);
+  EXPECT_LE(axis.syncs_at_rest(), 24) << "20 cycles to live, and the images on their way";
+  EXPECT_TRUE(daemon.hear([&] { return daemon.events("fallback_begun") > 0; }));
+}
+
+}  // namespace
+}  // namespace takt::test
