@@ -6,6 +6,7 @@
 #include <future>
 #include <utility>
 
+#include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/summary.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/linux/clock.hpp"
@@ -15,11 +16,6 @@ namespace {
 
 constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
 constexpr std::size_t heap_bytes = 8 << 20;
-
-std::string bus_to_use(const DaemonOptions& options, const BusPlan& plan) {
-  if (options.bus) return *options.bus;
-  return plan.interface.empty() ? "sim" : plan.interface;
-}
 
 /// Not 0, and another one each time.
 std::int64_t new_session() {
@@ -32,7 +28,7 @@ std::int64_t new_session() {
 Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
     : network_{std::move(network)},
       options_{std::move(options)},
-      bus_name_{bus_to_use(options_, network_.plan)},
+      bus_name_{choose_bus(options_, network_)},
       session_{new_session()},
       wait_{signals_.wait_mask()},
       reporter_{network_.plan} {

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
 #include "apps/taktd/options.hpp"
 #include "apps/taktd/reporter.hpp"
@@ -19,6 +20,7 @@ int run(const DaemonOptions& options) {
   }
   if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
   if (options.check) {
+    choose_bus(options, network);
     std::fputs(plan_summary(network).c_str(), stdout);
     return static_cast<int>(Exit::good);
   }

@@ -153,6 +153,34 @@ TEST_F(Taktd, ExitsWith2OnABadNetworkFile) {
   EXPECT_NE(daemon.log().find("bad.yaml:3:"), std::string::npos);
 }
 
+TEST_F(Taktd, NamesABusAfterItsInterfaceWhereTheFileNamesNone) {
+  const auto nameless = slow_network(folder_.path(), [](std::string& text) {
+    const std::string name = "name: demo, ";
+    text.erase(text.find(name), name.size());
+  });
+  const auto check = [&](const char* bus) {
+    return run({TAKTD, nameless.string(), "--check", "--bus", bus}, folder_.path()).output;
+  };
+  EXPECT_NE(check("can0").find("bus can0: 3 nodes"), std::string::npos) << check("can0");
+  EXPECT_NE(check("sim").find("bus sim: 3 nodes"), std::string::npos);
+
+  const std::string bus = "unix:" + (folder_ / "x").string();
+  DaemonProcess daemon{nameless, {"--bus", bus}};
+
+  EXPECT_TRUE(daemon.hear([&] { return daemon.bus().status() && daemon.bus().images() > 10; }));
+  EXPECT_EQ(daemon.bus().status()->bus, bus);
+  EXPECT_TRUE(daemon.says("UNIX__"));
+}
+
+TEST_F(Taktd, KeepsTheNameOfTheFileOnAnotherInterface) {
+  const auto network = slow_network(folder_.path());
+
+  const Ended ended = run({TAKTD, network.string(), "--check", "--bus", "can0"}, folder_.path());
+
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_NE(ended.output.find("bus demo: 3 nodes"), std::string::npos) << ended.output;
+}
+
 TEST_F(Taktd, ExitsWith3AndSaysWhatToDoWithoutItsInterface) {
   DaemonProcess daemon{slow_network(folder_.path()), {"--bus", "nocan7"}};
 

@@ -1,0 +1,17 @@
+#include "apps/taktd/bus_choice.hpp"
+
+#include "master/linux/bus_name.hpp"
+
+namespace takt {
+
+std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network) {
+  BusPlan& plan = network.plan;
+  if (options.bus) {
+    const bool simulated = BusName::parse(*options.bus).kind == BusName::Kind::simulated;
+    plan.interface = simulated ? "" : *options.bus;
+    if (!network.bus_named && !simulated) plan.name = plan.interface;
+  }
+  return plan.interface.empty() ? "sim" : plan.interface;
+}
+
+}  // namespace takt
