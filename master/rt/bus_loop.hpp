@@ -18,6 +18,7 @@
 #include "master/rt/port_watch.hpp"
 #include "master/rt/service_queue.hpp"
 #include "master/rt/sync_gate.hpp"
+#include "master/rt/sync_hold.hpp"
 #include "master/rt/wire_time.hpp"
 
 namespace takt {
@@ -86,6 +87,7 @@ class BusLoop {
   ServiceQueue services_;
   BeatClock clock_;
   SyncCounter counter_;
+  SyncHold hold_;
   SyncGate gate_;
   ArrivalPrediction prediction_;
   WireTime wire_;

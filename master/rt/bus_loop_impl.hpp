@@ -17,6 +17,7 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       port_watch_{events_},
       clock_{plan.cycle.period},
       counter_{plan.cycle.sync_overflow},
+      hold_{plan},
       gate_{plan.cycle.period},
       prediction_{plan.cycle.sync ? plan.cycle.receive_window : Time{0}},
       wire_{plan.bitrate},
@@ -102,7 +103,9 @@ void BusLoop<P, N>::send_sync() noexcept {
   exchange_.timing.sync_lateness.record(late);
   if (late > clock_.period() / 10) ++status_.cycles_late;
   bool heard = true;
-  if (plan_.cycle.sync && !options_.observe) {
+  if (plan_.cycle.sync && !options_.observe && !hold_.open(network_.nodes())) {
+    heard = false;
+  } else if (plan_.cycle.sync && !options_.observe) {
     const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
                                        : sync_frame(plan_.cycle.sync_cob_id);
     heard = send({&sync, 1}) == 1;

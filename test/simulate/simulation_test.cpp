@@ -37,6 +37,18 @@ TEST(Simulation, BootsAllNodesAndMovesTheAxes) {
   }
 }
 
+TEST(Simulation, SendsNoSyncCounterToADeviceThatStillExpectsNone) {
+  LoadedNetwork network = load_network(TAKT_SOURCE_DIR "/test/simulate/data/counter.yaml");
+
+  const auto outcome = simulate(network, {.duration = 2s});
+
+  EXPECT_GT(outcome.sync.count, 150u);
+  for (const NodeOutcome& node : outcome.nodes) {
+    EXPECT_EQ(node.status.boot_count, 1u) << node.name;
+    EXPECT_EQ(node.status.emcy_count, 0u) << node.name << ": EMCY 0x8240";
+  }
+}
+
 TEST(Simulation, GivesTheSameJsonForTheSameSeed) {
   SimulationOptions options{.duration = 2s, .seed = 7, .move = true, .wake_jitter = 80us};
   options.faults.push_back({.kind = sim::FaultKind::error_frames, .probability = 0.01});
