@@ -1,0 +1,157 @@
+// Expected times after the 8400 HighLine reference manual, 11.8.3: transmission type.
+#include <gtest/gtest.h>
+
+#include "test/unit/families/family_device.hpp"
+
+namespace takt::sim {
+namespace {
+
+using Times = std::vector<int>;
+
+FamilyDevice lenze(const std::string& firmware = "") {
+  return {"lenze8400.eds", "lenze8400", {.firmware = firmware}};
+}
+
+TEST(Lenze8400, Type0IsSentAfterSyncAndOnlyAfterAnEvent) {
+  FamilyDevice device = lenze();
+  device.write({0x1800, 2}, 0, 1);
+  device.start();
+  device.at(5);
+  device.sync();  // tells its state once
+  device.clear();
+
+  device.at(10);
+  device.sync();
+  device.at(12);
+  device.words(0x205, {0, 0, 1, 0});
+  device.at(20);
+  device.sync();
+  device.at(30);
+  device.sync();
+  device.at(31);
+  device.words(0x205, {0, 0, 2, 0});
+  device.at(32);
+  device.words(0x205, {0, 0, 1, 0});  // back again: a bit has changed all the same
+  device.at(40);
+  device.sync();
+
+  EXPECT_EQ(device.times(0x185), (Times{20, 40}));
+}
+
+TEST(Lenze8400, AnElapsedCycleTimeIsAnEventOfType0) {
+  FamilyDevice device = lenze();
+  device.write({0x1800, 2}, 0, 1);
+  device.write({0x1800, 5}, 25, 2);
+  device.start();
+
+  for (int ms = 10; ms <= 100; ms += 10) {
+    device.at(ms);
+    device.sync();
+  }
+
+  EXPECT_EQ(device.times(0x185), (Times{10, 30, 50, 80, 100}));  // over at 25, 50, 75, 100
+}
+
+TEST(Lenze8400, Types254And255MeanTheSameAndTheCycleComesOnTop) {
+  for (const std::uint32_t type : {254u, 255u}) {
+    FamilyDevice device = lenze();
+    device.write({0x1800, 2}, type, 1);
+    device.write({0x1800, 5}, 50, 2);
+    device.start();
+
+    device.at(20);
+    device.words(0x205, {0, 0, 1, 0});
+    device.at(120);
+
+    EXPECT_EQ(device.times(0x185), (Times{0, 20, 50, 100})) << type;
+  }
+}
+
+TEST(Lenze8400, TypeNIsSentWithEachNthSync) {
+  FamilyDevice device = lenze();
+  device.write({0x1800, 2}, 1, 1);
+  device.write({0x1801, 2}, 4, 1);
+  device.start();
+
+  for (int ms = 10; ms <= 80; ms += 10) {
+    device.at(ms);
+    device.sync();
+  }
+
+  EXPECT_EQ(device.times(0x185), (Times{10, 20, 30, 40, 50, 60, 70, 80}));
+  EXPECT_EQ(device.times(0x285), (Times{40, 80}));
+}
+
+TEST(Lenze8400, IsPolledByRtr) {
+  FamilyDevice device = lenze();
+  EXPECT_EQ(device.write({0x1800, 2}, 252, 1), 0u);
+  EXPECT_EQ(device.write({0x1801, 2}, 253, 1), 0u);
+  device.start();
+
+  device.at(5);
+  device.request(0x185);  // nothing was sampled yet
+  device.request(0x285);
+  device.at(10);
+  device.sync();
+  device.at(12);
+  device.words(0x205, {0, 0, 9, 0});
+  device.at(15);
+  device.request(0x185);
+
+  EXPECT_EQ(device.times(0x285), (Times{5}));
+  EXPECT_EQ(device.times(0x185), (Times{15}));
+  EXPECT_EQ(device.of(0x185)[0].data[4], 0) << "the sample of the SYNC";
+}
+
+TEST(Lenze8400, RefusesReservedTypesAnd29BitIdentifiers) {
+  FamilyDevice device = lenze();
+
+  for (std::uint32_t type = 241; type <= 251; ++type) {
+    EXPECT_EQ(device.write({0x1800, 2}, type, 1), 0x06090030u) << type;
+    EXPECT_EQ(device.write({0x1400, 2}, type, 1), 0x06090030u) << type;
+  }
+  EXPECT_EQ(device.write({0x1800, 1}, 0xA0012345, 4), 0x06090030u);
+  EXPECT_EQ(device.read({0x1800, 4}), 0x06090011u);
+}
+
+/// Type 1, SYNC every 20 ms by the drive itself.
+FamilyDevice producer(const std::string& firmware) {
+  FamilyDevice device = lenze(firmware);
+  device.write({0x1800, 2}, 1, 1);
+  EXPECT_EQ(device.write({0x1006, 0}, 20'000, 4), 0u);
+  EXPECT_EQ(device.write({0x1005, 0}, 0x40000080, 4), 0u);
+  return device;
+}
+
+TEST(Lenze8400, ObeysTheSyncThatItMakesFromFirmware16On) {
+  FamilyDevice device = producer("16.00.00");
+  device.start();
+  device.at(100);
+
+  EXPECT_EQ(device.times(0x080).size(), 5u);
+  EXPECT_EQ(device.times(0x185), device.times(0x080));
+}
+
+TEST(Lenze8400, DoesNotObeyItsOwnSyncBeforeFirmware16) {
+  FamilyDevice device = producer("15.02");
+  device.start();
+  device.at(100);
+
+  EXPECT_EQ(device.times(0x080).size(), 5u);
+  EXPECT_EQ(device.times(0x185), Times{});
+}
+
+TEST(Lenze8400, DoesNotObeyItsOwnSyncOnAnotherIdentifier) {
+  FamilyDevice device = producer("16.00.00");
+  EXPECT_EQ(device.write({0x5E8F, 0}, 0x090, 2), 0u);  // C00368
+  device.start();
+  device.at(100);
+
+  EXPECT_EQ(device.times(0x090).size(), 5u);
+  EXPECT_EQ(device.times(0x185), Times{});
+  device.sync();
+  EXPECT_EQ(device.times(0x185), (Times{100})) << "one from elsewhere";
+}
+
+}  // namespace
+}  // namespace takt::sim
