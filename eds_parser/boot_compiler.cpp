@@ -6,6 +6,7 @@
 #include "eds_parser/boot_pdos.hpp"
 #include "eds_parser/boot_steps.hpp"
 #include "eds_parser/boot_values.hpp"
+#include "eds_parser/device_data.hpp"
 
 namespace takt {
 namespace {
@@ -20,6 +21,7 @@ class BootCompiler {
       : node_{node},
         spec_{*node.node.spec},
         dictionary_{*node.node.dictionary},
+        tweaks_{node.node.data == nullptr ? BootTweaks{} : node.node.data->boot},
         context_{context},
         report_{report},
         steps_{dictionary_, context.sdo_timeout} {}
@@ -30,15 +32,16 @@ class BootCompiler {
     restore();
     heartbeat();
     sync();
-    append_values(node_.node, context_, steps_, report_);
+    if (!tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
+    if (tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     start();
     return steps_.take();
   }
 
  private:
   void reset() {
-    const ResetPolicy policy = *spec_.reset;
+    const ResetPolicy policy = spec_.reset.value_or(tweaks_.reset.value_or(*spec_.reset));
     if (policy != ResetPolicy::none) {
       steps_.nmt(
           policy == ResetPolicy::node ? NmtCommand::reset_node : NmtCommand::reset_communication,
@@ -51,6 +54,13 @@ class BootCompiler {
   void await_bootup() {
     steps_.wait(BootAction::await_bootup, std::min(longest_bootup_wait, context_.boot_timeout), 'B',
                 "boot-up message; a node that sends none is probed next");
+    pause(tweaks_.pause_after_bootup_ms, "after the boot-up message");
+  }
+
+  void pause(std::uint32_t ms, const std::string& when) {
+    if (ms == 0) return;
+    steps_.wait(BootAction::pause, std::chrono::milliseconds{ms}, 'J',
+                "pause " + when + ", as " + node_.node.data->name + " needs it");
   }
 
   void probe() {
@@ -214,6 +224,7 @@ class BootCompiler {
       steps_.wait(BootAction::await_heartbeat, context_.heartbeat_timeout, 'K', "first heartbeat");
     }
     if (!context_.start_nodes) return;
+    pause(tweaks_.pause_before_start_ms, "before the start");
     steps_.nmt(NmtCommand::start, "start");
     if (watched) {
       steps_.wait(BootAction::await_operational,
@@ -225,6 +236,7 @@ class BootCompiler {
   const NodePdos& node_;
   const NodeSpec& spec_;
   const ObjectDictionary& dictionary_;
+  BootTweaks tweaks_;
   const BootContext& context_;
   NetworkReport& report_;
   BootSteps steps_;

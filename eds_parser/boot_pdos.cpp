@@ -70,6 +70,11 @@ class PdoBoot {
     return text + ": by event";
   }
 
+  std::string unit_text() const {
+    const std::uint32_t us = pdo_.inhibit_unit_us;
+    return us % 1000 == 0 ? std::to_string(us / 1000) + " ms" : std::to_string(us) + " us";
+  }
+
   void compare_communication() {
     if (steps_.has(cob_id_key())) {
       steps_
@@ -123,7 +128,7 @@ class PdoBoot {
       steps_.integer(action, communication(sub), value, pdo_.label() + " " + text).optional = true;
     };
     step(pdo_.has_inhibit, 3, pdo_.inhibit_time,
-         "inhibit time " + std::to_string(pdo_.inhibit_time) + " x 100 us");
+         "inhibit time " + std::to_string(pdo_.inhibit_time) + " x " + unit_text());
     step(pdo_.has_event_timer, 5, pdo_.event_timer,
          (pdo_.is_tpdo ? "event timer " : "deadline ") + std::to_string(pdo_.event_timer) + " ms");
     step(pdo_.has_sync_start, 6, pdo_.sync_start,

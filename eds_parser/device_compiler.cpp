@@ -1,5 +1,7 @@
 #include "eds_parser/device_compiler.hpp"
 
+#include "eds_parser/device_data.hpp"
+
 namespace takt {
 namespace {
 
@@ -51,6 +53,17 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   return object;
 }
 
+/// The simulated device says the firmware that it has.
+void set_firmware(const NodeSource& node, DeviceTable& table) {
+  table.firmware = to_string(*node.firmware);
+  if (node.data == nullptr || !node.data->revision_is_firmware) return;
+  const std::uint64_t revision =
+      std::uint64_t{node.firmware->parts[0]} << 16 | node.firmware->parts[1];
+  for (DeviceObject& object : table.objects) {
+    if (object.key == ObjectKey{0x1018, 3}) object.value = to_bytes(Value{revision}, object.type);
+  }
+}
+
 }  // namespace
 
 DeviceTable compile_device(const NodeSource& node) {
@@ -68,6 +81,7 @@ DeviceTable compile_device(const NodeSource& node) {
   for (const Object& object : dictionary.objects) {
     for (const SubObject& sub : object.subs) table.objects.push_back(object_of(object.index, sub));
   }
+  if (node.firmware) set_firmware(node, table);
   return table;
 }
 

@@ -7,15 +7,21 @@
 #include "eds_parser/network_spec.hpp"
 #include "eds_parser/object_dictionary.hpp"
 #include "eds_parser/table/data_type.hpp"
+#include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {
 
-/// A node of the network file beside its device description. Both outlive the compilation.
+struct DeviceData;
+
+/// A node of the network file beside its device description and its device data. All outlive the
+/// compilation.
 struct NodeSource {
   const NodeSpec* spec = nullptr;
   const ObjectDictionary* dictionary = nullptr;
   NodeId id;
+  const DeviceData* data = nullptr;  ///< nullptr: nothing is known beside the EDS
+  std::optional<Firmware> firmware{};
 };
 
 /// One mapped object of an effective PDO.
@@ -56,10 +62,11 @@ struct EffectivePdo {
   CobIdOrigin origin = CobIdOrigin::device_file;
   bool has_cob_id = false;  ///< false: still to be assigned
   std::uint8_t transmission = 255;
-  std::uint16_t inhibit_time = 0;  ///< 100 us
-  std::uint16_t event_timer = 0;   ///< ms, sub 5 of the device
-  std::uint8_t sync_start = 0;     ///< sub 6
-  bool has_inhibit = false;        ///< the device has a writable sub 3; sub 5; sub 6
+  std::uint16_t inhibit_time = 0;  ///< as sub 3 holds it, in inhibit_unit_us
+  std::uint32_t inhibit_unit_us = 100;
+  std::uint16_t event_timer = 0;  ///< ms, sub 5 of the device
+  std::uint8_t sync_start = 0;    ///< sub 6
+  bool has_inhibit = false;       ///< the device has a writable sub 3; sub 5; sub 6
   bool has_event_timer = false;
   bool has_sync_start = false;
   std::uint16_t master_timer = 0;    ///< ms: TPDO: the master's deadline; RPDO: repeat after it

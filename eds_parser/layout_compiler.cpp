@@ -84,7 +84,7 @@ class LayoutCompiler {
                .length = pdo.bytes(),
                .sync_start = pdo.sync_start};
     if (pdo.is_tpdo) {
-      row.inhibit = std::chrono::microseconds{pdo.inhibit_time * 100};
+      row.inhibit = std::chrono::microseconds{std::int64_t{pdo.inhibit_time} * pdo.inhibit_unit_us};
       row.event_timer = std::chrono::milliseconds{pdo.event_timer};
       row.deadline = deadline_of(pdo);
     } else {

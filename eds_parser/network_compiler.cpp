@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <deque>
 #include <map>
 
 #include "eds_parser/boot_compiler.hpp"
 #include "eds_parser/cycle_compiler.hpp"
 #include "eds_parser/device_compiler.hpp"
+#include "eds_parser/device_rules.hpp"
 #include "eds_parser/frame_time.hpp"
 #include "eds_parser/layout_compiler.hpp"
 #include "eds_parser/pdo_compiler.hpp"
@@ -51,13 +53,19 @@ bool is_cia402(const NodeSource& node) {
 class NetworkCompiler {
  public:
   NetworkCompiler(const NetworkSpec& spec, std::span<const ObjectDictionary* const> dictionaries,
-                  Findings& findings)
-      : spec_{spec}, dictionaries_{dictionaries}, report_{spec.file, findings} {}
+                  std::span<const DeviceData> device_data, Findings& findings)
+      : spec_{spec},
+        dictionaries_{dictionaries},
+        device_data_{device_data},
+        report_{spec.file, findings} {}
 
   CompiledNetwork run() {
     bus();
     collect_nodes();
-    for (NodePdos& node : nodes_) node.pdos = compile_pdos(node.node, report_);
+    for (NodePdos& node : nodes_) {
+      node.pdos = compile_pdos(node.node, report_);
+      judge_by_device_data(node, report_);
+    }
     assign_cob_ids(nodes_, *spec_.master.sync_cob_id, report_);
     for (const NodePdos& node : nodes_) add_node(node);
     compile_layout(nodes_, plan(), report_);
@@ -104,9 +112,20 @@ class NetworkCompiler {
       if (!node.id.given) continue;
       if (!check_id(node, by_id)) continue;
       if (i >= dictionaries_.size() || dictionaries_[i] == nullptr) continue;
-      nodes_.push_back({{&node, dictionaries_[i], *NodeId::from(*node.id)}, {}});
+      nodes_.push_back({source_of(node, *dictionaries_[i]), {}});
     }
     std::ranges::sort(nodes_, {}, [](const NodePdos& n) { return n.node.id; });
+  }
+
+  NodeSource source_of(const NodeSpec& node, const ObjectDictionary& dictionary) {
+    NodeSource source{&node, &dictionary, *NodeId::from(*node.id)};
+    source.data = find_device_data(device_data_, node, dictionary, report_);
+    source.firmware = firmware_of(source.data, node, dictionary);
+    if (source.data != nullptr && !source.data->objects.empty()) {
+      source.dictionary =
+          &edited_.emplace_back(with_object_edits(dictionary, *source.data, source.firmware));
+    }
+    return source;
   }
 
   bool check_id(const NodeSpec& node, std::map<unsigned, const NodeSpec*>& by_id) {
@@ -154,9 +173,19 @@ class NetworkCompiler {
         .sdo_timeout = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms)),
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
     node.heartbeat_timeout = heartbeat_timeout(source.node);
+    add_device_data(source, node);
     check_fallback(source.node, node.cia402, report_);
     check_bit_rate(source.node);
     plan().nodes.push_back(std::move(node));
+  }
+
+  static void add_device_data(const NodePdos& source, NodePlan& node) {
+    if (source.node.data == nullptr) return;
+    const DeviceData& data = *source.node.data;
+    node.device_data = data.name;
+    node.device_data_file = data.id + ".yaml";
+    node.device_notes = device_notes(source);
+    for (const EmcyMeaning& emcy : data.emcy) node.emcy_texts.push_back({emcy.code, emcy.text});
   }
 
   double multiplier(const NodeSpec& node) const {
@@ -223,6 +252,8 @@ class NetworkCompiler {
 
   const NetworkSpec& spec_;
   std::span<const ObjectDictionary* const> dictionaries_;
+  std::span<const DeviceData> device_data_;
+  std::deque<ObjectDictionary> edited_;  ///< stable addresses
   NetworkReport report_;
   std::vector<NodePdos> nodes_;
   CompiledNetwork out_;
@@ -232,8 +263,8 @@ class NetworkCompiler {
 
 CompiledNetwork compile_network(const NetworkSpec& spec,
                                 std::span<const ObjectDictionary* const> dictionaries,
-                                Findings& findings) {
-  return NetworkCompiler{spec, dictionaries, findings}.run();
+                                Findings& findings, std::span<const DeviceData> device_data) {
+  return NetworkCompiler{spec, dictionaries, device_data, findings}.run();
 }
 
 }  // namespace takt

@@ -106,6 +106,7 @@ enum class ResetPolicy : std::uint8_t { communication, node, none };
 
 struct SimSpec {
   std::string model;
+  Sourced<std::string> firmware;  ///< "15.02"
   std::vector<std::string> quirks;
 };
 
@@ -122,6 +123,8 @@ struct NodeSpec {
   Sourced<std::uint32_t> product_code;
   Sourced<std::uint32_t> revision_number;
   Sourced<std::uint32_t> serial_number;
+  Sourced<std::string> device;    ///< entry of the device data, "none"; not given: by identity
+  Sourced<std::string> firmware;  ///< "16.00.00"
 
   Sourced<bool> boot{.value = true, .pos = {}};
   Sourced<bool> mandatory;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eds_parser/device_data.hpp"
 #include "eds_parser/mapping_compiler.hpp"
 #include "eds_parser/pdo_description.hpp"
 
@@ -71,6 +72,7 @@ class PdoCompiler {
     const std::uint16_t index = device.communication_index();
     pdo.transmission = device.transmission_type.value_or(event_driven);
     pdo.inhibit_time = static_cast<std::uint16_t>(device.inhibit_time_us / 100);
+    if (node_.data != nullptr) pdo.inhibit_unit_us = node_.data->inhibit.unit_us;
     pdo.event_timer = device.event_timer_ms;
     pdo.sync_start = device.sync_start.value_or(0);
     pdo.has_inhibit = is_writable(sub(index, 3)) && device.is_tpdo;
@@ -166,7 +168,10 @@ class PdoCompiler {
   void overlay_times(const PdoSpec& spec, EffectivePdo& pdo) {
     if (spec.transmission.given) pdo.transmission = *spec.transmission;
     if (pdo.is_tpdo) {
-      if (spec.inhibit_time.given) pdo.inhibit_time = *spec.inhibit_time;
+      if (spec.inhibit_time.given) {
+        pdo.inhibit_time =
+            static_cast<std::uint16_t>(*spec.inhibit_time * 100U / pdo.inhibit_unit_us);
+      }
       if (spec.event_timer.given) pdo.event_timer = *spec.event_timer;
       if (spec.sync_start.given) pdo.sync_start = *spec.sync_start;
       pdo.master_timer = *spec.event_deadline;

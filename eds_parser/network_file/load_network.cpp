@@ -11,6 +11,7 @@
 
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_compiler.hpp"
+#include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
@@ -45,7 +46,8 @@ class Loader {
     note_placeholder(spec);
     std::vector<const ObjectDictionary*> dictionaries;
     for (const NodeSpec& node : spec.nodes) dictionaries.push_back(dictionary_of(spec, node));
-    CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings);
+    const std::vector<DeviceData> device_data = load_device_data(device_folders(), out_.findings);
+    CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings, device_data);
     out_.plan = std::move(compiled.plan);
     out_.devices = std::move(compiled.devices);
     out_.realtime = spec.realtime;

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/table/firmware.hpp"
 
 namespace takt {
 namespace {
@@ -40,6 +41,9 @@ constexpr std::array<std::string_view, 33> keys_of_others{"driver",
                                                           "emcy_cob_id",
                                                           "description",
                                                           "comment"};
+constexpr std::array<std::string_view, 8> sim_models{"plain",      "drive402",      "io401",
+                                                     "encoder406", "lenze8400",     "beckhoff",
+                                                     "plain301",   "astraada_drv28"};
 constexpr std::array<std::string_view, 14> scales{
     "scale_pos_to_dev",  "scale_pos_from_dev",  "scale_vel_to_dev",  "scale_vel_from_dev",
     "scale_eff_to_dev",  "scale_eff_from_dev",  "offset_pos_to_dev", "offset_pos_from_dev",
@@ -49,12 +53,22 @@ constexpr std::array<std::string_view, 8> not_supported{
     "time_cob_id", "time_cobid",    "retry_factor",     "life_time_factor",
     "guard_time",  "software_file", "software_version", "configuration_file"};
 
+void read_firmware(MapReader& reader, Sourced<std::string>& out) {
+  reader.text("firmware", out);
+  if (!out.given || Firmware::parse(*out)) return;
+  reader.report().error(out.pos, "not-a-version",
+                        "`firmware` of " + reader.what() + " is a version as \"16.00.00\"");
+  out.given = false;
+}
+
 void read_identity(MapReader& reader, NodeSpec& node) {
   reader.integer("device_type", node.device_type);
   reader.integer("vendor_id", node.vendor_id);
   reader.integer("product_code", node.product_code);
   reader.integer("revision_number", node.revision_number);
   reader.integer("serial_number", node.serial_number);
+  reader.text("device", node.device);
+  read_firmware(reader, node.firmware);
 }
 
 void read_reset(MapReader& reader, NodeSpec& node) {
@@ -137,9 +151,12 @@ void read_sim(MapReader& outer, NodeSpec& node) {
   const YamlNode* map = outer.take("sim");
   if (map == nullptr) return;
   MapReader reader{*map, "`sim` of " + outer.what(), outer.report()};
-  Sourced<std::string> model;
-  reader.text("model", model);
-  node.sim.model = *model;
+  if (const YamlNode* model = reader.take("model")) {
+    if (const auto choice = read_choice(*model, "model", sim_models, outer.report())) {
+      node.sim.model = sim_models[*choice];
+    }
+  }
+  read_firmware(reader, node.sim.firmware);
   if (const YamlNode* quirks = reader.take("quirks")) {
     if (quirks->kind == YamlNode::Kind::scalar) node.sim.quirks.push_back(quirks->text);
     for (const YamlNode* item : quirks->items) {

@@ -99,6 +99,9 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"heartbeat_timeout_us", us(node.heartbeat_timeout)},
           {"sdo_timeout_us", us(node.sdo_timeout)},
           {"reboot_delay_us", us(node.reboot_delay)},
+          {"device_data", node.device_data},
+          {"device_data_file", node.device_data_file},
+          {"device_notes", node.device_notes},
           {"tpdos", pdos_json(plan, plan.pdos.tpdos, index)},
           {"rpdos", pdos_json(plan, plan.pdos.rpdos, index)},
           {"boot_plan", std::move(steps)}};

@@ -135,6 +135,7 @@ class PlanText {
             : "missing after " + span_text(node.heartbeat_timeout) + " without heartbeat");
     line("  {}", traits);
     identity(node);
+    device_data(node);
     for (const PdoRow& row : plan_.pdos.tpdos) {
       if (row.node_index == index) pdo(row, true);
     }
@@ -150,6 +151,12 @@ class PlanText {
       text += (text.empty() ? "" : ", ") + step.purpose + " " + value_text(step);
     }
     if (!text.empty()) line("  identity: {}", text);
+  }
+
+  void device_data(const NodePlan& node) {
+    if (node.device_data.empty()) return;
+    line("  device data: {} ({})", node.device_data, node.device_data_file);
+    for (const std::string& note : node.device_notes) line("    {}", note);
   }
 
   void pdo(const PdoRow& row, bool is_tpdo) {

@@ -12,6 +12,12 @@
 
 namespace takt {
 
+/// An error code of one device family in words.
+struct EmcyText {
+  std::uint16_t code = 0;
+  std::string text;
+};
+
 /// One device as the master sees it.
 struct NodePlan {
   std::string name;  ///< from the network file: "shoulder"
@@ -22,9 +28,13 @@ struct NodePlan {
   bool mandatory = false;  ///< its failure ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
   BootPlan boot_plan{};
-  Time heartbeat_timeout{};  ///< longest silence; 0 = not watched
-  Time sdo_timeout{};        ///< of requests while running
-  Time reboot_delay{};       ///< pause before a failed boot is tried again
+  Time heartbeat_timeout{};                 ///< longest silence; 0 = not watched
+  Time sdo_timeout{};                       ///< of requests while running
+  Time reboot_delay{};                      ///< pause before a failed boot is tried again
+  std::string device_data{};                ///< entry that was applied: "Lenze 8400 HighLine"
+  std::string device_data_file{};           ///< "lenze8400.yaml"
+  std::vector<std::string> device_notes{};  ///< what it says, a line each
+  std::vector<EmcyText> emcy_texts{};       ///< of this device family
 };
 
 /// SYNC and the times of a cycle, all counted from SYNC.

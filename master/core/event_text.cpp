@@ -37,10 +37,19 @@ std::string_view reason(std::uint32_t detail) noexcept {
   return "of an unknown reason";
 }
 
-std::string emcy_line(const Event& event) {
+std::string_view emcy_meaning(const BusPlan& plan, std::uint8_t node, std::uint16_t code) {
+  const auto found =
+      std::ranges::find(plan.nodes, node, [](const NodePlan& one) { return one.id.value(); });
+  if (found == plan.nodes.end()) return emcy_text(code);
+  const auto own = std::ranges::find(found->emcy_texts, code, &EmcyText::code);
+  return own == found->emcy_texts.end() ? emcy_text(code) : std::string_view{own->text};
+}
+
+std::string emcy_line(const BusPlan& plan, const Event& event) {
   const std::span bytes{event.bytes};
   const auto code = load_le<std::uint16_t>(bytes);
-  std::string text = "EMCY " + hex(code) + ": " + std::string{emcy_text(code)} +
+  std::string text = "EMCY " + hex(code) + ": " +
+                     std::string{emcy_meaning(plan, event.node, code)} +
                      " (error register: " + error_register_text(bytes[2]) + "; bytes";
   for (const std::uint8_t byte : bytes) text += " " + hex(byte, 2).substr(2);
   text += ")";
@@ -52,7 +61,7 @@ std::string nmt_bytes_text(const Event& event) {
   return hex(event.bytes[0], 2).substr(2) + " " + hex(event.bytes[1], 2).substr(2);
 }
 
-std::string node_line(const Event& event) {
+std::string node_line(const BusPlan& plan, const Event& event) {
   switch (event.kind) {
     case EventKind::boot_started:
       return "boot begins";
@@ -69,7 +78,7 @@ std::string node_line(const Event& event) {
     case EventKind::bootup_again:
       return "boot-up message of a node that was ready: it has restarted and is booted again";
     case EventKind::emcy:
-      return emcy_line(event);
+      return emcy_line(plan, event);
     case EventKind::pdo_missing:
       return "TPDO" + std::to_string(event.value) + " is missing";
     case EventKind::pdo_back:
@@ -174,7 +183,7 @@ std::string line(const BusPlan& plan, const Event& event) {
       break;
   }
   return event.kind <= EventKind::pdo_length || event.kind == EventKind::outputs_held
-             ? node_line(event)
+             ? node_line(plan, event)
              : bus_line(plan, event);
 }
 

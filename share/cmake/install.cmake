@@ -11,7 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/takt)
 install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp)
 install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
-install(DIRECTORY share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
+install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
 # systemd reads lib/systemd below /usr and below /usr/local.
 install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)

@@ -1,0 +1,142 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eds_parser/network_report.hpp"
+#include "eds_parser/network_spec.hpp"
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/table/firmware.hpp"
+
+namespace takt {
+
+/// From `low` to `high`, both included.
+struct NumberRange {
+  std::uint32_t low = 0;
+  std::uint32_t high = 0xFFFF'FFFF;
+
+  constexpr bool contains(std::uint32_t number) const noexcept {
+    return number >= low && number <= high;
+  }
+};
+
+/// Where an entry says something, and why: the maker's manual in our words.
+struct DeviceFact {
+  SourcePos pos;
+  std::string reason;
+};
+
+/// What event timer and events of a TPDO have to do with each other.
+enum class TimerMeaning : std::uint8_t {
+  restarts,    ///< every transmission restarts it; CiA 301
+  additional,  ///< it sends besides events, which do not shift it
+  alone,       ///< while it is set, events send nothing
+};
+
+enum class PdoFunction : std::uint8_t { process_data, parameter_channel };
+
+/// What the PDOs `numbers` of one direction can do.
+struct PdoRule {
+  DeviceFact fact;
+  bool is_tpdo = true;
+  NumberRange numbers{1, 512};
+  std::vector<NumberRange> types;  ///< transmission types; empty: those of CiA 301
+  bool without_timer = false;      ///< the event timer has to be 0
+  PdoFunction function = PdoFunction::process_data;
+};
+
+/// How 0x1800:03 counts.
+struct InhibitRule {
+  DeviceFact fact;
+  std::uint32_t unit_us = 100;
+  std::uint32_t least = 0;    ///< units; the device takes shorter times as this
+  std::uint32_t factory = 0;  ///< units; 0: not known
+};
+
+struct TimerRule {
+  DeviceFact fact;
+  TimerMeaning meaning = TimerMeaning::restarts;
+};
+
+/// As SYNC producer.
+struct SyncRule {
+  DeviceFact fact;
+  std::optional<Firmware> own_tpdos_from;  ///< its own SYNC triggers its TPDOs from here on
+};
+
+/// The device has an object otherwise than its EDS says.
+struct ObjectEdit {
+  DeviceFact fact;
+  ObjectKey object;
+  bool whole = true;             ///< all sub-indices
+  std::optional<Access> access;  ///< none: the object is missing
+  std::optional<Firmware> from;
+  std::optional<Firmware> below;
+};
+
+struct BootTweaks {
+  DeviceFact fact;
+  std::optional<ResetPolicy> reset;
+  bool values_after_pdos = false;
+  std::uint32_t pause_after_bootup_ms = 0;
+  std::uint32_t pause_before_start_ms = 0;
+};
+
+struct EmcyMeaning {
+  std::uint16_t code = 0;
+  std::string text;
+};
+
+/// One entry of the device data: what a device family does otherwise than CiA 301 or its EDS say.
+struct DeviceData {
+  std::string id;      ///< stem of its file: "lenze8400"
+  std::string file;    ///< as found
+  std::string name;    ///< "Lenze 8400 HighLine"
+  std::string manual;  ///< where its facts come from
+  SourcePos pos;
+  std::uint32_t vendor = 0;
+  NumberRange product;
+  NumberRange revision;
+  bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half
+  std::vector<PdoRule> pdos;
+  InhibitRule inhibit;
+  TimerRule timer;
+  SyncRule sync;
+  std::vector<ObjectEdit> objects;
+  BootTweaks boot;
+  std::vector<EmcyMeaning> emcy;
+
+  /// The rule of a PDO; nullptr: as CiA 301.
+  const PdoRule* rule(bool is_tpdo, std::uint16_t number) const noexcept;
+  /// "astraada_drv28.yaml:12".
+  std::string place(SourcePos at) const;
+};
+
+/// What is known of the identity of a node before it is asked.
+struct DeviceIdentity {
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::uint32_t revision = 0;
+};
+
+/// By the network file; else by 0x1018 of the device file, else by its [DeviceInfo].
+DeviceIdentity identity_of(const NodeSpec& node, const ObjectDictionary& dictionary) noexcept;
+
+/// The entry of a node: the one that `device:` names, else the first one that its identity matches;
+/// nullptr where there is none.
+const DeviceData* find_device_data(std::span<const DeviceData> entries, const NodeSpec& node,
+                                   const ObjectDictionary& dictionary, NetworkReport& report);
+
+/// Firmware of a node: `firmware:`, that of its simulation, or its revision number where the entry
+/// says so; none: unknown.
+std::optional<Firmware> firmware_of(const DeviceData* data, const NodeSpec& node,
+                                    const ObjectDictionary& dictionary) noexcept;
+
+/// The dictionary as the device has it.
+ObjectDictionary with_object_edits(const ObjectDictionary& dictionary, const DeviceData& data,
+                                   std::optional<Firmware> firmware);
+
+}  // namespace takt

@@ -1,0 +1,196 @@
+#include "eds_parser/device_rules.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/device_data.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::int64_t produce_bit = 0x4000'0000;
+
+std::string list_of(const std::vector<NumberRange>& ranges) {
+  std::string text;
+  for (const NumberRange& range : ranges) {
+    text += (text.empty() ? "" : ", ") + std::to_string(range.low);
+    if (range.high != range.low) text += ".." + std::to_string(range.high);
+  }
+  return text;
+}
+
+std::string time_text(std::uint64_t us) {
+  if (us % 1000 == 0) return std::to_string(us / 1000) + " ms";
+  return std::to_string(us) + " us";
+}
+
+const PdoSpec* spec_of(const NodeSpec& node, const EffectivePdo& pdo) {
+  const auto& list = pdo.is_tpdo ? node.tpdos : node.rpdos;
+  const auto found = std::ranges::find(list, pdo.number, &PdoSpec::number);
+  return found == list.end() ? nullptr : &*found;
+}
+
+class Judge {
+ public:
+  Judge(const NodePdos& node, const DeviceData& data, NetworkReport& report)
+      : node_{node}, spec_{*node.node.spec}, data_{data}, report_{report} {}
+
+  void run() {
+    for (const EffectivePdo& pdo : node_.pdos) {
+      if (pdo.use != PdoUse::exchanged && pdo.use != PdoUse::linked) continue;
+      const PdoRule* rule = data_.rule(pdo.is_tpdo, pdo.number);
+      if (rule != nullptr) {
+        type(pdo, *rule);
+        timer(pdo, *rule);
+      }
+      if (pdo.is_tpdo) inhibit(pdo);
+    }
+    sync_producer();
+  }
+
+ private:
+  std::string label(const EffectivePdo& pdo) const {
+    return pdo.label() + " of node `" + spec_.name + "`";
+  }
+  std::string source(const DeviceFact& fact) const {
+    return (fact.reason.empty() ? "" : ": " + fact.reason) + " (" + data_.place(fact.pos) +
+           (data_.manual.empty() ? "" : ", after " + data_.manual) + ")";
+  }
+  /// Where the network file asks for it by an `sdo:` entry; `otherwise` where it does not.
+  SourcePos sdo_pos(ObjectKey key, SourcePos otherwise) const {
+    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
+    return found == spec_.sdo.end() ? otherwise : found->pos;
+  }
+
+  template <class T>
+  SourcePos pos_of(const EffectivePdo& pdo, Sourced<T> PdoSpec::* member, std::uint8_t sub) const {
+    const PdoSpec* spec = spec_of(spec_, pdo);
+    if (spec != nullptr && (spec->*member).given) return (spec->*member).pos;
+    return sdo_pos({pdo.communication_index(), sub}, pdo.pos);
+  }
+
+  void type(const EffectivePdo& pdo, const PdoRule& rule) {
+    const auto takes = [&](const NumberRange& range) { return range.contains(pdo.transmission); };
+    if (rule.types.empty() || std::ranges::any_of(rule.types, takes)) return;
+    report_.error(pos_of(pdo, &PdoSpec::transmission, 2), "device-data",
+                  label(pdo) + " can't have transmission type " + std::to_string(pdo.transmission) +
+                      " on " + data_.name + ", only " + list_of(rule.types) + source(rule.fact));
+  }
+
+  void timer(const EffectivePdo& pdo, const PdoRule& rule) {
+    if (!rule.without_timer || pdo.event_timer == 0) return;
+    report_.error(pos_of(pdo, &PdoSpec::event_timer, 5), "device-data",
+                  label(pdo) + " can't have an event timer (" + std::to_string(pdo.event_timer) +
+                      " ms) on " + data_.name + source(rule.fact));
+  }
+
+  /// The network file counts in 100 us, as CiA 301 does; the device in its own unit.
+  void inhibit(const EffectivePdo& pdo) {
+    const InhibitRule& rule = data_.inhibit;
+    const PdoSpec* spec = spec_of(spec_, pdo);
+    const bool given = spec != nullptr && spec->inhibit_time.given;
+    const std::uint64_t us = given ? std::uint64_t{*spec->inhibit_time} * 100
+                                   : std::uint64_t{pdo.inhibit_time} * rule.unit_us;
+    const ObjectKey key{pdo.communication_index(), 3};
+    const SourcePos pos = pos_of(pdo, &PdoSpec::inhibit_time, 3);
+    if (!given && pos == pdo.pos) return;  // the device's own
+    if (us % rule.unit_us != 0) {
+      report_.error(pos, "device-data",
+                    "the inhibit time of " + label(pdo) + " is " + time_text(us) + "; " +
+                        data_.name + " counts " + to_string(key) + " in " +
+                        time_text(rule.unit_us) + source(rule.fact));
+    } else if (us < std::uint64_t{rule.least} * rule.unit_us) {
+      report_.error(pos, "device-data",
+                    "the inhibit time of " + label(pdo) + " is " + time_text(us) + "; " +
+                        data_.name + " takes no less than " +
+                        time_text(std::uint64_t{rule.least} * rule.unit_us) + source(rule.fact));
+    } else if (us / rule.unit_us > 0xFFFF) {
+      report_.error(pos, "device-data",
+                    "the inhibit time of " + label(pdo) + " does not fit into " + to_string(key));
+    }
+  }
+
+  const SdoSpec* producer_request() const {
+    for (const SdoSpec& sdo : spec_.sdo) {
+      const auto* value = std::get_if<std::int64_t>(&sdo.value);
+      if (sdo.object == ObjectKey{0x1005, 0} && value != nullptr && (*value & produce_bit) != 0) {
+        return &sdo;
+      }
+    }
+    return nullptr;
+  }
+
+  void sync_producer() {
+    const SdoSpec* request = producer_request();
+    if (request == nullptr || !data_.sync.own_tpdos_from) return;
+    const Firmware needed = *data_.sync.own_tpdos_from;
+    const auto firmware = node_.node.firmware;
+    const auto synchronous = std::ranges::find_if(node_.pdos, [](const EffectivePdo& pdo) {
+      return pdo.is_tpdo && pdo.use == PdoUse::exchanged && pdo.synchronous();
+    });
+    if (synchronous == node_.pdos.end() || (firmware && *firmware >= needed)) return;
+    const std::string what = label(*synchronous) + " is synchronous, and this node makes the SYNC";
+    if (!firmware) {
+      report_.warning(request->value_pos, "device-data",
+                      what + ": that needs firmware " + to_string(needed) +
+                          " or newer; say which one it has with `firmware:`" +
+                          source(data_.sync.fact));
+      return;
+    }
+    report_.error(request->value_pos, "device-data",
+                  what + ": " + data_.name + " with firmware " + to_string(*firmware) +
+                      " does not send it then, that begins with " + to_string(needed) +
+                      source(data_.sync.fact));
+  }
+
+  const NodePdos& node_;
+  const NodeSpec& spec_;
+  const DeviceData& data_;
+  NetworkReport& report_;
+};
+
+std::string numbers_text(const PdoRule& rule) {
+  const std::string kind = rule.is_tpdo ? "TPDO" : "RPDO";
+  if (rule.numbers.low == rule.numbers.high) return kind + std::to_string(rule.numbers.low);
+  if (rule.numbers.high >= 512) return kind + "s";
+  return kind + std::to_string(rule.numbers.low) + ".." + std::to_string(rule.numbers.high);
+}
+
+std::string rule_text(const PdoRule& rule) {
+  std::string text = numbers_text(rule) + ":";
+  if (!rule.types.empty()) text += " types " + list_of(rule.types);
+  if (rule.without_timer) text += ", no event timer";
+  if (rule.function == PdoFunction::parameter_channel) text += ", the parameter channel";
+  return text;
+}
+
+}  // namespace
+
+void judge_by_device_data(const NodePdos& node, NetworkReport& report) {
+  if (node.node.data != nullptr) Judge{node, *node.node.data, report}.run();
+}
+
+std::vector<std::string> device_notes(const NodePdos& node) {
+  std::vector<std::string> notes;
+  if (node.node.data == nullptr) return notes;
+  const DeviceData& data = *node.node.data;
+  for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
+  if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {
+    notes.push_back(
+        "inhibit times in " + time_text(data.inhibit.unit_us) + ", at least " +
+        time_text(std::uint64_t{data.inhibit.least} * data.inhibit.unit_us) +
+        (data.inhibit.factory == 0
+             ? ""
+             : ", " + time_text(std::uint64_t{data.inhibit.factory} * data.inhibit.unit_us) +
+                   " by default"));
+  }
+  if (data.timer.meaning == TimerMeaning::additional) {
+    notes.emplace_back("event timers send besides changes, which do not shift them");
+  }
+  if (data.timer.meaning == TimerMeaning::alone) {
+    notes.emplace_back("with an event timer, changes send nothing");
+  }
+  if (node.node.firmware) notes.push_back("firmware " + to_string(*node.node.firmware));
+  return notes;
+}
+
+}  // namespace takt

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "eds_parser/cob_ids.hpp"
+#include "eds_parser/network_report.hpp"
+
+namespace takt {
+
+/// Refuses what the device of a node can't do by its device data: transmission types, event timers,
+/// inhibit times, its part as SYNC producer. Each error names the entry and its reason.
+void judge_by_device_data(const NodePdos& node, NetworkReport& report);
+
+/// What the entry of a node says, a line each, for people; empty where there is no entry.
+std::vector<std::string> device_notes(const NodePdos& node);
+
+}  // namespace takt

@@ -1,0 +1,277 @@
+#include "eds_parser/network_file/read_devices.hpp"
+
+#include <array>
+
+#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_file/yaml_tree.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t max_items = 1024;
+
+class DeviceReader {
+ public:
+  DeviceReader(const YamlNode& root, DeviceData& data, NetworkReport& report)
+      : root_{root}, data_{data}, report_{report} {}
+
+  void run() {
+    MapReader reader{root_, "the device data", report_};
+    data_.pos = root_.pos;
+    data_.name = text(reader, "name");
+    data_.manual = text(reader, "manual");
+    identity(reader);
+    list(reader, "tpdo", [&](const YamlNode& item) { pdo(item, true); });
+    list(reader, "rpdo", [&](const YamlNode& item) { pdo(item, false); });
+    section(reader, "inhibit_time", [&](MapReader& map) { inhibit(map); });
+    section(reader, "event_timer", [&](MapReader& map) { timer(map); });
+    section(reader, "sync_producer", [&](MapReader& map) { sync(map); });
+    list(reader, "objects", [&](const YamlNode& item) { object(item); });
+    section(reader, "boot", [&](MapReader& map) { boot(map); });
+    emcy(reader);
+    reader.finish();
+    if (data_.name.empty()) report_.error(root_.pos, "missing-key", "the entry lacks `name`");
+  }
+
+ private:
+  std::string text(MapReader& reader, std::string_view key) {
+    Sourced<std::string> value;
+    reader.text(key, value);
+    return *value;
+  }
+
+  template <class Read>
+  void section(MapReader& reader, std::string_view key, Read read) {
+    const YamlNode* node = reader.take(key);
+    if (node == nullptr) return;
+    MapReader map{*node, "`" + std::string{key} + "`", report_};
+    read(map);
+    map.finish();
+  }
+
+  template <class Read>
+  void list(MapReader& reader, std::string_view key, Read read) {
+    const YamlNode* node = reader.take(key);
+    if (node == nullptr) return;
+    if (node->kind != YamlNode::Kind::sequence || node->items.size() > max_items) {
+      report_.error(node->pos, "wrong-type",
+                    "`" + std::string{key} + "` is a list of at most 1024 entries");
+      return;
+    }
+    for (const YamlNode* item : node->items) read(*item);
+  }
+
+  DeviceFact fact(MapReader& reader, SourcePos pos) { return {pos, text(reader, "reason")}; }
+
+  /// A number, or `[low, high]`.
+  std::optional<NumberRange> range(const YamlNode& node, std::string_view key,
+                                   IntegerRange limits) {
+    if (node.kind != YamlNode::Kind::sequence) {
+      const auto value = read_integer(node, key, limits, report_);
+      if (!value) return {};
+      return NumberRange{static_cast<std::uint32_t>(*value), static_cast<std::uint32_t>(*value)};
+    }
+    if (node.items.size() != 2) {
+      report_.error(node.pos, "wrong-type",
+                    "`" + std::string{key} + "` takes a number or `[lowest, highest]`");
+      return {};
+    }
+    const auto low = read_integer(*node.items[0], key, limits, report_);
+    const auto high = read_integer(*node.items[1], key, limits, report_);
+    if (!low || !high) return {};
+    if (*low > *high) {
+      report_.error(node.pos, "out-of-range",
+                    "`" + std::string{key} + "`: the lower number comes first");
+      return {};
+    }
+    return NumberRange{static_cast<std::uint32_t>(*low), static_cast<std::uint32_t>(*high)};
+  }
+
+  void take_range(MapReader& reader, std::string_view key, NumberRange& out, IntegerRange limits) {
+    const YamlNode* node = reader.take(key);
+    if (node == nullptr) return;
+    if (const auto value = range(*node, key, limits)) out = *value;
+  }
+
+  std::optional<Firmware> firmware(MapReader& reader, std::string_view key) {
+    Sourced<std::string> value;
+    reader.text(key, value);
+    if (!value.given) return {};
+    const auto version = Firmware::parse(*value);
+    if (!version) {
+      report_.error(value.pos, "not-a-version",
+                    "`" + std::string{key} + "` is a version as \"16.00.00\"");
+    }
+    return version;
+  }
+
+  void identity(MapReader& outer) {
+    const YamlNode* node = outer.take("match");
+    if (node == nullptr) {
+      report_.error(root_.pos, "missing-key",
+                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}`");
+      return;
+    }
+    constexpr IntegerRange any{0, 0xFFFF'FFFF};
+    MapReader reader{*node, "`match`", report_};
+    Sourced<std::uint32_t> vendor;
+    reader.integer("vendor_id", vendor, {1, 0xFFFF'FFFF});
+    take_range(reader, "product_code", data_.product, any);
+    take_range(reader, "revision", data_.revision, any);
+    reader.finish();
+    if (!vendor.given) report_.error(node->pos, "missing-key", "`match` lacks `vendor_id`");
+    data_.vendor = *vendor;
+    Sourced<bool> is_firmware;
+    outer.boolean("revision_is_firmware", is_firmware);
+    data_.revision_is_firmware = *is_firmware;
+  }
+
+  void pdo(const YamlNode& item, bool is_tpdo) {
+    MapReader reader{item, is_tpdo ? "`tpdo`" : "`rpdo`", report_};
+    PdoRule rule{.fact = {}, .is_tpdo = is_tpdo, .types = {}};
+    take_range(reader, "numbers", rule.numbers, {1, 512});
+    if (const YamlNode* types = reader.take("transmission")) read_types(*types, rule);
+    Sourced<bool> without_timer;
+    reader.boolean("without_timer", without_timer);
+    rule.without_timer = *without_timer;
+    if (const YamlNode* function = reader.take("function")) {
+      constexpr std::array<std::string_view, 2> names{"process_data", "parameter_channel"};
+      if (const auto choice = read_choice(*function, "function", names, report_)) {
+        rule.function = static_cast<PdoFunction>(*choice);
+      }
+    }
+    rule.fact = fact(reader, item.pos);
+    reader.finish();
+    data_.pdos.push_back(std::move(rule));
+  }
+
+  void read_types(const YamlNode& node, PdoRule& rule) {
+    if (node.kind != YamlNode::Kind::sequence || node.items.empty() || node.items.size() > 256) {
+      report_.error(node.pos, "wrong-type",
+                    "`transmission` is a list of numbers and ranges: [[1, 240], 254, 255]");
+      return;
+    }
+    for (const YamlNode* item : node.items) {
+      if (const auto types = range(*item, "transmission", {0, 255})) rule.types.push_back(*types);
+    }
+  }
+
+  void inhibit(MapReader& reader) {
+    Sourced<std::uint32_t> unit, least, factory;
+    reader.integer("unit_us", unit, {1, 1'000'000, " us"});
+    reader.integer("least", least, {0, 65535});
+    reader.integer("default", factory, {0, 65535});
+    data_.inhibit = {.fact = fact(reader, reader.key_pos("unit_us")),
+                     .unit_us = unit.value_or(100),
+                     .least = *least,
+                     .factory = *factory};
+  }
+
+  void timer(MapReader& reader) {
+    if (const YamlNode* meaning = reader.take("meaning")) {
+      constexpr std::array<std::string_view, 3> names{"restarts", "additional", "alone"};
+      if (const auto choice = read_choice(*meaning, "meaning", names, report_)) {
+        data_.timer.meaning = static_cast<TimerMeaning>(*choice);
+      }
+    }
+    data_.timer.fact = fact(reader, reader.key_pos("meaning"));
+  }
+
+  void sync(MapReader& reader) {
+    data_.sync.own_tpdos_from = firmware(reader, "own_tpdos_from");
+    data_.sync.fact = fact(reader, reader.key_pos("own_tpdos_from"));
+  }
+
+  void object(const YamlNode& item) {
+    MapReader reader{item, "`objects`", report_};
+    ObjectEdit edit{.fact = {}, .object = {}, .access = {}, .from = {}, .below = {}};
+    Sourced<std::uint16_t> index;
+    Sourced<std::uint8_t> sub;
+    Sourced<bool> missing;
+    reader.integer("index", index, {0x1000, 0xFFFF});
+    reader.integer("sub_index", sub);
+    reader.boolean("missing", missing);
+    if (const YamlNode* access = reader.take("access")) {
+      constexpr std::array<std::string_view, 6> names{"ro", "wo", "rw", "rwr", "rww", "const"};
+      if (const auto choice = read_choice(*access, "access", names, report_)) {
+        edit.access = static_cast<Access>(*choice);
+      }
+    }
+    edit.from = firmware(reader, "firmware_from");
+    edit.below = firmware(reader, "firmware_below");
+    edit.fact = fact(reader, item.pos);
+    reader.finish();
+    edit.object = {*index, *sub};
+    edit.whole = !sub.given;
+    if (!index.given || *missing == edit.access.has_value()) {
+      report_.error(item.pos, "missing-key",
+                    "an entry of `objects` has an `index`, and either `missing: true` or `access`");
+      return;
+    }
+    data_.objects.push_back(std::move(edit));
+  }
+
+  void boot(MapReader& reader) {
+    BootTweaks& boot = data_.boot;
+    if (const YamlNode* reset = reader.take("reset")) {
+      constexpr std::array<std::string_view, 3> names{"communication", "node", "none"};
+      if (const auto choice = read_choice(*reset, "reset", names, report_)) {
+        boot.reset = static_cast<ResetPolicy>(*choice);
+      }
+    }
+    Sourced<bool> later;
+    Sourced<std::uint32_t> after_bootup, before_start;
+    reader.boolean("values_after_pdos", later);
+    reader.integer("pause_after_bootup_ms", after_bootup, {0, 60'000, " ms"});
+    reader.integer("pause_before_start_ms", before_start, {0, 60'000, " ms"});
+    boot.values_after_pdos = *later;
+    boot.pause_after_bootup_ms = *after_bootup;
+    boot.pause_before_start_ms = *before_start;
+    boot.fact = fact(reader, root_.pos);
+  }
+
+  void emcy(MapReader& reader) {
+    const YamlNode* node = reader.take("emcy");
+    if (node == nullptr) return;
+    if (node->kind != YamlNode::Kind::map || node->pairs.size() > max_items) {
+      report_.error(node->pos, "wrong-type", "`emcy` is a map of error codes to texts");
+      return;
+    }
+    for (const YamlPair& pair : node->pairs) {
+      YamlNode code;
+      code.kind = YamlNode::Kind::scalar;
+      code.text = pair.key;
+      code.pos = pair.key_pos;
+      const auto number = read_integer(code, "emcy", {1, 0xFFFF}, report_);
+      auto meaning = read_text(*pair.value, "emcy", report_);
+      if (number && meaning) {
+        data_.emcy.push_back({static_cast<std::uint16_t>(*number), std::move(*meaning)});
+      }
+    }
+  }
+
+  const YamlNode& root_;
+  DeviceData& data_;
+  NetworkReport& report_;
+};
+
+}  // namespace
+
+std::optional<DeviceData> read_device_data(std::string_view text, const std::string& file,
+                                           Findings& findings) {
+  Findings own;
+  const YamlTree tree = YamlTree::parse(text, file, own);
+  DeviceData data;
+  data.file = file;
+  data.id = std::filesystem::path{file}.stem().string();
+  if (tree.root() != nullptr) {
+    NetworkReport report{file, own};
+    DeviceReader{*tree.root(), data, report}.run();
+  }
+  const bool usable = tree.root() != nullptr && !has_error(own);
+  findings.insert(findings.end(), own.begin(), own.end());
+  if (!usable) return {};
+  return data;
+}
+
+}  // namespace takt
