@@ -20,6 +20,7 @@ using std::chrono::seconds;
 class ToolsAlone : public testing::Test {
  protected:
   void SetUp() override {
+    ASSERT_TRUE(devices_.says("3 devices on"));  // from here on they hold the bus
     const Time until = monotonic_now() + seconds{60};
     while (takt({"sdo", "read", "1", "1000", "--timeout", "100"}).exit_code != 0) {
       ASSERT_LT(monotonic_now(), until) << devices_.output();
