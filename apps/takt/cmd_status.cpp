@@ -33,7 +33,22 @@ nlohmann::json to_json(const node_status_t& node) {
           {"heartbeat_lost", node.heartbeat_lost},
           {"sdo_aborts", node.sdo_aborts},
           {"pdos_missing", node.pdos_missing},
-          {"holder", node.holder}};
+          {"holder", node.holder},
+          {"emcys", node.emcys}};
+}
+
+nlohmann::json to_json(const diagnosis_t& diagnosis) {
+  return {{"sync_count", diagnosis.sync_count},
+          {"nodes_not_ok", diagnosis.nodes_not_ok},
+          {"state", bus_condition(diagnosis.state)},
+          {"bus_off", diagnosis.bus_off != 0},
+          {"warning_limit", diagnosis.warning_limit != 0},
+          {"rx_queue_exceeded", diagnosis.rx_queue_exceeded != 0},
+          {"tx_queue_exceeded", diagnosis.tx_queue_exceeded != 0},
+          {"send_error", diagnosis.send_error != 0},
+          {"sync_toggle", diagnosis.sync_toggle != 0},
+          {"cycles_failed", diagnosis.cycles_failed},
+          {"changed", diagnosis.changed != 0}};
 }
 
 nlohmann::json to_json(const status_t& status) {
@@ -61,6 +76,7 @@ nlohmann::json to_json(const status_t& status) {
           {"bus_state", status.bus_state},
           {"tx_errors", status.tx_errors},
           {"rx_errors", status.rx_errors},
+          {"diagnosis", to_json(status.diagnosis)},
           {"nodes", std::move(nodes)}};
 }
 

@@ -67,6 +67,22 @@ Line load_line(const status_t& status) {
   return line;
 }
 
+Line diagnosis_line(const diagnosis_t& diagnosis) {
+  Line line;
+  line.add("bus ")
+      .add(bus_condition(diagnosis.state), diagnosis.state == 0 ? Paint::good : Paint::bad)
+      .add(fmt::format("   nodes not ok {}", diagnosis.nodes_not_ok),
+           diagnosis.nodes_not_ok == 0 ? Paint::dim : Paint::bad)
+      .add(fmt::format("  SYNCs {}", diagnosis.sync_count), Paint::dim)
+      .add(fmt::format("  cycles failed {}", diagnosis.cycles_failed),
+           count_paint(diagnosis.cycles_failed));
+  if (diagnosis.warning_limit != 0) line.add("  WARNING LIMIT", Paint::bad);
+  if (diagnosis.rx_queue_exceeded != 0) line.add("  RECEIVE QUEUE EXCEEDED", Paint::bad);
+  if (diagnosis.tx_queue_exceeded != 0) line.add("  SEND QUEUE EXCEEDED", Paint::bad);
+  if (diagnosis.send_error != 0) line.add("  SEND ERROR", Paint::bad);
+  return line;
+}
+
 Line node_line(const node_status_t& node) {
   const std::string age =
       node.heartbeat_age_ms < 0 ? "-" : std::to_string(node.heartbeat_age_ms) + " ms";
@@ -196,6 +212,11 @@ std::string nmt_name(int state) {
   return "state " + std::to_string(state);
 }
 
+std::string bus_condition(int state) {
+  static constexpr const char* conditions[] = {"running", "starting", "offline", "stopped"};
+  return conditions[std::clamp(state, 0, 3)];
+}
+
 std::string boot_name(const node_status_t& node) {
   switch (static_cast<BootState>(node.boot_state)) {
     case BootState::idle:
@@ -213,7 +234,7 @@ std::string boot_name(const node_status_t& node) {
 }
 
 std::vector<Line> status_lines(const status_t& status) {
-  std::vector<Line> lines{bus_line(status), load_line(status)};
+  std::vector<Line> lines{bus_line(status), load_line(status), diagnosis_line(status.diagnosis)};
   lines.push_back(
       Line{}.add(" NODE  NAME              STATE            BOOT             HEARTBEAT         "
                  "EMCY  NO PDO  HELD BY",
@@ -225,7 +246,7 @@ std::vector<Line> status_lines(const status_t& status) {
 std::vector<Line> top_frame(const BusView& bus, const TopOptions& options) {
   if (!bus.status()) return {};
   std::vector<Line> lines = status_lines(*bus.status());
-  if (bus.timing()) lines.insert(lines.begin() + 2, timing_line(*bus.timing()));
+  if (bus.timing()) lines.insert(lines.begin() + 3, timing_line(*bus.timing()));
   lines.push_back(Line{}.add("real time: " + bus.status()->realtime, Paint::dim));
   if (bus.two_daemons()) {
     lines.push_back(Line{}.add("two daemons run a bus of this name", Paint::bad));

@@ -21,5 +21,6 @@ std::vector<Line> status_lines(const status_t& status);
 
 std::string nmt_name(int state);                   ///< "operational"
 std::string boot_name(const node_status_t& node);  ///< "ready", "step 4 of 31"
+std::string bus_condition(int state);              ///< of diagnosis_t: "running", "offline"
 
 }  // namespace takt

@@ -6,6 +6,7 @@
 
 #include "master/gateway/names.hpp"
 #include "master/linux/clock.hpp"
+#include "master/wire/bytes.hpp"
 
 namespace takt {
 namespace {
@@ -46,6 +47,7 @@ Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, Noti
                 {.session = options_.session, .observe = options_.observe},
                 [this](const Request& request) { return master_.submit(request); }},
       outages_{master.plan()},
+      emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{realtime_offset()} {
   master_.status(snapshot_);
 }
@@ -137,7 +139,10 @@ void Bridge::answer(reply_t reply) {
 
 void Bridge::take_events() {
   Event event;
-  while (master_.take(event)) tell(event);
+  while (master_.take(event)) {
+    remember(event);
+    tell(event);
+  }
   for (const Notice& notice : outages_.take_due(monotonic_now())) send(notice);
 }
 
@@ -150,6 +155,16 @@ void Bridge::tell(const Event& event) {
   } else if (const auto notice = outages_.on_event(event)) {
     send(*notice);
   }
+}
+
+/// An error code of 0 says that all errors are gone.
+void Bridge::remember(const Event& event) {
+  const auto code = load_le<std::uint16_t>(std::span{event.bytes});
+  if (event.kind != EventKind::emcy || code == 0) return;
+  const auto& nodes = master_.plan().nodes;
+  const auto found =
+      std::ranges::find(nodes, event.node, [](const NodePlan& node) { return node.id.value(); });
+  emcys_.add(static_cast<std::size_t>(found - nodes.begin()), code);
 }
 
 void Bridge::tell(Notice notice) {
@@ -185,7 +200,8 @@ void Bridge::publish_status() {
                         .event_overruns = master_.event_overruns(),
                         .commands_taken = commands_.taken(),
                         .commands_refused = commands_.refused(),
-                        .holders = {}};
+                        .holders = {},
+                        .emcys = &emcys_};
   for (std::size_t i = 0; i < master_.plan().nodes.size(); ++i) {
     gateway.holders.emplace_back(commands_.holder(i, cycle_));
   }

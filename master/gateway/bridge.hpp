@@ -57,6 +57,7 @@ class Bridge {
  private:
   bool publish_images();
   void take_events();
+  void remember(const Event& event);
   void take_replies();
   void take_messages();
   void on_message(std::string_view channel, Bytes data);
@@ -90,6 +91,7 @@ class Bridge {
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
+  EmcyHistory emcys_;
   Time wall_minus_monotonic_{};
   Time next_status_{};
   Time next_layout_{};

@@ -51,7 +51,7 @@ template <>
 inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
 template <>
 inline constexpr std::string_view message_layout<status_t> =
-    "lhhhlssislllllllllllllfhhhn(hshhhhihiiiiils)";
+    "lhhhlssislllllllllllllfhhhlhhbbbbbblbn(hshhhhihiiiiilsn(i))";
 template <>
 inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
 

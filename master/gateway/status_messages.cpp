@@ -42,6 +42,11 @@ node_status_t node_message(const NodePlan& plan, const NodeStatus& status) {
   return message;
 }
 
+void add_emcys(const EmcyHistory& history, std::size_t index, node_status_t& message) {
+  message.emcys.assign(history.of(index).begin(), history.of(index).end());
+  message.num_emcys = static_cast<std::int32_t>(message.emcys.size());
+}
+
 std::int16_t bus_state(const PortNews& port) noexcept {
   if (port.interface_down) return 3;
   if (port.bus_off) return 2;
@@ -79,7 +84,7 @@ float BusLoad::update(Time now, std::uint64_t wire_bits) {
 }
 
 StatusMessages::StatusMessages(const BusPlan& plan, StatusIdentity identity)
-    : plan_{plan}, identity_{std::move(identity)}, load_{plan.bitrate} {}
+    : plan_{plan}, identity_{std::move(identity)}, load_{plan.bitrate}, diagnosis_{plan} {}
 
 status_t StatusMessages::bus_part(const StatusSnapshot& snapshot, const GatewayStatus& gateway,
                                   Time now) {
@@ -108,6 +113,7 @@ status_t StatusMessages::bus_part(const StatusSnapshot& snapshot, const GatewayS
   message.bus_state = bus_state(bus.port);
   message.tx_errors = bus.port.tx_error_counter;
   message.rx_errors = bus.port.rx_error_counter;
+  message.diagnosis = diagnosis_.fill(snapshot);
   return message;
 }
 
@@ -120,6 +126,7 @@ std::vector<status_t> StatusMessages::fill(const StatusSnapshot& snapshot,
     node.heartbeat_age_ms = heartbeat_age(snapshot.nodes[i], now);
     node.pdos_missing = missing_pdos(plan_, snapshot, i);
     if (i < gateway.holders.size()) node.holder = gateway.holders[i];
+    if (gateway.emcys != nullptr) add_emcys(*gateway.emcys, i, node);
     const int size = messages.back().getEncodedSize() + node._getEncodedSizeNoHash();
     if (messages.back().num_nodes > 0 && static_cast<std::size_t>(size) > message_bytes) {
       messages.push_back(bus);

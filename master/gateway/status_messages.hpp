@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/gateway/diagnosis.hpp"
+#include "master/gateway/emcy_history.hpp"
 #include "master/rt/exchange.hpp"
 
 namespace takt {
@@ -18,6 +20,7 @@ struct GatewayStatus {
   std::uint64_t commands_taken = 0;
   std::uint64_t commands_refused = 0;
   std::vector<std::string> holders;  ///< per node: who commands its outputs
+  const EmcyHistory* emcys = nullptr;
 };
 
 /// Share of time that the wire is busy, over about the last second.
@@ -55,6 +58,7 @@ class StatusMessages {
   const BusPlan& plan_;
   StatusIdentity identity_;
   BusLoad load_;
+  Diagnosis diagnosis_;
 };
 
 /// The histograms of the time since the last call.

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <takt/diagnosis_t.hpp>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/rt/status_board.hpp"
+
+namespace takt {
+
+/// The bus at a glance. What happened "since the last message" is counted from the last call.
+class Diagnosis {
+ public:
+  explicit Diagnosis(const BusPlan& plan) : plan_{plan} {}
+  diagnosis_t fill(const StatusSnapshot& snapshot);
+
+ private:
+  const BusPlan& plan_;
+  std::uint64_t send_failures_ = 0;
+  std::uint32_t receive_overruns_ = 0;
+  std::uint64_t digest_ = 0;
+};
+
+}  // namespace takt

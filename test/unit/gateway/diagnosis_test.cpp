@@ -1,0 +1,137 @@
+#include "master/gateway/diagnosis.hpp"
+
+#include <cerrno>
+#include <gtest/gtest.h>
+
+#include "master/gateway/emcy_history.hpp"
+#include "master/gateway/status_messages.hpp"
+
+namespace takt {
+namespace {
+
+BusPlan two_nodes() {
+  BusPlan plan;
+  plan.name = "lift";
+  for (const unsigned id : {1U, 2U}) {
+    plan.nodes.push_back({.name = "node" + std::to_string(id), .id = *NodeId::from(id)});
+  }
+  return plan;
+}
+
+StatusSnapshot good() {
+  StatusSnapshot snapshot;
+  snapshot.nodes.assign(2, {.nmt = NmtState::operational, .boot = BootState::ready});
+  snapshot.bus.beats = 7;
+  return snapshot;
+}
+
+TEST(Diagnosis, OfABusThatRunsIsWithoutATrouble) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+
+  const diagnosis_t message = diagnosis.fill(good());
+
+  EXPECT_EQ(message.sync_count, 7);
+  EXPECT_EQ(message.nodes_not_ok, 0);
+  EXPECT_EQ(message.state, 0);
+  EXPECT_EQ(message.sync_toggle, 1);
+  EXPECT_EQ(message.cycles_failed, 0);
+  EXPECT_FALSE(message.bus_off || message.warning_limit || message.rx_queue_exceeded ||
+               message.tx_queue_exceeded || message.send_error);
+}
+
+TEST(Diagnosis, CountsNodesThatAreNotReadyOrNotOperational) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+  StatusSnapshot snapshot = good();
+
+  snapshot.nodes[0].boot = BootState::failed;
+  EXPECT_EQ(diagnosis.fill(snapshot).nodes_not_ok, 1);
+  snapshot.nodes[1].nmt = NmtState::preoperational;
+  EXPECT_EQ(diagnosis.fill(snapshot).nodes_not_ok, 2);
+}
+
+TEST(Diagnosis, TellsTheStateOfTheBus) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+
+  EXPECT_EQ(diagnosis.fill(StatusSnapshot{}).state, 1);
+  StatusSnapshot snapshot = good();
+  snapshot.bus.port.bus_off = true;
+  EXPECT_EQ(diagnosis.fill(snapshot).state, 2);
+  EXPECT_EQ(diagnosis.fill(snapshot).bus_off, 1);
+  snapshot.bus.stop = StopStage::done;
+  EXPECT_EQ(diagnosis.fill(snapshot).state, 3);
+}
+
+TEST(Diagnosis, TellsOverrunsOnceAndTheWarningLimitWhileItLasts) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+  StatusSnapshot snapshot = good();
+  snapshot.bus.port.receive_overruns = 3;
+  snapshot.bus.port.tx_error_counter = 96;
+  snapshot.bus.port.last_error = ENOBUFS;
+  snapshot.bus.send_failures = 2;
+
+  const diagnosis_t first = diagnosis.fill(snapshot);
+  const diagnosis_t second = diagnosis.fill(snapshot);
+
+  EXPECT_TRUE(first.rx_queue_exceeded && first.tx_queue_exceeded && first.warning_limit);
+  EXPECT_FALSE(first.send_error);
+  EXPECT_FALSE(second.rx_queue_exceeded || second.tx_queue_exceeded);
+  EXPECT_TRUE(second.warning_limit);
+}
+
+TEST(Diagnosis, AddsUpTheCyclesThatFailed) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+  StatusSnapshot snapshot = good();
+  snapshot.bus.cycles_missed = 1;
+  snapshot.bus.outputs_skipped = 20;
+  snapshot.bus.images_incomplete = 300;
+
+  EXPECT_EQ(diagnosis.fill(snapshot).cycles_failed, 321);
+}
+
+TEST(Diagnosis, SaysWhenSomethingIsNew) {
+  const BusPlan plan = two_nodes();
+  Diagnosis diagnosis{plan};
+  StatusSnapshot snapshot = good();
+
+  EXPECT_TRUE(diagnosis.fill(snapshot).changed);
+  snapshot.bus.beats = 8;
+  EXPECT_FALSE(diagnosis.fill(snapshot).changed);
+  snapshot.nodes[1].emcy_count = 1;
+  EXPECT_TRUE(diagnosis.fill(snapshot).changed);
+  EXPECT_FALSE(diagnosis.fill(snapshot).changed);
+}
+
+TEST(EmcyHistory, KeepsTheNewestTenOfANode) {
+  EmcyHistory history{2};
+  for (std::uint16_t i = 1; i <= 12; ++i) history.add(1, i);
+  history.add(9, 1);
+
+  EXPECT_TRUE(history.of(0).empty());
+  ASSERT_EQ(history.of(1).size(), 10u);
+  EXPECT_EQ(history.of(1).front(), 12);
+  EXPECT_EQ(history.of(1).back(), 3);
+}
+
+TEST(StatusMessages, CarryTheDiagnosisAndTheEmcysOfEachNode) {
+  const BusPlan plan = two_nodes();
+  StatusMessages messages{plan, {}};
+  EmcyHistory history{2};
+  history.add(0, 0x8130);
+  GatewayStatus gateway;
+  gateway.emcys = &history;
+
+  const auto parts = messages.fill(good(), gateway, Time{1});
+
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0].diagnosis.sync_count, 7);
+  EXPECT_EQ(parts[0].nodes.at(0).emcys, (std::vector<std::int32_t>{0x8130}));
+  EXPECT_EQ(parts[0].nodes.at(1).num_emcys, 0);
+}
+
+}  // namespace
+}  // namespace takt
