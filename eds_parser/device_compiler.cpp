@@ -1,5 +1,7 @@
 #include "eds_parser/device_compiler.hpp"
 
+#include <algorithm>
+
 #include "eds_parser/device_data.hpp"
 
 namespace takt {
@@ -29,6 +31,14 @@ bool is_pdo_cob_id(ObjectKey key) {
   return communication && key.sub == 1;
 }
 
+/// A device takes what its own file says of it, whatever limits the file has beside it.
+void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
+  const auto value = own ? as_integer(*own) : std::nullopt;
+  if (!value) return;
+  if (object.low_limit) object.low_limit = std::min(*object.low_limit, *value);
+  if (object.high_limit) object.high_limit = std::max(*object.high_limit, *value);
+}
+
 /// Read-only objects hold what a DCF says of them; a PDO of unknown COB-ID is off.
 DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   DeviceObject object{.key = {index, sub.sub},
@@ -50,6 +60,7 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   }
   if (sub.low_limit) object.low_limit = as_integer(*sub.low_limit);
   if (sub.high_limit) object.high_limit = as_integer(*sub.high_limit);
+  for (const auto& own : {sub.default_value, sub.parameter_value}) widen_limits(object, own);
   return object;
 }
 

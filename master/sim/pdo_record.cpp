@@ -45,10 +45,11 @@ Abort PdoRecord::check_write(const MappingRules& rules, const Object& object,
     if (&object == start_ && (raw > 240 || (valid() && raw != object.value))) return Abort::value;
     return Abort::none;
   }
-  if (valid()) return Abort::unsupported_access;
+  // Where the COB-ID can't be written a PDO can't be switched off before it is mapped anew.
+  if (valid() && cob_->writable()) return Abort::unsupported_access;
   if (&object == count_) return check_count(rules, raw);
   if (count_ != nullptr && count_->value != 0) return Abort::unsupported_access;
-  return raw == 0 ? Abort::none : check_entry(store_, rules, raw);
+  return raw == 0 || raw == object.factory ? Abort::none : check_entry(store_, rules, raw);
 }
 
 Abort PdoRecord::check_cob(std::uint64_t raw) const noexcept {
@@ -73,7 +74,9 @@ Abort PdoRecord::check_count(const MappingRules& rules, std::uint64_t raw) const
     const Object* entry = store_.find(
         {static_cast<std::uint16_t>(communication_ + 0x200), static_cast<std::uint8_t>(sub)});
     if (entry == nullptr) return Abort::pdo_length;
-    const Abort refused = check_entry(store_, rules, entry->value);
+    const bool own = entry->value != 0 &&
+                     entry->value == entry->factory;  // a device takes back what it came with
+    const Abort refused = own ? Abort::none : check_entry(store_, rules, entry->value);
     if (refused != Abort::none) return refused;
     bits += entry->value & 0xFF;
   }

@@ -37,6 +37,16 @@ TEST(DeviceCompiler, StartsWithDefaultsOfItsNode) {
   EXPECT_TRUE(std::ranges::is_sorted(device.objects, {}, &DeviceObject::key));
 }
 
+TEST(DeviceCompiler, WhatTheFileSaysOfAnObjectIsWithinItsLimits) {
+  const std::string dcf =
+      with(test::tiny_eds(), "[6081]\n", "HighLimit=2000\nParameterValue=7000\n");
+
+  const auto net = compile("arm: {node_id: 5, dcf: x}\n", dcf, "tiny.dcf");
+
+  const auto& objects = net.devices.at(0).objects;
+  EXPECT_EQ(std::ranges::find(objects, ObjectKey{0x6081, 0}, &DeviceObject::key)->high_limit, 7000);
+}
+
 TEST(DeviceCompiler, ValuesOfADcfAreForTheMasterToWriteButIdentitiesAreTheDevices) {
   std::string dcf = with(test::tiny_eds(), "[6081]\n", "ParameterValue=777\n");
   dcf = with(dcf, "[1018sub1]\n", "ParameterValue=0x1234\n");

@@ -77,6 +77,27 @@ TEST_F(PdoRules, RefuseEntriesThatCanNotBe) {
   EXPECT_EQ(write(0x1A00, 1, 0x0005'0008, 4), 0x0602'0000u) << "a dummy in a TPDO";
 }
 
+/// As vendors have it: an entry of the default mapping that the rest of the file would forbid.
+TEST(PdoRulesOfVendors, ADeviceTakesBackTheMappingThatItCameWith) {
+  Device device{communicating(5_node).pdo(0x1400, 0x205, 255, {0x2010'0010}).build(), Random{1}};
+  device.power_on(0ns);
+  device.on_time(50ms);
+  Time now = 50ms;
+  const auto write = [&](std::initializer_list<std::uint8_t> bytes) {
+    device.out().clear();
+    device.on_frame(make_frame(CobId::base(0x605), bytes), now += 1ms);
+    return device.out().pending().back().frame.data[0];
+  };
+
+  EXPECT_EQ(write({0x23, 0x00, 0x14, 1, 0x05, 0x02, 0x00, 0x80}), 0x60);
+  EXPECT_EQ(write({0x2F, 0x00, 0x16, 0, 0, 0, 0, 0}), 0x60);
+  EXPECT_EQ(write({0x23, 0x00, 0x16, 1, 0x10, 0x00, 0x11, 0x20}), 0x80)
+      << "another that is too short";
+  EXPECT_EQ(write({0x23, 0x00, 0x16, 1, 0x10, 0x00, 0x10, 0x20}), 0x60);
+  EXPECT_EQ(write({0x2F, 0x00, 0x16, 0, 1, 0, 0, 0}), 0x60);
+  EXPECT_EQ(write({0x23, 0x00, 0x14, 1, 0x05, 0x02, 0x00, 0x00}), 0x60);
+}
+
 TEST_F(PdoRules, RefuseAReadOnlyObjectInAnRpdo) {
   disable(0x1400, 0x205);
   ASSERT_EQ(write(0x1600, 0, 0, 1), 0u);
