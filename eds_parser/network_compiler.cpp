@@ -12,6 +12,7 @@
 #include "eds_parser/device_rules.hpp"
 #include "eds_parser/frame_time.hpp"
 #include "eds_parser/layout_compiler.hpp"
+#include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
 #include "eds_parser/signal_rules.hpp"
 
@@ -175,6 +176,7 @@ class NetworkCompiler {
     node.heartbeat_timeout = heartbeat_timeout(source.node);
     add_device_data(source, node);
     check_fallback(source.node, node.cia402, report_);
+    check_node_values(source, report_);
     check_bit_rate(source.node);
     plan().nodes.push_back(std::move(node));
   }

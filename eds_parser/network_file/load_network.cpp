@@ -32,6 +32,24 @@ std::optional<std::string> read_text(const fs::path& path) {
   return text;
 }
 
+/// Why a path is no network file, and what would be.
+std::string why_unreadable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) return "is a folder; name the network file (YAML) in it";
+  if (!fs::exists(status)) return "there is no such file";
+  if (!fs::is_regular_file(status)) return "is no regular file";
+  return "can't be read: no permission";
+}
+
+/// `1 error`, `2 errors`.
+std::string counted(std::ptrdiff_t count, const std::string& what) {
+  return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
+}
+
+/// So many listed objects without a section are no slip of an editor any more.
+constexpr std::ptrdiff_t torn_from = 8;
+
 class Loader {
  public:
   explicit Loader(const fs::path& path) : path_{path} {}
@@ -39,7 +57,7 @@ class Loader {
   LoadedNetwork run() {
     const auto text = read_text(path_);
     if (!text) {
-      error({}, "no-file", "can't be read: no such file, or no permission");
+      error({}, "no-file", why_unreadable(path_));
       return std::move(out_);
     }
     const NetworkSpec spec = read_network(*text, path_.string(), out_.findings);
@@ -100,10 +118,18 @@ class Loader {
 
   void report_missing(const NodeSpec& node, const std::vector<fs::path>& paths) {
     std::string where;
-    for (const fs::path& path : paths) where += (where.empty() ? "" : ", ") + path.string();
-    error(
-        node.dcf.pos, "no-device-file",
-        "node `" + node.name + "`: device file `" + *node.dcf + "` not found; looked for " + where);
+    std::string what = "not found; looked for ";
+    std::error_code ignored;
+    for (const fs::path& path : paths) {
+      where += (where.empty() ? "" : ", ") + path.lexically_normal().string();
+      if (fs::is_directory(path, ignored)) {
+        what = "is a folder: name the EDS or DCF file in it; looked for ";
+      } else if (fs::exists(path, ignored)) {
+        what = "is no regular file; looked for ";
+      }
+    }
+    error(node.dcf.pos, "no-device-file",
+          "node `" + node.name + "`: device file `" + *node.dcf + "` " + what + where);
   }
 
   const ObjectDictionary* read(const fs::path& path, const NodeSpec& node) {
@@ -113,9 +139,9 @@ class Loader {
     EdsFile& file = files_[key];
     file = read_eds_file(path, NodeId::from(*node.id));
     if (!file.readable) {
-      for (const Finding& finding : file.findings) {
-        if (finding.severity != Severity::note) out_.findings.push_back(finding);
-      }
+      std::ranges::copy_if(file.findings, std::back_inserter(out_.findings), [](const Finding& f) {
+        return f.severity == Severity::error;  // the rest follows from it: any binary has hundreds
+      });
       error(node.dcf.pos, "no-device-file",
             "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF");
       return nullptr;
@@ -133,13 +159,19 @@ class Loader {
     const auto errors = count(Severity::error);
     const auto warnings = count(Severity::warning);
     if (errors + warnings == 0 || !told_.insert(path).second) return;
-    out_.findings.push_back({path.string(),
-                             {},
-                             errors > 0 ? Severity::warning : Severity::note,
-                             "device-file",
-                             std::to_string(errors) + " errors and " + std::to_string(warnings) +
-                                 " warnings in this device file; `takt eds check " + path.string() +
-                                 "` lists them"});
+    const auto listed_only = std::ranges::count(findings, "listed-without-section", &Finding::rule);
+    out_.findings.push_back(
+        {path.string(),
+         {},
+         errors > 0 || listed_only >= torn_from ? Severity::warning : Severity::note,
+         "device-file",
+         counted(errors, "error") + " and " + counted(warnings, "warning") +
+             " in this device file" +
+             (listed_only >= torn_from ? "; " + std::to_string(listed_only) +
+                                             " objects that it lists have no section: "
+                                             "is it cut off?"
+                                       : "") +
+             "; `takt eds check " + path.string() + "` lists them"});
   }
 
   /// Device files first, then the network file by position; what many nodes share is told once.
@@ -148,9 +180,22 @@ class Loader {
     std::ranges::stable_sort(out_.findings, {}, [&](const Finding& finding) {
       return std::tuple{finding.file == own, finding.file == own ? finding.pos : SourcePos{}};
     });
+    drop_consequences();
     std::set<std::tuple<std::string, SourcePos, std::string>> seen;
     std::erase_if(out_.findings, [&](const Finding& finding) {
       return !seen.emplace(finding.file, finding.pos, finding.message).second;
+    });
+  }
+
+  /// Where `sync_period` itself is wrong, what follows from its value says nothing.
+  void drop_consequences() {
+    const bool wrong_period = std::ranges::any_of(out_.findings, [](const Finding& finding) {
+      return finding.severity == Severity::error && finding.rule != "does-not-fit" &&
+             finding.message.starts_with("`sync_period`");
+    });
+    if (!wrong_period) return;
+    std::erase_if(out_.findings, [](const Finding& finding) {
+      return finding.rule == "no-sync" || finding.rule == "does-not-fit";
     });
   }
 

@@ -28,10 +28,9 @@ std::string range_text(IntegerRange range) {
 bool is_scalar(const YamlNode& node, std::string_view key, std::string_view expected,
                NetworkReport& report) {
   if (node.kind == YamlNode::Kind::scalar) return true;
-  report.error(
-      node.pos, "wrong-type",
-      "`" + std::string{key} + "` is " + std::string{expected} + ", this is " +
-          (node.kind == YamlNode::Kind::null ? "empty" : "a " + std::string{name(node.kind)}));
+  report.error(node.pos, "wrong-type",
+               "`" + std::string{key} + "` is " + std::string{expected} + ", this is " +
+                   (node.kind == YamlNode::Kind::null ? "empty" : std::string{name(node.kind)}));
   return false;
 }
 
@@ -132,7 +131,7 @@ MapReader::MapReader(const YamlNode& node, std::string what, NetworkReport& repo
     : node_{node}, what_{std::move(what)}, report_{report} {
   if (node.kind == YamlNode::Kind::map || node.kind == YamlNode::Kind::null) return;
   report.error(node.pos, "wrong-type",
-               what_ + " is a map (`key: value`), this is a " + std::string{name(node.kind)});
+               what_ + " is a map (`key: value`), this is " + std::string{name(node.kind)});
 }
 
 const YamlNode* MapReader::take(std::string_view key) {

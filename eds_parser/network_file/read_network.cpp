@@ -40,7 +40,7 @@ class NetworkReader {
   void run() {
     if (root_.kind != YamlNode::Kind::map) {
       report_.error(root_.pos, "wrong-type",
-                    "a network file is a map with `master:` and `nodes:`, this is a " +
+                    "a network file is a map with `master:` and `nodes:`, this is " +
                         std::string{name(root_.kind)});
       return;
     }
@@ -82,7 +82,7 @@ class NetworkReader {
   void read_nodes(const YamlNode& nodes) {
     if (nodes.kind != YamlNode::Kind::map) {
       report_.error(nodes.pos, "wrong-type",
-                    "`nodes` is a map of `NAME: {node_id: ..., dcf: ...}`, this is a " +
+                    "`nodes` is a map of `NAME: {node_id: ..., dcf: ...}`, this is " +
                         std::string{name(nodes.kind)});
       found_node_ = true;  // said already
       return;

@@ -188,6 +188,15 @@ void read_lists(MapReader& reader, NodeSpec& node) {
 
 void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {
   const auto bad = [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; };
+  if (name == "all" || (!name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+        return std::isdigit(c) != 0;
+      }))) {
+    report.error(
+        pos, "name",
+        "`" + name +
+            "` is no name for a node: commands like `takt nmt start` take numbers for node "
+            "ids and `all` for all nodes");
+  }
   if (name.empty() || name.size() > 48 || std::ranges::any_of(name, bad)) {
     report.error(pos, "name",
                  "the node name `" + name.substr(0, 60) +
@@ -225,6 +234,7 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
                 "is left alone: takt scales by `units: {position: {scale: ..., unit: rad}}`");
   reader.ignore(not_supported, "is not acted on by this version of takt");
   reader.finish();
+  if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
   if (!has_id) report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
   if (!spec.dcf.given && node.find("dcf") == nullptr) {
     report.error(pos, "missing-key",

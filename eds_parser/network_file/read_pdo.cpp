@@ -34,7 +34,7 @@ void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
   if (node->kind != YamlNode::Kind::sequence) {
     report.error(node->pos, "wrong-type",
                  "`mapping` of " + what +
-                     " is a list of `{index: 0x6041, sub_index: 0}`, this is " + "a " +
+                     " is a list of `{index: 0x6041, sub_index: 0}`, this is " +
                      std::string{name(node->kind)});
     return;
   }
@@ -125,7 +125,7 @@ std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const
   if (node.kind != YamlNode::Kind::map) {
     report.error(node.pos, "wrong-type",
                  "`" + std::string{key} + "` of " + owner +
-                     " is a map of PDO numbers, `1: {mapping: [...]}`; this is a " +
+                     " is a map of PDO numbers, `1: {mapping: [...]}`; this is " +
                      std::string{name(node.kind)});
     return pdos;
   }

@@ -68,6 +68,21 @@ bool is_multicast(std::string_view url) {
          (error == std::errc{} && first >= 224 && first <= 239);
 }
 
+/// Linux takes 15 bytes for an interface, and 107 for the path of a socket.
+void check_interface(const Sourced<std::string>& interface, NetworkReport& report) {
+  constexpr std::string_view unix_bus = "unix:";
+  if (!interface.given) return;
+  const std::string_view name = *interface;
+  const bool is_path = name.starts_with(unix_bus);
+  const std::size_t path = is_path ? name.size() - unix_bus.size() : 0;
+  const bool good = is_path ? path > 0 && path <= 107
+                            : name.size() <= 15 && name.find_first_of("/: ") == name.npos;
+  if (good) return;
+  report.error(interface.pos, "interface",
+               "`interface` is the name of a CAN interface (can0, at most 15 characters) or "
+               "unix:PATH (at most 107)");
+}
+
 }  // namespace
 
 void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
@@ -76,6 +91,7 @@ void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   reader.text("interface", spec.bus.interface);
   read_bit_rate(reader, "bitrate_kbit", spec.master.baudrate_kbit);
   reader.finish();
+  check_interface(spec.bus.interface, report);
   const auto bad = [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; };
   if (spec.bus.name.given &&
       (std::ranges::any_of(*spec.bus.name, bad) || spec.bus.name->size() > 32)) {

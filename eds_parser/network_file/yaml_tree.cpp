@@ -158,7 +158,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
                  std::set<std::string, std::less<>>& keys) {
     if (source.kind != YamlNode::Kind::map) {
       stop(pos, "merge-key",
-           "`<<` merges a map or a list of maps, this is a " + std::string{name(source.kind)});
+           "`<<` merges a map or a list of maps, this is " + std::string{name(source.kind)});
     }
     merged_ += source.pairs.size() + 1;
     if (merged_ > YamlTree::max_merged) {
@@ -184,6 +184,20 @@ const YamlNode* YamlNode::find(std::string_view key) const noexcept {
   }
   return nullptr;
 }
+
+namespace {
+
+/// The line begins with blanks, and one of them is a tab.
+bool indented_by_tab(std::string_view text, std::uint32_t line) {
+  for (; line > 1 && !text.empty(); --line) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+  }
+  const std::string_view blanks = text.substr(0, text.find_first_not_of(" \t"));
+  return blanks.find('\t') != blanks.npos;
+}
+
+}  // namespace
 
 YamlTree YamlTree::parse(std::string_view text, const std::string& file, Findings& findings) {
   YamlTree tree;
@@ -213,7 +227,11 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
   } catch (const Stop&) {
     tree.root_ = nullptr;
   } catch (const YAML::Exception& error) {
-    fail(position(error.mark), "syntax", "no valid YAML: " + error.msg);
+    const SourcePos pos = position(error.mark);
+    fail(pos, "syntax",
+         indented_by_tab(text, pos.line)
+             ? "no valid YAML: a tab at the begin of the line; YAML is indented by spaces only"
+             : "no valid YAML: " + error.msg);
   }
   return tree;
 }
@@ -221,15 +239,15 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
 std::string_view name(YamlNode::Kind kind) noexcept {
   switch (kind) {
     case YamlNode::Kind::null:
-      return "empty value";
+      return "an empty value";
     case YamlNode::Kind::scalar:
-      return "single value";
+      return "a single value";
     case YamlNode::Kind::sequence:
-      return "list";
+      return "a list";
     case YamlNode::Kind::map:
-      return "map";
+      return "a map";
   }
-  return "value";
+  return "a value";
 }
 
 }  // namespace takt

@@ -1,0 +1,135 @@
+// What a user is told of a network file that can't be run, or would do something else than meant.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <unistd.h>
+
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class WrongNetwork : public testing::Test {
+ protected:
+  WrongNetwork() { fs::create_directories(folder_); }
+  ~WrongNetwork() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream{folder_ / name} << text;
+    return folder_ / name;
+  }
+
+  /// Findings of `path`, one a line, without the folder.
+  static std::string told(const fs::path& path) {
+    std::string text;
+    for (Finding finding : load_network(path).findings) {
+      finding.file = fs::path{finding.file}.filename();
+      text += to_string(finding) + "\n";
+    }
+    return text;
+  }
+  std::string told_of(const std::string& text) { return told(write("net.yaml", text)); }
+
+  /// Findings of a network with one node, an axis, with these lines more.
+  std::string of_axis(const std::string& lines) {
+    return told_of(std::string{"master: {sync_period: 10000}\nnodes:\n  a:\n    node_id: 1\n"} +
+                   "    dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds\n" + lines);
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("takt_wrong_" + std::to_string(::getpid()));
+};
+
+TEST_F(WrongNetwork, SafeValuesThatNoRpdoCarriesAreErrors) {
+  EXPECT_THAT(of_axis("    safe_values: [{index: 0x6041, value: 1}]\n"),
+              AllOf(HasSubstr("net.yaml:6:19: error"), HasSubstr("no RPDO carries 6041:00")));
+  EXPECT_THAT(of_axis("    safe_values: [{index: 0x7777, value: 1}]\n"),
+              HasSubstr("7777:00 is not in"));
+}
+
+TEST_F(WrongNetwork, SafeValuesHaveToFitTheirObject) {
+  EXPECT_THAT(of_axis("    rpdo: {1: {mapping: [{index: 0x607A}]}}\n"
+                      "    safe_values: [{index: 0x607A, value: 99999999999}]\n"),
+              HasSubstr("607A:00 Target position (INTEGER32) does not hold 99999999999"));
+}
+
+TEST_F(WrongNetwork, UnitsOfAnObjectThatTheDeviceHasNotAreErrors) {
+  EXPECT_THAT(of_axis("    units: {objects: [{index: 0x9999, scale: 2}]}\n"),
+              AllOf(HasSubstr("`units: objects` of node `a`"), HasSubstr("9999:00 is not in")));
+}
+
+TEST_F(WrongNetwork, NumbersAndAllAreNoNamesOfNodes) {
+  const std::string file =
+      "nodes:\n  5: {node_id: 6, dcf: x.eds}\n  all: {node_id: 7, dcf: x.eds}\n";
+
+  EXPECT_THAT(told_of(file), AllOf(HasSubstr("net.yaml:2:3: error: `5` is no name for a node"),
+                                   HasSubstr("net.yaml:3:3: error: `all` is no name for a node")));
+}
+
+TEST_F(WrongNetwork, AnInterfaceHasTheLengthThatLinuxTakes) {
+  EXPECT_THAT(told_of("bus: {interface: averyveryverylonginterface}\n"), HasSubstr("[interface]"));
+  EXPECT_THAT(told_of("bus: {interface: \"unix:\"}\n"), HasSubstr("[interface]"));
+  EXPECT_THAT(told_of("bus: {interface: unix:/run/bus}\n"), Not(HasSubstr("[interface]")));
+  EXPECT_THAT(told_of("bus: {interface: can0}\n"), Not(HasSubstr("[interface]")));
+}
+
+TEST_F(WrongNetwork, AFolderIsCalledAFolder) {
+  EXPECT_THAT(told(folder_), HasSubstr("is a folder; name the network file"));
+  EXPECT_THAT(told(folder_ / "none.yaml"), HasSubstr("there is no such file"));
+  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: .}}\n"), HasSubstr("`.` is a folder"));
+  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: /dev/zero}}\n"),
+              HasSubstr("`/dev/zero` is no regular file"));
+}
+
+TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
+  std::string noise;
+  for (int i = 0; i < 200; ++i) noise += "no key and no section\n";
+  write("noise.eds", noise);
+
+  const std::string text = told_of("nodes: {a: {node_id: 1, dcf: noise.eds}}\n");
+
+  EXPECT_THAT(text, HasSubstr("this is no EDS or DCF"));
+  EXPECT_LE(std::ranges::count(text, '\n'), 3);
+}
+
+TEST_F(WrongNetwork, AnEdsThatIsCutOffIsAWarning) {
+  std::ostringstream eds;
+  eds << std::ifstream{TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds"}.rdbuf();
+  write("half.eds", eds.str().substr(0, eds.str().size() / 2));
+
+  EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: half.eds}}\n"),
+              AllOf(HasSubstr("half.eds: warning"), HasSubstr("is it cut off?")));
+}
+
+TEST_F(WrongNetwork, ATabIsCalledATab) {
+  EXPECT_THAT(told_of("bus:\n\tname: t\n"),
+              AllOf(HasSubstr("net.yaml:2:"), HasSubstr("a tab at the begin of the line")));
+  EXPECT_THAT(told_of("nodes:\n  a: {node_id: 1\n"), Not(HasSubstr("tab")));
+}
+
+TEST_F(WrongNetwork, WhatFollowsFromAWrongSyncPeriodIsNotTold) {
+  const std::string axis =
+      "nodes: {a: {node_id: 1, dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds}}\n";
+
+  EXPECT_THAT(told_of("master: {sync_period: 2ms}\n" + axis),
+              AllOf(HasSubstr("`2ms` is no whole number"), Not(HasSubstr("[no-sync]"))));
+  EXPECT_THAT(told_of("master: {sync_period: 2}\n" + axis),
+              AllOf(HasSubstr("for 2 ms write 2000"), Not(HasSubstr("[does-not-fit]"))));
+}
+
+TEST_F(WrongNetwork, ANodeThatIsNoMapLacksNothingElse) {
+  const std::string text = told_of("nodes: {a: 5, b: [1, 2]}\n");
+
+  EXPECT_THAT(text, AllOf(HasSubstr("node `a` is a map (`key: value`), this is a single value"),
+                          HasSubstr("this is a list"), Not(HasSubstr("lacks"))));
+}
+
+}  // namespace
+}  // namespace takt
