@@ -21,6 +21,15 @@ std::string signal_text(const BusPlan& plan, const Signal& signal) {
   return plan.nodes[signal.node_index].name + "." + signal.name;
 }
 
+bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+/// The name as it may be shown: it comes from outside and goes to terminals and logs.
+std::string shown(const std::string& sender) {
+  std::string name = sender.substr(0, longest_sender);
+  std::ranges::replace_if(name, is_control, '?');
+  return name;
+}
+
 }  // namespace
 
 Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output,
@@ -35,7 +44,7 @@ Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_o
 bool Commands::refuse(const CommandContext& context, const command_t& command, std::uint8_t node,
                       const std::string& why) {
   ++refused_;
-  std::string sender = command.sender.substr(0, longest_sender);
+  const std::string sender = shown(command.sender);
   const std::string thing = sender + '/' + std::to_string(node) + '/' + why.substr(0, 24);
   const auto kept_back = told_.allow(thing, context.now);
   if (!kept_back) return false;
@@ -67,8 +76,10 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
                   "another session of taktd (a replayed log, or taktd was started again); take the "
                   "session from the newest image_t");
   }
-  if (command.sender.empty() || command.sender.size() > longest_sender) {
-    return refuse(context, command, 0, "the sender has to give a name of 1 to 64 characters");
+  if (command.sender.empty() || command.sender.size() > longest_sender ||
+      std::ranges::any_of(command.sender, is_control)) {
+    return refuse(context, command, 0,
+                  "the sender has to give a name of 1 to 64 characters, none a control character");
   }
   return read_items(command, context);
 }

@@ -115,6 +115,14 @@ TEST_F(CommandsTest, SecondSenderWaitsForTheEndOfTheLease) {
   EXPECT_EQ(outputs[1], 0x0F);
 }
 
+TEST_F(CommandsTest, ControlCharactersOfASenderReachNoTerminal) {
+  command_t message = command({1}, {0x06});
+  message.sender = "a\n\x1b[2Jb";
+
+  EXPECT_FALSE(take(message));
+  EXPECT_TRUE(told("command of 'a??[2Jb' refused"));
+}
+
 TEST_F(CommandsTest, SameRefusalIsToldOnceASecond) {
   command_t replayed = command({1}, {0x0F});
   replayed.session = 41;
