@@ -1,6 +1,7 @@
 #include "master/sim/device.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace takt::sim {
@@ -367,7 +368,10 @@ void Device::build_routes() noexcept {
     if (!record.valid() || !record.rtr_allowed()) continue;
     routes_.push_back({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
   }
-  std::ranges::stable_sort(routes_, {}, &Route::id);
+  // Each is another one, so that a sort in place, which allocates nothing, keeps their order.
+  std::ranges::sort(routes_, {}, [](const Route& route) {
+    return std::tuple{route.id, route.kind, route.index};
+  });
   routes_changed_ = true;
 }
 

@@ -66,6 +66,7 @@ class Device final : private Dictionary {
   void visit_ids(Visit visit) const {
     for (const Route& route : routes_) visit(route.id);
   }
+  std::size_t most_ids() const noexcept { return routes_.capacity(); }
   bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
 
   void on_bus_off(Time now) noexcept;
@@ -83,7 +84,8 @@ class Device final : private Dictionary {
   DeviceFaults& faults() noexcept { return faults_; }
 
  private:
-  enum class RouteKind : std::uint8_t { nmt, sync, sdo, rpdo, tpdo_request, heartbeat };
+  /// In the order in which those of one identifier hear a frame.
+  enum class RouteKind : std::uint8_t { nmt, sync, sdo, heartbeat, rpdo, tpdo_request };
   struct Route {
     CobId id;
     RouteKind kind = RouteKind::nmt;

@@ -8,7 +8,9 @@ namespace takt::sim {
 
 /// A device in its place on the bus: with its clock and what the world has changed of it.
 struct HostedDevice {
-  HostedDevice(const DeviceTable& table, Random random) : device{table, random} {}
+  HostedDevice(const DeviceTable& table, Random random) : device{table, random} {
+    ids.reserve(device.most_ids());
+  }
 
   Device device;
   LocalClock clock;

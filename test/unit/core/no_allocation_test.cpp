@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <new>
 
-#include "test/unit/core/counted_new.hpp"
+#include "test/support/counted_new.hpp"
 #include "test/unit/core/network_rig.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "test/unit/core/counted_new.hpp"
+#include "test/support/counted_new.hpp"
 
 #include <atomic>
 #include <cstdlib>
