@@ -1,25 +1,9 @@
 #include "eds_parser/boot_steps.hpp"
 
+#include "eds_parser/table/access_name.hpp"
+
 namespace takt {
 namespace {
-
-std::string_view name(Access access) {
-  switch (access) {
-    case Access::ro:
-      return "ro";
-    case Access::wo:
-      return "wo";
-    case Access::rw:
-      return "rw";
-    case Access::rwr:
-      return "rwr";
-    case Access::rww:
-      return "rww";
-    case Access::constant:
-      return "const";
-  }
-  return "";
-}
 
 std::string limit(const std::optional<Value>& value) {
   if (!value) return "";
@@ -93,7 +77,7 @@ std::string BootSteps::eds_note(ObjectKey object) const {
   if (sub == nullptr) return dictionary_.file + " does not have " + to_string(object);
   std::string note = dictionary_.file + " line " + std::to_string(sub->pos.line) + ": " +
                      takt::label(dictionary_, object) + ", " + std::string{takt::name(sub->type)} +
-                     ", " + std::string{name(sub->access)};
+                     ", " + std::string{access_name(sub->access)};
   if (!sub->default_text.empty()) note += ", default " + sub->default_text;
   const std::string low = limit(sub->low_limit);
   const std::string high = limit(sub->high_limit);

@@ -5,6 +5,7 @@
 #include "eds_parser/pdo_description.hpp"
 #include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/print/names.hpp"
+#include "eds_parser/table/access_name.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {

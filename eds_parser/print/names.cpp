@@ -2,24 +2,6 @@
 
 namespace takt {
 
-std::string_view access_name(Access access) noexcept {
-  switch (access) {
-    case Access::ro:
-      return "ro";
-    case Access::wo:
-      return "wo";
-    case Access::rw:
-      return "rw";
-    case Access::rwr:
-      return "rwr";
-    case Access::rww:
-      return "rww";
-    case Access::constant:
-      return "const";
-  }
-  return "rw";
-}
-
 std::string_view object_type_name(ObjectType type) noexcept {
   switch (type) {
     case ObjectType::null:

@@ -6,8 +6,6 @@
 
 namespace takt {
 
-/// `rw`, `const`, as an EDS writes it.
-std::string_view access_name(Access access) noexcept;
 /// `VAR`, `RECORD`.
 std::string_view object_type_name(ObjectType type) noexcept;
 /// `mandatory`, `optional`, `manufacturer`; an unlisted object by where it belongs.
