@@ -24,7 +24,8 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
       sync_producer_{store_},
       heartbeat_{store_, table.node},
       watch_{store_, emcy_},
-      storage_{store_} {
+      storage_{store_},
+      multiplexed_{store_, table.node} {
   for (std::uint16_t n = 1; n <= pdos_a_direction; ++n) {
     if (PdoRecord::exists(store_, PdoDirection::transmit, n)) {
       tpdos_.emplace_back(PdoRecord{store_, PdoDirection::transmit, n});
@@ -193,7 +194,14 @@ void Device::start_pdos(Time now) noexcept {
   model_->advance(now);
   for (Rpdo& rpdo : rpdos_) rpdo.start();
   for (Tpdo& tpdo : tpdos_) tpdo.start(now);
+  list_multiplexed();
   run_tpdos(now);
+  if (!faults_.mute_pdo) multiplexed_.notice(now, out_);
+}
+
+void Device::list_multiplexed() noexcept {
+  multiplexed_.clear();
+  for (const Tpdo& tpdo : tpdos_) multiplexed_.add(tpdo.record());
 }
 
 void Device::run_tpdos(Time now) noexcept {
@@ -209,6 +217,7 @@ void Device::run_tpdos(Time now) noexcept {
 void Device::stop_pdos() noexcept {
   for (Rpdo& rpdo : rpdos_) rpdo.stop();
   for (Tpdo& tpdo : tpdos_) tpdo.stop();
+  multiplexed_.clear();
 }
 
 /// Inputs are sampled first, then what was received since the last SYNC takes effect.
@@ -229,11 +238,18 @@ void Device::on_sync(const Frame& frame, Time now) noexcept {
   }
   if (fresh) model_->outputs(now);
   model_->on_sync(now);
+  if (fresh) look_at_inputs(now);
 }
 
 void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
   if (state_ != DeviceState::operational) return;
   const std::uint16_t number = rpdo.record().number();
+  if (rpdo.record().multiplex() != Multiplex::none) {
+    if (!multiplexed_.on_frame(rpdo.record(), frame, emcy_)) return;
+    model_->advance(now);
+    model_->outputs(now);
+    return look_at_inputs(now);
+  }
   if (rpdo.on_frame(frame, now, sync_.window_end(), emcy_)) {
     model_->advance(now);
     rpdo.apply();
@@ -266,6 +282,7 @@ void Device::look_at_inputs(Time now) noexcept {
   last_look_ = now;
   if (state_ != DeviceState::operational || faults_.mute_pdo) return;
   for (Tpdo& tpdo : tpdos_) tpdo.notice(now, out_);
+  multiplexed_.notice(now, out_);
 }
 
 void Device::on_time(Time now) noexcept {
@@ -345,7 +362,8 @@ void Device::plan_tick() noexcept {
     tick_ = never;
     return;
   }
-  const bool events = std::ranges::any_of(tpdos_, &Tpdo::wants_events);
+  const bool events =
+      multiplexed_.wants_events() || std::ranges::any_of(tpdos_, &Tpdo::wants_events);
   tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
 }
 

@@ -14,6 +14,7 @@
 #include "master/sim/emcy_producer.hpp"
 #include "master/sim/heartbeat.hpp"
 #include "master/sim/model.hpp"
+#include "master/sim/multiplexed_pdos.hpp"
 #include "master/sim/object_store.hpp"
 #include "master/sim/parameter_storage.hpp"
 #include "master/sim/random.hpp"
@@ -113,6 +114,7 @@ class Device final : private Dictionary {
   void start_pdos(Time now) noexcept;
   void run_tpdos(Time now) noexcept;
   void stop_pdos() noexcept;
+  void list_multiplexed() noexcept;
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
   void written(const Object& object, Time now) noexcept;
   void pdo_written(ObjectKey key, Time now) noexcept;
@@ -139,6 +141,7 @@ class Device final : private Dictionary {
   ParameterStorage storage_;
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
+  MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
   std::vector<Route> routes_;  ///< ascending identifier
   bool routes_changed_ = true;

@@ -58,6 +58,8 @@ Abort PdoRecord::check_cob(std::uint64_t raw) const noexcept {
   if (has_stray_bits(raw)) return Abort::value;
   if (!will_be_valid) return Abort::none;
   if (is_restricted(cob_id(raw))) return Abort::value;
+  const bool on_request_only = type() == 252 || type() == 253;
+  if (on_request_only && (raw & cob_bit30) != 0) return Abort::value;
   return count_ == nullptr || count_->value == 0 ? Abort::value : Abort::none;
 }
 
@@ -68,6 +70,7 @@ Abort PdoRecord::check_type(PdoDirection direction, std::uint64_t raw) const noe
 
 /// The device looks at the whole mapping when it is switched on.
 Abort PdoRecord::check_count(const MappingRules& rules, std::uint64_t raw) const noexcept {
+  if (raw == source_mark || raw == destination_mark) return Abort::none;
   if (raw > 64) return Abort::value;
   std::uint64_t bits = 0;
   for (std::uint64_t sub = 1; sub <= raw; ++sub) {
@@ -85,6 +88,7 @@ Abort PdoRecord::check_count(const MappingRules& rules, std::uint64_t raw) const
 
 void PdoRecord::compile(PdoMapping& mapping) const noexcept {
   mapping.clear();
+  if (multiplex() != Multiplex::none) return;
   const std::uint64_t count = count_ == nullptr ? 0 : count_->value;
   for (std::uint64_t sub = 1; sub <= count && sub <= 64; ++sub) {
     const Object* entry = store_.find(

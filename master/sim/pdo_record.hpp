@@ -11,6 +11,9 @@
 
 namespace takt::sim {
 
+/// How the frames of a multiplexed PDO are addressed. CiA 301, 7.2.3.
+enum class Multiplex : std::uint8_t { none, source, destination };
+
 /// The communication and mapping objects of one PDO in the dictionary, and the checks that a
 /// device makes when they are written. CiA 301, 7.5.2.35 to .38.
 class PdoRecord {
@@ -24,6 +27,15 @@ class PdoRecord {
   bool valid() const noexcept { return (cob_->value & cob_invalid) == 0; }
   bool rtr_allowed() const noexcept { return (cob_->value & cob_bit30) == 0; }
   CobId id() const noexcept { return cob_id(cob_->value); }
+  std::uint16_t mapping_index() const noexcept {
+    return static_cast<std::uint16_t>(communication_ + 0x200);
+  }
+  /// Sub 0 of the mapping is 0xFE or 0xFF instead of a number of entries.
+  Multiplex multiplex() const noexcept {
+    const std::uint64_t count = count_ == nullptr ? 0 : count_->value;
+    if (count == source_mark) return Multiplex::source;
+    return count == destination_mark ? Multiplex::destination : Multiplex::none;
+  }
   std::uint8_t type() const noexcept {
     return type_ == nullptr ? 255 : static_cast<std::uint8_t>(type_->value);
   }
@@ -44,6 +56,9 @@ class PdoRecord {
   void compile(PdoMapping& mapping) const noexcept;
 
  private:
+  static constexpr std::uint64_t source_mark = 0xFE;
+  static constexpr std::uint64_t destination_mark = 0xFF;
+
   Abort check_cob(std::uint64_t raw) const noexcept;
   Abort check_type(PdoDirection direction, std::uint64_t raw) const noexcept;
   Abort check_count(const MappingRules& rules, std::uint64_t raw) const noexcept;

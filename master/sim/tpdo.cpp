@@ -31,7 +31,7 @@ bool Tpdo::only_answers() const noexcept {
 }
 
 bool Tpdo::wants_events() const noexcept {
-  if (!running_ || !record_.valid() || (type_ != 0 && type_ < 254)) return false;
+  if (!active() || (type_ != 0 && type_ < 254)) return false;
   if (traits_.timer == DeviceTraits::Timer::alone && runs_by_timer()) return false;
   return !only_answers();
 }
@@ -43,13 +43,13 @@ Time Tpdo::inhibit() const noexcept {
 
 void Tpdo::update_deadline() noexcept {
   deadline_ = never;
-  if (!running_ || !record_.valid()) return;
+  if (!active()) return;
   deadline_ = timer_;
   if (pending_ && type_ >= 254) deadline_ = std::min(deadline_, allowed_from_);
 }
 
 void Tpdo::on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
-  if (!running_ || !record_.valid()) return;
+  if (!active()) return;
   if (type_ == 252) {
     sample_ = mapping_.pack();
     sampled_ = true;
@@ -77,7 +77,7 @@ bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
 }
 
 void Tpdo::on_request(Time now, Transmitter& out) noexcept {
-  if (!running_ || !record_.valid() || !record_.rtr_allowed()) return;
+  if (!active() || !record_.rtr_allowed()) return;
   if (type_ == 252) {
     if (sampled_) send(sample_, now, never, out);
   } else if (type_ >= 253) {

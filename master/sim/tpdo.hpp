@@ -35,6 +35,10 @@ class Tpdo {
   bool wants_events() const noexcept;
 
  private:
+  /// A multiplexed PDO is not sent as a whole.
+  bool active() const noexcept {
+    return running_ && record_.valid() && record_.multiplex() == Multiplex::none;
+  }
   bool counts_to_its_turn(std::uint8_t counter) noexcept;
   void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
   void event(Time now, Transmitter& out) noexcept;

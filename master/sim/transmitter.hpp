@@ -27,7 +27,8 @@ class Transmitter {
   void shrink(std::size_t size) noexcept { size_ = size; }
 
  private:
-  std::array<Transmission, 128> items_{};
+  /// 512 PDOs in answer to one SYNC, and what else there may be.
+  std::array<Transmission, 576> items_{};
   std::size_t size_ = 0;
 };
 

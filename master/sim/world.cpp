@@ -28,7 +28,7 @@ World::World(std::span<const DeviceTable> devices, WorldOptions options)
   for (const DeviceTable& table : devices) {
     devices_.push_back(
         std::make_unique<HostedDevice>(table, random_.fork(100 + table.node.value())));
-    bus_.attach({.order = QueueOrder::priority, .capacity = 128});
+    bus_.attach({.order = QueueOrder::priority, .capacity = 576});
   }
   babbler_ = bus_.attach({.order = QueueOrder::fifo, .capacity = 4});
   bus_.set_powered(babbler_, false, Time{});
