@@ -1,5 +1,6 @@
 #include "master/master.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -33,6 +34,17 @@ bool Master::cycle() noexcept {
 
 void Master::join() {
   if (thread_.joinable()) thread_.join();
+}
+
+bool Master::set_group(std::span<const Command> commands, Time now,
+                       std::uint32_t time_to_live) noexcept {
+  const auto is_output = [&](const Command& command) {
+    return command.signal >= plan_.layout.inputs && command.signal < plan_.layout.signals.size();
+  };
+  if (!std::ranges::all_of(commands, is_output)) return false;
+  for (const Command& command : commands) set(command.signal, command.value, time_to_live);
+  publish_outputs(now);
+  return true;
 }
 
 bool Master::set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live) noexcept {

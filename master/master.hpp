@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -64,6 +65,16 @@ class Master {
 
   /// Stages the command of one output; `signal` counts in the whole layout. False: no output.
   bool set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live = 0) noexcept;
+  struct Command {
+    SignalIndex signal = 0;
+    std::int64_t value = 0;
+  };
+  /// Stages `commands` and hands them over as one set, with what was staged before: those for
+  /// synchronous RPDOs (types 0..240) become valid with one and the same SYNC. Where their frames
+  /// find no room in a cycle, all wait for the next. False: one is no output, nothing is handed
+  /// over.
+  bool set_group(std::span<const Command> commands, Time now,
+                 std::uint32_t time_to_live = 0) noexcept;
   /// Hands all staged commands to the bus thread, as one set.
   void publish_outputs(Time now) noexcept { exchange_->set_points.publish(now); }
 

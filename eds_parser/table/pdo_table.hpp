@@ -20,7 +20,8 @@ struct PdoField {
   bool sign_extend = false;
 };
 
-/// One PDO. TPDO and RPDO are named from the device's side: the master receives TPDOs.
+/// One PDO. TPDO and RPDO are named from the device's side: the master receives TPDOs. A
+/// multiplexed PDO (MPDO) is one row for each object that it carries. CiA 301, 7.2.3.
 struct PdoRow {
   CobId cob_id;
   NodeId node;
@@ -34,7 +35,16 @@ struct PdoRow {
   Time inhibit{};      ///< smallest distance of two event-driven frames
   Time event_timer{};  ///< TPDO: longest silence of the device. RPDO: the master repeats after it
   Time deadline{};     ///< longer than this without a frame: missing. 0 = not watched
+  Time poll{};         ///< TPDO: asked for by remote request so often. 0 = not
+  std::uint16_t poll_syncs = 0;  ///< TPDO: asked for every n-th SYNC. 0 = not
+  std::uint32_t header = 0;      ///< MPDO: bytes 0..3 of its frames, little endian; 0: no MPDO
+  /// MPDO, received: so many rows from here on have this COB-ID, in ascending header; 0: not the
+  /// first of them.
+  std::uint16_t siblings = 0;
+  bool on_request = false;  ///< no part of the image: sent and awaited by requests only
+  bool drop_late = false;   ///< TPDO: a synchronous frame after its window is not used
 
+  constexpr bool multiplexed() const noexcept { return header != 0; }
   constexpr bool synchronous() const noexcept { return transmission <= 240; }
   /// Expected in fixed cycles: types 1..240. Type 0, 254 and 255 only have a deadline.
   constexpr bool cyclic() const noexcept { return transmission >= 1 && transmission <= 240; }

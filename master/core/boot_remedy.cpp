@@ -214,6 +214,8 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
              "another master that resets it";
     case SdoFault::no_such_node:
     case SdoFault::refused:
+    case SdoFault::no_such_pdo:
+    case SdoFault::not_exchanging:
       break;
   }
   return {};

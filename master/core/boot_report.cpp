@@ -100,6 +100,8 @@ std::string meaning_text(const BootFailure& failure) {
     case SdoFault::cancelled:
     case SdoFault::no_such_node:
     case SdoFault::refused:
+    case SdoFault::no_such_pdo:
+    case SdoFault::not_exchanging:
       return {};
   }
   return {};

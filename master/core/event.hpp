@@ -19,6 +19,8 @@ enum class SdoFault : std::uint8_t {
   cancelled,          ///< the node was reset or the master stops
   no_such_node,       ///< requests: the network file has no such node
   refused,            ///< requests: the master only observes
+  no_such_pdo,        ///< PDO requests: the network file has no such PDO of the node
+  not_exchanging,     ///< PDO requests: the node is not operational
 };
 
 /// The one record of a failed boot: all that is needed to explain it. boot_report turns it into
@@ -58,6 +60,7 @@ enum class EventKind : std::uint8_t {
   // the cycle
   pdo_missing,      ///< value: TPDO number; told when it begins
   pdo_back,         ///< value: TPDO number
+  pdo_late,         ///< value: TPDO number, detail: us after SYNC; told when it begins
   pdo_length,       ///< value: TPDO number, detail: received length
   cycles_missed,    ///< value: how many periods were skipped
   receive_overrun,  ///< value: frames lost by the kernel

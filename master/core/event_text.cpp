@@ -83,6 +83,9 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return "TPDO" + std::to_string(event.value) + " is missing";
     case EventKind::pdo_back:
       return "TPDO" + std::to_string(event.value) + " is back";
+    case EventKind::pdo_late:
+      return "TPDO" + std::to_string(event.value) + " comes late: " + std::to_string(event.detail) +
+             " us after SYNC, after the synchronous window";
     case EventKind::pdo_length:
       return "TPDO" + std::to_string(event.value) + " has " + std::to_string(event.detail) +
              " bytes, which is not what its mapping says";

@@ -24,6 +24,8 @@ std::string_view name(EventKind kind) noexcept {
       return "pdo_missing";
     case EventKind::pdo_back:
       return "pdo_back";
+    case EventKind::pdo_late:
+      return "pdo_late";
     case EventKind::pdo_length:
       return "pdo_length";
     case EventKind::cycles_missed:
@@ -116,6 +118,10 @@ std::string_view name(SdoFault fault) noexcept {
       return "no such node";
     case SdoFault::refused:
       return "refused";
+    case SdoFault::no_such_pdo:
+      return "no such PDO";
+    case SdoFault::not_exchanging:
+      return "node not operational";
   }
   return "unknown";
 }

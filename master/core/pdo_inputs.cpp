@@ -1,9 +1,17 @@
 #include "master/core/pdo_inputs.hpp"
 
+#include <algorithm>
+
 namespace takt {
 
 PdoInputs::PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& events)
-    : plan_{plan}, image_{image}, events_{events}, receptions_(plan.nodes.size()) {
+    : plan_{plan},
+      image_{image},
+      events_{events},
+      marks_(plan.pdos.tpdos.size()),
+      receptions_(plan.nodes.size()),
+      window_{plan.cycle.sync_window > Time{} ? plan.cycle.sync_window
+                                              : plan.cycle.receive_window} {
   fields_.reserve(plan.pdos.fields.size());
   for (const PdoField& field : plan.pdos.fields) fields_.push_back(compile(field));
   rows_.reserve(plan.pdos.tpdos.size());
@@ -16,9 +24,15 @@ PdoInputs::PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& event
     row.node_index = pdo.node_index;
     row.every = plan.cycle.sync && pdo.cyclic() ? pdo.transmission : std::uint8_t{0};
     row.deadline = pdo.deadline;
+    row.multiplexed = pdo.siblings != 0;
+    const bool first_of_id = !pdo.multiplexed() || pdo.siblings != 0;
+    if (pdo.cob_id.is_extended() && first_of_id) {
+      extended_.push_back(static_cast<std::uint16_t>(rows_.size()));
+    }
     rows_.push_back(row);
     mark(rows_.back(), true);
   }
+  std::ranges::sort(extended_, {}, [&](std::uint16_t row) { return plan.pdos.tpdos[row].cob_id; });
 }
 
 void PdoInputs::mark(Row& row, bool stale) noexcept {
@@ -37,19 +51,25 @@ void PdoInputs::tell(EventKind kind, const Row& row, Time now, std::uint32_t det
                 .value = row.number});
 }
 
-void PdoInputs::set_reception(std::size_t node_index, Reception reception, Time now) noexcept {
+void PdoInputs::set_reception(std::size_t node_index, Reception reception, Time /*now*/) noexcept {
   if (receptions_[node_index] == reception) return;
   receptions_[node_index] = reception;
-  for (Row& row : rows_) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Row& row = rows_[i];
     if (row.node_index != node_index) continue;
     mark(row, true);
     row.known = false;
     row.misses = 0;
     row.waited = false;
-    row.last_time = now;
+    row.was_late = false;
+    row.expires = never;
     // The first frame may take up to n beats; 2 n is too long for every phase.
     const bool watched = reception != Reception::off && row.every != 0;
     row.due = watched ? beat_ + 2 * std::uint64_t{row.every} : not_due;
+    // Who only listens does not know which SYNC a frame answers.
+    const bool windowed = reception == Reception::full && plan_.cycle.sync &&
+                          plan_.pdos.tpdos[i].synchronous() && window_ > Time{};
+    row.window = windowed ? window_ : never;
   }
 }
 
@@ -58,6 +78,7 @@ void PdoInputs::begin(std::uint64_t cycle, Time sync, bool heard) noexcept {
   expected_ = 0;
   outstanding_ = 0;
   if (!heard) return;
+  sync_before_ = sync_;
   sync_ = sync;
   last_arrival_ = sync;
   ++beat_;
@@ -68,47 +89,99 @@ void PdoInputs::begin(std::uint64_t cycle, Time sync, bool heard) noexcept {
   outstanding_ = expected_;
 }
 
-std::uint16_t PdoInputs::find(CobId id) const noexcept {
-  if (!id.is_extended()) [[likely]] {
-    return plan_.pdos.route[id.id() & 0x7FF];
-  }
-  for (std::size_t i = 0; i < plan_.pdos.tpdos.size(); ++i) {
-    if (plan_.pdos.tpdos[i].cob_id == id) return static_cast<std::uint16_t>(i);
-  }
-  return PdoTable::no_row;
+std::uint16_t PdoInputs::find_extended(CobId id) const noexcept {
+  const auto cob_id = [&](std::uint16_t row) { return plan_.pdos.tpdos[row].cob_id; };
+  const auto found = std::ranges::lower_bound(extended_, id, {}, cob_id);
+  return found != extended_.end() && cob_id(*found) == id ? *found : no_row;
 }
 
-bool PdoInputs::check_length(Row& row, const StampedFrame& stamped) noexcept {
+/// The object of an MPDO: its header is the lower half of the frame. A DAM frame to node 0 is for
+/// all, so for the master too.
+std::uint16_t PdoInputs::find_object(std::uint16_t first, const Frame& frame) const noexcept {
+  constexpr std::uint32_t to_all = 0x80;
+  auto header = static_cast<std::uint32_t>(load(frame));
+  if (frame.length < 4) return no_row;
+  if ((header & 0xFF) == to_all) header |= plan_.master_id.value();
+  const PdoRow* const begin = plan_.pdos.tpdos.data() + first;
+  const PdoRow* const end = begin + begin->siblings;
+  const PdoRow* const found =
+      std::lower_bound(begin, end, header,
+                       [](const PdoRow& row, std::uint32_t value) { return row.header < value; });
+  if (found == end || found->header != header) return no_row;
+  return static_cast<std::uint16_t>(first + (found - begin));
+}
+
+std::uint16_t PdoInputs::row_of(const Frame& frame) const noexcept {
+  const std::uint16_t position =
+      frame.id.is_extended() ? find_extended(frame.id) : plan_.pdos.route[frame.id.id() & 0x7FF];
+  if (position >= rows_.size()) return no_row;
+  return rows_[position].multiplexed ? find_object(position, frame) : position;
+}
+
+bool PdoInputs::check_length(std::size_t position, const StampedFrame& stamped) noexcept {
+  Row& row = rows_[position];
   if (stamped.frame.length == row.length) [[likely]] {
     row.odd_length = false;
     return true;
   }
+  const bool longer = stamped.frame.length > row.length;
   ++row.length_errors;
+  row.too_long += longer;
+  marks_[position].flags |= longer ? PdoMark::too_long : PdoMark::too_short;
   if (!row.odd_length) {
     tell(EventKind::pdo_length, row, stamped.when, stamped.frame.length);
     row.odd_length = true;
   }
-  return stamped.frame.length > row.length;
+  return longer;
+}
+
+/// A synchronous frame after its window: told when that begins, unless it counts as missing
+/// already. False: it is not to be used.
+bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noexcept {
+  Row& row = rows_[position];
+  ++row.late;
+  marks_[position].flags |= PdoMark::late;
+  if (!row.was_late && row.misses == 0) {
+    const Time after = stamped.when - (stamped.when < sync_ ? sync_before_ : sync_);
+    tell(EventKind::pdo_late, row, stamped.when,
+         static_cast<std::uint32_t>(std::min<Time::rep>(after.count() / 1000, 0xFFFF'FFFF)));
+  }
+  row.was_late = true;
+  return !plan_.pdos.tpdos[position].drop_late;
 }
 
 bool PdoInputs::receive(const StampedFrame& stamped) noexcept {
-  const std::uint16_t position = find(stamped.frame.id);
+  const CobId id = stamped.frame.id;
+  std::uint16_t position = id.is_extended() ? find_extended(id) : plan_.pdos.route[id.id() & 0x7FF];
   if (position >= rows_.size()) return false;
-  Row& row = rows_[position];
-  if (stamped.frame.rtr || receptions_[row.node_index] == Reception::off) return true;
-  if (check_length(row, stamped)) [[likely]] {
-    accept(row, stamped);
+  if (stamped.frame.rtr || receptions_[rows_[position].node_index] == Reception::off) return true;
+  if (rows_[position].multiplexed) [[unlikely]] {
+    position = find_object(position, stamped.frame);
+    if (position == no_row) return true;
+  }
+  if (check_length(position, stamped)) [[likely]] {
+    accept(position, stamped);
   }
   return true;
 }
 
-void PdoInputs::accept(Row& row, const StampedFrame& stamped) noexcept {
-  unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
-  ++row.received;
-  row.last_time = stamped.when;
+void PdoInputs::accept(std::size_t position, const StampedFrame& stamped) noexcept {
+  Row& row = rows_[position];
   // A frame from before this SYNC answers the one before.
-  const std::uint64_t of_beat = beat_ - (stamped.when < sync_ ? 1 : 0);
+  const bool of_now = stamped.when >= sync_;
+  if (stamped.when - (of_now ? sync_ : sync_before_) > row.window) [[unlikely]] {
+    if (!use_late(position, stamped)) return;
+  } else {
+    row.was_late = false;
+  }
+  unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
+  PdoMark& news = marks_[position];
+  ++news.received;
+  news.cycle = static_cast<std::uint32_t>(cycle_) - (of_now ? 0 : 1);
+  news.flags |= PdoMark::arrived;
+  const std::uint64_t of_beat = beat_ - (of_now ? 0 : 1);
   row.last_beat = of_beat;
+  if (row.deadline > Time{}) row.expires = stamped.when + row.deadline;
   if (row.every != 0) {
     row.known = receptions_[row.node_index] == Reception::full;
     // Without a phase of its own a frame may come one round later.
@@ -126,8 +199,10 @@ void PdoInputs::accept(Row& row, const StampedFrame& stamped) noexcept {
   if (row.stale) mark(row, false);
 }
 
-void PdoInputs::miss(Row& row, Time now) noexcept {
+void PdoInputs::miss(std::size_t position, Time now) noexcept {
+  Row& row = rows_[position];
   ++row.missing;
+  marks_[position].flags |= PdoMark::missing;
   if (row.misses == 0) tell(EventKind::pdo_missing, row, now);
   if (row.misses < 255) ++row.misses;
   if (!row.stale) mark(row, true);
@@ -135,16 +210,17 @@ void PdoInputs::miss(Row& row, Time now) noexcept {
 
 std::uint32_t PdoInputs::close(Time now) noexcept {
   std::uint32_t missed = 0;
-  for (Row& row : rows_) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Row& row = rows_[i];
     if (row.due == beat_) [[unlikely]] {
       row.due += row.every;
       row.waited = false;
-      miss(row, now);
+      miss(i, now);
       ++missed;
     }
-    if (row.deadline > Time{0} && row.every == 0 && row.misses == 0 &&
-        receptions_[row.node_index] != Reception::off && now - row.last_time > row.deadline) {
-      miss(row, now);
+    if (now > row.expires) [[unlikely]] {
+      row.expires = never;
+      if (row.misses == 0) miss(i, now);
     }
   }
   outstanding_ = 0;
@@ -153,9 +229,11 @@ std::uint32_t PdoInputs::close(Time now) noexcept {
 
 PdoStatus PdoInputs::status(std::size_t position) const noexcept {
   const Row& row = rows_[position];
-  return {.received = row.received,
+  return {.received = marks_[position].received,
           .missing = row.missing,
+          .late = row.late,
           .length_errors = row.length_errors,
+          .too_long = row.too_long,
           .age = static_cast<std::uint32_t>(beat_ - row.last_beat),
           .stale = row.stale};
 }

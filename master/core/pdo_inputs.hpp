@@ -44,12 +44,20 @@ class PdoInputs {
 
   /// The window of this beat is over: what has not come is missing. Returns how many.
   std::uint32_t close(Time now) noexcept;
+  /// Row by row: what happened since forget_marks(), after the image was published.
+  std::span<const PdoMark> marks() const noexcept { return marks_; }
+  void forget_marks() noexcept {
+    for (PdoMark& mark : marks_) mark.flags = 0;
+  }
 
   /// A PDO of this node has arrived since its reception began, and none is overdue.
   bool fresh(SignalIndex signal) const noexcept { return !image_.is_stale(signal); }
 
   std::size_t size() const noexcept { return rows_.size(); }
   PdoStatus status(std::size_t row) const noexcept;
+  static constexpr std::uint16_t no_row = PdoTable::no_row;
+  /// The row of a received frame, of an MPDO the one of its object; else no_row.
+  std::uint16_t row_of(const Frame& frame) const noexcept;
 
  private:
   static constexpr std::uint64_t not_due = ~0ULL;
@@ -58,7 +66,8 @@ class PdoInputs {
   struct Row {
     std::uint64_t due = not_due;  ///< beat in which it is expected next
     std::uint64_t last_beat = 0;
-    Time last_time{};
+    Time expires = never;  ///< its deadline, armed by the first frame
+    Time window = never;   ///< counted from SYNC; later is late
     std::uint16_t first = 0;
     std::uint16_t count = 0;
     std::uint16_t number = 0;
@@ -66,21 +75,26 @@ class PdoInputs {
     std::uint8_t node_index = 0;
     std::uint8_t every = 0;  ///< beats between two frames; 0: not cyclic
     std::uint8_t misses = 0;
-    bool known = false;   ///< its phase has been seen
-    bool waited = false;  ///< the running beat waits for it
+    bool known = false;        ///< its phase has been seen
+    bool multiplexed = false;  ///< the first row of an MPDO
+    bool waited = false;       ///< the running beat waits for it
     bool stale = true;
     bool odd_length = false;  ///< told once, until a frame of right length comes
-    std::uint32_t received = 0;
+    bool was_late = false;    ///< told once, until a frame comes in time
     std::uint32_t missing = 0;
+    std::uint32_t late = 0;
     std::uint32_t length_errors = 0;
+    std::uint32_t too_long = 0;
     Time deadline{};
   };
 
-  std::uint16_t find(CobId id) const noexcept;
-  void accept(Row& row, const StampedFrame& stamped) noexcept;
-  bool check_length(Row& row, const StampedFrame& stamped) noexcept;
+  std::uint16_t find_extended(CobId id) const noexcept;
+  std::uint16_t find_object(std::uint16_t first, const Frame& frame) const noexcept;
+  void accept(std::size_t position, const StampedFrame& stamped) noexcept;
+  bool check_length(std::size_t position, const StampedFrame& stamped) noexcept;
+  bool use_late(std::size_t position, const StampedFrame& stamped) noexcept;
   void mark(Row& row, bool stale) noexcept;
-  void miss(Row& row, Time now) noexcept;
+  void miss(std::size_t position, Time now) noexcept;
   void tell(EventKind kind, const Row& row, Time now, std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
@@ -88,10 +102,14 @@ class PdoInputs {
   EventQueue& events_;
   std::vector<FieldProgram> fields_;
   std::vector<Row> rows_;
+  std::vector<PdoMark> marks_;
+  std::vector<std::uint16_t> extended_;  ///< rows of 29-bit identifiers, ascending identifier
   std::vector<Reception> receptions_;
+  Time window_;  ///< of synchronous frames
   std::uint64_t beat_ = 0;
   std::uint64_t cycle_ = 0;
   Time sync_{};
+  Time sync_before_{};
   Time last_arrival_{};
   std::uint32_t expected_ = 0;
   std::uint32_t outstanding_ = 0;

@@ -15,8 +15,7 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
       rows_(plan.pdos.rpdos.size()),
       begun_(plan.nodes.size(), 0),
       frames_(plan.pdos.rpdos.size()),
-      packed_(plan.pdos.rpdos.size()),
-      words_(plan.pdos.rpdos.size()) {
+      packed_(plan.pdos.rpdos.size()) {
   fields_.reserve(plan.pdos.fields.size());
   for (const PdoField& field : plan.pdos.fields) fields_.push_back(compile(field));
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -27,8 +26,9 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
 
 void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (plan_.pdos.rpdos[i].node_index != node_index) continue;
-    rows_[i] = Row{.open = true};
+    const PdoRow& pdo = plan_.pdos.rpdos[i];
+    if (pdo.node_index != node_index || pdo.on_request) continue;
+    rows_[i] = Row{.sent = rows_[i].sent, .open = true};
   }
   begun_[node_index] = 0;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -40,7 +40,7 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
 
 void PdoOutputs::shut(std::size_t node_index) noexcept {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (plan_.pdos.rpdos[i].node_index == node_index) rows_[i] = Row{};
+    if (plan_.pdos.rpdos[i].node_index == node_index) rows_[i] = Row{.sent = rows_[i].sent};
   }
 }
 
@@ -76,7 +76,7 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   Row& row = rows_[position];
   std::uint8_t& begun = begun_[pdo.node_index];
-  Built built;
+  Built built{.word = pdo.header};
   row.fallen = 0;
   row.risen = 0;
   for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
@@ -87,6 +87,7 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
       if (output.fallen && row.risen++ == 0) row.first_risen = field.signal;
       take(output, field.signal, set_point, moment);
       ++fresh_commands_;
+      built.commanded = true;
     }
     if (moment.cycle >= output.expires && !output.fallen && !output.forced) [[unlikely]] {
       fall(output, field.signal);
@@ -117,20 +118,19 @@ void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment m
   row.held_told = true;
 }
 
-bool PdoOutputs::due(std::size_t position, std::uint64_t word, Time now) const noexcept {
+bool PdoOutputs::due(std::size_t position, Time now) const noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   const Row& row = rows_[position];
-  if (pdo.cyclic()) return stopping_ || (row.packs - 1) % pdo.transmission == 0;
-  if (!row.ever_sent) return true;
+  if (!row.ever_sent || row.due) return true;
+  if (pdo.cyclic()) return stopping_ || turn_ % pdo.transmission == 0;
+  if (pdo.synchronous()) return row.pending;
   const Time since = now - row.last_sent;
   if (since < pdo.inhibit) return false;
-  return word != row.last_word || (pdo.event_timer > Time{0} && since >= pdo.event_timer);
+  return row.pending || (pdo.event_timer > Time{0} && since >= pdo.event_timer);
 }
 
-std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
-                                        OutputMoment moment) noexcept {
-  packed_count_ = 0;
-  fresh_commands_ = 0;
+bool PdoOutputs::build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
+  unsigned together = 0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
     if (!row.open) continue;
@@ -139,29 +139,43 @@ std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
     if (built.lacking || row.fallen != 0 || row.risen != 0) [[unlikely]] {
       tell_changes(i, built.lacking, moment);
     }
-    if (built.lacking) continue;
-    ++row.packs;
-    if (!due(i, built.word, moment.now)) continue;
+    row.pending |= built.word != row.word;
+    row.word = built.word;
+    together += row.pending && built.commanded && row.ready && plan_.pdos.rpdos[i].synchronous();
+  }
+  return together > 1;
+}
+
+std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
+                                        OutputMoment moment) noexcept {
+  packed_count_ = 0;
+  fresh_commands_ = 0;
+  const bool together = build_all(set_points, moment);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Row& row = rows_[i];
+    if (!row.ready || !row.open) continue;
     const PdoRow& pdo = plan_.pdos.rpdos[i];
+    row.due = due(i, moment.now) || (together && row.pending && pdo.synchronous());
+    if (!row.due) continue;
     Frame& frame = frames_[packed_count_];
     frame.id = pdo.cob_id;
     frame.length = pdo.length;
     frame.rtr = false;
-    store(built.word, frame);
-    words_[packed_count_] = built.word;
+    store(row.word, frame);
     packed_[packed_count_++] = static_cast<std::uint16_t>(i);
   }
+  ++turn_;
   return {frames_.data(), packed_count_};
 }
 
 void PdoOutputs::sent(std::size_t count, Time now) noexcept {
   for (std::size_t i = 0; i < std::min(count, packed_count_); ++i) {
     Row& row = rows_[packed_[i]];
-    row.last_word = words_[i];
     row.last_sent = now;
     row.ever_sent = true;
+    row.pending = row.due = false;
+    ++row.sent;
   }
-  for (std::size_t i = count; i < packed_count_; ++i) --rows_[packed_[i]].packs;
   packed_count_ = 0;
 }
 

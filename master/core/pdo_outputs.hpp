@@ -9,6 +9,7 @@
 #include "master/core/event_queue.hpp"
 #include "master/core/pdo_fields.hpp"
 #include "master/core/pdo_inputs.hpp"
+#include "master/core/pdo_status.hpp"
 #include "master/core/set_point.hpp"
 #include "master/core/working_image.hpp"
 
@@ -21,7 +22,10 @@ struct OutputMoment {
 };
 
 /// Set-points -> RPDO frames. An RPDO goes out only when its node exchanges PDOs and each of its
-/// signals has been commanded, has a safe value or is seeded by its feedback. Bus thread only.
+/// signals has been commanded, has a safe value or is seeded by its feedback. Types 1..240 go out
+/// each n-th cycle, the others when a value has changed; that event is kept until its frame went
+/// out. One set of commands that changes several synchronous RPDOs sends them in one cycle, those
+/// of type n out of turn: all act at the next SYNC. Bus thread only.
 class PdoOutputs {
  public:
   /// Keeps references to all four.
@@ -50,6 +54,9 @@ class PdoOutputs {
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
   /// Every signal of this RPDO has a value worth sending.
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
+  RpdoStatus status(std::size_t row) const noexcept {
+    return {.sent = rows_[row].sent, .ready = rows_[row].ready};
+  }
 
  private:
   static constexpr std::uint64_t no_end = ~0ULL;
@@ -65,12 +72,14 @@ class PdoOutputs {
     bool forced = false;
   };
   struct Row {
-    std::uint64_t last_word = 0;
+    std::uint64_t word = 0;  ///< as it was packed last
     Time last_sent{};
-    std::uint64_t packs = 0;  ///< since it was ready
+    std::uint32_t sent = 0;
     bool open = false;
     bool ready = false;
-    bool ever_sent = false;
+    bool ever_sent = false;  ///< since it was opened
+    bool pending = false;    ///< it has changed and was not sent since
+    bool due = false;        ///< its turn has come and it was not sent since
     bool held_told = false;
     std::uint8_t partial = 0;
     SignalIndex first_fallen = 0;
@@ -81,6 +90,7 @@ class PdoOutputs {
   struct Built {
     std::uint64_t word = 0;
     bool lacking = false;
+    bool commanded = false;  ///< by a command that was not seen before
   };
 
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
@@ -110,7 +120,9 @@ class PdoOutputs {
   }
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;
-  bool due(std::size_t row, std::uint64_t word, Time now) const noexcept;
+  /// Builds all rows. True: one set of commands has changed several synchronous ones.
+  bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  bool due(std::size_t row, Time now) const noexcept;
   void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
   void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
             std::uint32_t detail = 0) noexcept;
@@ -127,8 +139,8 @@ class PdoOutputs {
   std::vector<std::uint8_t> begun_;  ///< per node: an output is commanded, seeds no longer follow
   std::vector<Frame> frames_;
   std::vector<std::uint16_t> packed_;
-  std::vector<std::uint64_t> words_;
   std::size_t packed_count_ = 0;
+  std::uint64_t turn_ = 0;  ///< packs so far: the raster of types 2..240, one for all rows
   std::uint32_t fresh_commands_ = 0;
   bool stopping_ = false;
 };

@@ -14,7 +14,14 @@ namespace takt {
 /// Largest SDO value that a request or reply carries, in bytes.
 inline constexpr std::size_t request_bytes = 1024;
 
-enum class RequestKind : std::uint8_t { sdo_upload, sdo_download, nmt };
+enum class RequestKind : std::uint8_t {
+  sdo_upload,
+  sdo_download,
+  nmt,
+  pdo_poll,      ///< remote request for TPDO `object.index` (1..512); the reply has its bytes
+  pdo_exchange,  ///< RPDO `object.index` with `data`; the reply has the bytes of the TPDO that
+                 ///< answers
+};
 
 /// A service asked of the bus thread by the front thread. Trivially copyable.
 struct Request {

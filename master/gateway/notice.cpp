@@ -23,6 +23,7 @@ Weight weight_of(EventKind kind) noexcept {
       return Weight::note;
     case EventKind::bootup_again:
     case EventKind::pdo_missing:
+    case EventKind::pdo_late:
     case EventKind::pdo_length:
     case EventKind::cycles_missed:
     case EventKind::command_refused:

@@ -50,6 +50,12 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
       return "the master only observes and sends nothing";
     case SdoFault::cancelled:
       return "the node was reset or the master stops";
+    case SdoFault::no_such_pdo:
+      return "the network file has no such PDO of this node, or not one that can be asked for: "
+             "takt "
+             "plan lists them";
+    case SdoFault::not_exchanging:
+      return "the node is not operational: PDOs are exchanged in OPERATIONAL only";
   }
   return {};
 }
@@ -110,8 +116,34 @@ std::expected<Request, std::string> Requests::translate(const request_t& message
   if (message.service == "sdo_upload" || message.service == "sdo_download") {
     return translate_sdo(message);
   }
+  if (message.service == "pdo_poll" || message.service == "pdo_exchange") {
+    return translate_pdo(message);
+  }
   return std::unexpected{"service '" + message.service.substr(0, 32) +
-                         "' is not known; there are sdo_upload, sdo_download and nmt"};
+                         "' is not known; there are sdo_upload, sdo_download, pdo_poll, "
+                         "pdo_exchange and nmt"};
+}
+
+/// `index` is the number of the PDO.
+std::expected<Request, std::string> Requests::translate_pdo(const request_t& message) const {
+  const auto node = static_cast<std::uint8_t>(message.node_id);
+  if (node_name(plan_, node).empty()) {
+    return std::unexpected{"node " + std::to_string(message.node_id) +
+                           " is not in the network file of bus '" + plan_.name + "'"};
+  }
+  if (message.index < 1 || message.index > 512) {
+    return std::unexpected{"PDO number " + std::to_string(message.index) + " is not in 1..512"};
+  }
+  if (message.data.size() > 8) return std::unexpected{std::string{"a PDO has at most 8 bytes"}};
+  Request request;
+  request.kind = message.service == "pdo_poll" ? RequestKind::pdo_poll : RequestKind::pdo_exchange;
+  request.node = node;
+  request.object = {static_cast<std::uint16_t>(message.index), 0};
+  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
+  request.size = static_cast<std::uint16_t>(message.data.size());
+  std::ranges::transform(message.data, request.data.begin(),
+                         [](std::uint8_t byte) { return std::byte{byte}; });
+  return request;
 }
 
 std::expected<Request, std::string> Requests::translate_nmt(const request_t& message) const {
@@ -159,7 +191,8 @@ std::optional<reply_t> Requests::finish(const Reply& reply) {
   message.good = reply.fault == SdoFault::none ? 1 : 0;
   message.abort_code = reply.abort_code;
   message.text = fault_text(reply.fault, reply.abort_code);
-  if (found->second.kind == RequestKind::sdo_upload) {
+  const RequestKind kind = found->second.kind;
+  if (kind != RequestKind::sdo_download && kind != RequestKind::nmt) {
     message.size = reply.size;
     message.data.resize(reply.size);
     std::transform(reply.data.begin(), reply.data.begin() + reply.size, message.data.begin(),

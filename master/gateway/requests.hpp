@@ -47,6 +47,7 @@ class Requests {
   std::expected<Request, std::string> translate(const request_t& message) const;
   std::expected<Request, std::string> translate_nmt(const request_t& message) const;
   std::expected<Request, std::string> translate_sdo(const request_t& message) const;
+  std::expected<Request, std::string> translate_pdo(const request_t& message) const;
   bool seen_before(const Asker& asker);
   reply_t reply_to(const Asker& asker) const;
 

@@ -10,6 +10,7 @@
 #include "master/core/network.hpp"
 #include "master/core/ordered_stop.hpp"
 #include "master/core/pdo_exchange.hpp"
+#include "master/core/pdo_requests.hpp"
 #include "master/rt/arrival_prediction.hpp"
 #include "master/rt/beat_clock.hpp"
 #include "master/rt/controller.hpp"
@@ -62,10 +63,12 @@ class BusLoop {
   void drain() noexcept;
   void learn(bool in_time) noexcept;
   void publish() noexcept;
+  void run_controller(const ImageStamp& stamp) noexcept;
   void predict_next_publish() noexcept;
   void serve() noexcept;
   bool send_services(std::size_t& budget) noexcept;
   void take_requests() noexcept;
+  bool submit(const Request& request) noexcept;
   void give_replies() noexcept;
   void send_outputs() noexcept;
   void step_stop() noexcept;
@@ -82,6 +85,7 @@ class BusLoop {
   EventQueue events_;
   PdoExchange pdos_;
   N network_;
+  PdoRequests pdo_requests_;
   OrderedStop stop_;
   PortWatch port_watch_;
   ServiceQueue services_;

@@ -13,6 +13,7 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       options_{options},
       pdos_{plan, events_},
       network_{plan, {.observe = options.observe}},
+      pdo_requests_{plan},
       stop_{plan},
       port_watch_{events_},
       clock_{plan.cycle.period},
@@ -156,6 +157,8 @@ void BusLoop<P, N>::drain() noexcept {
       status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(stamped.frame));
       if (!pdos_.inputs().receive(stamped)) {
         network_.on_frame(stamped.frame, stamped.when, services_.inbox());
+      } else if (pdo_requests_.waiting()) [[unlikely]] {
+        pdo_requests_.on_frame(pdos_.inputs().row_of(stamped.frame), stamped);
       }
     }
     status_.frames_received += count;
@@ -191,21 +194,28 @@ void BusLoop<P, N>::publish() noexcept {
                          .publish_time = now,
                          .missing = missing};
   const WorkingImage& image = pdos_.image();
-  exchange_.images.publish(stamp, image.values, image.stale);
+  exchange_.images.publish(stamp, image.values, image.stale, pdos_.inputs().marks());
   exchange_.timing.sync_to_publish.record(now - sync_time_);
   predict_next_publish();
   port_watch_.on_news(news, now);
-  if (options_.controller != nullptr) {
-    OutputWriter writer{pdos_.outputs(), {.cycle = clock_.cycle(), .now = now}};
-    options_.controller->update({.cycle = stamp.cycle,
-                                 .beat = stamp.beat,
-                                 .sync_time = stamp.sync_time,
-                                 .publish_time = stamp.publish_time,
-                                 .missing = stamp.missing,
-                                 .values = image.values,
-                                 .stale_bits = image.stale},
-                                writer);
-  }
+  run_controller(stamp);
+  pdos_.inputs().forget_marks();
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::run_controller(const ImageStamp& stamp) noexcept {
+  if (options_.controller == nullptr) return;
+  const WorkingImage& image = pdos_.image();
+  OutputWriter writer{pdos_.outputs(), {.cycle = stamp.cycle, .now = stamp.publish_time}};
+  options_.controller->update({.cycle = stamp.cycle,
+                               .beat = stamp.beat,
+                               .sync_time = stamp.sync_time,
+                               .publish_time = stamp.publish_time,
+                               .missing = stamp.missing,
+                               .values = image.values,
+                               .stale_bits = image.stale,
+                               .pdos = pdos_.inputs().marks()},
+                              writer);
 }
 
 template <Port P, class N>
@@ -220,6 +230,8 @@ void BusLoop<P, N>::serve() noexcept {
   take_requests();
   const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
   std::size_t budget = plan_.cycle.service_frames;
+  services_.inbox().set_limit(budget);
+  pdo_requests_.on_time(exchanging_, status_.beats, port_.now(), services_.inbox());
   for (;;) {
     services_.inbox().set_limit(budget);
     network_.on_time(port_.now(), services_.inbox());
@@ -256,15 +268,22 @@ bool BusLoop<P, N>::send_services(std::size_t& budget) noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::take_requests() noexcept {
   if (reply_waits_ || !exchange_.requests.pop(request_)) return;
-  if (!options_.observe && network_.submit(request_, port_.now())) return;
+  if (!options_.observe && submit(request_)) return;
   reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
   reply_waits_ = true;
 }
 
 template <Port P, class N>
+bool BusLoop<P, N>::submit(const Request& request) noexcept {
+  const Time now = port_.now();
+  return PdoRequests::takes(request.kind) ? pdo_requests_.submit(request, now)
+                                          : network_.submit(request, now);
+}
+
+template <Port P, class N>
 void BusLoop<P, N>::give_replies() noexcept {
   for (;;) {
-    if (!reply_waits_ && !network_.take(reply_)) return;
+    if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
     reply_waits_ = exchange_.replies.full() || !exchange_.replies.push(reply_);
     if (reply_waits_) return;
   }
@@ -297,6 +316,7 @@ void BusLoop<P, N>::step_stop() noexcept {
     tell(EventKind::stopping, now);
     stop_.begin(now);
     pdos_.outputs().fall_back();
+    pdo_requests_.cancel_all();
   }
   const StopStage before = stop_.stage();
   stop_.step(now,
@@ -333,8 +353,9 @@ void BusLoop<P, N>::write_status() noexcept {
   last_status_ = sync_sent_;
   status_.when = sync_sent_;
   const PdoInputs& inputs = pdos_.inputs();
-  exchange_.status.write(status_, network_.nodes(),
-                         [&](std::size_t row) { return inputs.status(row); });
+  exchange_.status.write(
+      status_, network_.nodes(), [&](std::size_t row) { return inputs.status(row); },
+      [&](std::size_t row) { return pdos_.outputs().status(row); });
   if (done_) exchange_.finished.store(true, std::memory_order_release);
 }
 

@@ -26,8 +26,8 @@ struct TimingHistograms {
 /// on the heap.
 struct Exchange {
   explicit Exchange(const BusPlan& plan)
-      : images{plan.layout.signals.size()},
-        status{plan.nodes.size(), plan.pdos.tpdos.size()},
+      : images{plan.layout.signals.size(), plan.pdos.tpdos.size()},
+        status{plan.nodes.size(), plan.pdos.tpdos.size(), plan.pdos.rpdos.size()},
         set_points{plan.layout.outputs()} {}
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;

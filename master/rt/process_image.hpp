@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eds_parser/table/time.hpp"
+#include "master/core/pdo_status.hpp"
 
 namespace takt {
 
@@ -27,6 +28,13 @@ struct ImageView {
   std::uint32_t missing = 0;
   std::span<const std::int64_t> values;       ///< all signals: inputs, then outputs as last sent
   std::span<const std::uint64_t> stale_bits;  ///< bit n % 64 of word n / 64: signal n
+  std::span<const PdoMark> pdos{};            ///< rows of PdoTable::tpdos
+
+  /// Cycles since the newest frame of this TPDO; 0: it came in this one. None came while its
+  /// `received` is 0.
+  std::uint32_t age(std::size_t tpdo) const noexcept {
+    return static_cast<std::uint32_t>(cycle) - pdos[tpdo].cycle;
+  }
 };
 
 /// Images on their way from the bus thread to the front thread: 64 slots, one producer, one
@@ -35,11 +43,12 @@ class ImageRing {
  public:
   static constexpr std::size_t slots = 64;
 
-  explicit ImageRing(std::size_t signals);
+  explicit ImageRing(std::size_t signals, std::size_t tpdos = 0);
 
   /// Bus thread. False: the front thread is 64 images behind.
   bool publish(const ImageStamp& stamp, std::span<const std::int64_t> values,
-               std::span<const std::uint64_t> stale_bits) noexcept;
+               std::span<const std::uint64_t> stale_bits,
+               std::span<const PdoMark> pdos = {}) noexcept;
 
   /// Front thread: the next image in order; false: none. Frees the one taken before.
   bool take(ImageView& view) noexcept;
@@ -55,9 +64,11 @@ class ImageRing {
 
   std::size_t signals_;
   std::size_t words_;  ///< of stale bits
+  std::size_t tpdos_;
   std::vector<ImageStamp> stamps_;
   std::vector<std::int64_t> values_;
   std::vector<std::uint64_t> stale_;
+  std::vector<PdoMark> pdos_;
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};
   bool holding_ = false;  // front thread's

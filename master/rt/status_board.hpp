@@ -38,21 +38,23 @@ struct StatusSnapshot {
   BusStatus bus;
   std::vector<NodeStatus> nodes;  ///< order of BusPlan::nodes
   std::vector<PdoStatus> tpdos;   ///< order of PdoTable::tpdos
+  std::vector<RpdoStatus> rpdos;  ///< order of PdoTable::rpdos
 };
 
 /// State of the bus for the front thread: written every few cycles, read at any time.
 class StatusBoard {
  public:
-  StatusBoard(std::size_t nodes, std::size_t tpdos);
+  StatusBoard(std::size_t nodes, std::size_t tpdos, std::size_t rpdos = 0);
 
-  /// Bus thread. `tpdo(row)` gives the status of one TPDO.
-  template <class F>
-  void write(const BusStatus& bus, std::span<const NodeStatus> nodes, F&& tpdo) noexcept {
+  /// Bus thread. `tpdo(row)` gives the status of one TPDO, `rpdo(row)` of one RPDO.
+  template <class T, class R>
+  void write(const BusStatus& bus, std::span<const NodeStatus> nodes, T&& tpdo, R&& rpdo) noexcept {
     lock_.begin();
     lock_.put(0, bus);
     const std::size_t count = nodes.size() < nodes_ ? nodes.size() : nodes_;
     for (std::size_t i = 0; i < count; ++i) lock_.put(node_at(i), nodes[i]);
     for (std::size_t i = 0; i < tpdos_; ++i) lock_.put(tpdo_at(i), tpdo(i));
+    for (std::size_t i = 0; i < rpdos_; ++i) lock_.put(rpdo_at(i), rpdo(i));
     lock_.end();
   }
 
@@ -66,9 +68,13 @@ class StatusBoard {
   std::size_t tpdo_at(std::size_t i) const noexcept {
     return node_at(nodes_) + i * seqlock_words<PdoStatus>;
   }
+  std::size_t rpdo_at(std::size_t i) const noexcept {
+    return tpdo_at(tpdos_) + i * seqlock_words<RpdoStatus>;
+  }
 
   std::size_t nodes_;
   std::size_t tpdos_;
+  std::size_t rpdos_;
   Seqlock lock_;
 };
 

@@ -225,7 +225,9 @@ TEST(StatusBoard, IsConsistentBetweenTwoThreads) {
       for (NodeStatus& node : nodes) node.boot_count = i;
       BusStatus status;
       status.cycle = i;
-      board.write(status, nodes, [&](std::size_t) { return PdoStatus{.received = i}; });
+      board.write(
+          status, nodes, [&](std::size_t) { return PdoStatus{.received = i}; },
+          [](std::size_t) { return RpdoStatus{}; });
     }
     done = true;
   }};

@@ -1,0 +1,73 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/machine.hpp"
+#include "master/core/request.hpp"
+
+namespace takt {
+
+/// PDOs on request: remote requests for TPDOs, periodic or asked for, and pairs of an RPDO that is
+/// sent and the TPDO of the same number that answers it. Each accepted request is answered once;
+/// each wait has a deadline. Bus thread only; nothing allocates after construction.
+class PdoRequests {
+ public:
+  static constexpr std::size_t capacity = 16;
+  static constexpr Time default_timeout = std::chrono::milliseconds{500};
+
+  explicit PdoRequests(const BusPlan& plan);
+
+  static bool takes(RequestKind kind) noexcept {
+    return kind == RequestKind::pdo_poll || kind == RequestKind::pdo_exchange;
+  }
+  /// False: full, the caller answers.
+  bool submit(const Request& request, Time now) noexcept;
+  /// Once a cycle: time-outs, then what is to be sent, as far as `out` has room. `exchanging` says
+  /// by node index who is OPERATIONAL, `beat` counts SYNCs.
+  void on_time(std::span<const bool> exchanging, std::uint64_t beat, Time now,
+               Outbox& out) noexcept;
+  /// Somebody waits for a TPDO: on_frame wants to see those that come.
+  bool waiting() const noexcept { return waiting_ != 0; }
+  /// `row` of PdoTable::tpdos.
+  void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
+  bool take(Reply& reply) noexcept;
+  void cancel_all() noexcept;
+
+ private:
+  struct Poll {
+    std::uint16_t row = 0;
+    Time next{};
+    std::uint64_t last_beat = 0;
+  };
+  struct Slot {
+    enum class State : std::uint8_t { free, to_send, sent, answered };
+    State state = State::free;
+    SdoFault fault = SdoFault::none;
+    std::uint16_t tpdo = 0;
+    std::uint64_t id = 0;
+    std::uint64_t order = 0;
+    Frame frame{};  ///< to send, then the answer
+    Time timeout{};
+    Time deadline{};
+    Time sent_at{};
+  };
+
+  SdoFault prepare(const Request& request, Slot& slot) const noexcept;
+  void answer(Slot& slot, SdoFault fault) noexcept;
+  void send(Slot& slot, std::span<const bool> exchanging, Time now, Outbox& out) noexcept;
+  bool is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept;
+  bool is_next(const Slot& slot) const noexcept;
+
+  const BusPlan& plan_;
+  std::vector<Poll> polls_;
+  std::array<Slot, capacity> slots_{};
+  std::size_t used_ = 0;
+  std::size_t waiting_ = 0;
+  std::uint64_t order_ = 0;
+};
+
+}  // namespace takt
