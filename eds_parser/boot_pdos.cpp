@@ -27,8 +27,11 @@ class PdoBoot {
     disable();
     write_parameters();
     if (steps_.writable(cob_id_key())) {
-      steps_.integer(BootAction::enable_pdo, cob_id_key(), cob_id_value(),
-                     pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id));
+      // Where the master asks by remote request bit 30 has to be clear, else it stays as it was.
+      steps_.integer(pdo_.rtr ? BootAction::write : BootAction::enable_pdo, cob_id_key(),
+                     cob_id_value(),
+                     pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id) +
+                         (pdo_.rtr ? ", remote requests allowed" : ""));
     }
     read_back();
     steps_.land(skip);
@@ -59,14 +62,19 @@ class PdoBoot {
            std::to_string(entry.bits) + " bits";
   }
   std::string count_text() const {
+    if (pdo_.mpdo == Mpdo::sam) return "by source address (SAM)";
+    if (pdo_.mpdo == Mpdo::dam) return "by destination address (DAM)";
     return std::to_string(pdo_.mapping.size()) +
            (pdo_.mapping.size() == 1 ? " object" : " objects");
   }
+  std::uint32_t cob_id_mask() const { return pdo_.rtr ? 0xFFFF'FFFF : all_but_rtr; }
   std::string type_text() const {
     const std::string text = pdo_.label() + " type " + std::to_string(pdo_.transmission);
     if (pdo_.transmission == 0) return text + ": after SYNC, on change";
     if (pdo_.transmission == 1) return text + ": every SYNC";
     if (pdo_.synchronous()) return text + ": every " + std::to_string(pdo_.transmission) + " SYNCs";
+    if (pdo_.transmission == 252) return text + ": on remote request, sampled at SYNC";
+    if (pdo_.transmission == 253) return text + ": on remote request";
     return text + ": by event";
   }
 
@@ -80,7 +88,7 @@ class PdoBoot {
       steps_
           .integer(BootAction::compare, cob_id_key(), cob_id_value(),
                    pdo_.label() + " COB-ID " + to_string(pdo_.cob_id))
-          .mask = all_but_rtr;
+          .mask = cob_id_mask();
     }
     if (steps_.has(communication(2))) {
       steps_.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
@@ -91,11 +99,11 @@ class PdoBoot {
   /// Count and entries. A fixed count may cover empty entries, which the plan leaves out.
   void mapping_steps(BootAction action, const std::string& suffix) {
     if (!pdo_.fixed_mapping) {
-      steps_.integer(action, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+      steps_.integer(action, mapping(0), pdo_.mapping_count(),
                      pdo_.label() + " maps " + count_text() + suffix, 1);
     }
-    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
-      steps_.integer(action, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i) + suffix);
+    for (std::size_t i = 1; i <= pdo_.entries().size(); ++i) {
+      steps_.integer(action, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i) + suffix);
     }
   }
 
@@ -106,10 +114,10 @@ class PdoBoot {
 
   void write_mapping() {
     steps_.integer(BootAction::write, mapping(0), 0, pdo_.label() + " mapping off", 1);
-    for (std::size_t i = 1; i <= pdo_.mapping.size(); ++i) {
-      steps_.integer(BootAction::write, mapping(i), pdo_.mapping[i - 1].raw(), entry_text(i));
+    for (std::size_t i = 1; i <= pdo_.entries().size(); ++i) {
+      steps_.integer(BootAction::write, mapping(i), pdo_.entries()[i - 1].raw(), entry_text(i));
     }
-    steps_.integer(BootAction::write, mapping(0), static_cast<std::int64_t>(pdo_.mapping.size()),
+    steps_.integer(BootAction::write, mapping(0), pdo_.mapping_count(),
                    pdo_.label() + " mapping on, " + count_text(), 1);
   }
 
@@ -140,7 +148,7 @@ class PdoBoot {
       steps_
           .integer(BootAction::verify, cob_id_key(), cob_id_value(),
                    pdo_.label() + " COB-ID read back")
-          .mask = all_but_rtr;
+          .mask = cob_id_mask();
     }
     mapping_steps(BootAction::verify, ", read back");
   }

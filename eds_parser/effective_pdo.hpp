@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,7 +72,13 @@ struct EffectivePdo {
   bool has_sync_start = false;
   std::uint16_t master_timer = 0;    ///< ms: TPDO: the master's deadline; RPDO: repeat after it
   std::uint16_t master_inhibit = 0;  ///< 100 us, RPDO
-  std::vector<EffectiveEntry> mapping;
+  std::uint32_t poll_ms = 0;         ///< TPDO: remote requests of the master, 0 = none
+  std::uint16_t poll_syncs = 0;      ///< the same, every n-th SYNC
+  bool rtr = false;                  ///< remote requests have to be allowed
+  bool drop_late = false;
+  bool on_request = false;  ///< sent and awaited by requests only
+  Mpdo mpdo = Mpdo::none;
+  std::vector<EffectiveEntry> mapping;  ///< of an MPDO: the objects it carries
   unsigned bits = 0;
   SourcePos pos;         ///< of the PDO in the network file, or of its node
   SourcePos cob_id_pos;  ///< of `cob_id`, or as `pos`
@@ -84,6 +91,15 @@ struct EffectivePdo {
   }
   std::uint8_t bytes() const noexcept { return static_cast<std::uint8_t>((bits + 7) / 8); }
   bool synchronous() const noexcept { return transmission <= 240; }
+  /// Entries that the mapping record has to hold; an MPDO has its mark in place of their number.
+  std::span<const EffectiveEntry> entries() const noexcept {
+    return mpdo == Mpdo::none ? std::span<const EffectiveEntry>{mapping}
+                              : std::span<const EffectiveEntry>{};
+  }
+  std::int64_t mapping_count() const noexcept {
+    if (mpdo == Mpdo::sam) return 0xFE;
+    return mpdo == Mpdo::dam ? 0xFF : static_cast<std::int64_t>(mapping.size());
+  }
   /// `TPDO2`.
   std::string label() const { return (is_tpdo ? "TPDO" : "RPDO") + std::to_string(number); }
 };

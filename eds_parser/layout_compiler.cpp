@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "eds_parser/mpdo_compiler.hpp"
 #include "eds_parser/signal_rules.hpp"
 
 namespace takt {
@@ -43,6 +44,9 @@ class LayoutCompiler {
     seed_outputs();
     add_fields(plan_.pdos.tpdos, tpdo_sources_);
     add_fields(plan_.pdos.rpdos, rpdo_sources_);
+    if (plan_.pdos.fields.size() > max_signals) {
+      report_.error({}, "too-many", "more than 65535 mapped entries on one bus");
+    }
     plan_.layout.hash = hash();
   }
 
@@ -50,13 +54,31 @@ class LayoutCompiler {
   struct Source {
     std::size_t node_index;
     const EffectivePdo* pdo;
+    const EffectiveEntry* entry = nullptr;  ///< MPDO: the object of this row
+    std::uint32_t header = 0;
+
+    /// Entries that become signals.
+    std::span<const EffectiveEntry> entries() const {
+      if (pdo->on_request) return {};
+      return entry != nullptr ? std::span{entry, 1} : std::span{pdo->mapping};
+    }
   };
+
+  void add_source(std::size_t node, const EffectivePdo& pdo, std::vector<Source>& sources) const {
+    if (pdo.mpdo == Mpdo::none) return sources.push_back({node, &pdo});
+    const auto first = static_cast<std::ptrdiff_t>(sources.size());
+    for (const EffectiveEntry& entry : pdo.mapping) {
+      const std::uint32_t header = mpdo_header(pdo, entry, nodes_[node].node.id, plan_.master_id);
+      sources.push_back({node, &pdo, &entry, header});
+    }
+    std::ranges::sort(sources.begin() + first, sources.end(), {}, &Source::header);
+  }
 
   void add_rows(bool is_tpdo) {
     std::vector<Source>& sources = is_tpdo ? tpdo_sources_ : rpdo_sources_;
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       for (const EffectivePdo& pdo : nodes_[n].pdos) {
-        if (pdo.use == PdoUse::exchanged && pdo.is_tpdo == is_tpdo) sources.push_back({n, &pdo});
+        if (pdo.use == PdoUse::exchanged && pdo.is_tpdo == is_tpdo) add_source(n, pdo, sources);
       }
     }
     // The master sends by priority, so that no frame waits in the controller for a lower one.
@@ -68,7 +90,12 @@ class LayoutCompiler {
       add_candidates(source, rows.size());
       rows.push_back(row_of(source));
       const CobId id = source.pdo->cob_id;
-      if (is_tpdo && !id.is_extended()) {
+      const bool again =
+          rows.size() > 1 && source.entry != nullptr && rows[rows.size() - 2].cob_id == id;
+      if (source.entry != nullptr && is_tpdo && !again) {
+        rows.back().siblings = static_cast<std::uint16_t>(source.pdo->mapping.size());
+      }
+      if (is_tpdo && !again && !id.is_extended()) {
         plan_.pdos.route[id.id()] = static_cast<std::uint16_t>(rows.size() - 1);
       }
     }
@@ -82,7 +109,12 @@ class LayoutCompiler {
                .number = pdo.number,
                .transmission = pdo.transmission,
                .length = pdo.bytes(),
-               .sync_start = pdo.sync_start};
+               .sync_start = pdo.sync_start,
+               .poll = std::chrono::milliseconds{pdo.poll_ms},
+               .poll_syncs = pdo.poll_syncs,
+               .header = source.header,
+               .on_request = pdo.on_request,
+               .drop_late = pdo.drop_late};
     if (pdo.is_tpdo) {
       row.inhibit = std::chrono::microseconds{std::int64_t{pdo.inhibit_time} * pdo.inhibit_unit_us};
       row.event_timer = std::chrono::milliseconds{pdo.event_timer};
@@ -103,7 +135,7 @@ class LayoutCompiler {
 
   /// Inputs mapped twice are two signals; an output is one, copied into every RPDO that maps it.
   void add_candidates(const Source& source, std::size_t row) {
-    for (const EffectiveEntry& entry : source.pdo->mapping) {
+    for (const EffectiveEntry& entry : source.entries()) {
       if (entry.dummy) continue;
       const bool output = !source.pdo->is_tpdo;
       const auto key = std::tuple{output, source.node_index, entry.object};
@@ -169,7 +201,7 @@ class LayoutCompiler {
   void add_fields(std::vector<PdoRow>& rows, const std::vector<Source>& sources) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       rows[r].first_field = static_cast<std::uint16_t>(plan_.pdos.fields.size());
-      for (const EffectiveEntry& entry : sources[r].pdo->mapping) {
+      for (const EffectiveEntry& entry : sources[r].entries()) {
         if (!entry.dummy) add_field(sources[r], entry);
       }
       rows[r].field_count =

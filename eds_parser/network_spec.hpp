@@ -30,6 +30,9 @@ struct MappingSpec {
   SourcePos pos;
 };
 
+/// Addressing of a multiplexed PDO: by destination or by source. CiA 301, 7.2.3.
+enum class Mpdo : std::uint8_t { none, dam, sam };
+
 /// `tpdo: {1: {...}}` or `rpdo:`; the device's directions. What is not given stays as the EDS says.
 struct PdoSpec {
   std::uint16_t number = 1;  ///< 1..512
@@ -42,6 +45,11 @@ struct PdoSpec {
   Sourced<std::uint16_t> event_timer;     ///< ms
   Sourced<std::uint16_t> event_deadline;  ///< ms
   Sourced<std::uint8_t> sync_start;
+  Sourced<std::uint32_t> poll_ms{};     ///< remote requests of the master
+  Sourced<std::uint16_t> poll_syncs{};  ///< the same, every n-th SYNC
+  Sourced<bool> drop_late{};            ///< `late: drop`
+  Sourced<bool> on_request{};           ///< `request: true`
+  Sourced<Mpdo> mpdo{};
   Sourced<std::vector<MappingSpec>> mapping;
 };
 

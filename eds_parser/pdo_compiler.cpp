@@ -4,6 +4,7 @@
 
 #include "eds_parser/device_data.hpp"
 #include "eds_parser/mapping_compiler.hpp"
+#include "eds_parser/mpdo_compiler.hpp"
 #include "eds_parser/pdo_description.hpp"
 
 namespace takt {
@@ -17,7 +18,16 @@ bool is_writable(const SubObject* sub) {
   return sub != nullptr && sub->access != Access::ro && sub->access != Access::constant;
 }
 
-bool usable_type(std::uint8_t type) { return type <= 240 || type >= 254; }
+bool on_remote_request(std::uint8_t type) { return type == 252 || type == 253; }
+
+bool usable_type(const EffectivePdo& pdo) {
+  return pdo.transmission <= 240 || pdo.transmission >= (pdo.is_tpdo ? 252 : 254);
+}
+
+Mpdo mpdo_of(const PdoDescription& device) {
+  if (device.mapping_count == sam_mpdo) return Mpdo::sam;
+  return device.mapping_count == dam_mpdo ? Mpdo::dam : Mpdo::none;
+}
 
 class PdoCompiler {
  public:
@@ -106,9 +116,12 @@ class PdoCompiler {
                        "; it is not part of the image");
     };
     if (device.mapping_count == dam_mpdo || device.mapping_count == sam_mpdo) {
-      leave_out("is a multiplexed PDO");
-    } else if (!usable_type(pdo.transmission)) {
+      leave_out("is a multiplexed PDO: name it with `mpdo:` and its objects under `mapping:`");
+    } else if (!usable_type(pdo)) {
       leave_out("has transmission type " + std::to_string(pdo.transmission));
+    } else if (on_remote_request(pdo.transmission)) {
+      leave_out("has transmission type " + std::to_string(pdo.transmission) +
+                " (sent on remote request): name it with `poll_ms:` or `poll_syncs:`");
     } else if (pdo.mapping.empty()) {
       pdo.use = PdoUse::ignored;
       unmapped_.push_back(pdo.label());
@@ -129,10 +142,13 @@ class PdoCompiler {
     }
     overlay_cob_id(spec, pdo);
     overlay_times(spec, pdo);
-    if (spec.mapping.given) {
+    overlay_requests(spec, pdo);
+    pdo.mpdo = spec.mpdo.given ? *spec.mpdo : mpdo_of(device);
+    if (pdo.mpdo != Mpdo::none) {
+      overlay_mpdo(spec, pdo);
+    } else if (spec.mapping.given) {
       overlay_mapping(spec, pdo);
     } else {
-      if (device.mapping_count == dam_mpdo || device.mapping_count == sam_mpdo) pdo.mapping.clear();
       for (EffectiveEntry& entry : pdo.mapping) entry.pos = spec.pos;
     }
     judge_named(spec, pdo);
@@ -190,6 +206,36 @@ class PdoCompiler {
     }
   }
 
+  void overlay_requests(const PdoSpec& spec, EffectivePdo& pdo) {
+    pdo.poll_ms = *spec.poll_ms;
+    pdo.poll_syncs = *spec.poll_syncs;
+    pdo.drop_late = *spec.drop_late;
+    pdo.on_request = *spec.on_request;
+    pdo.rtr = pdo.poll_ms != 0 || pdo.poll_syncs != 0 || on_remote_request(pdo.transmission);
+    const bool asked = pdo.poll_ms != 0 || pdo.poll_syncs != 0;
+    if (asked && pdo.is_tpdo && pdo.synchronous()) {
+      report_.warning(spec.pos, "transmission-type",
+                      label(pdo) + " is polled, but of type " + std::to_string(pdo.transmission) +
+                          ": few devices answer remote requests but for types 252..255");
+    }
+    if (!asked && on_remote_request(pdo.transmission)) {
+      report_.note(spec.pos, "not-polled",
+                   label(pdo) + " has type " + std::to_string(pdo.transmission) +
+                       " and is sent on remote request only: nothing asks for it but requests "
+                       "(`poll_ms:` or `poll_syncs:` would)");
+    }
+  }
+
+  /// Multiplexed PDOs are event-driven; their objects are not in the mapping record.
+  void overlay_mpdo(const PdoSpec& spec, EffectivePdo& pdo) {
+    pdo.mapping = compile_mpdo(node_, pdo, spec.mapping, report_);
+    pdo.bits = 64;
+    if (pdo.transmission < 254) {
+      report_.error(spec.transmission.given ? spec.transmission.pos : spec.pos, "transmission-type",
+                    label(pdo) + " is multiplexed: `transmission` 254 or 255, by event");
+    }
+  }
+
   template <class T>
   void demand(const Sourced<T>& value, const EffectivePdo& pdo, std::uint8_t sub_index,
               const char* key, bool has) {
@@ -231,13 +277,16 @@ class PdoCompiler {
 
   void judge_named(const PdoSpec& spec, EffectivePdo& pdo) {
     if (pdo.use == PdoUse::off) return;
-    if (pdo.mapping.empty() && (!spec.mapping.given || spec.mapping->empty())) {
+    if (pdo.on_request && pdo.mapping.empty()) {
+      pdo.fixed_mapping = true;  // the device has no word on what it carries
+      pdo.bits = 64;
+    } else if (pdo.mapping.empty() && (!spec.mapping.given || spec.mapping->empty())) {
       report_.error(spec.mapping.given ? spec.mapping.pos : spec.pos, "maps-nothing",
                     label(pdo) +
                         " maps nothing: list what it carries under `mapping:`, or switch "
                         "it off with `enabled: false`");
     }
-    if (!spec.transmission.given && !usable_type(pdo.transmission)) {
+    if (!spec.transmission.given && !usable_type(pdo)) {
       report_.error(spec.pos, "transmission-type",
                     label(pdo) + " has transmission type " + std::to_string(pdo.transmission) +
                         " in " + node_.dictionary->file +
@@ -289,6 +338,22 @@ void report_missing(const NodeSource& node, bool is_tpdo,
   }
 }
 
+/// An RPDO on request needs the TPDO that answers it.
+void check_pairs(const NodeSource& node, std::span<const EffectivePdo> pdos,
+                 NetworkReport& report) {
+  for (const EffectivePdo& pdo : pdos) {
+    if (pdo.is_tpdo || !pdo.on_request || pdo.use != PdoUse::exchanged) continue;
+    const bool answered = std::ranges::any_of(pdos, [&](const EffectivePdo& other) {
+      return other.is_tpdo && other.number == pdo.number && other.use == PdoUse::exchanged;
+    });
+    if (answered) continue;
+    report.error(pdo.pos, "request-pair",
+                 pdo.label() + " of node `" + node.spec->name + "` is sent on request, but TPDO" +
+                     std::to_string(pdo.number) + ", which answers it, is off or maps nothing: " +
+                     "name it too, `tpdo: {" + std::to_string(pdo.number) + ": {request: true}}`");
+  }
+}
+
 }  // namespace
 
 std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& report) {
@@ -302,6 +367,7 @@ std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& re
     pdos.push_back(compiler.compile(device, find_spec(*node.spec, device)));
   }
   compiler.report_unmapped();
+  check_pairs(node, pdos, report);
   return pdos;
 }
 

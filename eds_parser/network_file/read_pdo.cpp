@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 
@@ -65,14 +66,53 @@ void check_types(const PdoSpec& pdo, std::string_view key, const std::string& wh
                  "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
                      " is reserved by CiA 301: 0..240 with SYNC, 254 or 255 by event");
   }
-  if (pdo.transmission.given && (*pdo.transmission == 252 || *pdo.transmission == 253)) {
-    const bool rpdo = key == "rpdo";
+  const bool remote = *pdo.transmission == 252 || *pdo.transmission == 253;
+  if (pdo.transmission.given && remote && key == "rpdo") {
     report.error(pdo.transmission.pos, "transmission-type",
                  "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
-                     (rpdo ? " is reserved for RPDOs"
-                           : " is sent on remote request only, which takt "
-                             "does not use") +
-                     ": 0..240 with SYNC, 254 or 255 by event");
+                     " is reserved for RPDOs: 0..240 with SYNC, 254 or 255 by event");
+  }
+}
+
+/// Keys of received PDOs only.
+void check_direction(const PdoSpec& pdo, std::string_view key, const std::string& what,
+                     NetworkReport& report) {
+  if (pdo.poll_ms.given && pdo.poll_syncs.given) {
+    report.error(pdo.poll_syncs.pos, "written-twice",
+                 "`poll_ms` and `poll_syncs` of " + what + ": keep one");
+  }
+  if (key == "tpdo") return;
+  const auto refuse = [&](const auto& value, std::string_view name) {
+    if (!value.given) return;
+    report.error(
+        value.pos, "wrong-direction",
+        "`" + std::string{name} + "` of " + what + ": only a TPDO is received by the master");
+  };
+  refuse(pdo.poll_ms, "poll_ms");
+  refuse(pdo.poll_syncs, "poll_syncs");
+  refuse(pdo.drop_late, "late");
+  if (pdo.mpdo.given && *pdo.mpdo == Mpdo::sam) {
+    report.error(
+        pdo.mpdo.pos, "mpdo",
+        "`mpdo: sam` of " + what + ": the master sends with destination addressing, `dam`");
+  }
+}
+
+void read_kinds(MapReader& reader, PdoSpec& pdo) {
+  reader.integer("poll_ms", pdo.poll_ms, {0, 3'600'000, " ms"});
+  reader.integer("poll_syncs", pdo.poll_syncs, {0, 60'000});
+  reader.boolean("request", pdo.on_request);
+  if (const YamlNode* late = reader.take("late")) {
+    constexpr std::array<std::string_view, 2> names{"use", "drop"};
+    if (const auto choice = read_choice(*late, "late", names, reader.report())) {
+      pdo.drop_late = {*choice == 1, late->pos, true};
+    }
+  }
+  if (const YamlNode* mpdo = reader.take("mpdo")) {
+    constexpr std::array<std::string_view, 2> names{"dam", "sam"};
+    if (const auto choice = read_choice(*mpdo, "mpdo", names, reader.report())) {
+      pdo.mpdo = {static_cast<Mpdo>(*choice + 1), mpdo->pos, true};
+    }
   }
 }
 
@@ -97,9 +137,11 @@ PdoSpec read_pdo(const YamlPair& pair, std::uint16_t number, std::string_view ke
   reader.integer("event_timer", pdo.event_timer, {0, 65535, " ms"});
   reader.integer("event_deadline", pdo.event_deadline, {0, 65535, " ms"});
   reader.integer("sync_start", pdo.sync_start, {0, 240});
+  read_kinds(reader, pdo);
   read_mapping(reader, pdo, what);
   reader.finish();
   check_types(pdo, key, what, report);
+  check_direction(pdo, key, what, report);
   return pdo;
 }
 

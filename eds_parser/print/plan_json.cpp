@@ -52,6 +52,11 @@ Json pdo_json(const BusPlan& plan, const PdoRow& row) {
           {"inhibit_us", us(row.inhibit)},
           {"event_timer_us", us(row.event_timer)},
           {"deadline_us", us(row.deadline)},
+          {"poll_us", us(row.poll)},
+          {"poll_syncs", row.poll_syncs},
+          {"late", row.drop_late ? "drop" : "use"},
+          {"on_request", row.on_request},
+          {"mpdo_header", row.header},
           {"fields", std::move(fields)}};
 }
 

@@ -161,6 +161,7 @@ std::vector<LcmChannel> lcm_channels(const BusPlan& plan) {
       {bus + "_LAYOUT", "takt.layout_t", "at start and once a second: what the values mean"},
       {bus + "_COMMAND", "takt.command_t", "set-points from applications"},
       {bus + "_STATUS", "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
+      {bus + "_PDOS", "takt.pdo_status_t", "2 Hz: each PDO, its age, count and troubles"},
       {bus + "_TIMING", "takt.timing_t", "1 Hz: histograms of jitter and latency"},
       {bus + "_EVENT", "takt.event_t", "boot reports, EMCY, state changes, faults"},
       {bus + "_REQUEST", "takt.request_t", "SDO and NMT on behalf of applications"},

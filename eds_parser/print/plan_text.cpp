@@ -163,7 +163,7 @@ class PlanText {
     line("  {}{} {}  {} byte{}  {}{}", is_tpdo ? "TPDO" : "RPDO", row.number, to_string(row.cob_id),
          row.length, row.length == 1 ? "" : "s", transmission_name(row.transmission, is_tpdo),
          pdo_times(row, is_tpdo));
-    unsigned expected = 0;
+    unsigned expected = row.multiplexed() ? 32 : 0;  // behind address, index and sub-index
     for (std::uint16_t i = 0; i < row.field_count; ++i) {
       const PdoField& field = plan_.pdos.fields[row.first_field + i];
       const Signal& signal = plan_.layout.signals[field.signal];
@@ -173,6 +173,7 @@ class PlanText {
            signal.name);
       expected = field.bit_offset + field.bits;
     }
+    if (row.on_request || row.multiplexed()) return;
     if (expected + 7 < row.length * 8U) gap(expected, row.length * 8U - expected);
   }
 
@@ -188,6 +189,13 @@ class PlanText {
       text += (is_tpdo ? ", event timer " : ", repeated after ") + span_text(row.event_timer);
     }
     if (row.deadline != Time{}) text += ", missing after " + span_text(row.deadline);
+    if (row.poll != Time{}) text += ", asked for every " + span_text(row.poll);
+    if (row.poll_syncs != 0) text += fmt::format(", asked for every {} SYNCs", row.poll_syncs);
+    if (row.drop_late) text += ", not used when late";
+    if (row.on_request) text += ", on request only";
+    if (row.multiplexed()) {
+      text += (row.header & 0x80) != 0 ? ", MPDO by destination" : ", MPDO by source";
+    }
     return text;
   }
 

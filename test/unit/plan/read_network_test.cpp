@@ -129,8 +129,7 @@ TEST(ReadNetwork, RangesAreChecked) {
                           "2:22 error [out-of-range]", "5:14 error [out-of-range]",
                           "7:27 error [out-of-range]", "8:12 error [out-of-range]",
                           "8:56 error [out-of-range]", "8:39 error [transmission-type]",
-                          "8:80 error [transmission-type]", "9:30 error [out-of-range]",
-                          "9:50 error [not-a-number]"));
+                          "9:30 error [out-of-range]", "9:50 error [not-a-number]"));
 }
 
 TEST(ReadNetwork, WrongShapesSayWhatIsExpected) {
