@@ -109,6 +109,11 @@ bool AxisGroup::send() {
   return lcm_->publish(command_channel_, encode(command, buffer_));
 }
 
+bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions) {
+  axes_.set_positions(positions);
+  return send();
+}
+
 std::chrono::nanoseconds AxisGroup::period() const noexcept {
   return std::chrono::nanoseconds{input_.period_ns()};
 }

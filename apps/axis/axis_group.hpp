@@ -41,6 +41,9 @@ class AxisGroup {
   void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
   /// Sends the set-points of all axes. False: LCM did not take them.
   bool send();
+  /// Loads a target position for each axis and sends them as one command: with synchronous RPDOs
+  /// all become valid with one SYNC. Axes that are not in Operation enabled keep to their position.
+  bool load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions);
 
   AxisControl& axes() noexcept { return axes_; }
   const ImageInput& input() const noexcept { return input_; }

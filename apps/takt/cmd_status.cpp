@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/pdo_table.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
 #include "master/gateway/names.hpp"
@@ -15,6 +17,7 @@ namespace takt {
 namespace {
 
 constexpr Time first_limit = std::chrono::milliseconds{2500};
+constexpr Time pdos_limit = std::chrono::milliseconds{1500};
 constexpr Time settle = std::chrono::milliseconds{250};  // other buses would be heard within this
 
 nlohmann::json to_json(const node_status_t& node) {
@@ -91,6 +94,11 @@ std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus
   return buses;
 }
 
+struct StatusOptions {
+  LiveOptions live;
+  bool pdos = false;
+};
+
 void print(const std::vector<const BusView*>& buses) {
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   const std::size_t width = terminal ? Screen::size().columns : 160;
@@ -98,19 +106,30 @@ void print(const std::vector<const BusView*>& buses) {
     for (const Line& line : status_lines(*bus->status())) {
       std::printf("%s\n", line.render(width, terminal).c_str());
     }
+    if (bus->pdos()) {
+      for (const std::string& line : pdo_lines(*bus->pdos(), *bus->status())) {
+        std::printf("%s\n", line.c_str());
+      }
+    }
     if (bus->two_daemons()) complain("two daemons run a bus of this name; stop one of them", 3);
   }
 }
 
 void print_json(const std::vector<const BusView*>& buses) {
   nlohmann::json all = nlohmann::json::array();
-  for (const BusView* const bus : buses) all.push_back(to_json(*bus->status()));
+  for (const BusView* const bus : buses) {
+    all.push_back(to_json(*bus->status()));
+    if (bus->pdos()) all.back()["pdos"] = pdos_json(*bus->pdos());
+  }
   const nlohmann::json document{{"buses", std::move(all)}};
   std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-int run(const LiveOptions& options) {
-  auto lcm = LcmClient::open(options.lcm_url, {any_bus("STATUS")});
+int run(const StatusOptions& all) {
+  const LiveOptions& options = all.live;
+  std::vector<std::string> channels{any_bus("STATUS")};
+  if (all.pdos) channels.push_back(any_bus("PDOS"));
+  auto lcm = LcmClient::open(options.lcm_url, channels);
   if (!lcm) return complain(lcm.error(), 3);
   BusViews views;
   listen(*lcm, views, monotonic_now() + first_limit,
@@ -120,6 +139,12 @@ int run(const LiveOptions& options) {
     return complain(error.sentence, error.code);
   }
   listen(*lcm, views, monotonic_now() + settle, [] { return false; });
+  if (all.pdos) {
+    listen(*lcm, views, monotonic_now() + pdos_limit, [&] {
+      return std::ranges::all_of(chosen(views, options.bus_name),
+                                 [](const BusView* bus) { return bus->pdos().has_value(); });
+    });
+  }
   const auto buses = chosen(views, options.bus_name);
   options.json ? print_json(buses) : print(buses);
   return 0;
@@ -129,9 +154,11 @@ int run(const LiveOptions& options) {
 
 void add_status(CLI::App& app, int& exit_code) {
   auto* verb = app.add_subcommand("status", "state of the running daemon, its bus and its nodes");
-  verb->footer("Examples:\n  takt status\n  takt status --json --bus-name lift");
-  auto options = std::make_shared<LiveOptions>();
-  add_live_options(*verb, *options);
+  verb->footer(
+      "Examples:\n  takt status\n  takt status --pdos\n  takt status --json --bus-name lift");
+  auto options = std::make_shared<StatusOptions>();
+  verb->add_flag("--pdos", options->pdos, "each PDO too: age, count, missing, late, wrong length");
+  add_live_options(*verb, options->live);
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

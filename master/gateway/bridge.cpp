@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "master/gateway/names.hpp"
+#include "master/gateway/pdo_messages.hpp"
 #include "master/linux/clock.hpp"
 #include "master/wire/bytes.hpp"
 
@@ -12,6 +13,7 @@ namespace takt {
 namespace {
 
 constexpr Time status_period = std::chrono::milliseconds{100};
+constexpr Time pdos_period = std::chrono::milliseconds{500};
 constexpr Time layout_period = std::chrono::seconds{1};
 constexpr Time timing_period = std::chrono::seconds{1};
 
@@ -22,6 +24,7 @@ Channels::Channels(const std::string& bus)
       layout{channel_name(bus, "LAYOUT")},
       command{channel_name(bus, "COMMAND")},
       status{channel_name(bus, "STATUS")},
+      pdos{channel_name(bus, "PDOS")},
       timing{channel_name(bus, "TIMING")},
       event{channel_name(bus, "EVENT")},
       request{channel_name(bus, "REQUEST")},
@@ -65,12 +68,13 @@ bool Bridge::serve() {
   const Time now = monotonic_now();
   if (now >= next_layout_) publish_layout();
   if (now >= next_status_) publish_status();
+  if (now >= next_pdos_) publish_pdos();
   if (now >= next_timing_) publish_timing();
   return some;
 }
 
 Time Bridge::next_message() const noexcept {
-  return std::min({next_status_, next_layout_, next_timing_});
+  return std::min({next_status_, next_layout_, next_pdos_, next_timing_});
 }
 
 bool Bridge::publish_images() {
@@ -82,6 +86,7 @@ bool Bridge::publish_images() {
       publish(channels_.image, part);
     }
     cycle_ = image.cycle;
+    marks_.assign(image.pdos.begin(), image.pdos.end());
     ++images_;
     some = true;
   }
@@ -208,6 +213,16 @@ void Bridge::publish_status() {
   for (status_t& part : status_messages_.fill(snapshot_, gateway, now)) {
     part.utime = wall_microseconds(now);
     publish(channels_.status, part);
+  }
+}
+
+void Bridge::publish_pdos() {
+  const Time now = monotonic_now();
+  next_pdos_ = now + pdos_period;
+  for (pdo_status_t& part : pdo_messages(master_.plan(), snapshot_, marks_, cycle_)) {
+    part.utime = wall_microseconds(now);
+    part.session = options_.session;
+    publish(channels_.pdos, part);
   }
 }
 

@@ -20,7 +20,7 @@ namespace takt {
 /// LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, status, timing, event, request, reply;
+  std::string image, layout, command, status, pdos, timing, event, request, reply;
   /// Those that the daemon hears.
   std::vector<std::string> heard() const { return {command, request}; }
 };
@@ -67,6 +67,7 @@ class Bridge {
   void tell_damaged(const std::string& channel, DecodeFault fault);
   void publish_layout();
   void publish_status();
+  void publish_pdos();
   void publish_timing();
   void answer(reply_t reply);
   std::int64_t wall_microseconds(Time monotonic) const noexcept;
@@ -92,9 +93,11 @@ class Bridge {
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
   EmcyHistory emcys_;
+  std::vector<PdoMark> marks_;  // of the newest image
   Time wall_minus_monotonic_{};
   Time next_status_{};
   Time next_layout_{};
+  Time next_pdos_{};
   Time next_timing_{};
   std::uint64_t cycle_ = 0;  // of the newest image
   std::uint64_t images_ = 0;

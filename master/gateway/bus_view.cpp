@@ -20,6 +20,7 @@ void BusView::new_session(std::int64_t session) {
   earlier_session_ = session_;
   session_ = session;
   status_parts_.reset();
+  pdo_parts_.reset();
   layout_parts_.clear();
   signals_.clear();
   values_.clear();
@@ -36,6 +37,20 @@ void BusView::take(const status_t& status) {
     status_parts_->num_nodes = static_cast<std::int32_t>(status_parts_->nodes.size());
   }
   if (status.part + 1 == status.parts) status_ = std::exchange(status_parts_, std::nullopt);
+}
+
+void BusView::take(const pdo_status_t& pdos) {
+  new_session(pdos.session);
+  if (pdos.part == 0) {
+    pdo_parts_ = pdos;
+  } else if (!pdo_parts_ || pdo_parts_->cycle != pdos.cycle || pdos.part != pdo_parts_->part + 1) {
+    return pdo_parts_.reset();
+  } else {
+    pdo_parts_->part = pdos.part;
+    pdo_parts_->pdos.insert(pdo_parts_->pdos.end(), pdos.pdos.begin(), pdos.pdos.end());
+    pdo_parts_->num_pdos = static_cast<std::int32_t>(pdo_parts_->pdos.size());
+  }
+  if (pdos.part + 1 == pdos.parts) pdos_ = std::exchange(pdo_parts_, std::nullopt);
 }
 
 void BusView::take(const layout_t& layout) {
@@ -118,11 +133,9 @@ std::string BusViews::take(std::string_view channel, Bytes data) {
     std::string_view what;
     std::string (*take)(BusView&, std::string_view, Bytes);
   };
-  static constexpr Kind kinds[] = {{"STATUS", take_as<status_t>},
-                                   {"LAYOUT", take_as<layout_t>},
-                                   {"IMAGE", take_as<image_t>},
-                                   {"TIMING", take_as<timing_t>},
-                                   {"EVENT", take_as<event_t>}};
+  static constexpr Kind kinds[] = {{"STATUS", take_as<status_t>},   {"LAYOUT", take_as<layout_t>},
+                                   {"IMAGE", take_as<image_t>},     {"TIMING", take_as<timing_t>},
+                                   {"PDOS", take_as<pdo_status_t>}, {"EVENT", take_as<event_t>}};
   for (const Kind& kind : kinds) {
     const std::string_view bus = bus_of_channel(channel, kind.what);
     if (bus.empty()) continue;

@@ -19,11 +19,14 @@ class BusView {
   void take(const layout_t& layout);
   void take(const image_t& image);
   void take(const timing_t& timing) { timing_ = timing; }
+  void take(const pdo_status_t& pdos);
   void take(event_t event);
 
   /// All nodes of one status_t round; none before the first whole one.
   const std::optional<status_t>& status() const noexcept { return status_; }
   const std::optional<timing_t>& timing() const noexcept { return timing_; }
+  /// All PDOs of one round; none before the first whole one.
+  const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
   const std::deque<event_t>& events() const noexcept { return events_; }
 
   /// Signals of the layout once all parts are there, else empty.
@@ -46,6 +49,8 @@ class BusView {
   std::optional<status_t> status_;
   std::optional<status_t> status_parts_;  // growing
   std::optional<timing_t> timing_;
+  std::optional<pdo_status_t> pdos_;
+  std::optional<pdo_status_t> pdo_parts_;  // growing
   std::deque<event_t> events_;
   std::int64_t layout_hash_ = 0;
   std::map<std::int32_t, signal_t> layout_parts_;  // growing

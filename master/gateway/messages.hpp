@@ -8,6 +8,7 @@
 #include <takt/event_t.hpp>
 #include <takt/image_t.hpp>
 #include <takt/layout_t.hpp>
+#include <takt/pdo_status_t.hpp>
 #include <takt/reply_t.hpp>
 #include <takt/request_t.hpp>
 #include <takt/status_t.hpp>
@@ -45,6 +46,8 @@ template <>
 inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(h)";
 template <>
 inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihbhhsdd)";
+template <>
+inline constexpr std::string_view message_layout<pdo_status_t> = "lhhhlln(hhbibhllbibhllll)";
 template <>
 inline constexpr std::string_view message_layout<reply_t> = "lhllsblsn(b)";
 template <>

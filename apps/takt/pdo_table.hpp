@@ -1,0 +1,14 @@
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <takt/pdo_status_t.hpp>
+#include <takt/status_t.hpp>
+#include <vector>
+
+namespace takt {
+
+/// A line for each PDO: what it is, its age in cycles, what has gone wrong with it.
+std::vector<std::string> pdo_lines(const pdo_status_t& pdos, const status_t& status);
+nlohmann::json pdos_json(const pdo_status_t& pdos);
+
+}  // namespace takt

@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "master/wire/bytes.hpp"
+
+namespace takt {
+
+/// Parameters of a frequency converter over a pair of PDOs, as the CANopen cards of INVT's GD
+/// family (Astraada DRV-28) have them: RPDO1 asks, TPDO1 answers. All numbers little endian.
+namespace parameter_channel {
+
+using Bytes8 = std::array<std::uint8_t, 8>;
+
+enum class Command : std::uint16_t { read = 1, write = 2 };
+
+struct Answer {
+  bool done = false;
+  std::uint16_t error = 0;  ///< 0: none
+  std::uint32_t value = 0;
+};
+
+constexpr Bytes8 request(Command command, std::uint16_t address, std::uint32_t value) noexcept {
+  Bytes8 bytes{};
+  store_le(std::span{bytes}.first(2), static_cast<std::uint16_t>(command));
+  store_le(std::span{bytes}.subspan(2, 2), address);
+  store_le(std::span{bytes}.subspan(4, 4), value);
+  return bytes;
+}
+
+/// None: not an answer (too short, or "no request").
+constexpr std::optional<Answer> answer(std::span<const std::uint8_t> bytes) noexcept {
+  if (bytes.size() < 8) return std::nullopt;
+  const auto code = load_le<std::uint16_t>(bytes.first(2));
+  if (code != 1 && code != 3) return std::nullopt;
+  return Answer{.done = code == 1,
+                .error = load_le<std::uint16_t>(bytes.subspan(2, 2)),
+                .value = load_le<std::uint32_t>(bytes.subspan(4, 4))};
+}
+
+/// The error code of an answer in words.
+constexpr std::string_view error_text(std::uint16_t error) noexcept {
+  constexpr std::array<std::string_view, 10> texts{"no error",
+                                                   "invalid command",
+                                                   "no such parameter address",
+                                                   "value out of range",
+                                                   "the operation failed",
+                                                   "wrong password",
+                                                   "the frame is not as it should be",
+                                                   "the parameter is read-only",
+                                                   "not while the drive is running",
+                                                   "the parameter is locked by a password"};
+  return error < texts.size() ? texts[error] : "unknown error code";
+}
+
+}  // namespace parameter_channel
+}  // namespace takt
