@@ -82,7 +82,11 @@ class PdoCompiler {
     const std::uint16_t index = device.communication_index();
     pdo.transmission = device.transmission_type.value_or(event_driven);
     pdo.inhibit_time = static_cast<std::uint16_t>(device.inhibit_time_us / 100);
-    if (node_.data != nullptr) pdo.inhibit_unit_us = node_.data->inhibit.unit_us;
+    if (node_.data != nullptr) {
+      pdo.inhibit_unit_us = node_.data->inhibit.unit_us;
+      const PdoRule* rule = node_.data->rule(device.is_tpdo, device.number);
+      pdo.on_request = rule != nullptr && rule->function == PdoFunction::parameter_channel;
+    }
     pdo.event_timer = device.event_timer_ms;
     pdo.sync_start = device.sync_start.value_or(0);
     pdo.has_inhibit = is_writable(sub(index, 3)) && device.is_tpdo;
@@ -210,7 +214,7 @@ class PdoCompiler {
     pdo.poll_ms = *spec.poll_ms;
     pdo.poll_syncs = *spec.poll_syncs;
     pdo.drop_late = *spec.drop_late;
-    pdo.on_request = *spec.on_request;
+    if (spec.on_request.given) pdo.on_request = *spec.on_request;
     pdo.rtr = pdo.poll_ms != 0 || pdo.poll_syncs != 0 || on_remote_request(pdo.transmission);
     const bool asked = pdo.poll_ms != 0 || pdo.poll_syncs != 0;
     if (asked && pdo.is_tpdo && pdo.synchronous()) {
