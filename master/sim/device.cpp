@@ -250,6 +250,7 @@ void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
     model_->outputs(now);
     return look_at_inputs(now);
   }
+  if (frame.length < rpdo.length() && model_->takes_short(number)) return answer(number, now);
   if (rpdo.on_frame(frame, now, sync_.window_end(), emcy_)) {
     model_->advance(now);
     rpdo.apply();

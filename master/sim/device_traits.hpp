@@ -18,6 +18,7 @@ struct DeviceTraits {
   bool compares_samples = false;     ///< type 0: a change counts only if SYNC still finds it
   bool answers_255 = false;          ///< type 255 without timer: TPDO n is sent when RPDO n came
   bool tells_state_at_start = true;  ///< event-driven TPDOs are sent once on entering OPERATIONAL
+  bool answers_rtr = true;           ///< remote requests, where bit 30 of the COB-ID lets them
   bool produces_sync = false;        ///< bit 30 of 0x1005 may be set
   Time inhibit_unit = std::chrono::microseconds{100};  ///< of 0x1800:03
   Time inhibit_floor{};  ///< shorter inhibit times, 0 as well, are taken as this

@@ -37,6 +37,9 @@ class Model {
   virtual void communication_written(const Object&) noexcept {}
   /// An RPDO of this number (from 1) was taken over; outputs() follows.
   virtual void received(std::uint16_t, Time) noexcept {}
+  /// An RPDO of this number has fewer bytes than its mapping. True: the device answers that itself,
+  /// without EMCY.
+  virtual bool takes_short(std::uint16_t) noexcept { return false; }
   /// SYNC stayed away for longer than 0x1006 lets it.
   virtual void sync_lost(Time) noexcept {}
   /// How the device deviates from CiA 301; constant from construction on.

@@ -15,6 +15,8 @@ class Rpdo {
   explicit Rpdo(PdoRecord record) : record_{record} {}
 
   const PdoRecord& record() const noexcept { return record_; }
+  /// Bytes that its mapping takes.
+  std::uint8_t length() const noexcept { return mapping_.bytes(); }
   void start() noexcept;
   void stop() noexcept { running_ = false; }
   void reconfigure() noexcept;

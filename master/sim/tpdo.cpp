@@ -77,7 +77,7 @@ bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
 }
 
 void Tpdo::on_request(Time now, Transmitter& out) noexcept {
-  if (!active() || !record_.rtr_allowed()) return;
+  if (!active() || !record_.rtr_allowed() || !traits_.answers_rtr) return;
   if (type_ == 252) {
     if (sampled_) send(sample_, now, never, out);
   } else if (type_ >= 253) {

@@ -53,6 +53,7 @@ DeviceTraits AstraadaDrv28::traits() const noexcept {
   return {.timer = DeviceTraits::Timer::alone,
           .answers_255 = true,
           .tells_state_at_start = false,
+          .answers_rtr = false,
           .inhibit_unit = std::chrono::milliseconds{1},
           .inhibit_floor = std::chrono::milliseconds{50}};
 }
@@ -121,6 +122,12 @@ void AstraadaDrv28::received(std::uint16_t rpdo, Time now) noexcept {
   if (rpdo != 1 || !complete()) return;
   frequency_.advance(now);
   serve_request();
+}
+
+bool AstraadaDrv28::takes_short(std::uint16_t rpdo) noexcept {
+  if (rpdo != 1 || !complete()) return false;
+  respond(failed, {.error = Drv28Error::frame});
+  return true;
 }
 
 void AstraadaDrv28::serve_request() noexcept {

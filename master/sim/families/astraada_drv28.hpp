@@ -19,6 +19,7 @@ class AstraadaDrv28 final : public Model {
   void advance(Time now) noexcept override;
   void outputs(Time now) noexcept override;
   void received(std::uint16_t rpdo, Time now) noexcept override;
+  bool takes_short(std::uint16_t rpdo) noexcept override;
   Abort check_communication(const Object& object, std::uint64_t raw) const noexcept override;
   void connection_lost(Time now) noexcept override;
   void fail(std::uint16_t code, Time now) noexcept override;

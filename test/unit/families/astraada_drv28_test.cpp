@@ -123,6 +123,16 @@ TEST(AstraadaDrv28, TypeNFollowsEachNthSync) {
   EXPECT_EQ(device.times(0x285), (Times{30, 60}));
 }
 
+TEST(AstraadaDrv28, IsNotPolledByRtr) {
+  FamilyDevice device = drv28();
+  device.start();
+
+  device.at(10);
+  for (const std::uint32_t id : {0x185u, 0x285u, 0x385u}) device.request(id);
+
+  for (const std::uint32_t id : {0x185u, 0x285u, 0x385u}) EXPECT_EQ(device.times(id), Times{});
+}
+
 TEST(AstraadaDrv28, RefusesTheTypesThatItsTableLacks) {
   FamilyDevice device = drv28();
 
@@ -169,6 +179,7 @@ TEST(AstraadaDrv28, TellsByErrorCodeWhyARequestFails) {
       {{0x01, 0, 0xFF, 0x0F, 0, 0, 0, 0}, 2},        // P15.255
       {{0x02, 0, 0x0A, 0x00, 0xFF, 0xFF, 0, 0}, 3},  // P00.10 := 655.35 Hz
       {{0x02, 0, 0x02, 0x05, 1, 0, 0, 0}, 4},        // terminal 2 like terminal 1
+      {{0x01, 0, 0x0D, 0x0F, 0, 0}, 6},              // six bytes
       {{0x02, 0, 0x00, 0x11, 1, 0, 0, 0}, 7},        // P17.00 can only be read
   };
   FamilyDevice device = drv28();
