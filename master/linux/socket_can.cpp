@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "master/linux/can_filters.hpp"
 #include "master/linux/can_frame.hpp"
 #include "master/linux/message_batch.hpp"
+#include "master/linux/port_wait.hpp"
 
 namespace takt {
 namespace {
@@ -178,14 +178,8 @@ void SocketCanPort::sleep_precisely_until(Time until) noexcept {
 }
 
 bool SocketCanPort::wait_frame(Time until) noexcept {
-  if (state_->news.interface_down) {
-    const Time pause = std::min(until, monotonic_now() + look_again);
-    takt::sleep_until(pause);
-    return pause < until;  // receive() looks for the interface
-  }
-  pollfd wanted{.fd = state_->fd, .events = POLLIN, .revents = 0};
-  const timespec timeout = to_timespec(std::max(Time{0}, until - monotonic_now()));
-  return ppoll(&wanted, 1, &timeout, nullptr) > 0;
+  if (state_->news.interface_down) return wait_to_look_again(look_again, until);
+  return wait_for_frame(state_->fd, until);
 }
 
 std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {

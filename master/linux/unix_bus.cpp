@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <poll.h>
 #include <sys/socket.h>
 #include <system_error>
 
 #include "master/linux/file_descriptor.hpp"
 #include "master/linux/message_batch.hpp"
+#include "master/linux/port_wait.hpp"
 #include "master/linux/unix_address.hpp"
 #include "master/linux/unix_bus_hub.hpp"
 #include "master/linux/unix_bus_record.hpp"
@@ -137,14 +137,8 @@ void UnixBusPort::sleep_precisely_until(Time until) noexcept {
 }
 
 bool UnixBusPort::wait_frame(Time until) noexcept {
-  if (state_->news.interface_down) {
-    const Time pause = std::min(until, monotonic_now() + look_again);
-    takt::sleep_until(pause);
-    return pause < until;  // receive() looks for the hub
-  }
-  pollfd wanted{.fd = state_->socket.get(), .events = POLLIN, .revents = 0};
-  const timespec timeout = to_timespec(std::max(Time{0}, until - monotonic_now()));
-  return ppoll(&wanted, 1, &timeout, nullptr) > 0;
+  if (state_->news.interface_down) return wait_to_look_again(look_again, until);
+  return wait_for_frame(state_->socket.get(), until);
 }
 
 std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
