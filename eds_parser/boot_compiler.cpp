@@ -4,14 +4,17 @@
 #include <set>
 
 #include "eds_parser/boot_pdos.hpp"
+#include "eds_parser/boot_program.hpp"
 #include "eds_parser/boot_steps.hpp"
 #include "eds_parser/boot_values.hpp"
+#include "eds_parser/configuration_date.hpp"
 #include "eds_parser/device_data.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::int64_t load_signature = 0x6461'6F6C;  // "load"
+constexpr std::int64_t save_signature = 0x6576'6173;  // "save"
 constexpr Time restore_timeout = std::chrono::seconds{5};
 constexpr Time longest_bootup_wait = std::chrono::seconds{2};
 
@@ -29,12 +32,19 @@ class BootCompiler {
   BootPlan run() {
     reset();
     identity();
+    append_program(spec_, steps_, report_);
+    ConfigurationDate date{spec_, dictionary_, steps_, report_};
+    date.skip_if_there();
     restore();
     heartbeat();
+    emergency();
     sync();
     if (!tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
     if (tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
+    date.enter();
+    store();
+    date.land();
     start();
     return steps_.take();
   }
@@ -42,13 +52,27 @@ class BootCompiler {
  private:
   void reset() {
     const ResetPolicy policy = spec_.reset.value_or(tweaks_.reset.value_or(*spec_.reset));
+    std::size_t alive = 0;
+    if (policy == ResetPolicy::keep_alive) alive = await_alive();
     if (policy != ResetPolicy::none) {
       steps_.nmt(
           policy == ResetPolicy::node ? NmtCommand::reset_node : NmtCommand::reset_communication,
           policy == ResetPolicy::node ? "reset node" : "reset communication");
       await_bootup();
     }
+    if (policy == ResetPolicy::keep_alive) steps_.land(alive);
     probe();
+  }
+
+  /// CiA 302-2, keep-alive bit of 0x1F81: an OPERATIONAL node is left alone.
+  std::size_t await_alive() {
+    const bool guarded = context_.heartbeat_timeout == Time{};
+    const Time longest = guarded ? context_.guard.life_time() : context_.heartbeat_timeout;
+    BootStep& step = steps_.wait(BootAction::await_alive,
+                                 std::max<Time>(longest, std::chrono::milliseconds{100}),
+                                 guarded ? 'F' : 'E', "is it OPERATIONAL? Then it is left so");
+    step.guarded = guarded;
+    return steps_.size() - 1;
   }
 
   void await_bootup() {
@@ -90,6 +114,10 @@ class BootCompiler {
     expect({0x1018, 2}, expected(spec_.product_code, {0x1018, 2}), 'M', "product code");
     expect({0x1018, 3}, *spec_.revision_number, 'N', "revision number");
     expect({0x1018, 4}, *spec_.serial_number, 'O', "serial number");
+    if (*spec_.serial_number == 0 && steps_.has({0x1018, 4})) {
+      steps_.integer(BootAction::read_serial, {0x1018, 4}, 0, "serial number, to know it again")
+          .value.clear();
+    }
   }
 
   void restore() {
@@ -110,6 +138,60 @@ class BootCompiler {
     probe();
   }
 
+  /// What was written is kept, as the network file asks; nothing is stored where nothing was
+  /// written.
+  void store() {
+    const std::uint8_t sub = *spec_.store;
+    if (sub == 0) return;
+    const ObjectKey key{0x1010, sub};
+    if (!steps_.has(key)) {
+      report_.error(spec_.store.pos, "no-such-object",
+                    "`store_configuration` of node `" + spec_.name + "` needs " + to_string(key) +
+                        ", which " + dictionary_.file + " does not have");
+      return;
+    }
+    steps_.integer(BootAction::write_if_changed, key, save_signature, "store parameters (\"save\")")
+        .timeout = std::max(restore_timeout, context_.sdo_timeout);
+  }
+
+  /// 0x1014 of the network file, else of a DCF.
+  std::optional<std::int64_t> emcy_cob_id() const {
+    if (spec_.emcy_cob_id.given) return *spec_.emcy_cob_id;
+    const SubObject* sub = dictionary_.find(ObjectKey{0x1014, 0});
+    if (!dictionary_.is_dcf || sub == nullptr || !sub->parameter_value) return std::nullopt;
+    return as_integer(*sub->parameter_value);
+  }
+
+  void emergency() {
+    const ObjectKey id{0x1014, 0};
+    const auto wanted = emcy_cob_id();
+    if (spec_.emcy_cob_id.given && !steps_.writable(id)) {
+      missing(spec_.emcy_cob_id.pos, "emcy_cob_id", id);
+    } else if (wanted && steps_.writable(id)) {
+      const std::int64_t value = *wanted;
+      const std::string text = "EMCY on " + hex(static_cast<std::uint32_t>(value), 3);
+      steps_.integer(BootAction::compare, id, value, text);
+      const std::size_t skip = steps_.skip_if_same("EMCY has its identifier");
+      steps_.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
+      steps_.integer(BootAction::enable_pdo, id, value, text);
+      steps_.land(skip);
+    }
+    const ObjectKey inhibit{0x1015, 0};
+    if (!spec_.emcy_inhibit_time.given) return;
+    if (!steps_.writable(inhibit)) {
+      return missing(spec_.emcy_inhibit_time.pos, "emcy_inhibit_time", inhibit);
+    }
+    steps_.integer(BootAction::write_if_differs, inhibit, *spec_.emcy_inhibit_time,
+                   "EMCY at most every " + std::to_string(*spec_.emcy_inhibit_time) + " x 100 us",
+                   2);
+  }
+
+  void missing(SourcePos pos, const std::string& key, ObjectKey object) {
+    report_.error(pos, "no-such-object",
+                  "`" + key + "` of node `" + spec_.name + "` needs " + to_string(object) +
+                      ", which " + dictionary_.file + " does not have or can't change");
+  }
+
   void heartbeat() {
     if (context_.producer_ms != 0 && steps_.writable({0x1017, 0})) {
       steps_.integer(BootAction::write_if_differs, {0x1017, 0}, context_.producer_ms,
@@ -124,6 +206,7 @@ class BootCompiler {
                         dictionary_.file + " does not have");
     }
     watch_master();
+    guarding();
     for (const SdoSpec& sdo : spec_.error_behavior) {
       if (!steps_.has(sdo.object)) {
         report_.error(sdo.pos, "no-such-object",
@@ -175,6 +258,23 @@ class BootCompiler {
                        std::to_string(context_.master_consumer_ms) + " ms");
   }
 
+  /// 0x100C and 0x100D, for the device's own life guarding.
+  void guarding() {
+    if (context_.guard.period == Time{}) return;
+    const auto ms = context_.guard.period / std::chrono::milliseconds{1};
+    if (steps_.writable({0x100C, 0})) {
+      steps_.integer(BootAction::write_if_differs, {0x100C, 0}, ms,
+                     "guard time " + std::to_string(ms) + " ms", 2);
+    }
+    if (!spec_.life_time_factor.given || !steps_.writable({0x100D, 0})) return;
+    steps_.integer(BootAction::write_if_differs, {0x100D, 0}, *spec_.life_time_factor,
+                   *spec_.life_time_factor == 0
+                       ? "no life guarding"
+                       : "the device misses the master after " +
+                             std::to_string(ms * *spec_.life_time_factor) + " ms",
+                   1);
+  }
+
   void sync() {
     if (!context_.sync) return;
     if (steps_.writable({0x1005, 0})) {
@@ -223,13 +323,17 @@ class BootCompiler {
     if (watched) {
       steps_.wait(BootAction::await_heartbeat, context_.heartbeat_timeout, 'K', "first heartbeat");
     }
-    if (!context_.start_nodes) return;
+    const Time life_time = context_.guard.life_time();
+    if (life_time != Time{}) {
+      steps_.wait(BootAction::await_guarding, life_time, 'K', "first answer to guarding");
+    }
+    if (!context_.start_nodes || context_.start_all) return;
     pause(tweaks_.pause_before_start_ms, "before the start");
     steps_.nmt(NmtCommand::start, "start");
-    if (watched) {
+    if (watched || life_time != Time{}) {
+      const Time longest = std::max(context_.heartbeat_timeout, life_time);
       steps_.wait(BootAction::await_operational,
-                  std::max<Time>(2 * context_.heartbeat_timeout, std::chrono::milliseconds{500}),
-                  'K', "OPERATIONAL");
+                  std::max<Time>(2 * longest, std::chrono::milliseconds{500}), 'K', "OPERATIONAL");
     }
   }
 

@@ -3,6 +3,7 @@
 #include "eds_parser/network_report.hpp"
 #include "eds_parser/network_spec.hpp"
 #include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
@@ -14,12 +15,14 @@ struct BootContext {
   std::uint16_t master_consumer_ms = 0;   ///< silence of the master that a device accepts
   std::uint16_t producer_ms = 0;          ///< 0x1017 of this node, 0 = none
   Time heartbeat_timeout{};               ///< 0 = not watched
+  GuardPlan guard{};                      ///< where there is no heartbeat
   bool sync = false;
   std::uint32_t sync_cob_id = 0x80;
   std::uint32_t sync_period_us = 0;
   std::uint8_t sync_overflow = 0;
   Sourced<std::uint32_t> sync_window_us;
   bool start_nodes = true;
+  bool start_all = false;  ///< not by the plan of each node
   bool cia402 = false;
   Time sdo_timeout{};
   Time boot_timeout{};

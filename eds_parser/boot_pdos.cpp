@@ -14,6 +14,22 @@ class PdoBoot {
   /// First the mapping, then the communication parameters. A PDO whose mapping was written is off,
   /// so its COB-ID differs and the second half switches it on again.
   void exchange() {
+    const std::size_t first = steps_.size();
+    append_exchange();
+    mark_running(first);
+  }
+
+  void switch_off() {
+    if (!steps_.has(cob_id_key())) return;
+    steps_.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
+        valid_bit;
+    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is off");
+    disable();
+    steps_.land(skip);
+  }
+
+ private:
+  void append_exchange() {
     if (!pdo_.fixed_mapping) {
       mapping_steps(BootAction::compare, "");
       const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is mapped as it should be");
@@ -37,16 +53,6 @@ class PdoBoot {
     steps_.land(skip);
   }
 
-  void switch_off() {
-    if (!steps_.has(cob_id_key())) return;
-    steps_.integer(BootAction::compare, cob_id_key(), valid_bit, pdo_.label() + " off?").mask =
-        valid_bit;
-    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is off");
-    disable();
-    steps_.land(skip);
-  }
-
- private:
   ObjectKey communication(std::uint8_t sub) const { return {pdo_.communication_index(), sub}; }
   ObjectKey mapping(std::size_t sub) const {
     return {pdo_.mapping_index(), static_cast<std::uint8_t>(sub)};
@@ -94,6 +100,14 @@ class PdoBoot {
       steps_.integer(BootAction::compare, communication(2), pdo_.transmission, type_text());
     }
     parameters(BootAction::compare);
+  }
+
+  /// A PDO that differs on a node that is left running can't be used.
+  void mark_running(std::size_t first) {
+    for (std::size_t i = first; i < steps_.size(); ++i) {
+      BootStep& step = steps_.steps()[i];
+      if (step.action == BootAction::compare) step.running_letter = 'L';
+    }
   }
 
   /// Count and entries. A fixed count may cover empty entries, which the plan leaves out.

@@ -31,6 +31,8 @@ class BootSteps {
   bool has(ObjectKey object) const noexcept { return dictionary_.find(object) != nullptr; }
   bool writable(ObjectKey object) const noexcept;
   bool readable(ObjectKey object) const noexcept;
+  std::size_t size() const noexcept { return plan_.steps.size(); }
+  std::vector<BootStep>& steps() noexcept { return plan_.steps; }
   BootPlan take() { return std::move(plan_); }
 
  private:

@@ -21,6 +21,7 @@ bool is_set_elsewhere(std::uint16_t index) {
     case 0x1006:
     case 0x1010:
     case 0x1011:
+    case 0x1014:
     case 0x1017:
     case 0x1018:
     case 0x1019:
@@ -144,6 +145,8 @@ class ValueSteps {
       return;
     }
     const SubObject* sub = dictionary_.find(sdo.object);
+    const auto* raw = std::get_if<std::vector<std::byte>>(&sdo.value);
+    if (sub == nullptr && raw != nullptr) return unknown_object(sdo, *raw);
     if (sub == nullptr) return missing(sdo);
     if (!steps_.writable(sdo.object)) {
       report_.error(sdo.pos, "read-only",
@@ -154,6 +157,15 @@ class ValueSteps {
     auto value = bytes_of(sdo, *sub);
     if (!value) return;
     write(sdo.object, std::move(*value), "sdo: " + label(dictionary_, sdo.object));
+  }
+
+  /// A concise DCF may know more of the device than its EDS.
+  void unknown_object(const SdoSpec& sdo, const std::vector<std::byte>& value) {
+    report_.warning(sdo.pos, "no-such-object",
+                    "node `" + spec_.name + "`: " + to_string(sdo.object) +
+                        " of the concise DCF is not in " + dictionary_.file +
+                        "; it is written all the same");
+    steps_.bytes(BootAction::write, sdo.object, value, "sdo: " + to_string(sdo.object));
   }
 
   void missing(const SdoSpec& sdo) {
@@ -176,6 +188,7 @@ class ValueSteps {
   }
 
   std::optional<std::vector<std::byte>> bytes_of(const SdoSpec& sdo, const SubObject& sub) {
+    if (const auto* raw = std::get_if<std::vector<std::byte>>(&sdo.value)) return *raw;
     if (is_bytes(sub.type)) {
       if (const auto* text = std::get_if<std::string>(&sdo.value)) {
         return to_bytes(Value{*text}, sub.type);

@@ -90,6 +90,13 @@ class NetworkCompiler {
     bus.master_id = *NodeId::from(*master.node_id);
     bus.master_heartbeat = milliseconds(*master.heartbeat_producer);
     bus.start_nodes = *master.start_nodes;
+    bus.start_up = {.start_master = *master.start,
+                    .start_all = *master.start_all_nodes,
+                    .on_loss = *master.stop_all_nodes    ? MandatoryLoss::stop_all
+                               : *master.reset_all_nodes ? MandatoryLoss::reset_all
+                                                         : MandatoryLoss::only_it,
+                    .boot_time = milliseconds(*master.boot_time_ms),
+                    .nmt_inhibit = std::chrono::microseconds{100} * *master.nmt_inhibit_time};
     bus.stop_timeout = milliseconds(*master.stop_timeout_ms);
     bus.cycle.sync = *master.sync_period_us != 0;
     bus.cycle.period =
@@ -174,6 +181,13 @@ class NetworkCompiler {
         .sdo_timeout = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms)),
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
     node.heartbeat_timeout = heartbeat_timeout(source.node);
+    node.heartbeat_period = milliseconds(*spec.boot ? producer_ms(source.node) : 0);
+    node.guard = guard(source.node);
+    node.emcy_cob_id = emcy_cob_id(source.node);
+    node.start_later = plan().start_up.start_all && *spec.boot;
+    node.on_loss = *spec.on_loss;
+    node.group = group(*spec.group);
+    check_keep_alive(spec, node);
     add_device_data(source, node);
     check_fallback(source.node, node.cia402, report_);
     check_node_values(source, report_);
@@ -188,6 +202,34 @@ class NetworkCompiler {
     node.device_data_file = data.id + ".yaml";
     node.device_notes = device_notes(source);
     for (const EmcyMeaning& emcy : data.emcy) node.emcy_texts.push_back({emcy.code, emcy.text});
+  }
+
+  /// Of the network file, else of the device file; none: the predefined 0x080 + id.
+  static std::optional<CobId> emcy_cob_id(const NodeSource& node) {
+    const std::int64_t own = value_of(*node.dictionary, {0x1014, 0});
+    const std::int64_t id = node.spec->emcy_cob_id.given ? *node.spec->emcy_cob_id : own;
+    const bool off = (id & 0x8000'0000) != 0;
+    if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
+    const auto raw = static_cast<std::uint32_t>(id);
+    return (raw & 0x2000'0000) != 0 ? CobId::extended(raw) : CobId::base(raw);
+  }
+
+  std::uint8_t group(const std::string& name) {
+    if (name.empty()) return 0;
+    std::vector<std::string>& groups = plan().groups;
+    auto found = std::ranges::find(groups, name);
+    if (found == groups.end()) found = groups.insert(groups.end(), name);
+    return static_cast<std::uint8_t>(found - groups.begin() + 1);
+  }
+
+  void check_keep_alive(const NodeSpec& spec, const NodePlan& node) {
+    const bool shows_life = node.heartbeat_timeout != Time{} || node.guard.period != Time{};
+    if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
+    report_.error(spec.reset.pos, "keep-alive",
+                  "node `" + spec.name +
+                      "` is to be kept running, but shows its state neither by "
+                      "heartbeat nor by guarding: give it `heartbeat_producer` or `guard_time`, or "
+                      "write `reset: none`");
   }
 
   double multiplier(const NodeSpec& node) const {
@@ -212,6 +254,30 @@ class NetworkCompiler {
     if (!*spec_.master.heartbeat_consumer) return Time{};
     const double ms = producer_ms(node) * std::max(1.5, multiplier(*node.spec));
     return Time{static_cast<Time::rep>(std::llround(ms * 1e6))};
+  }
+
+  /// Guarding where the device file or the network file has a guard time and there is no heartbeat.
+  GuardPlan guard(const NodeSource& node) {
+    const NodeSpec& spec = *node.spec;
+    const std::int64_t own = value_of(*node.dictionary, {0x100C, 0});
+    const std::int64_t ms = spec.guard_time.given ? *spec.guard_time : own;
+    if (ms <= 0 || ms > 0xFFFF || !*spec.boot || !*spec_.master.heartbeat_consumer) return {};
+    if (producer_ms(node) != 0) {
+      if (spec.guard_time.given) {
+        report_.note(spec.guard_time.pos, "guarding",
+                     "node `" + spec.name +
+                         "` has a heartbeat, and with it it does not answer "
+                         "guarding (CiA 301): `guard_time` is left alone; `heartbeat_producer: 0` "
+                         "would switch to guarding");
+      }
+      return {};
+    }
+    const std::int64_t factor = value_of(*node.dictionary, {0x100D, 0});
+    const auto of_device = static_cast<std::uint8_t>(
+        factor > 0 && factor <= 255 ? factor : std::int64_t{*spec_.retry_factor});
+    return {.period = milliseconds(static_cast<std::uint32_t>(ms)),
+            .retries = spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor
+                                                                           : of_device)};
   }
 
   void check_bit_rate(const NodeSource& node) {
@@ -239,12 +305,14 @@ class NetworkCompiler {
         .master_consumer_ms = static_cast<std::uint16_t>(std::min(65535.0, std::ceil(accepted))),
         .producer_ms = producer_ms(source.node),
         .heartbeat_timeout = node.heartbeat_timeout,
+        .guard = node.guard,
         .sync = out_.plan.cycle.sync,
         .sync_cob_id = *master.sync_cob_id,
         .sync_period_us = *master.sync_period_us,
         .sync_overflow = *master.sync_overflow,
         .sync_window_us = master.sync_window_us,
         .start_nodes = *master.start_nodes,
+        .start_all = *master.start_all_nodes,
         .cia402 = node.cia402,
         .sdo_timeout = node.sdo_timeout,
         .boot_timeout =

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "eds_parser/source.hpp"
+#include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/run_options.hpp"
 
@@ -56,7 +58,7 @@ struct PdoSpec {
 /// `sdo: [{index: 0x6083, sub_index: 0, value: 10000}]`, written at boot in this order.
 struct SdoSpec {
   ObjectKey object;
-  std::variant<std::int64_t, double, std::string> value;
+  std::variant<std::int64_t, double, std::string, std::vector<std::byte>> value;
   SourcePos pos;
   SourcePos value_pos;
 };
@@ -110,7 +112,12 @@ struct TimeoutSpec {
 };
 
 /// What the master does to a node before it talks to it.
-enum class ResetPolicy : std::uint8_t { communication, node, none };
+enum class ResetPolicy : std::uint8_t {
+  communication,
+  node,
+  none,
+  keep_alive,  ///< communication, unless it is OPERATIONAL; then it is left as it is
+};
 
 struct SimSpec {
   std::string model;
@@ -137,7 +144,15 @@ struct NodeSpec {
   Sourced<bool> boot{.value = true, .pos = {}};
   Sourced<bool> mandatory;
   Sourced<ResetPolicy> reset;
-  Sourced<std::uint8_t> restore;  ///< sub-index of 0x1011, 0 = no
+  Sourced<std::uint8_t> restore;            ///< sub-index of 0x1011, 0 = no
+  Sourced<std::uint8_t> store;              ///< sub-index of 0x1010, 0 = no
+  Sourced<std::uint32_t> software_version;  ///< 0x1F55, 0 = not checked
+  Sourced<std::string> software_file;
+  std::vector<std::byte> program;           ///< content of software_file
+  Sourced<std::string> configuration_file;  ///< concise DCF; its values are in `sdo`
+  /// 0x1F26 and 0x1F27: days since 1984-01-01, ms since midnight. Date none: made from the content.
+  Sourced<std::optional<std::uint32_t>> configuration_date;
+  Sourced<std::uint32_t> configuration_time;
   Sourced<std::uint32_t> boot_timeout_ms;
   Sourced<std::uint32_t> sdo_timeout_ms;
   Sourced<std::uint32_t> reboot_delay_ms;
@@ -145,7 +160,14 @@ struct NodeSpec {
   Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the device watches the master
   Sourced<std::uint16_t> heartbeat_producer;                   ///< ms
   Sourced<double> heartbeat_multiplier;
-  std::vector<SdoSpec> error_behavior;  ///< 0x1029 by sub-index
+  Sourced<std::uint16_t> guard_time;         ///< ms; 0x100C
+  Sourced<std::uint8_t> life_time_factor;    ///< 0x100D: the device watches the master
+  Sourced<std::uint8_t> retry_factor;        ///< the master watches the device
+  std::vector<SdoSpec> error_behavior;       ///< 0x1029 by sub-index
+  Sourced<std::uint32_t> emcy_cob_id;        ///< 0x1014
+  Sourced<std::uint16_t> emcy_inhibit_time;  ///< 0x1015, 100 us
+  Sourced<LossReaction> on_loss;
+  Sourced<std::string> group;
 
   Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; not given: from the EDS
   UnitsSpec units;
@@ -170,6 +192,12 @@ struct MasterSpec {
   Sourced<double> heartbeat_multiplier;
   Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the master watches the nodes
   Sourced<bool> start_nodes{.value = true, .pos = {}};
+  Sourced<bool> start{.value = true, .pos = {}};  ///< the master becomes operational by itself
+  Sourced<bool> start_all_nodes;
+  Sourced<bool> reset_all_nodes;  ///< when a mandatory node is lost
+  Sourced<bool> stop_all_nodes;   ///< the same
+  Sourced<std::uint32_t> boot_time_ms;
+  Sourced<std::uint16_t> nmt_inhibit_time;  ///< 100 us
   Sourced<std::uint32_t> stop_timeout_ms{.value = 5000, .pos = {}};
 };
 
@@ -184,6 +212,7 @@ struct NetworkSpec {
   BusSpec bus;
   Sourced<std::string> dcf_path;
   Sourced<double> heartbeat_multiplier{.value = 3.0, .pos = {}};
+  Sourced<std::uint8_t> retry_factor{.value = 3, .pos = {}};  ///< of guarding
   MasterSpec master;
   RealtimeOptions realtime;
   Sourced<std::uint32_t> receive_window_us;

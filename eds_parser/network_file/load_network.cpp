@@ -5,10 +5,12 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 #include <sstream>
 #include <system_error>
 #include <tuple>
 
+#include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_compiler.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
@@ -19,6 +21,9 @@ namespace takt {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t max_program = std::size_t{16} << 20U;
+constexpr std::size_t max_configuration = std::size_t{1} << 20U;
 
 /// The text; at most one byte more than a network file may have.
 std::optional<std::string> read_text(const fs::path& path) {
@@ -60,8 +65,9 @@ class Loader {
       error({}, "no-file", why_unreadable(path_));
       return std::move(out_);
     }
-    const NetworkSpec spec = read_network(*text, path_.string(), out_.findings);
+    NetworkSpec spec = read_network(*text, path_.string(), out_.findings);
     note_placeholder(spec);
+    for (NodeSpec& node : spec.nodes) read_node_files(spec, node);
     std::vector<const ObjectDictionary*> dictionaries;
     for (const NodeSpec& node : spec.nodes) dictionaries.push_back(dictionary_of(spec, node));
     const std::vector<DeviceData> device_data = load_device_data(device_folders(), out_.findings);
@@ -93,27 +99,84 @@ class Loader {
                                  "this one"});
   }
 
-  /// Where a device file may be: beside the network file, then in dcf_path of the node, of options.
-  std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node) const {
+  /// Where a file of a node may be: beside the network file, then in dcf_path of the node, of
+  /// options.
+  std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node,
+                                   const std::string& name) const {
     const fs::path folder = path_.parent_path();
-    std::vector<fs::path> paths{folder / *node.dcf};
+    std::vector<fs::path> paths{folder / name};
     for (const auto& extra : {node.dcf_path, spec.dcf_path}) {
-      if (extra.given && !is_placeholder(*extra)) paths.push_back(folder / *extra / *node.dcf);
+      if (extra.given && !is_placeholder(*extra)) paths.push_back(folder / *extra / name);
     }
     return paths;
   }
 
-  const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
-    if (!node.dcf.given || !node.id.given) return nullptr;
-    const std::vector<fs::path> paths = candidates(spec, node);
+  static const fs::path* existing(const std::vector<fs::path>& paths) {
     std::error_code ignored;
     const auto found = std::ranges::find_if(
         paths, [&](const fs::path& path) { return fs::is_regular_file(path, ignored); });
-    if (found == paths.end()) {
-      report_missing(node, paths);
-      return nullptr;
+    return found == paths.end() ? nullptr : &*found;
+  }
+
+  void read_node_files(const NetworkSpec& spec, NodeSpec& node) {
+    if (const auto bytes = read_bytes(spec, node, node.software_file, max_program)) {
+      node.program = *bytes;
     }
-    return read(*found, node);
+    const auto concise = read_bytes(spec, node, node.configuration_file, max_configuration);
+    if (!concise) return;
+    const auto entries = decode_concise_dcf(*concise);
+    if (!entries) {
+      return error(node.configuration_file.pos, "concise-dcf",
+                   "`" + *node.configuration_file + "` " + entries.error() +
+                       ": `configuration_file` takes a concise DCF (0x1F22); a DCF in text goes to "
+                       "`dcf`");
+    }
+    std::vector<SdoSpec> values;
+    for (const ConciseEntry& entry : *entries) values.push_back(sdo_of(entry, node));
+    node.sdo.insert(node.sdo.begin(), values.begin(), values.end());
+  }
+
+  /// PDO parameters are taken into the PDOs' configuration, as numbers.
+  static SdoSpec sdo_of(const ConciseEntry& entry, const NodeSpec& node) {
+    SdoSpec sdo{.object = entry.object,
+                .value = entry.value,
+                .pos = node.configuration_file.pos,
+                .value_pos = node.configuration_file.pos};
+    const bool pdo = entry.object.index >= 0x1400 && entry.object.index <= 0x1BFF;
+    if (!pdo || entry.value.size() > 8) return sdo;
+    std::uint64_t number = 0;
+    for (std::size_t i = 0; i < entry.value.size(); ++i) {
+      number |= std::to_integer<std::uint64_t>(entry.value[i]) << (8 * i);
+    }
+    sdo.value = static_cast<std::int64_t>(number);
+    return sdo;
+  }
+
+  std::optional<std::vector<std::byte>> read_bytes(const NetworkSpec& spec, const NodeSpec& node,
+                                                   const Sourced<std::string>& file,
+                                                   std::size_t limit) {
+    if (!file.given) return std::nullopt;
+    const std::vector<fs::path> paths = candidates(spec, node, *file);
+    const fs::path* path = existing(paths);
+    std::error_code ignored;
+    if (path == nullptr || fs::file_size(*path, ignored) > limit) {
+      const std::string why = path == nullptr ? "not found beside the network file or in `dcf_path`"
+                                              : "larger than " + std::to_string(limit) + " bytes";
+      error(file.pos, "no-file", "node `" + node.name + "`: file `" + *file + "` " + why);
+      return std::nullopt;
+    }
+    std::ifstream in{*path, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{in}, {}};
+    const auto bytes = std::as_bytes(std::span{text});
+    return std::vector<std::byte>{bytes.begin(), bytes.end()};
+  }
+
+  const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
+    if (!node.dcf.given || !node.id.given) return nullptr;
+    const std::vector<fs::path> paths = candidates(spec, node, *node.dcf);
+    if (const fs::path* found = existing(paths)) return read(*found, node);
+    report_missing(node, paths);
+    return nullptr;
   }
 
   void report_missing(const NodeSpec& node, const std::vector<fs::path>& paths) {

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-constexpr std::array<std::string_view, 33> keys_of_others{"driver",
+constexpr std::array<std::string_view, 32> keys_of_others{"driver",
                                                           "package",
                                                           "namespace",
                                                           "polling",
@@ -38,7 +38,6 @@ constexpr std::array<std::string_view, 33> keys_of_others{"driver",
                                                           "type",
                                                           "executor",
                                                           "container_name",
-                                                          "emcy_cob_id",
                                                           "description",
                                                           "comment"};
 constexpr std::array<std::string_view, 8> sim_models{"plain",      "drive402",      "io401",
@@ -49,9 +48,7 @@ constexpr std::array<std::string_view, 14> scales{
     "scale_eff_to_dev",  "scale_eff_from_dev",  "offset_pos_to_dev", "offset_pos_from_dev",
     "offset_vel_to_dev", "offset_vel_from_dev", "offset_eff_to_dev", "offset_eff_from_dev",
     "scale_acc_to_dev",  "scale_acc_from_dev"};
-constexpr std::array<std::string_view, 8> not_supported{
-    "time_cob_id", "time_cobid",    "retry_factor",     "life_time_factor",
-    "guard_time",  "software_file", "software_version", "configuration_file"};
+constexpr std::array<std::string_view, 2> not_supported{"time_cob_id", "time_cobid"};
 
 void read_firmware(MapReader& reader, Sourced<std::string>& out) {
   reader.text("firmware", out);
@@ -75,12 +72,12 @@ void read_reset(MapReader& reader, NodeSpec& node) {
   Sourced<bool> communication;
   reader.boolean("reset_communication", communication);
   if (communication.given) {
-    node.reset = {*communication ? ResetPolicy::communication : ResetPolicy::none,
+    node.reset = {*communication ? ResetPolicy::communication : ResetPolicy::keep_alive,
                   communication.pos, true};
   }
   const YamlNode* value = reader.take("reset");
   if (value == nullptr) return;
-  constexpr std::array<std::string_view, 3> names{"communication", "node", "none"};
+  constexpr std::array<std::string_view, 4> names{"communication", "node", "none", "keep_alive"};
   if (const auto choice = read_choice(*value, "reset", names, reader.report())) {
     if (communication.given) {
       reader.report().error(value->pos, "duplicate-key",
@@ -90,11 +87,46 @@ void read_reset(MapReader& reader, NodeSpec& node) {
   }
 }
 
+/// `auto`: made from what is configured.
+void read_configuration_date(MapReader& reader, NodeSpec& node) {
+  reader.integer("configuration_time", node.configuration_time, {0, 86'399'999, " ms"});
+  const YamlNode* date = reader.take("configuration_date");
+  if (date == nullptr) return;
+  if (date->text == "auto") {
+    node.configuration_date = {std::nullopt, date->pos, true};
+    return;
+  }
+  constexpr IntegerRange days{1, 0xFFFF'FFFF, " days since 1984-01-01"};
+  if (const auto value = read_integer(*date, "configuration_date", days, reader.report())) {
+    node.configuration_date = {static_cast<std::uint32_t>(*value), date->pos, true};
+  }
+}
+
+void read_loss(MapReader& reader, NodeSpec& node) {
+  reader.text("group", node.group);
+  const YamlNode* value = reader.take("on_loss");
+  if (value == nullptr) return;
+  constexpr std::array<std::string_view, 4> names{"report", "stop_node", "stop_group",
+                                                  "quick_stop"};
+  if (const auto choice = read_choice(*value, "on_loss", names, reader.report())) {
+    node.on_loss = {static_cast<LossReaction>(*choice), value->pos, true};
+  }
+  if (*node.on_loss == LossReaction::stop_group && !node.group.given) {
+    reader.report().error(value->pos, "group",
+                          "`on_loss: stop_group` needs `group:`, the name that its nodes share");
+  }
+}
+
 void read_boot(MapReader& reader, NodeSpec& node) {
   reader.boolean("boot", node.boot);
   reader.boolean("mandatory", node.mandatory);
   read_reset(reader, node);
   reader.integer("restore_configuration", node.restore, {0, 127});
+  reader.integer("store_configuration", node.store, {0, 127});
+  reader.integer("software_version", node.software_version);
+  reader.text("software_file", node.software_file);
+  reader.text("configuration_file", node.configuration_file);
+  read_configuration_date(reader, node);
   reader.integer("boot_timeout_ms", node.boot_timeout_ms, {1, 600'000, " ms"});
   reader.integer("sdo_timeout_ms", node.sdo_timeout_ms, {1, 60'000, " ms"});
   reader.integer("reboot_delay_ms", node.reboot_delay_ms, {1, 600'000, " ms"});
@@ -109,6 +141,11 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
                           "`heartbeat_multiplier` is at least 1.5, or one late heartbeat stops the "
                           "node");
   }
+  reader.integer("guard_time", node.guard_time, {0, 65535, " ms"});
+  reader.integer("life_time_factor", node.life_time_factor, {0, 255});
+  reader.integer("emcy_cob_id", node.emcy_cob_id, {0x001, 0x7FF});
+  reader.integer("emcy_inhibit_time", node.emcy_inhibit_time, {0, 65535, " x 100 us"});
+  reader.integer("retry_factor", node.retry_factor, {1, 255});
   const YamlNode* behavior = reader.take("error_behavior");
   if (behavior == nullptr || behavior->kind == YamlNode::Kind::null) return;
   if (behavior->kind != YamlNode::Kind::map) {
@@ -220,6 +257,7 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   read_identity(reader, spec);
   read_boot(reader, spec);
   read_heartbeat(reader, spec);
+  read_loss(reader, spec);
   if (const YamlNode* profile = reader.take("profile")) {
     constexpr std::array<std::string_view, 4> names{"none", "cia401", "cia402", "cia406"};
     if (const auto choice = read_choice(*profile, "profile", names, report)) {

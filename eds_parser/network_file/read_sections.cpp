@@ -105,7 +105,7 @@ void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report
   MapReader reader{node, "`options`", report};
   reader.text("dcf_path", spec.dcf_path);
   reader.number("heartbeat_multiplier", spec.heartbeat_multiplier);
-  reader.ignore(std::array<std::string_view, 1>{"retry_factor"}, not_yet);
+  reader.integer("retry_factor", spec.retry_factor, {1, 255});
   reader.finish();
   if (spec.heartbeat_multiplier.given && *spec.heartbeat_multiplier < 1.5) {
     report.error(spec.heartbeat_multiplier.pos, "out-of-range",
@@ -129,18 +129,22 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   reader.number("heartbeat_multiplier", master.heartbeat_multiplier);
   reader.boolean("heartbeat_consumer", master.heartbeat_consumer);
   reader.boolean("start_nodes", master.start_nodes);
+  reader.boolean("start", master.start);
+  reader.boolean("start_all_nodes", master.start_all_nodes);
+  reader.boolean("reset_all_nodes", master.reset_all_nodes);
+  reader.boolean("stop_all_nodes", master.stop_all_nodes);
+  reader.integer("boot_time", master.boot_time_ms, {0, 3'600'000, " ms"});
+  reader.integer("nmt_inhibit_time", master.nmt_inhibit_time, {0, 65535, " x 100 us"});
   reader.integer("stop_timeout", master.stop_timeout_ms, {100, 60'000, " ms"});
   reader.ignore(
       std::array<std::string_view, 11>{"driver", "package", "namespace", "polling", "period",
                                        "diagnostics", "vendor_id", "product_code",
                                        "revision_number", "serial_number", "remappings"},
       other_reader);
-  reader.ignore(
-      std::array<std::string_view, 13>{
-          "time_cob_id", "emcy_inhibit_time", "nmt_inhibit_time", "error_behavior", "start",
-          "start_all_nodes", "reset_all_nodes", "stop_all_nodes", "boot_time", "boot_timeout",
-          "boot_timeout_ms", "sdo_timeout_ms", "non_transmit_timeout"},
-      not_yet);
+  reader.ignore(std::array<std::string_view, 7>{"time_cob_id", "emcy_inhibit_time",
+                                                "error_behavior", "boot_timeout", "boot_timeout_ms",
+                                                "sdo_timeout_ms", "non_transmit_timeout"},
+                not_yet);
   reader.finish();
 }
 

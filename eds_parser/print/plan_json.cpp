@@ -88,6 +88,20 @@ Json step_json(const BootStep& step, std::size_t number, NodeId node) {
   return out;
 }
 
+std::string_view loss_name(LossReaction reaction) {
+  switch (reaction) {
+    case LossReaction::report:
+      return "report";
+    case LossReaction::stop_node:
+      return "stop_node";
+    case LossReaction::stop_group:
+      return "stop_group";
+    case LossReaction::quick_stop:
+      return "quick_stop";
+  }
+  return "";
+}
+
 Json node_json(const BusPlan& plan, std::size_t index) {
   const NodePlan& node = plan.nodes[index];
   Json steps = Json::array();
@@ -102,6 +116,11 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"mandatory", node.mandatory},
           {"cia402", node.cia402},
           {"heartbeat_timeout_us", us(node.heartbeat_timeout)},
+          {"guard_time_us", us(node.guard.period)},
+          {"guard_life_time_us", us(node.guard.life_time())},
+          {"emcy_cob_id", node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())).id()},
+          {"on_loss", loss_name(node.on_loss)},
+          {"group", node.group == 0 ? "" : plan.groups[node.group - 1U]},
           {"sdo_timeout_us", us(node.sdo_timeout)},
           {"reboot_delay_us", us(node.reboot_delay)},
           {"device_data", node.device_data},

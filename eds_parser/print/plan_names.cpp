@@ -75,8 +75,20 @@ std::string_view action_name(BootAction action) noexcept {
       return "write if differs";
     case BootAction::await_heartbeat:
       return "await heartbeat";
+    case BootAction::await_guarding:
+      return "await guarding";
     case BootAction::await_operational:
       return "await OPERATIONAL";
+    case BootAction::await_alive:
+      return "await life";
+    case BootAction::await_value:
+      return "await value";
+    case BootAction::download_program:
+      return "download";
+    case BootAction::write_if_changed:
+      return "write if changed";
+    case BootAction::read_serial:
+      return "read serial";
     case BootAction::pause:
       return "pause";
   }
@@ -108,8 +120,12 @@ std::string frame_text(const BootStep& step, NodeId node) {
       return out;
     }
     case BootAction::write:
+    case BootAction::write_if_changed:
+    case BootAction::download_program:
       return hex(0x600U + node.value(), 3).substr(2) + "#" + download(step.object, step.value);
     case BootAction::probe:
+    case BootAction::await_value:
+    case BootAction::read_serial:
     case BootAction::expect:
     case BootAction::compare:
     case BootAction::verify:
@@ -118,8 +134,10 @@ std::string frame_text(const BootStep& step, NodeId node) {
     case BootAction::enable_pdo:
       return hex(0x600U + node.value(), 3).substr(2) + "#" + upload(step.object);
     case BootAction::await_bootup:
+    case BootAction::await_alive:
     case BootAction::skip_if_same:
     case BootAction::await_heartbeat:
+    case BootAction::await_guarding:
     case BootAction::await_operational:
     case BootAction::pause:
       return {};
@@ -140,6 +158,8 @@ std::string value_text(const BootStep& step) {
     }
     return "0x" + out;
   }
+  constexpr std::size_t longest = 64;
+  if (step.value.size() > longest) return std::to_string(step.value.size()) + " bytes";
   for (const std::byte byte : step.value) add_byte(out, std::to_integer<unsigned>(byte));
   return out;
 }

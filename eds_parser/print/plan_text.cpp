@@ -78,6 +78,42 @@ class PlanText {
     line("  real time: {}, SCHED_FIFO {}, {}, awake {} before SYNC", mode, rt.priority,
          rt.cpu ? fmt::format("cpu {}", *rt.cpu) : "any cpu", us_text(rt.spin));
     line("  ordered stop within {}", span_text(plan_.stop_timeout));
+    const std::string start_up = start_up_text();
+    if (!start_up.empty()) line("  {}", start_up);
+  }
+
+  /// Only what is not the default.
+  std::string start_up_text() const {
+    const StartUpPlan& start = plan_.start_up;
+    std::string text;
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+    if (!start.start_master) add("the master does not become operational by itself");
+    if (start.start_all) add("all nodes are started by one broadcast");
+    if (start.on_loss == MandatoryLoss::reset_all) add("loss of a mandatory node resets all");
+    if (start.on_loss == MandatoryLoss::stop_all) add("loss of a mandatory node stops all");
+    if (start.boot_time != Time{}) {
+      add("mandatory nodes boot within " + span_text(start.boot_time));
+    }
+    if (start.nmt_inhibit != Time{}) {
+      add("NMT commands at least " + span_text(start.nmt_inhibit) + " apart");
+    }
+    return text;
+  }
+
+  std::string reaction_text(const NodePlan& node) const {
+    const std::string group = node.group == 0 ? "" : plan_.groups[node.group - 1U];
+    switch (node.on_loss) {
+      case LossReaction::report:
+        return {};
+      case LossReaction::stop_node:
+        return "its loss stops it";
+      case LossReaction::stop_group:
+        return "its loss stops the group " + group;
+      case LossReaction::quick_stop:
+        return "its loss quick stops " +
+               (group.empty() ? "all drives" : "the drives of the group " + group);
+    }
+    return {};
   }
 
   void cycle() {
@@ -130,9 +166,9 @@ class PlanText {
     };
     if (node.mandatory) add("mandatory");
     if (!node.boot) add("only watched: no NMT, no SDO");
-    add(node.heartbeat_timeout == Time{}
-            ? "not watched (no heartbeat)"
-            : "missing after " + span_text(node.heartbeat_timeout) + " without heartbeat");
+    add(watching(node));
+    if (node.on_loss != LossReaction::report) add(reaction_text(node));
+    if (node.emcy_cob_id) add("EMCY on " + to_string(*node.emcy_cob_id));
     line("  {}", traits);
     identity(node);
     device_data(node);
@@ -142,6 +178,15 @@ class PlanText {
     for (const PdoRow& row : plan_.pdos.rpdos) {
       if (row.node_index == index) pdo(row, false);
     }
+  }
+
+  static std::string watching(const NodePlan& node) {
+    if (node.heartbeat_timeout != Time{}) {
+      return "missing after " + span_text(node.heartbeat_timeout) + " without heartbeat";
+    }
+    if (node.guard.period == Time{}) return "not watched (no heartbeat)";
+    return "guarded every " + span_text(node.guard.period) + ", missing after " +
+           span_text(node.guard.life_time());
   }
 
   void identity(const NodePlan& node) {
@@ -273,9 +318,10 @@ class PlanText {
       line("boot of node {} {}: none, it is only watched", node.id.value(), node.name);
       return;
     }
-    line("boot of node {} {}: {} steps; SDO answers within {}, tried again after {}",
+    line("boot of node {} {}: {} steps; SDO answers within {}, tried again after {}{}",
          node.id.value(), node.name, node.boot_plan.steps.size(), span_text(node.sdo_timeout),
-         span_text(node.reboot_delay));
+         span_text(node.reboot_delay),
+         node.start_later ? "; started with the network, by one broadcast" : "");
     const std::vector<bool> inside = skippable(node.boot_plan);
     for (std::size_t i = 0; i < node.boot_plan.steps.size(); ++i) {
       step(node, i, inside[i]);
@@ -286,30 +332,36 @@ class PlanText {
     const BootStep& step = node.boot_plan.steps[i];
     const std::string action = (inside ? "  " : "") + std::string{action_name(step.action)};
     const char letter = step.action == BootAction::skip_if_same ? ' ' : step.letter;
-    line("  {:>4} {} {:<18} {:<21} {:<10} {}", i + 1, letter, action, frame_text(step, node.id),
-         step_value(step), step.purpose + step_rest(step));
+    line("  {:>4} {} {:<18} {:<21} {:<10} {:>9}  {}", i + 1, letter, action,
+         frame_text(step, node.id), step_value(step), step_limit(step), step.purpose);
+  }
+
+  /// How long the step may take: of the wait, of each silence of an SDO transfer.
+  static std::string step_limit(const BootStep& step) {
+    if (step.action == BootAction::nmt || step.action == BootAction::skip_if_same) return {};
+    return "<" + span_text(step.timeout);
   }
 
   static std::string step_value(const BootStep& step) {
     switch (step.action) {
       case BootAction::nmt:
       case BootAction::probe:
+      case BootAction::read_serial:
       case BootAction::disable_pdo:
         return {};
       case BootAction::skip_if_same:
         return fmt::format("-> {}", step.target + 1);
       case BootAction::await_bootup:
       case BootAction::await_heartbeat:
+      case BootAction::await_guarding:
       case BootAction::await_operational:
       case BootAction::pause:
-        return span_text(step.timeout);
+        return {};
+      case BootAction::await_alive:
+        return fmt::format("-> {}", step.target + 1);
       default:
         return value_text(step);
     }
-  }
-
-  static std::string step_rest(const BootStep& step) {
-    return step.action == BootAction::probe ? ", for at most " + span_text(step.timeout) : "";
   }
 
   std::ostream& out_;

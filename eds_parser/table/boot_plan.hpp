@@ -32,6 +32,13 @@ enum class BootAction : std::uint8_t {
   verify,        ///< as expect; the read-back after writing
   write_if_differs,   ///< upload `object`, download `value` only where it differs
   await_heartbeat,    ///< a heartbeat (any state) within `timeout`
+  await_guarding,     ///< node guarding begins; the first answer within `timeout`
+  await_alive,        ///< keep-alive: a heartbeat (`guarded`: an answer to guarding) within
+                      ///< `timeout`; says it OPERATIONAL, go on at `target` without changing it
+  await_value,        ///< upload `object` until it is `value` under `mask`, for at most `timeout`
+  download_program,   ///< as write, but large; its progress is told
+  write_if_changed,   ///< as write, where this boot has written anything
+  read_serial,        ///< upload `object`, to know the device again; may be missing
   await_operational,  ///< the node reports OPERATIONAL within `timeout` (heartbeat or SDO-silent
                       ///< wait)
   pause,              ///< wait for `timeout`
@@ -47,6 +54,10 @@ struct BootStep {
   std::uint32_t mask = 0xFFFF'FFFF;  ///< for values up to 4 bytes
   NmtCommand command = NmtCommand::start;
   std::uint16_t target = 0;
+  char unread_letter = 0;    ///< compare, expect: `object` can't be read; 0: as `letter`
+  char running_letter = 0;   ///< compare: differs on a node that was left OPERATIONAL; 0: goes on
+  bool guarded = false;      ///< await_alive: asks by guarding
+  bool may_restart = false;  ///< the device may restart in this step
   /// The object may be missing (0602 0000, 0609 0011) when `value` is all zero; abort codes that
   /// devices give for a redundant write are then taken as "already so".
   bool optional = false;

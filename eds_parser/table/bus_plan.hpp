@@ -18,6 +18,33 @@ struct EmcyText {
   std::string text;
 };
 
+/// Node guarding of a device that has no heartbeat. CiA 301, 7.2.8.3.2.1.
+struct GuardPlan {
+  Time period{};             ///< between two requests; 0 = not guarded
+  std::uint8_t retries = 3;  ///< silence of so many periods is a loss
+  Time life_time() const noexcept { return period * retries; }
+};
+
+/// What the master does when a node that was ready falls silent, beyond telling it.
+enum class LossReaction : std::uint8_t {
+  report,      ///< nothing; it is booted again when it is back
+  stop_node,   ///< NMT stop to it; it stays away until somebody resets or starts it
+  stop_group,  ///< the same for every node of its group
+  quick_stop,  ///< the drives of its group (without a group: of the bus) stop and are disabled
+};
+
+/// What the loss of a mandatory node means to the others. 0x1F80 bits 4 and 6, CiA 302-2.
+enum class MandatoryLoss : std::uint8_t { only_it, reset_all, stop_all };
+
+/// Start-up of the network: 0x1F80, 0x1F89, 0x102A. CiA 302-2.
+struct StartUpPlan {
+  bool start_master = true;  ///< the master becomes operational by itself (bit 2 inverse)
+  bool start_all = false;    ///< nodes are started by one broadcast (bit 1)
+  MandatoryLoss on_loss = MandatoryLoss::only_it;
+  Time boot_time{};    ///< of all mandatory nodes; 0 = no limit
+  Time nmt_inhibit{};  ///< least time between two NMT commands
+};
+
 /// One device as the master sees it.
 struct NodePlan {
   std::string name;  ///< from the network file: "shoulder"
@@ -28,7 +55,13 @@ struct NodePlan {
   bool mandatory = false;  ///< its failure ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
   BootPlan boot_plan{};
-  Time heartbeat_timeout{};                 ///< longest silence; 0 = not watched
+  Time heartbeat_timeout{};            ///< longest silence; 0 = not watched
+  GuardPlan guard{};                   ///< only where there is no heartbeat
+  Time heartbeat_period{};             ///< of the device; 0 = not known
+  std::optional<CobId> emcy_cob_id{};  ///< none: 0x080 + id
+  bool start_later = false;  ///< with the network (StartUpPlan::start_all), not by the boot plan
+  LossReaction on_loss = LossReaction::report;
+  std::uint8_t group = 0;                   ///< index into BusPlan::groups + 1; 0 = none
   Time sdo_timeout{};                       ///< of requests while running
   Time reboot_delay{};                      ///< pause before a failed boot is tried again
   std::string device_data{};                ///< entry that was applied: "Lenze 8400 HighLine"
@@ -58,6 +91,8 @@ struct BusPlan {
   NodeId master_id = NodeId::from(127).value();
   Time master_heartbeat{};  ///< producer time of the master, 0 = none
   bool start_nodes = true;  ///< the master sends NMT start after boot
+  StartUpPlan start_up{};
+  std::vector<std::string> groups{};  ///< names
   CyclePlan cycle{};
   ImageLayout layout{};
   PdoTable pdos{};

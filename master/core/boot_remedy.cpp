@@ -1,5 +1,6 @@
 #include <string>
 
+#include "master/core/boot_remedy_objects.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/core/report_text.hpp"
 #include "master/core/request.hpp"
@@ -117,6 +118,12 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
   if (failure.downloading && is_mapping_entry(step.object)) {
     return against_refused_mapping(step, failure);
   }
+  const bool of_state = failure.abort_code == abort_code::device_state ||
+                        failure.abort_code == abort_code::local_control ||
+                        failure.abort_code == abort_code::hardware_error;
+  std::string text = of_state ? std::string{} : against_refused_setting(node, failure);
+  if (text.empty()) text = against_rare_abort(failure);
+  if (!text.empty()) return text;
   switch (failure.abort_code) {
     case abort_code::no_object:
     case abort_code::no_sub_index:
@@ -126,7 +133,13 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
     case abort_code::read_only:
       return object + " can't be written: remove it from the network file";
     case abort_code::write_only:
-      return object + " can't be read: write it without comparing";
+      return failure.downloading
+                 ? "the device says that " + object +
+                       " can only be written, although it was "
+                       "written: look it up in the manual"
+                 : object +
+                       " can't be read: does the EDS say `wo`? Then it is written without "
+                       "comparing";
     case abort_code::length_mismatch:
     case abort_code::length_too_high:
     case abort_code::length_too_low:
@@ -170,16 +183,25 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
                             const BootFailure& failure) {
   switch (step.action) {
     case BootAction::await_heartbeat:
-      return failure.node_state == NmtState::unknown
+      return failure.node_state == NmtState::unknown || failure.node_state == NmtState::bootup
                  ? "the device produces no heartbeat: is 0x1017 not zero after the boot? Set "
                    "`heartbeat_producer` of this node in ms, or 0 to go without"
                  : "the heartbeat is slower than expected: raise `heartbeat_multiplier` or lower "
                    "`heartbeat_producer` of this node";
+    case BootAction::await_guarding:
+      return "the device does not answer guarding requests (remote frames): set `guard_time: 0` of "
+             "this node, or `heartbeat_producer` where the device has 1017:00; some CAN "
+             "controllers and gateways do not pass remote frames";
     case BootAction::await_operational:
       return "the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its "
              "EMCY messages, 0x1001 and 0x1003), or a second master holds it back";
     default:
       break;
+  }
+  if (failure.downloading && failure.moved != 0) {
+    return "the device fell silent in the middle of a long value: did it lose power, restart, or "
+           "does another master talk to it? Raise `sdo_timeout_ms` of this node where it only is "
+           "slow. The write was not repeated, because it might act twice";
   }
   if (failure.downloading) {
     return "the device needs longer than " + time_text(step.timeout) + " for " +
@@ -190,11 +212,61 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
   return against_silence(plan, node, failure);
 }
 
+std::string against_dead_node(const BootStep& step) {
+  return std::string{
+             "the node is kept running when the master starts (`reset: keep_alive`), but "
+             "shows no sign of life: it is asked by SDO with the next try, still without a "
+             "reset. "} +
+         (step.guarded ? "Set `guard_time` of this node, if the device can be guarded"
+                       : "Let the device keep its heartbeat (0x1017, stored with 0x1010)") +
+         ", or use `reset: communication` where it may be reset";
+}
+
+std::string against_program(const NodePlan& node, const BootStep& step,
+                            const BootFailure& failure) {
+  switch (failure.letter) {
+    case 'G':
+      return "the device does not tell the version of its software in 1F56:01: drop "
+             "`software_version` from the network file";
+    case 'H':
+      return failure.running
+                 ? "the device runs another software than the network file wants, and it is "
+                   "OPERATIONAL: stop the machine and reset the node (`takt nmt reset " +
+                       std::to_string(int{node.id.value()}) + "`), then it is updated"
+                 : "the device runs another software than the network file wants: name the file "
+                   "with `software_file` and takt loads it, or correct `software_version`";
+    default:
+      break;
+  }
+  if (failure.fault == SdoFault::none && failure.object.index == 0x1F56) {
+    return "the program was loaded, but it is another version than `software_version` says: "
+           "correct whichever is wrong";
+  }
+  if (failure.fault == SdoFault::timeout && step.action == BootAction::download_program) {
+    return "the device fell silent in the middle of its program: it has none now, or a part of it. "
+           "It is loaded anew with the next try; raise `sdo_timeout_ms` where its flash memory is "
+           "slow";
+  }
+  return "the device did not take the program: is `software_file` made for this device and its "
+         "boot loader? The next try loads it anew";
+}
+
+std::string against_running_node(const NodePlan& node, const BootFailure& failure) {
+  return "the node was OPERATIONAL already and is not touched, but " + to_string(failure.object) +
+         " is not what the network file wants, so its PDOs can't be used: stop the machine, then "
+         "`takt nmt reset-comm " +
+         std::to_string(int{node.id.value()}) +
+         "` lets it be configured; or correct the network file";
+}
+
 }  // namespace
 
 std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   if (failure.step >= node.boot_plan.steps.size()) return {};
   const BootStep& step = node.boot_plan.steps[failure.step];
+  if (step.action == BootAction::await_alive) return against_dead_node(step);
+  if (failure.letter >= 'G' && failure.letter <= 'I') return against_program(node, step, failure);
+  if (failure.letter == 'L' && failure.running) return against_running_node(node, failure);
   switch (failure.fault) {
     case SdoFault::none:
       return against_mismatch(node, step, failure);

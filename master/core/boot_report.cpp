@@ -53,7 +53,8 @@ std::string sent_text(const NodePlan& node, const BootFailure& failure) {
 
 std::string silence_text(const BootStep& step, const BootFailure& failure) {
   std::string text = "nothing within " + time_text(step.timeout);
-  if (step.action != BootAction::probe && failure.attempts > 1) {
+  const bool polls = step.action == BootAction::probe || step.action == BootAction::await_value;
+  if (!polls && !failure.downloading && failure.attempts > 1) {
     text += ", asked " + std::to_string(int{failure.attempts}) + " times";
   }
   if (failure.downloading) text += "; a write is not repeated";
@@ -61,9 +62,19 @@ std::string silence_text(const BootStep& step, const BootFailure& failure) {
 }
 
 std::string received_text(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  const bool guarded = step.action == BootAction::await_guarding || step.guarded;
+  if (step.action == BootAction::await_alive && !guarded) {
+    return "no heartbeat on " + to_string(CobId::base(0x700U + node.id.value())) + " within " +
+           time_text(step.timeout);
+  }
   switch (step.action) {
     case BootAction::await_heartbeat:
       return "no heartbeat on " + to_string(CobId::base(0x700U + node.id.value())) + " within " +
+             time_text(step.timeout);
+    case BootAction::await_alive:
+    case BootAction::await_guarding:
+      return "no answer to guarding requests on " +
+             to_string(CobId::base(0x700U + node.id.value())) + " within " +
              time_text(step.timeout);
     case BootAction::await_operational:
       return "heartbeats that say " + std::string{name(failure.node_state)} + " for " +
@@ -78,17 +89,48 @@ std::string received_text(const NodePlan& node, const BootStep& step, const Boot
   if (failure.received_size == 0) return silence_text(step, failure);
   const auto bytes =
       std::span{failure.received}.first(std::min<std::size_t>(failure.received_size, 8));
-  return frame_text(sdo_answer_cob_id(node.id), bytes);
+  const std::string text = frame_text(sdo_answer_cob_id(node.id), bytes);
+  return failure.fault == SdoFault::timeout ? text + ", then " + silence_text(step, failure) : text;
+}
+
+/// 0x1F57, bits 7..1. CiA 302-3.
+std::string_view flash_text(std::uint8_t status) noexcept {
+  if ((status & 1U) != 0) return "the device is still busy with its flash memory";
+  switch (status >> 1U) {
+    case 0:
+      return "the program is good";
+    case 1:
+      return "there is no valid program";
+    case 2:
+      return "the format of the program is not known";
+    case 3:
+      return "the program has a CRC error";
+    case 4:
+      return "the flash memory was not cleared before";
+    case 5:
+      return "writing the flash memory failed";
+    case 6:
+      return "the program has a wrong address";
+    case 7:
+      return "the flash memory is secured";
+    default:
+      return "the device reports a flash error of its own";
+  }
+}
+
+std::string read_value_text(const BootFailure& failure) {
+  if (failure.sent_size == 0) return {};
+  const std::span bytes =
+      std::span{failure.value}.first(std::min<std::size_t>(failure.value_size, 8));
+  std::string text = value_text(bytes, failure.value_size);
+  if (failure.object.index != 0x1F57 || bytes.empty()) return text;
+  return text.append(": ").append(flash_text(bytes[0]));
 }
 
 std::string meaning_text(const BootFailure& failure) {
   switch (failure.fault) {
     case SdoFault::none:
-      return failure.sent_size == 0
-                 ? std::string{}
-                 : value_text(
-                       std::span{failure.value}.first(std::min<std::size_t>(failure.value_size, 8)),
-                       failure.value_size);
+      return read_value_text(failure);
     case SdoFault::aborted_by_device:
       return "abort " + abort_digits(failure.abort_code) + ": " +
              std::string{abort_text(failure.abort_code)};
@@ -105,6 +147,16 @@ std::string meaning_text(const BootFailure& failure) {
       return {};
   }
   return {};
+}
+
+/// How far a transfer of more than one frame came.
+std::string moved_text(const BootStep& step, const BootFailure& failure) {
+  const std::string moved = std::to_string(failure.moved);
+  if (failure.fault == SdoFault::none) return {};
+  if (failure.downloading && step.value.size() > 4) {
+    return moved + " of " + std::to_string(step.value.size()) + " bytes";
+  }
+  return failure.moved > 0 && !failure.downloading ? moved + " bytes" : std::string{};
 }
 
 std::string step_title(const BootStep& step) {
@@ -135,7 +187,7 @@ std::string_view letter_text(char letter) noexcept {
       "software update needed but not allowed",
       "software update failed",
       "configuration failed",
-      "no heartbeat at the start of error control",
+      "no heartbeat or guarding answer at the start of error control",
       "the node was operational already",
       "product code differs",
       "revision number differs",
@@ -158,6 +210,7 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
   add_line(text, "sent", sent_text(node, failure));
   add_line(text, "received", received_text(node, step, failure));
   add_line(text, "meaning", meaning_text(failure));
+  add_line(text, "moved", moved_text(step, failure));
   if (failure.fault == SdoFault::none && failure.sent_size != 0) {
     add_line(text, "expected", wanted_text(step));
   }

@@ -44,6 +44,16 @@ class BootRunner {
   std::uint16_t step() const noexcept { return step_; }
   Time began() const noexcept { return began_; }
   bool reset_sent() const noexcept { return reset_sent_; }
+  /// The node was OPERATIONAL and is left as it is. CiA 302-2, status L.
+  bool keeps_running() const noexcept { return running_; }
+  /// Objects of such a node that differ from the plan, and the first of them.
+  std::uint16_t left_alone() const noexcept { return left_alone_; }
+  ObjectKey first_left_alone() const noexcept { return first_left_alone_; }
+  std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
+  /// Bytes of the program that is being downloaded; 0: none is.
+  std::size_t program_size() const noexcept;
+  /// The plan has come to where the node is guarded.
+  bool guards() const noexcept { return guards_; }
   const BootFailure& failure() const noexcept { return failure_; }
 
  private:
@@ -62,25 +72,36 @@ class BootRunner {
   static constexpr std::uint8_t upload_attempts = 3;
   static constexpr Time probe_attempt = std::chrono::milliseconds{500};
   static constexpr Time probe_pause = std::chrono::milliseconds{50};
+  static constexpr Time poll_pause = std::chrono::milliseconds{100};  // CiA 302-3, flash status
   static constexpr Time default_timeout = std::chrono::seconds{1};
 
   const BootStep& current() const noexcept { return plan_->steps[step_]; }
   void go_to(std::size_t step) noexcept;
   void next() noexcept { go_to(step_ + 1U); }
   void enter(Time now) noexcept;
+  void begin(const BootStep& step) noexcept;
+  bool skips(const BootStep& step) const noexcept;
   // False: has to wait.
   bool proceed(Time now, SdoClient& client) noexcept;
   bool begin_transfer(Time now, SdoClient& client) noexcept;
   bool end_wait(Time now, const SdoClient& client) noexcept;
   void on_result(const SdoResult& result, Time now, SdoClient& client) noexcept;
   void on_uploaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
-  void on_probed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_polled(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void on_differs(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  bool end_sign_of_life(bool over, Time now, const SdoClient& client) noexcept;
   void on_downloaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_written() noexcept;
   void remember_cob_id() noexcept;
   void write_cob_id() noexcept;
-  void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept;
+  void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept {
+    fail(result, current().letter, now, client);
+  }
+  void fail(const SdoResult& result, char letter, Time now, const SdoClient& client) noexcept;
+  bool polls() const noexcept {
+    return current().action == BootAction::probe || current().action == BootAction::await_value;
+  }
   bool knows_cob_id() const noexcept { return cob_id_object_ == current().object; }
   std::span<const std::byte> received() const noexcept {
     return std::span{buffer_}.first(received_);
@@ -95,6 +116,12 @@ class BootRunner {
   std::uint8_t restarts_ = 0;
   bool differs_ = false;
   bool reset_sent_ = false;
+  bool guards_ = false;
+  bool running_ = false;
+  bool wrote_ = false;
+  std::uint16_t left_alone_ = 0;
+  ObjectKey first_left_alone_;
+  std::optional<std::uint32_t> serial_number_;
   bool bootup_seen_ = false;
   bool bootup_in_step_ = false;
   bool heartbeat_in_step_ = false;

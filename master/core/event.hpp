@@ -37,12 +37,14 @@ struct BootFailure {
   std::array<std::uint8_t, 8> received{};
   std::uint8_t sent_size = 0;
   std::array<std::uint8_t, 8> sent{};
+  std::uint32_t moved = 0;                  ///< bytes of a long transfer that were through
   std::uint16_t value_size = 0;             ///< of the value that was read
   std::array<std::uint8_t, 8> value{};      ///< its first bytes
   NmtState node_state = NmtState::unknown;  ///< heard last in this boot; unknown: silent
   bool bootup_seen = false;
   std::uint8_t attempts = 0;  ///< uploads of the failing step
   std::uint8_t restarts = 0;  ///< the node restarted so often while it was booted
+  bool running = false;       ///< the node was OPERATIONAL and left so
   std::uint16_t emcy = 0;     ///< newest error code that came during this boot, 0 = none
   Time elapsed{};             ///< since the boot began
 };
@@ -50,12 +52,23 @@ struct BootFailure {
 enum class EventKind : std::uint8_t {
   // nodes
   boot_started,
-  boot_done,    ///< value 1: it was already operational and was not reset; detail: ms
+  boot_done,    ///< value 1: it was already operational and was not reset; detail: ms; bytes: how
+                ///< many objects differ and were left alone (2), the first of them (index 2, sub 1)
   boot_failed,  ///< failure; detail: how often in a row by the same cause (told at 1, 2, 4, 8 ...)
   node_state,   ///< value: new NmtState
-  heartbeat_lost,  ///< value: ns of silence
-  heartbeat_back,  ///< of a node that is only watched; lost ones that are managed boot again
-  bootup_again,    ///< a boot-up message of a node that was ready
+  heartbeat_lost,    ///< value: ns of silence
+  heartbeat_back,    ///< of a node that is only watched; lost ones that are managed boot again
+  guarding_lost,     ///< value: ns without a good answer
+  guarding_toggle,   ///< the toggle bit of a guarding answer repeats; told when it begins
+  bootup_again,      ///< a boot-up message of a node that was ready
+  node_replaced,     ///< another serial number than before; value: new, detail: old
+  program_progress,  ///< value: bytes that the device has taken, detail: of how many
+  unlisted_node,     ///< value: id of a node that is not in the network file (status A)
+  network_ready,     ///< all mandatory nodes have booted; the master is operational
+  network_late,      ///< mandatory nodes still missing after the boot time; detail: how many
+  duplicate_node,    ///< two devices seem to have this id; value: DuplicateSign
+  loss_reaction,     ///< value: LossReaction, of which this node was the cause
+  mandatory_lost,    ///< a mandatory node was lost; value 1: all are stopped, 0: all are reset
   emcy,  ///< bytes: the eight bytes of the EMCY frame; value: how many before it were not told
   // the cycle
   pdo_missing,      ///< value: TPDO number; told when it begins
@@ -83,6 +96,12 @@ enum class EventKind : std::uint8_t {
   // the master
   stopping,
   stopped,
+};
+
+/// What gave two devices of one id away.
+enum class DuplicateSign : std::uint8_t {
+  heartbeats,  ///< more heartbeats than one producer sends
+  answers,     ///< several answers to one SDO request
 };
 
 enum class RefusedBecause : std::uint8_t {

@@ -61,13 +61,47 @@ std::string nmt_bytes_text(const Event& event) {
   return hex(event.bytes[0], 2).substr(2) + " " + hex(event.bytes[1], 2).substr(2);
 }
 
+std::string boot_done_text(const Event& event) {
+  std::string text = "ready after " + std::to_string(event.detail) + " ms";
+  if (event.value != 1) return text;
+  text += "; it was operational already and was not reset (status L of CiA 302-2)";
+  const auto left_alone = load_le<std::uint16_t>(std::span{event.bytes});
+  if (left_alone == 0) return text;
+  const ObjectKey first{load_le<std::uint16_t>(std::span{event.bytes}.subspan(2)), event.bytes[4]};
+  return text + "; " + std::to_string(left_alone) +
+         (left_alone == 1 ? " object differs" : " objects differ") +
+         " from the network file and stay so until it is reset, first " + to_string(first);
+}
+
+std::string twin_text(const Event& event) {
+  if (event.value == static_cast<std::int64_t>(DuplicateSign::answers)) {
+    return "several answers to each SDO request: two devices have this node id, or another SDO "
+           "client talks to it; switch one device off, or give it another id (`takt lss`)";
+  }
+  return "twice as many heartbeats as one device sends: two devices have this node id; switch one "
+         "off, or give it another id (`takt lss`)";
+}
+
+std::string reaction_text(const Event& event) {
+  switch (static_cast<LossReaction>(event.value)) {
+    case LossReaction::stop_node:
+      return "NMT stop to it; it stays away until it is reset or started (`takt nmt reset`)";
+    case LossReaction::stop_group:
+      return "NMT stop to its group; the nodes stay away until they are reset or started";
+    case LossReaction::quick_stop:
+      return "quick stop of the drives that depend on it";
+    case LossReaction::report:
+      break;
+  }
+  return "it is told";
+}
+
 std::string node_line(const BusPlan& plan, const Event& event) {
   switch (event.kind) {
     case EventKind::boot_started:
       return "boot begins";
     case EventKind::boot_done:
-      return "ready after " + std::to_string(event.detail) + " ms" +
-             (event.value == 1 ? "; it was operational already and was not reset" : "");
+      return boot_done_text(event);
     case EventKind::node_state:
       return "NMT state is " +
              std::string{name(static_cast<NmtState>(static_cast<std::uint8_t>(event.value)))};
@@ -75,8 +109,24 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return "heartbeat lost: silent for " + time_text(Time{event.value});
     case EventKind::heartbeat_back:
       return "heartbeat is back";
+    case EventKind::guarding_lost:
+      return "guarding lost: no good answer for " + time_text(Time{event.value});
+    case EventKind::guarding_toggle:
+      return "guarding answer with the toggle bit of the one before: it counts as not received (an "
+             "answer was lost, or somebody else asks the node too)";
     case EventKind::bootup_again:
       return "boot-up message of a node that was ready: it has restarted and is booted again";
+    case EventKind::node_replaced:
+      return "another device than before: its serial number is " + std::to_string(event.value) +
+             ", it was " + std::to_string(event.detail) +
+             "; `serial_number` in the network file would refuse it";
+    case EventKind::program_progress:
+      return "program download: " + std::to_string(event.value) + " of " +
+             std::to_string(event.detail) + " bytes";
+    case EventKind::duplicate_node:
+      return twin_text(event);
+    case EventKind::loss_reaction:
+      return "it was lost: " + reaction_text(event);
     case EventKind::emcy:
       return emcy_line(plan, event);
     case EventKind::pdo_missing:
@@ -135,6 +185,44 @@ std::string send_trouble_text(const Event& event, const std::string& interface) 
          " txqueuelen 1000`";
 }
 
+std::string missing_mandatory(const BusPlan& plan) {
+  std::string names;
+  for (const NodePlan& node : plan.nodes) {
+    if (node.mandatory) names += (names.empty() ? "" : ", ") + node_text(node);
+  }
+  return names;
+}
+
+std::string network_line(const BusPlan& plan, const Event& event) {
+  switch (event.kind) {
+    case EventKind::unlisted_node:
+      return "node " + std::to_string(event.value) +
+             " is on the bus but not in the network file (status A of CiA 302-2: " +
+             std::string{letter_text('A')} +
+             "): add it, or leave it alone; `takt scan` says what "
+             "it is";
+    case EventKind::network_ready:
+      return "the network is ready: every mandatory node has booted";
+    case EventKind::network_late:
+      return std::to_string(event.detail) +
+             " mandatory nodes have not booted within the boot "
+             "time of " +
+             time_text(plan.start_up.boot_time) + " (mandatory: " + missing_mandatory(plan) +
+             "): the master waits for them; their boot reports say why";
+    case EventKind::mandatory_lost:
+      return event.value == 1 ? "a mandatory node was lost: all nodes are stopped; they stay so "
+                                "until they are reset or started (`takt nmt reset all`)"
+                              : "a mandatory node was lost: all nodes are reset and boot again";
+    default:
+      return std::string{name(event.kind)};
+  }
+}
+
+bool is_of_network(EventKind kind) noexcept {
+  return kind == EventKind::unlisted_node || kind == EventKind::network_ready ||
+         kind == EventKind::network_late || kind == EventKind::mandatory_lost;
+}
+
 std::string bus_line(const BusPlan& plan, const Event& event) {
   const std::string count = std::to_string(event.value);
   const std::string interface = plan.interface.empty() ? "the interface" : plan.interface;
@@ -185,6 +273,7 @@ std::string line(const BusPlan& plan, const Event& event) {
     default:
       break;
   }
+  if (is_of_network(event.kind)) return network_line(plan, event);
   return event.kind <= EventKind::pdo_length || event.kind == EventKind::outputs_held
              ? node_line(plan, event)
              : bus_line(plan, event);

@@ -24,6 +24,8 @@ class FixedQueue {
     item = items_[tail_++ & (N - 1)];
     return true;
   }
+  /// Only where it is not empty.
+  const T& front() const noexcept { return items_[tail_ & (N - 1)]; }
   bool empty() const noexcept { return head_ == tail_; }
   std::uint64_t lost() const noexcept { return lost_; }
 

@@ -16,8 +16,28 @@ std::string_view name(EventKind kind) noexcept {
       return "heartbeat_lost";
     case EventKind::heartbeat_back:
       return "heartbeat_back";
+    case EventKind::guarding_lost:
+      return "guarding_lost";
+    case EventKind::guarding_toggle:
+      return "guarding_toggle";
     case EventKind::bootup_again:
       return "bootup_again";
+    case EventKind::node_replaced:
+      return "node_replaced";
+    case EventKind::program_progress:
+      return "program_progress";
+    case EventKind::unlisted_node:
+      return "unlisted_node";
+    case EventKind::network_ready:
+      return "network_ready";
+    case EventKind::network_late:
+      return "network_late";
+    case EventKind::duplicate_node:
+      return "duplicate_node";
+    case EventKind::loss_reaction:
+      return "loss_reaction";
+    case EventKind::mandatory_lost:
+      return "mandatory_lost";
     case EventKind::emcy:
       return "emcy";
     case EventKind::pdo_missing:

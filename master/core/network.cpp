@@ -2,20 +2,22 @@
 
 #include <algorithm>
 
-#include "master/wire/emcy.hpp"
 #include "master/wire/heartbeat.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt {
 
 Network::Network(const BusPlan& plan, NetworkOptions options)
-    : plan_{plan}, observe_{options.observe} {
+    : plan_{plan}, observe_{options.observe}, nmt_gate_{plan.start_up.nmt_inhibit}, start_{plan} {
   index_.fill(no_session);
   sessions_.reserve(plan.nodes.size());
   for (const NodePlan& node : plan.nodes) {
-    index_[node.id.value()] = static_cast<std::uint8_t>(sessions_.size());
+    const auto position = static_cast<std::uint8_t>(sessions_.size());
+    index_[node.id.value()] = position;
+    stops_drives_ = stops_drives_ || node.on_loss == LossReaction::quick_stop;
+    if (node.emcy_cob_id) emcy_ids_.emplace_back(*node.emcy_cob_id, position);
     const auto managed = node.boot && !observe_ ? Managed::yes : Managed::no;
-    sessions_.emplace_back(node, managed, NodeSession::Shared{events_, requests_});
+    sessions_.emplace_back(node, managed, NodeSession::Shared{events_, requests_, nmt_gate_});
   }
   statuses_.resize(sessions_.size());
   deadlines_.resize(sessions_.size(), never);
@@ -26,7 +28,13 @@ NodeSession* Network::session(std::uint32_t node) noexcept {
   return &sessions_[index_[node]];
 }
 
-void Network::touched(std::size_t index) noexcept {
+void Network::tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
+                   std::uint8_t node) noexcept {
+  events_.push({.when = now, .kind = kind, .node = node, .detail = detail, .value = value});
+}
+
+void Network::touched(std::size_t index, Time now) noexcept {
+  if (sessions_[index].take_loss()) on_loss(index, now);
   statuses_[index] = sessions_[index].status();
   deadlines_[index] = sessions_[index].deadline();
 }
@@ -34,38 +42,63 @@ void Network::touched(std::size_t index) noexcept {
 void Network::start(Time now) noexcept {
   if (observe_) return;
   if (plan_.master_heartbeat > Time{}) heartbeat_at_ = now;
+  start_.begin(now);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     sessions_[i].start(now);
-    touched(i);
+    touched(i, now);
   }
 }
 
 void Network::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
-  if (frame.id.is_extended() || frame.rtr) return;
+  if (frame.rtr) return;
+  if (NodeSession* const sender = emcy_sender(frame.id)) {
+    sender->on_emcy(frame, now);
+    return touched(static_cast<std::size_t>(sender - sessions_.data()), now);
+  }
+  if (frame.id.is_extended()) return;
   const std::uint32_t node = frame.id.id() & 0x7F;
   NodeSession* const peer = session(node);
-  if (peer == nullptr) return;
+  if (peer == nullptr) return meet_stranger(frame, now);
   switch (frame.id.id() & ~0x7FU) {
     case 0x580:
       peer->on_sdo_answer(frame, now);
       break;
     case 0x700:
-      if (const auto heartbeat = decode_heartbeat(frame)) peer->on_heartbeat(heartbeat->state, now);
+      if (const auto sign = decode_heartbeat(frame)) peer->on_heartbeat(*sign, now);
       break;
     case 0x080:
-      if (const auto emcy = decode_emcy(frame)) peer->on_emcy(*emcy, frame, now);
+      peer->on_emcy(frame, now);
       break;
     default:
       return;
   }
-  touched(index_[node]);
+  touched(index_[node], now);
+}
+
+/// Of an EMCY with a COB-ID of its own.
+NodeSession* Network::emcy_sender(CobId id) noexcept {
+  for (const auto& [own, position] : emcy_ids_) {
+    if (own == id) return &sessions_[position];
+  }
+  return nullptr;
+}
+
+/// A sign of life of a node that is not in the network file. CiA 302-2, status A.
+void Network::meet_stranger(const Frame& frame, Time now) noexcept {
+  const std::uint32_t node = frame.id.id() & 0x7F;
+  const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
+  if (!sign_of_life || node == plan_.master_id.value() || strangers_[node]) return;
+  strangers_.set(node);
+  tell(EventKind::unlisted_node, now, node, 0);
 }
 
 void Network::on_time(Time now, Outbox& out) noexcept {
   const std::size_t limit = out.limit();
   const std::size_t budget = std::max<std::size_t>(plan_.cycle.service_frames, 1);
   out.set_limit(std::min(limit, out.frames().size() + budget));
+  follow_start(now);
   send_heartbeat(now, out);
+  send_own_commands(now, out);
   send_commands(now, out);
   run_sessions(now, out);
   out.set_limit(limit);
@@ -73,23 +106,12 @@ void Network::on_time(Time now, Outbox& out) noexcept {
 
 void Network::send_heartbeat(Time now, Outbox& out) noexcept {
   if (now < heartbeat_at_ || !out.push(encode(Heartbeat{plan_.master_id, own_state_}))) return;
-  if (own_state_ == NmtState::bootup) own_state_ = NmtState::operational;
+  if (own_state_ == NmtState::bootup) {
+    own_state_ = start_.ready() && plan_.start_up.start_master ? NmtState::operational
+                                                               : NmtState::preoperational;
+  }
   heartbeat_at_ += plan_.master_heartbeat;
   if (heartbeat_at_ <= now) heartbeat_at_ = now + plan_.master_heartbeat;
-}
-
-void Network::send_commands(Time now, Outbox& out) noexcept {
-  while (command_ != nullptr || (command_ = requests_.next(0)) != nullptr) {
-    const Request& request = command_->request;
-    if (!out.push(encode(NmtMessage{request.command, request.node}))) return;
-    for (std::size_t i = 0; i < sessions_.size(); ++i) {
-      if (request.node != 0 && index_[request.node] != i) continue;
-      sessions_[i].on_commanded(request.command, now);
-      touched(i);
-    }
-    requests_.answer(*command_, SdoFault::none);
-    command_ = nullptr;
-  }
 }
 
 void Network::run_sessions(Time now, Outbox& out) noexcept {
@@ -104,7 +126,7 @@ void Network::run_sessions(Time now, Outbox& out) noexcept {
         again = true;
         turn_ = following(i);
       }
-      touched(i);
+      touched(i, now);
     }
     if (out.room() == 0) return;
   }
@@ -121,8 +143,8 @@ Time Network::first_deadline() const noexcept {
 }
 
 Time Network::deadline() const noexcept {
-  if (command_ != nullptr || requests_.has_waiting(0)) return at_once;
-  return std::min(heartbeat_at_, first_deadline());
+  if (command_ != nullptr || requests_.has_waiting(0) || !broadcasts_.empty()) return at_once;
+  return std::min({heartbeat_at_, start_.deadline(), first_deadline()});
 }
 
 bool Network::submit(const Request& request, Time now) noexcept {
@@ -136,7 +158,7 @@ bool Network::submit(const Request& request, Time now) noexcept {
     requests_.answer(*slot, SdoFault::no_such_node);
   } else {
     peer->on_request(now);
-    touched(index_[request.node]);
+    touched(index_[request.node], now);
   }
   return true;
 }
@@ -154,15 +176,19 @@ bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
          node.nmt == NmtState::operational;
 }
 
-void Network::begin_stop(Time /*now*/) noexcept {
+void Network::begin_stop(Time now) noexcept {
   if (stopping_) return;
   stopping_ = true;
   own_state_ = NmtState::preoperational;
   command_ = nullptr;
+  while (!broadcasts_.empty()) {
+    NmtMessage dropped;
+    broadcasts_.pop(dropped);
+  }
   requests_.cancel_all();
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     sessions_[i].begin_stop();
-    touched(i);
+    touched(i, now);
   }
 }
 

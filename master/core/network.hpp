@@ -1,14 +1,18 @@
 #pragma once
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
 #include "master/core/event_queue.hpp"
+#include "master/core/fixed_queue.hpp"
 #include "master/core/machine.hpp"
+#include "master/core/network_start.hpp"
 #include "master/core/node_session.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/request.hpp"
@@ -50,6 +54,11 @@ class Network {
   /// Booted and, as far as is known, OPERATIONAL.
   bool exchanges_pdos(std::size_t node_index) const noexcept;
 
+  /// The loss of some node stops drives.
+  bool stops_drives() const noexcept { return stops_drives_; }
+  /// Loss of a node demands that the drives of this node stop. LossReaction::quick_stop.
+  bool demands_quick_stop(std::size_t node_index) const noexcept;
+
   /// NMT part of the ordered stop: pending requests are answered, nodes go to pre-operational.
   void begin_stop(Time now) noexcept;
   /// All frames of the stop have been handed out.
@@ -59,9 +68,20 @@ class Network {
   static constexpr std::uint8_t no_session = 0xFF;
 
   NodeSession* session(std::uint32_t node) noexcept;
-  void touched(std::size_t index) noexcept;
+  void touched(std::size_t index, Time now) noexcept;
   void send_heartbeat(Time now, Outbox& out) noexcept;
   void send_commands(Time now, Outbox& out) noexcept;
+  bool send_command(const NmtMessage& message, Time now, Outbox& out) noexcept;
+  void command_master(NmtCommand command) noexcept;
+  void send_own_commands(Time now, Outbox& out) noexcept;
+  void follow_start(Time now) noexcept;
+  void on_loss(std::size_t index, Time now) noexcept;
+  void on_mandatory_loss(Time now) noexcept;
+  void halt_group(std::size_t index) noexcept;
+  void meet_stranger(const Frame& frame, Time now) noexcept;
+  void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
+            std::uint8_t node = 0) noexcept;
+  NodeSession* emcy_sender(CobId id) noexcept;
   void run_sessions(Time now, Outbox& out) noexcept;
   Time first_deadline() const noexcept;
   std::size_t following(std::size_t index) const noexcept;
@@ -69,14 +89,21 @@ class Network {
   const BusPlan& plan_;
   bool observe_;
   bool stopping_ = false;
+  bool stops_drives_ = false;  // some node's loss does
   EventQueue events_;
   RequestTable requests_;
-  std::vector<NodeSession> sessions_;    // order of plan.nodes
-  std::vector<NodeStatus> statuses_;     // copies, one block for the reader
-  std::vector<Time> deadlines_;          // of the sessions, one block to search
-  std::array<std::uint8_t, 128> index_;  // node id -> session
-  std::size_t turn_ = 0;                 // session that sends first, round robin
-  RequestSlot* command_ = nullptr;       // NMT request that waits to be sent
+  NmtGate nmt_gate_;
+  NetworkStart start_;
+  FixedQueue<NmtMessage, 4> broadcasts_;  // of the master itself
+  std::vector<NodeSession> sessions_;     // order of plan.nodes
+  std::vector<NodeStatus> statuses_;      // copies, one block for the reader
+  std::vector<Time> deadlines_;           // of the sessions, one block to search
+  std::array<std::uint8_t, 128> index_;   // node id -> session
+  std::vector<std::pair<CobId, std::uint8_t>>
+      emcy_ids_;                    // other than 0x080 + id, and their session
+  std::bitset<128> strangers_;      // ids that were told
+  std::size_t turn_ = 0;            // session that sends first, round robin
+  RequestSlot* command_ = nullptr;  // NMT request that waits to be sent
   NmtState own_state_ = NmtState::bootup;
   Time heartbeat_at_ = never;
 };

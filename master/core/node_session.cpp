@@ -4,19 +4,12 @@
 #include <bit>
 #include <utility>
 
+#include "master/wire/bytes.hpp"
+
 namespace takt {
 namespace {
 
-constexpr Time default_reboot_delay = std::chrono::seconds{1};
 constexpr Time default_sdo_timeout = std::chrono::seconds{1};
-
-bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
-  return a.step == b.step && a.fault == b.fault && a.abort_code == b.abort_code &&
-         a.value == b.value && a.node_state == b.node_state;
-}
-
-/// The first, second, fourth, eighth ...: a node that stays away must not fill the log.
-bool worth_telling(std::uint32_t count) noexcept { return std::has_single_bit(count); }
 
 }  // namespace
 
@@ -26,7 +19,9 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
       shared_{shared},
       client_{plan.id},
       runner_{plan.boot_plan},
-      watch_{plan.heartbeat_timeout} {}
+      watch_{plan.heartbeat_timeout},
+      guard_{plan.guard},
+      twins_{plan.heartbeat_period} {}
 
 void NodeSession::tell(EventKind kind, Time now, std::int64_t value,
                        std::uint32_t detail) noexcept {
@@ -39,54 +34,11 @@ void NodeSession::start(Time now) noexcept {
   boot(BootRunner::From::beginning, now);
 }
 
-void NodeSession::boot(BootRunner::From from, Time now) noexcept {
-  status_.boot = BootState::booting;
-  retry_at_ = never;
-  silent_ = false;
-  heartbeats_out_ = 0;
-  wanted_ = NmtState::unknown;
-  state_at_boot_ = status_.nmt;
-  emcys_at_boot_ = status_.emcy_count;
-  runner_.start(from, now);
-  if (worth_telling(same_failures_ + 1)) tell(EventKind::boot_started, now);
-  advance(now);
-}
-
 void NodeSession::advance(Time now) noexcept {
   if (booting()) follow_boot(now);
   if (booting()) return;
   follow_request(now);
   if (waits_to_boot() && active_ == nullptr && now >= retry_at_) boot(retry_from_, now);
-}
-
-void NodeSession::follow_boot(Time now) noexcept {
-  runner_.on_time(now, client_);
-  status_.boot_step = runner_.step();
-  if (runner_.state() == BootRunner::State::failed) return on_boot_failed(now);
-  if (runner_.state() != BootRunner::State::done) return;
-  runner_.stop();
-  status_.boot = BootState::ready;
-  ++status_.boot_count;
-  same_failures_ = 0;
-  const bool skipped = state_at_boot_ == NmtState::operational && !runner_.reset_sent();
-  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(now - runner_.began());
-  tell(EventKind::boot_done, now, skipped ? 1 : 0, static_cast<std::uint32_t>(took.count()));
-}
-
-void NodeSession::on_boot_failed(Time now) noexcept {
-  runner_.stop();
-  retry_later(BootState::failed, BootRunner::From::beginning, now);
-  BootFailure failure = runner_.failure();
-  if (failure.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
-  if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
-  same_failures_ = same_cause(failure, last_failure_) ? same_failures_ + 1 : 1;
-  last_failure_ = failure;
-  if (!worth_telling(same_failures_)) return;
-  shared_.events.push({.when = now,
-                       .kind = EventKind::boot_failed,
-                       .node = plan_->id.value(),
-                       .detail = same_failures_,
-                       .failure = failure});
 }
 
 void NodeSession::follow_request(Time now) noexcept {
@@ -119,21 +71,33 @@ void NodeSession::follow_request(Time now) noexcept {
 void NodeSession::on_request(Time now) noexcept { advance(now); }
 
 void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
+  tell_twin(twins_.on_sdo_answer(frame, now), now);
   client_.on_frame(frame, now);
   advance(now);
 }
 
-void NodeSession::on_heartbeat(NmtState state, Time now) noexcept {
-  const auto sign = watch_.on_heartbeat(state, now, status_);
-  if (sign == NodeWatch::Sign::bootup) return on_bootup(now);
-  if (sign == NodeWatch::Sign::new_state) {
+/// False: an answer that counts as not received.
+bool NodeSession::take_guarding_answer(const Heartbeat& sign, Time now) noexcept {
+  if (sign.state == NmtState::bootup || guard_.on_answer(sign.toggle, now)) return true;
+  if (guard_.repeated() == 1) tell(EventKind::guarding_toggle, now);
+  return false;
+}
+
+void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
+  if (!take_guarding_answer(sign, now)) return;
+  const NmtState state = sign.state;
+  const auto news = watch_.on_heartbeat(state, now, status_);
+  if (news == NodeWatch::Sign::bootup) return on_bootup(now);
+  if (news == NodeWatch::Sign::new_state) {
     tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
   }
   if (std::exchange(silent_, false)) {
+    if (halted_) return advance(now);
     if (managed_ == Managed::no) tell(EventKind::heartbeat_back, now);
     if (status_.boot == BootState::lost) retry_at_ = now;
   }
   if (booting()) runner_.on_heartbeat(state);
+  if (status_.boot == BootState::ready) tell_twin(twins_.on_heartbeat(now), now);
   look_for_fall(state, now);
   advance(now);
 }
@@ -147,37 +111,59 @@ void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
   if (heartbeats_out_ >= 2) retry_later(BootState::lost, BootRunner::From::bootup, now);
 }
 
-void NodeSession::retry_later(BootState state, BootRunner::From from, Time now) noexcept {
-  status_.boot = state;
-  retry_from_ = from;
-  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
-}
-
 void NodeSession::on_bootup(Time now) noexcept {
   if (stopping_) return;
   if (managed_ == Managed::no) return tell(EventKind::node_state, now, 0);
   if (booting()) {
+    guard_.node_was_reset();
     runner_.on_bootup(now, client_);
     return advance(now);
   }
   node_was_reset();
   if (status_.boot == BootState::ready) tell(EventKind::bootup_again, now);
-  // A node that restarts again and again waits for its next turn.
-  const bool restless = status_.boot == BootState::failed && last_failure_.restarts != 0 &&
-                        last_failure_.fault == SdoFault::cancelled;
-  if (!restless) boot(BootRunner::From::bootup, now);
+  if (halted_) return;
+  if (restless(now)) {
+    if (status_.boot == BootState::ready)
+      retry_later(BootState::lost, BootRunner::From::beginning, now);
+    return;
+  }
+  boot(BootRunner::From::bootup, now);
+}
+
+void NodeSession::tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept {
+  if (sign) tell(EventKind::duplicate_node, now, static_cast<std::int64_t>(*sign));
+}
+
+void NodeSession::await_command() noexcept {
+  halted_ = true;
+  if (!booting()) return;
+  runner_.stop();
+  client_.cancel();
+  client_.take_result();
+  status_.boot = BootState::lost;
+}
+
+void NodeSession::halt() noexcept {
+  await_command();
+  if (managed_ == Managed::yes && !stopping_) own_command_ = NmtCommand::stop;
+}
+
+void NodeSession::disarm() noexcept {
+  watch_.disarm();
+  guard_.node_was_reset();
+  twins_.restart();
 }
 
 void NodeSession::node_was_reset() noexcept {
-  watch_.disarm();
+  disarm();
   client_.drop();
   if (active_ == nullptr) return;
   shared_.requests.answer(*active_, SdoFault::cancelled);
   active_ = nullptr;
 }
 
-void NodeSession::on_emcy(const Emcy& emcy, const Frame& frame, Time now) noexcept {
-  if (!watch_.on_emcy(emcy, now, status_)) return;
+void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
+  if (!watch_.on_emcy(emcy_of(plan_->id, frame), now, status_)) return;
   Event event{.when = now,
               .kind = EventKind::emcy,
               .node = plan_->id.value(),
@@ -201,6 +187,7 @@ void NodeSession::want(NmtState state, Time now) noexcept {
 void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
   switch (command) {
     case NmtCommand::start:
+      if (std::exchange(halted_, false) && status_.boot == BootState::lost) retry_at_ = now;
       return want(NmtState::operational, now);
     case NmtCommand::stop:
       return want(NmtState::stopped, now);
@@ -210,6 +197,7 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
     case NmtCommand::reset_communication:
       break;
   }
+  halted_ = false;
   node_was_reset();
   assume(NmtState::unknown, now);
   if (managed_ == Managed::no || stopping_ || status_.boot == BootState::idle) return;
@@ -220,12 +208,21 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
 
 void NodeSession::look_for_silence(Time now) noexcept {
   if (booting()) return;
-  const auto silence = watch_.on_time(now, status_);
-  if (!silence) return;
+  if (const auto silence = watch_.on_time(now, status_)) {
+    on_silence(EventKind::heartbeat_lost, *silence, now);
+  }
+  if (const auto silence = guard_.on_time(now)) {
+    watch_.note_loss(status_);
+    on_silence(EventKind::guarding_lost, *silence, now);
+  }
+}
+
+void NodeSession::on_silence(EventKind kind, Time silence, Time now) noexcept {
   silent_ = true;
   if (status_.boot == BootState::failed) return;
-  tell(EventKind::heartbeat_lost, now, silence->count());
+  tell(kind, now, silence.count());
   if (status_.boot == BootState::ready) {
+    loss_ = true;
     retry_later(BootState::lost, BootRunner::From::beginning, now);
   }
 }
@@ -234,24 +231,35 @@ bool NodeSession::on_time(Time now, Outbox& out) noexcept {
   const std::size_t before = out.frames().size();
   look_for_silence(now);
   client_.on_time(now, out);
+  twins_.on_sdo_requests(out.frames().subspan(before));
   advance(now);
   send_nmt(now, out);
+  send_guarding(now, out);
   return out.frames().size() != before;
 }
 
 void NodeSession::send_nmt(Time now, Outbox& out) noexcept {
   const auto send = [&](NmtCommand command) {
-    return out.push(encode(NmtMessage{command, plan_->id.value()}));
+    const bool sent =
+        shared_.nmt_gate.open(now) && out.push(encode(NmtMessage{command, plan_->id.value()}));
+    if (sent) shared_.nmt_gate.sent(now);
+    return sent;
   };
-  if (preop_to_send_ && send(NmtCommand::enter_preoperational)) {
-    preop_to_send_ = false;
-    status_.nmt = NmtState::preoperational;
+  if (own_command_ && send(*own_command_)) {
+    const NmtCommand command = *std::exchange(own_command_, std::nullopt);
+    if (stopping_) {
+      status_.nmt = NmtState::preoperational;
+    } else {
+      const bool halted = halted_;
+      on_commanded(command, now);
+      halted_ = halted;
+    }
   }
   const auto command = runner_.nmt_to_send();
   if (!command || !send(*command)) return;
   runner_.nmt_sent(now, client_);
   if (is_reset(*command)) {
-    watch_.disarm();
+    disarm();
     status_.nmt = NmtState::unknown;
   } else {
     on_commanded(*command, now);
@@ -259,9 +267,13 @@ void NodeSession::send_nmt(Time now, Outbox& out) noexcept {
   advance(now);
 }
 
+void NodeSession::send_guarding(Time now, Outbox& out) noexcept {
+  if (guard_.wants_request(now) && out.push(guarding_request(plan_->id))) guard_.request_sent(now);
+}
+
 Time NodeSession::deadline() const noexcept {
-  if (preop_to_send_) return at_once;
-  Time first = client_.deadline();
+  if (own_command_) return at_once;
+  Time first = std::min(client_.deadline(), guard_.deadline());
   if (booting()) return std::min(first, runner_.deadline());
   first = std::min(first, watch_.deadline());
   if (waits_to_boot() && active_ == nullptr) first = std::min(first, retry_at_);
@@ -271,8 +283,10 @@ Time NodeSession::deadline() const noexcept {
 void NodeSession::begin_stop() noexcept {
   if (stopping_) return;
   stopping_ = true;
-  preop_to_send_ = managed_ == Managed::yes;
+  own_command_.reset();
+  if (managed_ == Managed::yes) own_command_ = NmtCommand::enter_preoperational;
   runner_.stop();
+  guard_.stop();
   client_.cancel();
   client_.take_result();
   active_ = nullptr;  // the network answers all requests
@@ -280,8 +294,6 @@ void NodeSession::begin_stop() noexcept {
   retry_at_ = never;
 }
 
-bool NodeSession::stopped() const noexcept {
-  return stopping_ && !preop_to_send_ && client_.idle();
-}
+bool NodeSession::stopped() const noexcept { return stopping_ && !own_command_ && client_.idle(); }
 
 }  // namespace takt

@@ -1,18 +1,34 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/boot_runner.hpp"
 #include "master/core/event.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/core/machine.hpp"
+#include "master/core/node_guard.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/node_watch.hpp"
 #include "master/core/request_table.hpp"
 #include "master/core/sdo_client.hpp"
+#include "master/core/twin_watch.hpp"
 
 namespace takt {
+
+/// Keeps NMT commands apart. 0x102A, CiA 302-2.
+class NmtGate {
+ public:
+  explicit NmtGate(Time inhibit) noexcept : inhibit_{inhibit} {}
+  bool open(Time now) const noexcept { return now >= next_; }
+  void sent(Time now) noexcept { next_ = now + inhibit_; }
+
+ private:
+  Time inhibit_;
+  Time next_{};
+};
 
 enum class Managed : std::uint8_t {
   no,   ///< only watched: the master sends nothing by itself
@@ -27,14 +43,16 @@ class NodeSession {
   struct Shared {
     EventQueue& events;
     RequestTable& requests;
+    NmtGate& nmt_gate;
   };
 
   NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
 
   void start(Time now) noexcept;
   void on_sdo_answer(const Frame& frame, Time now) noexcept;
-  void on_heartbeat(NmtState state, Time now) noexcept;
-  void on_emcy(const Emcy& emcy, const Frame& frame, Time now) noexcept;
+  /// Heartbeat, guarding answer or boot-up message.
+  void on_heartbeat(const Heartbeat& sign, Time now) noexcept;
+  void on_emcy(const Frame& frame, Time now) noexcept;
   /// A request for this node has been accepted.
   void on_request(Time now) noexcept;
   /// An NMT command that covers this node has been sent for an application.
@@ -42,6 +60,15 @@ class NodeSession {
   /// False: it had nothing to send, or `out` has no room.
   bool on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
+
+  /// The network is started: nodes that come later are started as soon as they are ready.
+  void on_network_start() noexcept { network_started_ = true; }
+  /// A node that was ready has fallen silent; told once.
+  bool take_loss() noexcept { return std::exchange(loss_, false); }
+  /// NMT stop, and no boot until an application resets or starts the node.
+  void halt() noexcept;
+  /// The same without the command: it went to all nodes.
+  void await_command() noexcept;
 
   /// Gives up what is running and leaves the node in pre-operational.
   void begin_stop() noexcept;
@@ -55,18 +82,27 @@ class NodeSession {
   void follow_boot(Time now) noexcept;
   void follow_request(Time now) noexcept;
   void on_boot_failed(Time now) noexcept;
+  void on_boot_done(Time now) noexcept;
+  void tell_progress(Time now) noexcept;
+  void tell_replaced(Time now) noexcept;
+  bool restless(Time now) noexcept;
+  void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
   void on_bootup(Time now) noexcept;
+  bool take_guarding_answer(const Heartbeat& sign, Time now) noexcept;
   void look_for_silence(Time now) noexcept;
+  void on_silence(EventKind kind, Time silence, Time now) noexcept;
   void look_for_fall(NmtState state, Time now) noexcept;
   void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
   void node_was_reset() noexcept;
+  void disarm() noexcept;
   void assume(NmtState state, Time now) noexcept;
   void want(NmtState state, Time now) noexcept;
   void send_nmt(Time now, Outbox& out) noexcept;
+  void send_guarding(Time now, Outbox& out) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
   bool booting() const noexcept { return status_.boot == BootState::booting; }
   bool waits_to_boot() const noexcept {
-    return managed_ == Managed::yes && !stopping_ &&
+    return managed_ == Managed::yes && !stopping_ && !halted_ &&
            (status_.boot == BootState::failed || status_.boot == BootState::lost);
   }
 
@@ -77,6 +113,7 @@ class NodeSession {
   SdoClient client_;
   BootRunner runner_;
   NodeWatch watch_;
+  NodeGuard guard_;
   RequestSlot* active_ = nullptr;
   Time retry_at_ = never;
   BootRunner::From retry_from_ = BootRunner::From::beginning;
@@ -86,9 +123,17 @@ class NodeSession {
   std::uint32_t emcys_at_boot_ = 0;
   std::uint32_t same_failures_ = 0;  // in a row
   BootFailure last_failure_;
-  bool silent_ = false;  // heartbeat lost and not back
+  TwinWatch twins_;
+  std::optional<std::uint32_t> serial_number_;  // of the device that was booted last
+  std::uint32_t progress_told_ = 0;             // tenths of the program
+  std::uint32_t bootups_ = 0;                   // since bootups_since_
+  Time bootups_since_{};
+  std::optional<NmtCommand> own_command_;  // not of the boot plan, waits to be sent
+  bool silent_ = false;                    // heartbeat lost and not back
   bool stopping_ = false;
-  bool preop_to_send_ = false;
+  bool halted_ = false;
+  bool loss_ = false;
+  bool network_started_ = false;
 };
 
 }  // namespace takt

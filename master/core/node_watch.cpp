@@ -17,10 +17,14 @@ NodeWatch::Sign NodeWatch::on_heartbeat(NmtState state, Time now, NodeStatus& st
 
 std::optional<Time> NodeWatch::on_time(Time now, NodeStatus& status) noexcept {
   if (now < deadline_) return std::nullopt;
+  note_loss(status);
+  return now - status.last_heartbeat;
+}
+
+void NodeWatch::note_loss(NodeStatus& status) noexcept {
   deadline_ = never;
   status.nmt = NmtState::unknown;
   ++status.heartbeat_lost;
-  return now - status.last_heartbeat;
 }
 
 bool NodeWatch::on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept {

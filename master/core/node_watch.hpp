@@ -25,6 +25,8 @@ class NodeWatch {
   Time deadline() const noexcept { return deadline_; }
   /// Time of silence when the heartbeat is lost, told once; the next heartbeat arms it again.
   std::optional<Time> on_time(Time now, NodeStatus& status) noexcept;
+  /// The node is silent, as another way of watching it has found out.
+  void note_loss(NodeStatus& status) noexcept;
 
   /// Counts it. True: worth telling; a node that floods is told of ten times a second at most.
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;

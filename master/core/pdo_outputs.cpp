@@ -210,4 +210,8 @@ void PdoOutputs::force(SignalIndex signal, std::int64_t value) noexcept {
   image_.values[signal] = value;
 }
 
+void PdoOutputs::release(SignalIndex signal) noexcept {
+  outputs_[output_of(signal)].forced = false;
+}
+
 }  // namespace takt

@@ -49,6 +49,8 @@ class PdoOutputs {
   void fall_back() noexcept;
   /// Ordered stop: this value from now on, whatever is commanded.
   void force(SignalIndex signal, std::int64_t value) noexcept;
+  /// The next command is heard again.
+  void release(SignalIndex signal) noexcept;
 
   /// Commands that the last pack() saw for the first time.
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }

@@ -45,6 +45,8 @@ class SdoClient {
 
   /// The result of the transfer, once.
   std::optional<SdoResult> take_result() noexcept;
+  /// Bytes of the running transfer that are through.
+  std::size_t progress() const noexcept { return done_; }
 
   /// The newest frames of the newest transfer, for reports. Length 0: there is none.
   const Frame& last_sent() const noexcept { return last_sent_; }

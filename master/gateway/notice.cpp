@@ -17,11 +17,16 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::fallback_ended:
     case EventKind::bus_error_active:
     case EventKind::bus_recovered:
+    case EventKind::program_progress:
+    case EventKind::network_ready:
     case EventKind::interface_up:
     case EventKind::stopping:
     case EventKind::stopped:
       return Weight::note;
     case EventKind::bootup_again:
+    case EventKind::guarding_toggle:
+    case EventKind::node_replaced:
+    case EventKind::unlisted_node:
     case EventKind::pdo_missing:
     case EventKind::pdo_late:
     case EventKind::pdo_length:
@@ -34,6 +39,11 @@ Weight weight_of(EventKind kind) noexcept {
       return Weight::warning;
     case EventKind::boot_failed:
     case EventKind::heartbeat_lost:
+    case EventKind::guarding_lost:
+    case EventKind::network_late:
+    case EventKind::duplicate_node:
+    case EventKind::loss_reaction:
+    case EventKind::mandatory_lost:
     case EventKind::emcy:
     case EventKind::receive_overrun:
     case EventKind::bus_off:

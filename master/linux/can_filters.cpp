@@ -71,10 +71,17 @@ std::vector<can_filter> filters_for(const BusPlan& plan) {
   if (plan.cycle.sync) ids.push_back(plan.cycle.sync_cob_id);
   for (const PdoRow& row : plan.pdos.tpdos) ids.push_back(row.cob_id);
   for (const NodePlan& node : plan.nodes) {
-    for (const std::uint32_t function : {0x080U, 0x580U, 0x700U}) {
+    ids.push_back(node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())));
+    for (const std::uint32_t function : {0x580U, 0x700U}) {
       ids.push_back(CobId::base(function + node.id.value()));
     }
   }
+  // Signs of life of nodes that are not in the plan, as long as all filters stay exact.
+  const std::size_t own = ids.size();
+  for (std::uint32_t node = 1; node <= 127; ++node) {
+    if (node != plan.master_id.value()) ids.push_back(CobId::base(0x700U + node));
+  }
+  if (ids.size() > max_kernel_filters) ids.resize(own);
   return filters_for(ids);
 }
 

@@ -70,6 +70,7 @@ class BusLoop {
   void take_requests() noexcept;
   bool submit(const Request& request) noexcept;
   void give_replies() noexcept;
+  void stop_drives_after_loss() noexcept;
   void send_outputs() noexcept;
   void step_stop() noexcept;
   void give_events() noexcept;
@@ -97,7 +98,8 @@ class BusLoop {
   WireTime wire_;
   std::vector<StampedFrame> received_;
   std::array<bool, 128> exchanging_{};
-  bool hearing_ = false;  ///< PDOs of some node are taken
+  std::vector<std::uint8_t> quick_stopped_;  ///< per axis of stop_: after the loss of a node
+  bool hearing_ = false;                     ///< PDOs of some node are taken
   BusStatus status_;
   Reply reply_;
   Request request_;

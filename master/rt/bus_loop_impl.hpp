@@ -22,7 +22,8 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       gate_{plan.cycle.period},
       prediction_{plan.cycle.sync ? plan.cycle.receive_window : Time{0}},
       wire_{plan.bitrate},
-      received_(batch) {}
+      received_(batch),
+      quick_stopped_(stop_.axes().size()) {}
 
 template <Port P, class N>
 void BusLoop<P, N>::start() noexcept {
@@ -40,6 +41,7 @@ void BusLoop<P, N>::cycle() noexcept {
   receive();
   publish();
   serve();
+  stop_drives_after_loss();
   send_outputs();
   give_events();
   write_status();
@@ -286,6 +288,27 @@ void BusLoop<P, N>::give_replies() noexcept {
     if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
     reply_waits_ = exchange_.replies.full() || !exchange_.replies.push(reply_);
     if (reply_waits_) return;
+  }
+}
+
+/// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
+template <Port P, class N>
+void BusLoop<P, N>::stop_drives_after_loss() noexcept {
+  if constexpr (requires { network_.stops_drives(); }) {
+    if (!network_.stops_drives() || stop_.stage() != StopStage::running) return;
+    for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
+      const StopAxis& axis = stop_.axes()[i];
+      if (network_.demands_quick_stop(axis.node_index)) {
+        const bool disabled =
+            axis.statusword && OrderedStop::disabled(pdos_.image().values[*axis.statusword]);
+        pdos_.outputs().force(axis.controlword, disabled ? OrderedStop::disable_voltage_word
+                                                         : OrderedStop::quick_stop_word);
+        quick_stopped_[i] = 1;
+      } else if (quick_stopped_[i] != 0) {
+        pdos_.outputs().release(axis.controlword);
+        quick_stopped_[i] = 0;
+      }
+    }
   }
 }
 

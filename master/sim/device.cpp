@@ -24,7 +24,9 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
       sync_producer_{store_},
       heartbeat_{store_, table.node},
       watch_{store_, emcy_},
+      guarding_{store_, emcy_, table.node},
       storage_{store_},
+      program_{store_},
       multiplexed_{store_, table.node} {
   for (std::uint16_t n = 1; n <= pdos_a_direction; ++n) {
     if (PdoRecord::exists(store_, PdoDirection::transmit, n)) {
@@ -35,7 +37,7 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
     }
   }
   sdo_.set_latency(times_.sdo);
-  routes_.reserve(3 + watch_.watches().size() + tpdos_.size() + rpdos_.size());
+  routes_.reserve(4 + watch_.watches().size() + tpdos_.size() + rpdos_.size());
   model_ = make_model(table, store_, emcy_, random);
   const DeviceTraits traits = model_->traits();
   for (Tpdo& tpdo : tpdos_) tpdo.set_traits(traits);
@@ -53,6 +55,7 @@ void Device::power_off() noexcept {
   heartbeat_.stop();
   sdo_.reset();
   watch_.forget();
+  guarding_.reset();
   sync_.reset();
   sync_producer_.stop();
   state_ = DeviceState::off;
@@ -84,6 +87,7 @@ void Device::begin_reset(Time startup, Time now) noexcept {
   emcy_.reset();
   watch_.forget();
   watch_.configure();
+  guarding_.reset();
   tick_ = next_storm_ = never;
   boots_at_ = now + startup + faults_.bootup_delay;
   routes_.clear();
@@ -125,13 +129,7 @@ void Device::on_frame(const Frame& frame, Time now) noexcept {
 }
 
 void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept {
-  if (frame.rtr) {
-    if (route.kind == RouteKind::tpdo_request && !faults_.mute_pdo) {
-      model_->advance(now);
-      tpdos_[route.index].on_request(now + times_.pdo, out_);
-    }
-    return;
-  }
+  if (frame.rtr) return on_request(route, now);
   switch (route.kind) {
     case RouteKind::nmt:
       return on_nmt(frame, now);
@@ -149,7 +147,19 @@ void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept
       }
       return;
     case RouteKind::tpdo_request:
+    case RouteKind::guarding:
       return;
+  }
+}
+
+/// A remote frame.
+void Device::on_request(const Route& route, Time now) noexcept {
+  if (route.kind == RouteKind::tpdo_request && !faults_.mute_pdo) {
+    model_->advance(now);
+    tpdos_[route.index].on_request(now + times_.pdo, out_);
+  }
+  if (route.kind == RouteKind::guarding) {
+    guarding_.on_request(static_cast<std::uint8_t>(state_), faults_.guarding, now, out_);
   }
 }
 
@@ -157,7 +167,8 @@ void Device::on_nmt(const Frame& frame, Time now) noexcept {
   if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != node_.value())) return;
   switch (frame.data[0]) {
     case 1:
-      return enter(DeviceState::operational, now);
+      if (!faults_.no_start) enter(DeviceState::operational, now);
+      return;
     case 2:
       return enter(DeviceState::stopped, now);
     case 128:
@@ -295,9 +306,10 @@ void Device::on_time(Time now) noexcept {
   if (now >= tick_) look_at_inputs(now);
   heartbeat_.on_time(now, static_cast<std::uint8_t>(state_), faults_.no_heartbeat, out_);
   if (communicates()) {
-    if (watch_.on_time(now)) communication_error(now);
+    if (watch_.on_time(now) || guarding_.on_time(now)) communication_error(now);
     make_sync(now);
     if (sync_.on_time(now)) model_->sync_lost(now);
+    program_.on_time(now);
     sdo_.on_time(now, out_);
   }
   if (state_ == DeviceState::operational) {
@@ -350,8 +362,9 @@ void Device::finish_call(Time now) noexcept {
     return;
   }
   plan_tick();
-  deadline_ = std::min({deadline_, tick_, watch_.deadline(), sync_.deadline(),
-                        sync_producer_.deadline(), sdo_.deadline(), emcy_.deadline()});
+  deadline_ =
+      std::min({deadline_, tick_, watch_.deadline(), guarding_.deadline(), program_.deadline(),
+                sync_.deadline(), sync_producer_.deadline(), sdo_.deadline(), emcy_.deadline()});
   if (state_ != DeviceState::operational) return;
   for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
   for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());
@@ -373,6 +386,7 @@ void Device::build_routes() noexcept {
   routes_.push_back({CobId::base(0), RouteKind::nmt, 0});
   routes_.push_back({sync_.id(), RouteKind::sync, 0});
   routes_.push_back({sdo_.request_id(), RouteKind::sdo, 0});
+  routes_.push_back({guarding_.id(), RouteKind::guarding, 0});
   for (const auto& watch : watch_.watches()) {
     if (watch.node != 0) {
       routes_.push_back({CobId::base(0x700u + watch.node), RouteKind::heartbeat, 0});

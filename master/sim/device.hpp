@@ -12,11 +12,13 @@
 #include "master/sim/device_faults.hpp"
 #include "master/sim/dictionary.hpp"
 #include "master/sim/emcy_producer.hpp"
+#include "master/sim/guarding.hpp"
 #include "master/sim/heartbeat.hpp"
 #include "master/sim/model.hpp"
 #include "master/sim/multiplexed_pdos.hpp"
 #include "master/sim/object_store.hpp"
 #include "master/sim/parameter_storage.hpp"
+#include "master/sim/program_memory.hpp"
 #include "master/sim/random.hpp"
 #include "master/sim/rpdo.hpp"
 #include "master/sim/sdo_server.hpp"
@@ -86,7 +88,15 @@ class Device final : private Dictionary {
 
  private:
   /// In the order in which those of one identifier hear a frame.
-  enum class RouteKind : std::uint8_t { nmt, sync, sdo, heartbeat, rpdo, tpdo_request };
+  enum class RouteKind : std::uint8_t {
+    nmt,
+    sync,
+    sdo,
+    heartbeat,
+    rpdo,
+    tpdo_request,
+    guarding,
+  };
   struct Route {
     CobId id;
     RouteKind kind = RouteKind::nmt;
@@ -100,6 +110,7 @@ class Device final : private Dictionary {
   bool is_mute(ObjectKey key) const noexcept override;
 
   void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
+  void on_request(const Route& route, Time now) noexcept;
   void on_nmt(const Frame& frame, Time now) noexcept;
   void on_sync(const Frame& frame, Time now) noexcept;
   void make_sync(Time now) noexcept;
@@ -117,6 +128,7 @@ class Device final : private Dictionary {
   void list_multiplexed() noexcept;
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
   void written(const Object& object, Time now) noexcept;
+  void forget_configuration_date(const Object& changed) noexcept;
   void pdo_written(ObjectKey key, Time now) noexcept;
   void build_routes() noexcept;
   void look_at_inputs(Time now) noexcept;
@@ -138,7 +150,9 @@ class Device final : private Dictionary {
   SyncProducer sync_producer_;
   HeartbeatProducer heartbeat_;
   HeartbeatConsumer watch_;
+  GuardingResponder guarding_;
   ParameterStorage storage_;
+  ProgramMemory program_;
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
   MultiplexedPdos multiplexed_;

@@ -11,21 +11,18 @@ constexpr bool between(std::uint16_t index, std::uint16_t first, std::uint16_t l
 
 }  // namespace
 
-bool Device::is_mute(ObjectKey key) const noexcept {
-  const auto access = faults_.find(key);
-  return access && access->refusal == Abort::none;
-}
+bool Device::is_mute(ObjectKey key) const noexcept { return faults_.is_mute(key); }
 
 Abort Device::width(ObjectKey key, std::size_t& bytes) const noexcept {
   const Object* object = store_.find(key);
   if (object == nullptr) return store_.may_read(key);
   bytes = object->width;
-  if (const auto access = faults_.find(key)) return access->refusal;
+  if (const Abort refused = faults_.on_write(key); refused != Abort::none) return refused;
   return object->writable() ? Abort::none : Abort::read_only;
 }
 
 Abort Device::read(ObjectKey key, Time now, std::span<const std::byte>& data) noexcept {
-  if (const auto access = faults_.find(key)) return access->refusal;
+  if (const Abort refused = faults_.on_read(key); refused != Abort::none) return refused;
   Abort refused = store_.may_read(key);
   if (refused == Abort::none) refused = emcy_.check_read(key);
   if (refused != Abort::none) return refused;
@@ -42,12 +39,18 @@ Abort Device::read(ObjectKey key, Time now, std::span<const std::byte>& data) no
 }
 
 Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) noexcept {
-  if (const auto access = faults_.find(key)) return access->refusal;
+  if (const Abort refused = faults_.on_write(key); refused != Abort::none) return refused;
   const Abort refused = store_.may_write(key, data);
   if (refused != Abort::none) return refused;
+  if (faults_.ignores_write(key)) return Abort::none;
   Object& object = *store_.find(key);
   if (object.is_bytes()) {
+    const bool program = ProgramMemory::is_data(key);
+    if (const Abort unfit = program ? program_.check_data() : Abort::none; unfit != Abort::none) {
+      return unfit;
+    }
     object.bytes.assign(data.begin(), data.end());
+    if (program) program_.data_written(now);
     return Abort::none;
   }
   const std::uint64_t raw = to_number(data);
@@ -55,7 +58,9 @@ Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) no
   model_->advance(now);
   const Abort unfit = check_write(object, raw);
   if (unfit != Abort::none) return unfit;
+  const std::uint64_t before = object.value;
   object.set(raw);
+  if (object.value != before) forget_configuration_date(object);
   written(object, now);
   return Abort::none;
 }
@@ -76,11 +81,21 @@ Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcep
     if (!tpdo.record().owns(object.key)) continue;
     return tpdo.record().check_write({PdoDirection::transmit, dummy_usage_}, object, raw);
   }
-  for (const Abort refused : {emcy_.check_write(object, raw), watch_.check_write(object, raw),
-                              sync_.check_write(object, raw)}) {
+  for (const Abort refused : {program_.check_control(object, raw), emcy_.check_write(object, raw),
+                              watch_.check_write(object, raw), sync_.check_write(object, raw)}) {
     if (refused != Abort::none) return refused;
   }
   return Abort::none;
+}
+
+/// Whatever changes a configuration makes its date and time zero. CiA 301, 7.5.2.23.
+void Device::forget_configuration_date(const Object& changed) noexcept {
+  const std::uint16_t index = changed.key.index;
+  const bool exempt = index == 0x1003 || index == 0x1020 || between(index, 0x1F50, 0x1F57);
+  if (exempt || (index >= 0x2000 && changed.mappable)) return;
+  for (const std::uint8_t sub : {std::uint8_t{1}, std::uint8_t{2}}) {
+    if (Object* date = store_.find({0x1020, sub})) date->set(0);
+  }
 }
 
 void Device::written(const Object& object, Time now) noexcept {
@@ -92,6 +107,8 @@ void Device::written(const Object& object, Time now) noexcept {
   }
   if (index == 0x1017) heartbeat_.start(now);
   if (index == 0x1016) watch_.configure();
+  if (index == 0x100C || index == 0x100D) guarding_.configure(now);
+  program_.control_written(object, now);
   if (index == 0x1003) emcy_.written(object);
   if (index == 0x1006) sync_.reset();
   if (index == 0x1005 || index == 0x1006 || index == 0x1019) sync_producer_.start(now);

@@ -7,22 +7,27 @@
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/sim/abort.hpp"
+#include "master/sim/guarding.hpp"
 
 namespace takt::sim {
 
 /// What is wrong with a device at the moment.
 struct DeviceFaults {
-  /// SDO access to one object that is refused or not answered.
+  /// What becomes of an SDO access to one object.
+  enum class Answer : std::uint8_t { mute, refuse, refuse_write, ignore_write };
   struct Access {
     ObjectKey key;
-    Abort refusal = Abort::none;  ///< none: mute
+    Answer answer = Answer::mute;
+    Abort refusal = Abort::none;
   };
 
   bool mute_sdo = false;
   bool mute_pdo = false;
   bool no_bootup = false;
   bool no_heartbeat = false;
+  GuardingResponder::Fault guarding = GuardingResponder::Fault::none;
   bool self_start = false;
+  bool no_start = false;
   bool fixed_mapping = false;
   Time bootup_delay{};
   Time storm_period{};  ///< of boot-up messages; 0 = no storm
@@ -37,6 +42,24 @@ struct DeviceFaults {
     }
     count_ = kept;
   }
+  bool is_mute(ObjectKey key) const noexcept {
+    const auto access = find(key);
+    return access && access->answer == Answer::mute;
+  }
+  Abort on_read(ObjectKey key) const noexcept {
+    const auto access = find(key);
+    return access && access->answer == Answer::refuse ? access->refusal : Abort::none;
+  }
+  Abort on_write(ObjectKey key) const noexcept {
+    const auto access = find(key);
+    return access && access->answer != Answer::ignore_write ? access->refusal : Abort::none;
+  }
+  bool ignores_write(ObjectKey key) const noexcept {
+    const auto access = find(key);
+    return access && access->answer == Answer::ignore_write;
+  }
+
+ private:
   std::optional<Access> find(ObjectKey key) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       if (accesses_[i].key == key) return accesses_[i];
@@ -44,7 +67,6 @@ struct DeviceFaults {
     return std::nullopt;
   }
 
- private:
   std::array<Access, 32> accesses_{};
   std::size_t count_ = 0;
 };

@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::array<std::pair<FaultKind, std::string_view>, 22> names{{
+constexpr std::array<std::pair<FaultKind, std::string_view>, 27> names{{
     {FaultKind::loss, "loss"},
     {FaultKind::duplicate, "duplicate"},
     {FaultKind::delay, "delay"},
@@ -16,12 +16,17 @@ constexpr std::array<std::pair<FaultKind, std::string_view>, 22> names{{
     {FaultKind::drift, "drift"},
     {FaultKind::mute_sdo, "mute_sdo"},
     {FaultKind::refuse_object, "refuse_object"},
+    {FaultKind::refuse_write, "refuse_write"},
+    {FaultKind::ignore_write, "ignore_write"},
     {FaultKind::override_value, "override_value"},
     {FaultKind::late_bootup, "late_bootup"},
     {FaultKind::no_bootup, "no_bootup"},
     {FaultKind::no_heartbeat, "no_heartbeat"},
+    {FaultKind::no_guarding, "no_guarding"},
+    {FaultKind::stuck_toggle, "stuck_toggle"},
     {FaultKind::bootup_storm, "bootup_storm"},
     {FaultKind::self_start, "self_start"},
+    {FaultKind::no_start, "no_start"},
     {FaultKind::fixed_mapping, "fixed_mapping"},
     {FaultKind::mute_pdo, "mute_pdo"},
     {FaultKind::device_error, "device_error"},

@@ -23,12 +23,17 @@ enum class FaultKind : std::uint8_t {
   drift,           ///< the node's clock runs `ppm` fast
   mute_sdo,        ///< the SDO server does not answer (`object` set: for this object only)
   refuse_object,   ///< SDO access to `object` is aborted with `abort_code`
+  refuse_write,    ///< the same for writing only
+  ignore_write,    ///< writing `object` is confirmed, but changes nothing
   override_value,  ///< `object` reads as `value`: another vendor, another product
   late_bootup,     ///< the boot-up message comes `time` later than usual
   no_bootup,       ///< no boot-up message
   no_heartbeat,    ///< no heartbeat
+  no_guarding,     ///< no answer to guarding requests
+  stuck_toggle,    ///< guarding answers repeat their toggle bit
   bootup_storm,    ///< a boot-up message every `time`
   self_start,      ///< the node goes to OPERATIONAL by itself after its boot-up
+  no_start,        ///< NMT start is not obeyed
   fixed_mapping,   ///< PDO mapping is read-only
   mute_pdo,        ///< no TPDO is sent
   device_error,    ///< once: the device reports EMCY `emcy_code`; a drive goes to Fault

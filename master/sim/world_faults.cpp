@@ -24,10 +24,26 @@ void override_value(HostedDevice& hosted, const Fault& fault, bool begins) {
   }
 }
 
+DeviceFaults::Answer answer_of(FaultKind kind) noexcept {
+  using enum DeviceFaults::Answer;
+  switch (kind) {
+    case FaultKind::refuse_object:
+      return refuse;
+    case FaultKind::refuse_write:
+      return refuse_write;
+    case FaultKind::ignore_write:
+      return ignore_write;
+    default:
+      return mute;
+  }
+}
+
 void set_access(DeviceFaults& faults, const Fault& fault, bool begins) {
   if (!fault.object) return;
   faults.remove(*fault.object);
-  if (begins) faults.add({*fault.object, static_cast<Abort>(fault.abort_code)});
+  if (begins) {
+    faults.add({*fault.object, answer_of(fault.kind), static_cast<Abort>(fault.abort_code)});
+  }
 }
 
 SenderFaults changed(SenderFaults old, const Fault& fault, bool begins) {
@@ -123,6 +139,8 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
       if (!fault.object) faults.mute_sdo = begins;
       return set_access(faults, fault, begins);
     case FaultKind::refuse_object:
+    case FaultKind::refuse_write:
+    case FaultKind::ignore_write:
       return set_access(faults, fault, begins);
     case FaultKind::override_value:
       return override_value(hosted, fault, begins);
@@ -135,12 +153,22 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::no_heartbeat:
       faults.no_heartbeat = begins;
       return;
+    case FaultKind::no_guarding:
+      faults.guarding = begins ? GuardingResponder::Fault::mute : GuardingResponder::Fault::none;
+      return;
+    case FaultKind::stuck_toggle:
+      faults.guarding =
+          begins ? GuardingResponder::Fault::stuck_toggle : GuardingResponder::Fault::none;
+      return;
     case FaultKind::bootup_storm:
       faults.storm_period =
           begins ? std::max(fault.time, Time{std::chrono::microseconds{100}}) : Time{};
       return device.start_storm(local);
     case FaultKind::self_start:
       faults.self_start = begins;
+      return;
+    case FaultKind::no_start:
+      faults.no_start = begins;
       return;
     case FaultKind::fixed_mapping:
       faults.fixed_mapping = begins;

@@ -28,17 +28,22 @@ constexpr Frame encode(const Emcy& emcy) noexcept {
   return frame;
 }
 
-/// Any length is taken, missing bytes are zero. None: another frame.
+/// Any length is taken, missing bytes are zero. For devices with an identifier of their own.
+constexpr Emcy emcy_of(NodeId node, const Frame& frame) noexcept {
+  std::array<std::uint8_t, 8> bytes{};
+  for (std::size_t i = 0; i < frame.length && i < bytes.size(); ++i) bytes[i] = frame.data[i];
+  return Emcy{.node = node,
+              .code = load_le<std::uint16_t>(std::span{bytes}),
+              .error_register = bytes[2],
+              .manufacturer = {bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]}};
+}
+
+/// None: another frame than those of the predefined set.
 constexpr std::optional<Emcy> decode_emcy(const Frame& frame) noexcept {
   if (frame.id.is_extended() || frame.rtr || (frame.id.id() & ~0x7FU) != 0x080) return {};
   const auto node = NodeId::from(frame.id.id() & 0x7F);
   if (!node) return {};
-  std::array<std::uint8_t, 8> bytes{};
-  for (std::size_t i = 0; i < frame.length && i < bytes.size(); ++i) bytes[i] = frame.data[i];
-  return Emcy{.node = *node,
-              .code = load_le<std::uint16_t>(std::span{bytes}),
-              .error_register = bytes[2],
-              .manufacturer = {bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]}};
+  return emcy_of(*node, frame);
 }
 
 }  // namespace takt

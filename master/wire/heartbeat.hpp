@@ -11,34 +11,41 @@ namespace takt {
 struct Heartbeat {
   NodeId node;
   NmtState state = NmtState::unknown;  ///< bootup: this is the boot-up message
+  bool toggle = false;                 ///< bit 7; guarding answers only
 };
 
 constexpr CobId heartbeat_cob_id(NodeId node) noexcept {
   return CobId::base(0x700U + node.value());
 }
 
+/// Asks a node for its state. CiA 301, 7.2.8.3.2.1.
+constexpr Frame guarding_request(NodeId node) noexcept {
+  return {.id = heartbeat_cob_id(node), .length = 1, .rtr = true};
+}
+
 constexpr Frame encode(const Heartbeat& heartbeat) noexcept {
   return make_frame(heartbeat_cob_id(heartbeat.node), {static_cast<std::uint8_t>(heartbeat.state)});
 }
 
-/// Bit 7 is the toggle bit of guarding and is masked; codes that the standard doesn't know give
+/// Bit 7 is the toggle bit of guarding; codes that the standard doesn't know give
 /// `unknown`, which is a sign of life all the same. None: another frame, or one without a state.
 constexpr std::optional<Heartbeat> decode_heartbeat(const Frame& frame) noexcept {
   if (frame.id.is_extended() || frame.rtr || frame.length == 0) return {};
   if ((frame.id.id() & ~0x7FU) != 0x700) return {};
   const auto node = NodeId::from(frame.id.id() & 0x7F);
   if (!node) return {};
+  const bool toggle = (frame.data[0] & 0x80) != 0;
   const auto state = static_cast<NmtState>(frame.data[0] & 0x7F);
   switch (state) {
     case NmtState::bootup:
     case NmtState::stopped:
     case NmtState::operational:
     case NmtState::preoperational:
-      return Heartbeat{*node, state};
+      return Heartbeat{*node, state, toggle};
     case NmtState::unknown:
       break;
   }
-  return Heartbeat{*node, NmtState::unknown};
+  return Heartbeat{*node, NmtState::unknown, toggle};
 }
 
 }  // namespace takt

@@ -123,7 +123,7 @@ TEST_F(BootReport, OfAMissingHeartbeat) {
   EXPECT_EQ(report(std::move(steps), 500ms),
             R"(node 5 'shoulder' failed to boot at step 1 of 1 (first heartbeat) after 300 ms
   received  no heartbeat on 0x705 within 300 ms
-  status    K of CiA 302-2: no heartbeat at the start of error control
+  status    K of CiA 302-2: no heartbeat or guarding answer at the start of error control
   heard     no boot-up message and no heartbeat
   try       the device produces no heartbeat: is 0x1017 not zero after the boot? Set `heartbeat_producer` of this node in ms, or 0 to go without)");
 }

@@ -37,7 +37,20 @@ TEST(CanFilters, LetPassExactlyWhatTheMasterHearsOfANode) {
     EXPECT_EQ(filter.can_mask, exact);
     ids.push_back(filter.can_id);
   }
-  EXPECT_EQ(ids, (std::vector<canid_t>{0x080, 0x085, 0x185, 0x585, 0x705}));
+  std::vector<canid_t> expected{0x080, 0x085, 0x185, 0x585};
+  for (canid_t stranger = 0x701; stranger <= 0x77E; ++stranger) expected.push_back(stranger);
+  EXPECT_EQ(ids, expected) << "and the signs of life of others, but not of the master (127)";
+}
+
+TEST(CanFilters, HearTheEmcyOfANodeWhereItIs) {
+  BusPlan plan;
+  plan.nodes.push_back(node_plan(5_node));
+  plan.nodes[0].emcy_cob_id = CobId::base(0x0C5);
+
+  const auto filters = filters_for(plan);
+
+  EXPECT_TRUE(passes(filters, 0x0C5));
+  EXPECT_FALSE(passes(filters, 0x085));
 }
 
 TEST(CanFilters, KeepOutTheRpdosThatTheMasterSendsItself) {

@@ -152,7 +152,7 @@ TEST(BootCompiler, ResetPoliciesAreHonoured) {
   EXPECT_EQ(compile(arm("reset: node")).plan.nodes[0].boot_plan.steps[0].command,
             NmtCommand::reset_node);
   EXPECT_EQ(steps(compile(arm("reset: none")))[0], "probe 1000:00");
-  EXPECT_EQ(steps(compile(arm("reset_communication: false")))[0], "probe 1000:00");
+  EXPECT_EQ(steps(compile(arm("reset_communication: false")))[0], "await life");
   EXPECT_THAT(compile(arm("reset: none, reset_communication: true")).said("duplicate-key"),
               HasSubstr("keep one"));
 }

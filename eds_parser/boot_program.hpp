@@ -1,0 +1,12 @@
+#pragma once
+#include "eds_parser/boot_steps.hpp"
+#include "eds_parser/network_report.hpp"
+#include "eds_parser/network_spec.hpp"
+
+namespace takt {
+
+/// Steps that check the version of the device's software and load another one where it differs:
+/// 0x1F56 against 0x1F55, then 0x1F51, 0x1F50, 0x1F57. CiA 302-2 and 302-3.
+void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& report);
+
+}  // namespace takt

@@ -1,0 +1,122 @@
+#include <algorithm>
+
+#include "master/core/network.hpp"
+#include "master/wire/nmt.hpp"
+
+// NMT of the whole network: its start, and what the loss of one node means to the others.
+
+namespace takt {
+
+void Network::follow_start(Time now) noexcept {
+  if (observe_ || stopping_) return;
+  if (start_.late(now)) {
+    tell(EventKind::network_late, now, 0, static_cast<std::uint32_t>(start_.missing(statuses_)));
+  }
+  if (!start_.update(statuses_)) return;
+  const bool bootup_waits = own_state_ == NmtState::bootup && heartbeat_at_ != never;
+  if (plan_.start_up.start_master && !bootup_waits) own_state_ = NmtState::operational;
+  if (plan_.start_up.start_all && plan_.start_nodes) broadcasts_.push({NmtCommand::start, 0});
+  for (NodeSession& session : sessions_) session.on_network_start();
+  if (start_.matters()) tell(EventKind::network_ready, now, 0, 0);
+}
+
+/// CiA 302-2, error handling of a running node.
+void Network::on_loss(std::size_t index, Time now) noexcept {
+  const NodePlan& node = plan_.nodes[index];
+  if (node.mandatory && plan_.start_up.on_loss != MandatoryLoss::only_it) {
+    return on_mandatory_loss(now);
+  }
+  if (node.on_loss == LossReaction::report) return;
+  if (node.on_loss == LossReaction::stop_node) sessions_[index].halt();
+  if (node.on_loss == LossReaction::stop_group) halt_group(index);
+  tell(EventKind::loss_reaction, now, static_cast<std::int64_t>(node.on_loss), 0, node.id.value());
+}
+
+void Network::halt_group(std::size_t index) noexcept {
+  const std::uint8_t group = plan_.nodes[index].group;
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    if (i != index && (group == 0 || plan_.nodes[i].group != group)) continue;
+    sessions_[i].halt();
+    deadlines_[i] = sessions_[i].deadline();
+  }
+}
+
+void Network::on_mandatory_loss(Time now) noexcept {
+  const bool stops = plan_.start_up.on_loss == MandatoryLoss::stop_all;
+  broadcasts_.push({stops ? NmtCommand::stop : NmtCommand::reset_node, 0});
+  if (stops) {
+    for (NodeSession& session : sessions_) session.await_command();
+  }
+  tell(EventKind::mandatory_lost, now, stops ? 1 : 0, 0);
+}
+
+bool Network::demands_quick_stop(std::size_t node_index) const noexcept {
+  for (std::size_t i = 0; i < statuses_.size(); ++i) {
+    const NodePlan& lost = plan_.nodes[i];
+    if (lost.on_loss != LossReaction::quick_stop || statuses_[i].boot == BootState::ready ||
+        statuses_[i].boot_count == 0) {
+      continue;
+    }
+    if (lost.group == 0 || lost.group == plan_.nodes[node_index].group) return true;
+  }
+  return false;
+}
+
+/// The master is not addressed by its own broadcast: it follows by itself. CiA 302-2.
+void Network::command_master(NmtCommand command) noexcept {
+  switch (command) {
+    case NmtCommand::start:
+      own_state_ = NmtState::operational;
+      return;
+    case NmtCommand::stop:
+      own_state_ = NmtState::stopped;
+      return;
+    case NmtCommand::enter_preoperational:
+      own_state_ = NmtState::preoperational;
+      return;
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      own_state_ = NmtState::bootup;
+      return;
+  }
+}
+
+/// False: no room, or too soon.
+bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noexcept {
+  if (message.node == plan_.master_id.value()) {
+    command_master(message.command);
+    return true;
+  }
+  if (!nmt_gate_.open(now) || !out.push(encode(message))) return false;
+  nmt_gate_.sent(now);
+  if (message.node == 0) command_master(message.command);
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    if (message.node != 0 && index_[message.node] != i) continue;
+    sessions_[i].on_commanded(message.command, now);
+    touched(i, now);
+  }
+  return true;
+}
+
+void Network::send_own_commands(Time now, Outbox& out) noexcept {
+  while (!broadcasts_.empty()) {
+    if (!send_command(broadcasts_.front(), now, out)) return;
+    NmtMessage sent;
+    broadcasts_.pop(sent);
+    if (sent.command == NmtCommand::stop) {
+      for (NodeSession& session : sessions_) session.await_command();
+    }
+    if (is_reset(sent.command)) start_.begin(now);
+  }
+}
+
+void Network::send_commands(Time now, Outbox& out) noexcept {
+  while (command_ != nullptr || (command_ = requests_.next(0)) != nullptr) {
+    const Request& request = command_->request;
+    if (!send_command({request.command, request.node}, now, out)) return;
+    requests_.answer(*command_, SdoFault::none);
+    command_ = nullptr;
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,136 @@
+#include <bit>
+
+#include "master/core/node_session.hpp"
+#include "master/wire/bytes.hpp"
+
+// How a session boots its node, and what becomes of it.
+
+namespace takt {
+namespace {
+
+constexpr Time default_reboot_delay = std::chrono::seconds{1};
+
+bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
+  return a.step == b.step && a.fault == b.fault && a.abort_code == b.abort_code &&
+         a.value == b.value && a.node_state == b.node_state;
+}
+
+/// The first, second, fourth, eighth ...: a node that stays away must not fill the log.
+bool worth_telling(std::uint32_t count) noexcept { return std::has_single_bit(count); }
+
+}  // namespace
+
+void NodeSession::boot(BootRunner::From from, Time now) noexcept {
+  status_.boot = BootState::booting;
+  retry_at_ = never;
+  silent_ = false;
+  heartbeats_out_ = 0;
+  wanted_ = NmtState::unknown;
+  guard_.stop();
+  state_at_boot_ = status_.nmt;
+  twins_.restart();
+  progress_told_ = 0;
+  emcys_at_boot_ = status_.emcy_count;
+  runner_.start(from, now);
+  if (worth_telling(same_failures_ + 1)) tell(EventKind::boot_started, now);
+  advance(now);
+}
+
+void NodeSession::follow_boot(Time now) noexcept {
+  runner_.on_time(now, client_);
+  status_.boot_step = runner_.step();
+  if (runner_.guards()) guard_.start(now);
+  tell_progress(now);
+  if (runner_.state() == BootRunner::State::failed) return on_boot_failed(now);
+  if (runner_.state() != BootRunner::State::done) return;
+  on_boot_done(now);
+}
+
+void NodeSession::on_boot_done(Time now) noexcept {
+  runner_.stop();
+  status_.boot = BootState::ready;
+  status_.boot_tried = true;
+  status_.boot_letter = runner_.keeps_running() ? 'L' : '\0';
+  ++status_.boot_count;
+  same_failures_ = 0;
+  tell_replaced(now);
+  const bool untouched =
+      runner_.keeps_running() || (state_at_boot_ == NmtState::operational && !runner_.reset_sent());
+  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(now - runner_.began());
+  Event event{.when = now,
+              .kind = EventKind::boot_done,
+              .node = plan_->id.value(),
+              .detail = static_cast<std::uint32_t>(took.count()),
+              .value = untouched ? 1 : 0};
+  store_le(std::span{event.bytes}, runner_.left_alone());
+  store_le(std::span{event.bytes}.subspan(2), runner_.first_left_alone().index);
+  event.bytes[4] = runner_.first_left_alone().sub;
+  shared_.events.push(event);
+  if (plan_->boot && network_started_ && plan_->start_later && !runner_.keeps_running()) {
+    own_command_ = NmtCommand::start;
+  }
+}
+
+/// Each tenth of a program.
+void NodeSession::tell_progress(Time now) noexcept {
+  const std::size_t size = runner_.program_size();
+  if (size == 0) return;
+  const std::size_t done = client_.progress();
+  const auto tenth = static_cast<std::uint32_t>(10 * done / size);
+  if (tenth == progress_told_) return;
+  progress_told_ = tenth;
+  tell(EventKind::program_progress, now, static_cast<std::int64_t>(done),
+       static_cast<std::uint32_t>(size));
+}
+
+void NodeSession::tell_replaced(Time now) noexcept {
+  const auto serial = runner_.serial_number();
+  if (serial_number_ && serial && *serial != *serial_number_) {
+    tell(EventKind::node_replaced, now, *serial, *serial_number_);
+  }
+  if (serial) serial_number_ = serial;
+}
+
+void NodeSession::on_boot_failed(Time now) noexcept {
+  runner_.stop();
+  guard_.stop();
+  BootFailure failure = runner_.failure();
+  // A node that should be alive and shows no sign of it is asked by SDO next, still without a
+  // reset.
+  const bool silent = failure.action == BootAction::await_alive;
+  retry_later(BootState::failed, silent ? BootRunner::From::bootup : BootRunner::From::beginning,
+              now);
+  status_.boot_tried = true;
+  status_.boot_letter = failure.letter;
+  if (failure.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
+  if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
+  same_failures_ = same_cause(failure, last_failure_) ? same_failures_ + 1 : 1;
+  last_failure_ = failure;
+  if (!worth_telling(same_failures_)) return;
+  shared_.events.push({.when = now,
+                       .kind = EventKind::boot_failed,
+                       .node = plan_->id.value(),
+                       .detail = same_failures_,
+                       .failure = failure});
+}
+
+void NodeSession::retry_later(BootState state, BootRunner::From from, Time now) noexcept {
+  status_.boot = state;
+  retry_from_ = from;
+  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
+}
+
+/// A node that restarts again and again waits for its next turn.
+bool NodeSession::restless(Time now) noexcept {
+  constexpr Time window = std::chrono::seconds{10};
+  constexpr std::uint32_t most_bootups = 5;
+  if (now - bootups_since_ >= window) {
+    bootups_since_ = now;
+    bootups_ = 0;
+  }
+  const bool gave_up = status_.boot == BootState::failed && last_failure_.restarts != 0 &&
+                       last_failure_.fault == SdoFault::cancelled;
+  return ++bootups_ > most_bootups || gave_up;
+}
+
+}  // namespace takt

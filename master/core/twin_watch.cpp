@@ -1,0 +1,59 @@
+#include "master/core/twin_watch.hpp"
+
+#include <algorithm>
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t window_periods = 8;
+constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add one
+constexpr std::uint32_t most_surplus = 2;      // answers
+constexpr Time tell_again = std::chrono::seconds{10};
+
+/// Begins a transfer, or answers its beginning. CiA 301, 7.2.4.3: every one has exactly one answer.
+bool requests_transfer(const Frame& frame) noexcept {
+  const unsigned command = frame.data[0] >> 5U;
+  return (frame.id.id() & 0x780U) == 0x600 && (command == 1 || command == 2);
+}
+
+bool answers_transfer(const Frame& frame) noexcept {
+  const unsigned command = frame.data[0] >> 5U;
+  return frame.length == 8 && (command == 2 || command == 3);
+}
+
+}  // namespace
+
+void TwinWatch::restart() noexcept {
+  heartbeats_ = full_windows_ = asked_ = answered_ = 0;
+  window_begin_ = Time{};
+}
+
+std::optional<DuplicateSign> TwinWatch::once(DuplicateSign sign, Time now) noexcept {
+  restart();
+  if (told_ != Time::min() && now - told_ < tell_again) return std::nullopt;
+  told_ = now;
+  return sign;
+}
+
+std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
+  if (period_ <= Time{}) return std::nullopt;
+  if (now - window_begin_ >= window_periods * period_) {
+    full_windows_ = heartbeats_ > most_heartbeats ? full_windows_ + 1 : 0;
+    window_begin_ = now;
+    heartbeats_ = 0;
+  }
+  ++heartbeats_;
+  return full_windows_ < 2 ? std::nullopt : once(DuplicateSign::heartbeats, now);
+}
+
+void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
+  asked_ += static_cast<std::uint32_t>(std::ranges::count_if(frames, requests_transfer));
+}
+
+std::optional<DuplicateSign> TwinWatch::on_sdo_answer(const Frame& frame, Time now) noexcept {
+  if (!answers_transfer(frame)) return std::nullopt;
+  ++answered_;
+  return answered_ <= asked_ + most_surplus ? std::nullopt : once(DuplicateSign::answers, now);
+}
+
+}  // namespace takt

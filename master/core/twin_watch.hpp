@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "eds_parser/table/time.hpp"
+#include "master/core/event.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Notices that two devices have one node id: twice the heartbeats, or two answers to each SDO
+/// request. Told at most once in ten seconds.
+class TwinWatch {
+ public:
+  /// `heartbeat_period` of the device; 0 = not known, heartbeats tell nothing.
+  explicit TwinWatch(Time heartbeat_period) noexcept : period_{heartbeat_period} {}
+
+  std::optional<DuplicateSign> on_heartbeat(Time now) noexcept;
+  std::optional<DuplicateSign> on_sdo_answer(const Frame& frame, Time now) noexcept;
+  void on_sdo_requests(std::span<const Frame> frames) noexcept;
+  /// The device was reset: what was counted before means nothing.
+  void restart() noexcept;
+
+ private:
+  std::optional<DuplicateSign> once(DuplicateSign sign, Time now) noexcept;
+
+  Time period_;
+  Time window_begin_{};
+  std::uint32_t heartbeats_ = 0;
+  std::uint32_t full_windows_ = 0;  // in a row, with too many heartbeats
+  std::uint32_t asked_ = 0;         // SDO transfers begun
+  std::uint32_t answered_ = 0;      // and answered
+  Time told_ = Time::min();
+};
+
+}  // namespace takt

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+#include "master/sim/emcy_producer.hpp"
+#include "master/sim/object_store.hpp"
+#include "master/sim/transmitter.hpp"
+
+namespace takt::sim {
+
+/// The device's half of guarding: answers the master's remote frames, and notices when they stop
+/// coming for 0x100C x 0x100D ms (life guarding). CiA 301, 7.2.8.3.2.1.
+class GuardingResponder {
+ public:
+  enum class Fault : std::uint8_t { none, mute, stuck_toggle };
+
+  GuardingResponder(ObjectStore& store, EmcyProducer& emcy, NodeId node);
+
+  CobId id() const noexcept { return CobId::base(0x700u + node_.value()); }
+  /// Communication was reset: the next answer has toggle bit 0.
+  void reset() noexcept;
+  /// A remote frame of the master. A device that produces heartbeats does not answer.
+  void on_request(std::uint8_t state, Fault fault, Time now, Transmitter& out) noexcept;
+  /// True: the master has stopped asking just now.
+  bool on_time(Time now) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+  /// 0x100C or 0x100D was written.
+  void configure(Time now) noexcept;
+
+ private:
+  Time life_time() const noexcept;
+
+  ObjectStore& store_;
+  EmcyProducer& emcy_;
+  NodeId node_;
+  bool toggle_ = false;
+  bool asked_ = false;
+  Time deadline_ = never;
+};
+
+}  // namespace takt::sim

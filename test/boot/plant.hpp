@@ -1,0 +1,139 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "eds_parser/network_file/load_network.hpp"
+#include "master/core/boot_report.hpp"
+#include "master/rt/bus_loop.hpp"
+#include "master/sim/device.hpp"
+#include "master/sim/sim_port.hpp"
+#include "master/sim/world.hpp"
+
+namespace takt::test {
+
+using namespace std::chrono_literals;
+
+/// Compiles a network file given as text; device files are those of test/boot/data.
+inline LoadedNetwork network_of(const std::string& yaml) {
+  static int count = 0;
+  const std::string path = testing::TempDir() + "takt_network_" + std::to_string(::getpid()) + "_" +
+                           std::to_string(++count) + ".yaml";
+  std::ofstream{path} << "options: {dcf_path: " << TAKT_SOURCE_DIR << "/test/boot/data}\n" << yaml;
+  LoadedNetwork network = load_network(path);
+  for (const Finding& finding : network.findings) {
+    if (finding.severity == Severity::error) ADD_FAILURE() << finding.message;
+  }
+  std::remove(path.c_str());
+  return network;
+}
+
+/// One valve at node 5 with more keys of the node and of the master.
+inline LoadedNetwork valve(const std::string& keys = "", const std::string& master = "",
+                           const std::string& others = "") {
+  const auto more = [](const std::string& text) { return text.empty() ? "" : ", " + text; };
+  return network_of("bus: {name: plant, interface: can0}\nmaster: {sync_period: 10000" +
+                    more(master) + "}\nnodes:\n  valve: {node_id: 5, dcf: valve.eds" + more(keys) +
+                    "}\n" + others);
+}
+
+/// The whole master and its simulated devices in virtual time.
+class Plant {
+ public:
+  explicit Plant(LoadedNetwork network, sim::Faults faults = {})
+      : network_{std::move(network)},
+        world{network_.devices, {.bitrate = network_.plan.bitrate, .faults = std::move(faults)}},
+        port_{world, {.sync = network_.plan.cycle.sync_cob_id}},
+        exchange_{std::make_unique<Exchange>(network_.plan)},
+        loop_{std::make_unique<BusLoop<sim::SimPort>>(network_.plan, port_, *exchange_)} {
+    world.observe(&wire);
+  }
+
+  /// The devices run by themselves; the master is not there yet and hears nothing of it.
+  void run_without_master(Time span) {
+    world.advance_to(world.now() + span);
+    std::array<StampedFrame, 64> unheard;
+    while (port_.receive(unheard) != 0) {
+    }
+  }
+  void run(Time span) {
+    if (!begun_) loop_->start();
+    begun_ = true;
+    const Time until = world.now() + span;
+    while (world.now() < until) {
+      loop_->cycle();
+      ImageView image;
+      exchange_->images.take_newest(image);
+      for (Event event; exchange_->events.pop(event);) events.push_back(event);
+      for (Reply reply; exchange_->replies.pop(reply);) replies.push_back(reply);
+    }
+  }
+
+  /// An NMT command of an application.
+  void nmt(NmtCommand command, std::uint8_t node) {
+    Request request;
+    request.kind = RequestKind::nmt;
+    request.node = node;
+    request.command = command;
+    exchange_->requests.push(request);
+  }
+  /// A set-point of an application, from now on.
+  void command(std::uint8_t node, std::uint16_t index, std::int64_t value) {
+    const ImageLayout& layout = network_.plan.layout;
+    for (std::size_t i = layout.inputs; i < layout.signals.size(); ++i) {
+      const Signal& signal = layout.signals[i];
+      if (signal.node.value() != node || signal.object.index != index) continue;
+      exchange_->set_points.set(i - layout.inputs, value, 100'000);
+    }
+    exchange_->set_points.publish(world.now());
+  }
+  const BusPlan& plan() const { return network_.plan; }
+  NodeStatus node(std::size_t index = 0) {
+    StatusSnapshot snapshot;
+    exchange_->status.read(snapshot);
+    return snapshot.nodes[index];
+  }
+  sim::Device& device(std::uint8_t id) { return *world.device(*NodeId::from(id)); }
+
+  long count(EventKind kind) const { return std::ranges::count(events, kind, &Event::kind); }
+  /// The first event of a kind in words; empty where there was none.
+  std::string text_of(EventKind kind) const {
+    const auto found = std::ranges::find(events, kind, &Event::kind);
+    return found == events.end() ? std::string{} : describe(network_.plan, *found);
+  }
+  /// Frames on the wire with this identifier, remote frames or others.
+  long frames(std::uint32_t id, bool rtr = false) const {
+    return std::ranges::count_if(
+        wire.frames, [=](const Frame& frame) { return frame.id.id() == id && frame.rtr == rtr; });
+  }
+
+  struct Wire final : sim::BusObserver {
+    void on_wire(const sim::WireFrame& seen) noexcept override {
+      if (seen.result == sim::WireResult::sent) frames.push_back(seen.frame);
+    }
+    std::vector<Frame> frames;
+  };
+
+ private:
+  LoadedNetwork network_;
+
+ public:
+  Wire wire;
+  sim::World world;
+  std::vector<Event> events;
+  std::vector<Reply> replies;
+
+ private:
+  sim::SimPort port_;
+  std::unique_ptr<Exchange> exchange_;
+  std::unique_ptr<BusLoop<sim::SimPort>> loop_;
+  bool begun_ = false;
+};
+
+}  // namespace takt::test
