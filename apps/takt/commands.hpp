@@ -8,6 +8,7 @@ namespace takt {
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
 void add_dump(CLI::App& app, int& exit_code);
+void add_emcy(CLI::App& app, int& exit_code);
 void add_eds(CLI::App& app, int& exit_code);
 void add_param(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);

@@ -113,7 +113,26 @@ void Bridge::on_command(Bytes data) {
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
   if (!request) return tell_damaged(channels_.request, request.error());
+  if (request->service == "emcy_history") return answer_history(*request);
   if (auto reply = requests_.take(*request)) answer(std::move(*reply));
+}
+
+/// Answered here: the bus thread keeps no history.
+void Bridge::answer_history(const request_t& request) {
+  reply_t reply{};
+  reply.schema = message_schema;
+  reply.session = options_.session;
+  reply.id = request.id;
+  reply.sender = request.sender;
+  reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
+  if (reply.good == 0) {
+    reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
+  } else {
+    const auto bytes = pack(emcy_log_.of(static_cast<std::uint8_t>(request.node_id)));
+    reply.data.assign(bytes.begin(), bytes.end());
+    reply.size = static_cast<std::int32_t>(bytes.size());
+  }
+  answer(std::move(reply));
 }
 
 void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
@@ -146,6 +165,7 @@ void Bridge::take_events() {
   Event event;
   while (master_.take(event)) {
     remember(event);
+    emcy_log_.take(event, wall_microseconds(event.when));
     tell(event);
   }
   for (const Notice& notice : outages_.take_due(monotonic_now())) send(notice);

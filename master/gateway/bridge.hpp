@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "master/gateway/commands.hpp"
+#include "master/gateway/emcy_history.hpp"
+#include "master/gateway/emcy_log.hpp"
 #include "master/gateway/image_messages.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
@@ -64,6 +66,7 @@ class Bridge {
   void on_command(Bytes data);
   void on_request(Bytes data);
   void send(const Notice& notice);
+  void answer_history(const request_t& request);
   void tell_damaged(const std::string& channel, DecodeFault fault);
   void publish_layout();
   void publish_status();
@@ -89,11 +92,12 @@ class Bridge {
   Requests requests_;
   PdoOutages outages_;
   NoticeLimit limit_;
+  EmcyHistory emcys_;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
-  EmcyHistory emcys_;
   std::vector<PdoMark> marks_;  // of the newest image
+  EmcyLog emcy_log_;
   Time wall_minus_monotonic_{};
   Time next_status_{};
   Time next_layout_{};

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "master/core/event.hpp"
+
+namespace takt {
+
+/// One EMCY as it was on the wire, and when.
+struct EmcyRecord {
+  std::int64_t utime = 0;  ///< us since 1970
+  std::array<std::uint8_t, 8> bytes{};
+
+  std::uint16_t code() const noexcept {
+    return static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8);
+  }
+  std::uint8_t error_register() const noexcept { return bytes[2]; }
+  bool operator==(const EmcyRecord&) const = default;
+};
+
+/// The newest EMCYs of each node. Front thread.
+class EmcyLog {
+ public:
+  static constexpr std::size_t depth = 32;  ///< records of one node
+
+  /// Events of other kinds are left alone.
+  void take(const Event& event, std::int64_t utime);
+  /// Oldest first.
+  const std::vector<EmcyRecord>& of(std::uint8_t node) const;
+
+ private:
+  std::map<std::uint8_t, std::vector<EmcyRecord>> records_;
+};
+
+/// As the reply to "emcy_history" carries them: 8 bytes time, 8 bytes frame each, little endian.
+std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records);
+std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes);
+
+}  // namespace takt
