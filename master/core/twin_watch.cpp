@@ -1,7 +1,5 @@
 #include "master/core/twin_watch.hpp"
 
-#include <algorithm>
-
 namespace takt {
 namespace {
 
@@ -10,10 +8,21 @@ constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add one
 constexpr std::uint32_t most_surplus = 2;      // answers
 constexpr Time tell_again = std::chrono::seconds{10};
 
+enum class Request : std::uint8_t { other, transfer, block };
+
 /// Begins a transfer, or answers its beginning. CiA 301, 7.2.4.3: every one has exactly one answer.
-bool requests_transfer(const Frame& frame) noexcept {
-  const unsigned command = frame.data[0] >> 5U;
-  return (frame.id.id() & 0x780U) == 0x600 && (command == 1 || command == 2);
+Request request_of(const Frame& frame) noexcept {
+  if ((frame.id.id() & 0x780U) != 0x600) return Request::other;
+  switch (frame.data[0] >> 5U) {
+    case 1:
+    case 2:
+      return Request::transfer;
+    case 5:
+    case 6:
+      return Request::block;
+    default:
+      return Request::other;
+  }
 }
 
 bool answers_transfer(const Frame& frame) noexcept {
@@ -47,11 +56,16 @@ std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
 }
 
 void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
-  asked_ += static_cast<std::uint32_t>(std::ranges::count_if(frames, requests_transfer));
+  for (const Frame& frame : frames) {
+    const Request request = request_of(frame);
+    if (request == Request::other) continue;
+    block_ = request == Request::block;
+    asked_ += !block_;
+  }
 }
 
 std::optional<DuplicateSign> TwinWatch::on_sdo_answer(const Frame& frame, Time now) noexcept {
-  if (!answers_transfer(frame)) return std::nullopt;
+  if (block_ || !answers_transfer(frame)) return std::nullopt;
   ++answered_;
   return answered_ <= asked_ + most_surplus ? std::nullopt : once(DuplicateSign::answers, now);
 }

@@ -31,6 +31,7 @@ class TwinWatch {
   std::uint32_t full_windows_ = 0;  // in a row, with too many heartbeats
   std::uint32_t asked_ = 0;         // SDO transfers begun
   std::uint32_t answered_ = 0;      // and answered
+  bool block_ = false;              // the newest transfer: its answers are counted otherwise
   Time told_ = Time::min();
 };
 

@@ -26,6 +26,14 @@ TEST(TwinWatch, KnowsNothingWithoutAPeriod) {
   for (Time now = 10s; now < 11s; now += 1ms) EXPECT_FALSE(watch.on_heartbeat(now));
 }
 
+TEST(TwinWatch, SegmentsOfABlockUploadAreNoSecondAnswers) {
+  TwinWatch watch{Time{}};
+  watch.on_sdo_requests(std::array{tx({0xA4, 0x08, 0x10, 0x00, 0x7F})});
+  for (std::uint8_t segment = 1; segment < 127; ++segment) {
+    EXPECT_FALSE(watch.on_sdo_answer(rx({segment, 1, 2, 3, 4, 5, 6, 7}), 10s)) << int{segment};
+  }
+}
+
 class Twins : public testing::Test, public NetworkRig {
  protected:
   void boot() {
