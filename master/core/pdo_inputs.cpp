@@ -58,6 +58,7 @@ void PdoInputs::set_reception(std::size_t node_index, Reception reception, Time 
     Row& row = rows_[i];
     if (row.node_index != node_index) continue;
     mark(row, true);
+    row.reception = reception;
     row.known = false;
     row.misses = 0;
     row.waited = false;
@@ -118,12 +119,10 @@ std::uint16_t PdoInputs::row_of(const Frame& frame) const noexcept {
   return rows_[position].multiplexed ? find_object(position, frame) : position;
 }
 
-bool PdoInputs::check_length(std::size_t position, const StampedFrame& stamped) noexcept {
+/// Told once, until a frame of right length comes. A short frame is ignored whole, of a long one
+/// the first bytes count: then true.
+bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
-  if (stamped.frame.length == row.length) [[likely]] {
-    row.odd_length = false;
-    return true;
-  }
   const bool longer = stamped.frame.length > row.length;
   ++row.length_errors;
   row.too_long += longer;
@@ -150,51 +149,61 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
   return !plan_.pdos.tpdos[position].drop_late;
 }
 
-bool PdoInputs::receive(const StampedFrame& stamped) noexcept {
-  const CobId id = stamped.frame.id;
-  std::uint16_t position = id.is_extended() ? find_extended(id) : plan_.pdos.route[id.id() & 0x7FF];
-  if (position >= rows_.size()) return false;
-  if (stamped.frame.rtr || receptions_[rows_[position].node_index] == Reception::off) return true;
-  if (rows_[position].multiplexed) [[unlikely]] {
-    position = find_object(position, stamped.frame);
-    if (position == no_row) return true;
-  }
-  if (check_length(position, stamped)) [[likely]] {
-    accept(position, stamped);
-  }
-  return true;
-}
-
-void PdoInputs::accept(std::size_t position, const StampedFrame& stamped) noexcept {
-  Row& row = rows_[position];
-  // A frame from before this SYNC answers the one before.
-  const bool of_now = stamped.when >= sync_;
-  if (stamped.when - (of_now ? sync_ : sync_before_) > row.window) [[unlikely]] {
-    if (!use_late(position, stamped)) return;
-  } else {
-    row.was_late = false;
-  }
+[[gnu::always_inline]] inline void PdoInputs::accept(Row& row, PdoMark& news,
+                                                     const StampedFrame& stamped) noexcept {
   unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
-  PdoMark& news = marks_[position];
+  // A frame from before this SYNC answers the one before.
+  const unsigned before = stamped.when < sync_ ? 1 : 0;
   ++news.received;
-  news.cycle = static_cast<std::uint32_t>(cycle_) - (of_now ? 0 : 1);
+  news.cycle = static_cast<std::uint32_t>(cycle_) - before;
   news.flags |= PdoMark::arrived;
-  const std::uint64_t of_beat = beat_ - (of_now ? 0 : 1);
+  const std::uint64_t of_beat = beat_ - before;
   row.last_beat = of_beat;
   if (row.deadline > Time{}) row.expires = stamped.when + row.deadline;
   if (row.every != 0) {
-    row.known = receptions_[row.node_index] == Reception::full;
+    row.known = row.reception == Reception::full;
     // Without a phase of its own a frame may come one round later.
     row.due = of_beat + (row.known ? 1U : 2U) * std::uint64_t{row.every};
-    if (row.waited && of_beat == beat_) {
+    if (row.waited && before == 0) {
       row.waited = false;
       --outstanding_;
       last_arrival_ = stamped.when;
     }
   }
+  if (row.stale || row.misses != 0) [[unlikely]] {
+    come_back(row, stamped.when);
+  }
+}
+
+bool PdoInputs::receive(const StampedFrame& stamped) noexcept {
+  const Frame& frame = stamped.frame;
+  std::size_t position =
+      frame.id.is_extended() ? find_extended(frame.id) : plan_.pdos.route[frame.id.id() & 0x7FF];
+  if (position >= rows_.size()) return false;
+  if (frame.rtr || rows_[position].reception == Reception::off) return true;
+  if (rows_[position].multiplexed) [[unlikely]] {
+    position = find_object(static_cast<std::uint16_t>(position), frame);
+    if (position == no_row) return true;
+  }
+  Row& row = rows_[position];
+  if (frame.length != row.length) [[unlikely]] {
+    if (!use_odd_length(position, stamped)) return true;
+  } else {
+    row.odd_length = false;
+  }
+  if (stamped.when - (stamped.when >= sync_ ? sync_ : sync_before_) > row.window) [[unlikely]] {
+    if (!use_late(position, stamped)) return true;
+  } else {
+    row.was_late = false;
+  }
+  accept(row, marks_[position], stamped);
+  return true;
+}
+
+void PdoInputs::come_back(Row& row, Time when) noexcept {
   if (row.misses != 0) {
     row.misses = 0;
-    tell(EventKind::pdo_back, row, stamped.when);
+    tell(EventKind::pdo_back, row, when);
   }
   if (row.stale) mark(row, false);
 }

@@ -75,9 +75,10 @@ class PdoInputs {
     std::uint8_t node_index = 0;
     std::uint8_t every = 0;  ///< beats between two frames; 0: not cyclic
     std::uint8_t misses = 0;
-    bool known = false;        ///< its phase has been seen
-    bool multiplexed = false;  ///< the first row of an MPDO
-    bool waited = false;       ///< the running beat waits for it
+    Reception reception = Reception::off;  ///< of its node
+    bool known = false;                    ///< its phase has been seen
+    bool multiplexed = false;              ///< the first row of an MPDO
+    bool waited = false;                   ///< the running beat waits for it
     bool stale = true;
     bool odd_length = false;  ///< told once, until a frame of right length comes
     bool was_late = false;    ///< told once, until a frame comes in time
@@ -90,12 +91,15 @@ class PdoInputs {
 
   std::uint16_t find_extended(CobId id) const noexcept;
   std::uint16_t find_object(std::uint16_t first, const Frame& frame) const noexcept;
-  void accept(std::size_t position, const StampedFrame& stamped) noexcept;
-  bool check_length(std::size_t position, const StampedFrame& stamped) noexcept;
-  bool use_late(std::size_t position, const StampedFrame& stamped) noexcept;
+  void accept(Row& row, PdoMark& news, const StampedFrame& stamped) noexcept;
+  // Seldom needed: kept out of the path of a frame.
+  [[gnu::cold]] bool use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept;
+  [[gnu::cold]] bool use_late(std::size_t position, const StampedFrame& stamped) noexcept;
+  [[gnu::cold]] void come_back(Row& row, Time when) noexcept;
   void mark(Row& row, bool stale) noexcept;
   void miss(std::size_t position, Time now) noexcept;
-  void tell(EventKind kind, const Row& row, Time now, std::uint32_t detail = 0) noexcept;
+  [[gnu::cold]] void tell(EventKind kind, const Row& row, Time now,
+                          std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
   WorkingImage& image_;
