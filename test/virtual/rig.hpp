@@ -70,6 +70,8 @@ class Recorder final : public sim::BusObserver {
 };
 
 struct RigOptions {
+  std::vector<DeviceTable> devices{};  ///< empty: loopback devices
+  Time heartbeat_timeout = std::chrono::milliseconds{60};
   sim::WorldOptions world{};
   sim::RemotePortOptions port{};
   MasterOptions master{};
@@ -79,13 +81,14 @@ struct RigOptions {
 class Rig {
  public:
   explicit Rig(BusPlan plan, RigOptions options = {}) {
-    std::vector<DeviceTable> devices;
+    std::vector<DeviceTable> devices = options.devices;
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
       NodePlan& node = plan.nodes[i];
       node.boot_plan = short_boot();
-      node.heartbeat_timeout = std::chrono::milliseconds{60};
+      node.heartbeat_timeout = options.heartbeat_timeout;
       node.reboot_delay = std::chrono::milliseconds{100};
       node.sdo_timeout = std::chrono::milliseconds{100};
+      if (!options.devices.empty()) continue;
       devices.push_back(loopback_device(node.id, plan.pdos.tpdos[i], plan.pdos.rpdos[i]));
     }
     axes_ = plan.nodes.size();
