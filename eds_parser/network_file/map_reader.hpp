@@ -18,7 +18,7 @@ namespace takt {
 struct IntegerRange {
   std::int64_t low = 0;
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
-  std::string_view unit = "";  ///< " ms": follows the limits in messages
+  std::string_view unit = {};  ///< " ms": follows the limits in messages
 };
 
 /// The integer that a scalar says. Octal-looking (`010`), out of range or other text: reported.

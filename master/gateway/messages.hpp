@@ -37,7 +37,7 @@ std::string_view text(DecodeFault fault) noexcept;
 
 /// Layout of a type's bytes, see has_shape.
 template <class T>
-inline constexpr std::string_view message_layout = "";
+inline constexpr std::string_view message_layout;
 template <>
 inline constexpr std::string_view message_layout<command_t> = "lhlslin(h)(l)";
 template <>

@@ -46,7 +46,7 @@ class Histogram {
     if (units < 8) return static_cast<std::size_t>(units);
     const auto octave = static_cast<unsigned>(std::bit_width(units)) - 4;  // 0: [8, 16)
     if (octave >= HistogramSnapshot::octaves) return HistogramSnapshot::bins - 1;
-    return (octave + 1) * 8 + ((units >> octave) & 7);
+    return (std::size_t{octave} + 1) * 8 + ((units >> octave) & 7);
   }
   /// First time that no longer belongs to the bin.
   static constexpr Time upper_edge(std::size_t bin) noexcept {
