@@ -21,7 +21,8 @@ build_programs() {
   started=$(date +%s)
   mkdir -p $build && rm -f $build/demo-built
   # Only what the demo runs, unless this folder has been configured before.
-  [ -e $build/build.ninja ] || cmake --preset release -DTAKT_TESTS=OFF >$build/demo-build.log 2>&1 || build_failed
+  [ -e $build/build.ninja ] ||
+    cmake --preset release -DTAKT_TESTS=OFF -DTAKT_PCH=ON >$build/demo-build.log 2>&1 || build_failed
   { ninja -C $build taktd takt takt-move && touch $build/demo-built; } 2>&1 | tee $build/demo-build.log |
     sed -un 's/^\(\[[0-9]*\(00\|25\|50\|75\)\/[0-9]*\]\).*/  \1/p'
   [ -e $build/demo-built ] || build_failed

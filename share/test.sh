@@ -1,7 +1,7 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
 #   TAKT_STAGES  only these of: format release asan tsan tidy (without: all but tidy, which takes ten minutes of its own)
-#   TAKT_PCH     ON: build with precompiled headers (OFF)
+#   TAKT_PCH     OFF: build without precompiled headers, as by hand (ON)
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -65,7 +65,7 @@ check_tidy() {
 build() {
   preset=$1
   shift
-  cmake --preset "$preset" -DTAKT_TESTS=ON -DTAKT_PCH="${TAKT_PCH:-OFF}" && ninja -C "build/$preset" -j "$jobs" "$@"
+  cmake --preset "$preset" -DTAKT_TESTS=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
 # run_tests PRESET [CTEST OPTION...]
