@@ -116,5 +116,30 @@ TEST_F(RequestsTest, NmtGoesToAllNodesOrOne) {
   EXPECT_EQ(submitted[0].command, NmtCommand::reset_node);
 }
 
+TEST_F(RequestsTest, PdosAreAskedForByNumber) {
+  request_t message = upload(8);
+  message.service = "pdo_exchange";
+  message.index = 1;
+  message.size = 2;
+  message.data = {0x01, 0x02};
+  EXPECT_FALSE(requests.take(message));
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_EQ(submitted[0].kind, RequestKind::pdo_exchange);
+  EXPECT_EQ(submitted[0].object.index, 1);
+  EXPECT_EQ(submitted[0].size, 2);
+  Reply reply{.id = submitted[0].id};
+  reply.size = 1;
+  reply.data[0] = std::byte{0x55};
+  const auto answer = requests.finish(reply);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->data, (std::vector<std::uint8_t>{0x55}));
+
+  message.id = 9;
+  message.index = 513;
+  const auto refused = requests.take(message);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->text, "PDO number 513 is not in 1..512");
+}
+
 }  // namespace
 }  // namespace takt
