@@ -168,6 +168,11 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
       row.waited = false;
       --outstanding_;
       last_arrival_ = stamped.when;
+    } else if (before != 0 && row.known && row.due == beat_ && !row.waited) [[unlikely]] {
+      // Its phase is known just now, so this beat begins to wait for it.
+      row.waited = true;
+      ++expected_;
+      ++outstanding_;
     }
   }
   if (row.stale || row.misses != 0) [[unlikely]] {
