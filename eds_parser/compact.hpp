@@ -26,6 +26,9 @@ class ExpansionBudget {
   std::size_t used_ = 0;
 };
 
+/// The sub 0 that such notations imply.
+SubObject count_sub(const Object& object, std::uint8_t count);
+
 /// Adds sub 0 and `count` copies of `pattern` to an object; subs that are already there stay.
 /// CiA 306, 4.6.3.4.2.
 void expand_compact_subs(Object& object, const SubObject& pattern, std::uint8_t count);
@@ -33,10 +36,7 @@ void expand_compact_subs(Object& object, const SubObject& pattern, std::uint8_t 
 enum class CompactList : std::uint8_t { names, values, denotations };
 
 /// Applies [xxxxName], [xxxxValue] or [xxxxDenotation]: keys are sub-indices in decimal.
-void apply_compact_list(Object& object, CompactList list, std::span<const IniEntry> entries,
+void apply_compact_list(Object& object, CompactList list, const IniEntries& entries,
                         ValueReader& values, Report& report);
-
-/// Adds the PDOs that CompactPDO and NrOfRXPDO / NrOfTXPDO imply. CiA 306, 4.6.3.4.1.
-void expand_compact_pdos(ObjectDictionary& dictionary);
 
 }  // namespace takt

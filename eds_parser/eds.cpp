@@ -5,7 +5,8 @@
 #include <iterator>
 #include <memory>
 
-#include "eds_parser/compact.hpp"
+#include "eds_parser/compact_pdos.hpp"
+#include "eds_parser/eds_channels.hpp"
 #include "eds_parser/eds_info.hpp"
 #include "eds_parser/eds_lists.hpp"
 #include "eds_parser/eds_objects.hpp"
@@ -23,11 +24,16 @@ constexpr std::uintmax_t largest_file = 512ULL << 20;
 
 /// Where each kind of section is.
 struct Outline {
+  const IniSection* file_info = nullptr;
+  const IniSection* comments = nullptr;
   const IniSection* device_info = nullptr;
   const IniSection* dummy_usage = nullptr;
   const IniSection* commissioning = nullptr;
+  const IniSection* channels = nullptr;
   std::array<const IniSection*, 3> lists{};  ///< by ObjectList
   std::vector<ObjectSection> objects;        ///< ascending index and role, no duplicates
+  std::vector<const IniSection*> tools;
+  std::vector<ObjectSection> links;
 };
 
 class EdsReader {
@@ -113,12 +119,19 @@ class EdsReader {
               "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
         }
         return;
-      case SectionKind::short_object:
-      case SectionKind::object_links:
       case SectionKind::file_info:
+        return keep(outline_.file_info, section);
       case SectionKind::comments:
+        return keep(outline_.comments, section);
       case SectionKind::tools:
+        if (!same_word(section.name, "tools")) outline_.tools.push_back(&section);
+        return;
+      case SectionKind::object_links:
+        outline_.links.push_back(ObjectSection::of(name, at));
+        return;
       case SectionKind::dynamic_channels:
+        return keep(outline_.channels, section);
+      case SectionKind::short_object:
       case SectionKind::supported_modules:
         return;
       case SectionKind::connected_modules:
@@ -140,6 +153,13 @@ class EdsReader {
                         std::to_string(first.pos.line) + ", counts");
   }
 
+  void tell_lonely_list(const IniSection& list) {
+    if (!report_.wants("object-section-missing")) return;
+    report_.warning(list.pos, "object-section-missing",
+                    "section " + quoted(list.name) +
+                        " belongs to an object that has no section; it was left out");
+  }
+
   /// The name decides; where it does not tell, the section that only a DCF should have.
   bool is_dcf(std::string_view name) const noexcept {
     if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".dcf")) return true;
@@ -147,8 +167,8 @@ class EdsReader {
     return outline_.commissioning != nullptr;
   }
 
-  std::span<const IniEntry> entries(const IniSection* section) const noexcept {
-    return section == nullptr ? std::span<const IniEntry>{} : file_.entries(*section);
+  IniEntries entries(const IniSection* section) const noexcept {
+    return section == nullptr ? IniEntries{} : file_.entries(*section);
   }
 
   void read_headers(ObjectDictionary& dictionary, std::optional<NodeId> node) {
@@ -162,11 +182,42 @@ class EdsReader {
       report_.warning({}, "device-info-missing", "the file has no section [DeviceInfo]");
     }
     read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values);
+    read_channels(dictionary, values);
+    read_notes(dictionary, values);
+  }
+
+  void read_channels(ObjectDictionary& dictionary, ValueReader& values) {
+    const auto* section = outline_.channels;
+    const bool supported = dictionary.device.dynamic_channels != 0;
+    if (section == nullptr && supported) {
+      report_.warning(dictionary.device.pos, "channels-missing",
+                      "DynamicChannelsSupported is set, but there is no [DynamicChannels]");
+    }
+    if (section == nullptr) return;
+    if (!supported) {
+      report_.note(section->pos, "channels-unsupported",
+                   "[DynamicChannels] of a device whose DynamicChannelsSupported is 0");
+    }
+    dictionary.channels = read_dynamic_channels(entries(section), section->pos, values, report_);
+  }
+
+  void read_notes(ObjectDictionary& dictionary, ValueReader& values) {
+    read_file_info(dictionary.notes.info, entries(outline_.file_info), report_);
+    dictionary.notes.comments = read_comments(entries(outline_.comments));
+    for (const auto* tool : outline_.tools) {
+      dictionary.notes.tools.push_back(read_tool(entries(tool), report_));
+    }
+    for (const auto& link : outline_.links) {
+      const auto& section = file_.sections[link.section];
+      dictionary.links.push_back(read_links(link.index(), entries(&section), values));
+    }
   }
 
   void read_objects(ObjectDictionary& dictionary) {
     const auto described = std::make_unique<IndexSet>();
-    for (const auto& section : outline_.objects) described->set(section.index());
+    for (const auto& section : outline_.objects) {
+      if (!section.is_list()) described->set(section.index());
+    }
     dictionary.objects.reserve(described->count());
     ObjectLists lists{*described, report_};
     for (const auto list :
@@ -185,11 +236,16 @@ class EdsReader {
     for (std::size_t at = 0; at < all.size();) {
       std::size_t end = at + 1;
       while (end < all.size() && all[end].index() == all[at].index()) ++end;
-      auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
-      object.list = lists.list_of(object.index);
-      lists.tell_unlisted(object);
+      if (all[at].is_list()) {
+        tell_lonely_list(file_.sections[all[at].section]);
+      } else {
+        auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
+        object.list = lists.list_of(object.index);
+        lists.tell_unlisted(object);
+      }
       at = end;
     }
+    dictionary.domain_files = reader.take_domain_files();
     modules_.expand(dictionary, reader, report_);
   }
 
@@ -227,9 +283,11 @@ EdsFile read_eds_file(const std::filesystem::path& path, std::optional<NodeId> n
   if (error) return unreadable(path.string(), error.message());
   if (size > largest_file) return unreadable(path.string(), "larger than 512 MB");
   std::ifstream stream{path, std::ios::binary};
-  std::string text(static_cast<std::size_t>(size), '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::string text;
+  text.resize_and_overwrite(static_cast<std::size_t>(size), [&](char* out, std::size_t room) {
+    stream.read(out, static_cast<std::streamsize>(room));
+    return static_cast<std::size_t>(stream.gcount());
+  });
   if (!stream && !stream.eof()) return unreadable(path.string(), "cannot be read");
   return read_eds(text, path.string(), node);
 }

@@ -2,58 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 
+#include "eds_parser/section_keys.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {
-
-/// The entries of a section by key; of a repeated key the first counts.
-class Keys {
- public:
-  Keys(std::span<const IniEntry> entries, Report& report) : entries_{entries}, report_{report} {}
-
-  /// `key` in lower case.
-  const IniEntry* get(std::string_view key) const {
-    const IniEntry* found = nullptr;
-    for (const auto& entry : entries_) {
-      if (!same_word(entry.key, key)) continue;
-      if (found == nullptr) {
-        found = &entry;
-      } else if (found->value != entry.value) {
-        report_.warning(entry.pos(), "duplicate-key",
-                        "key " + quoted(entry.key) +
-                            " repeated with another value; the first one counts, " +
-                            quoted(found->value));
-      }
-    }
-    return found;
-  }
-
-  std::string text(std::string_view key) const {
-    const auto* entry = get(key);
-    return entry == nullptr ? std::string{} : to_utf8(entry->value);
-  }
-
-  template <class T>
-  void number(T& out, std::string_view key, ValueReader& values) const {
-    const auto* entry = get(key);
-    if (entry == nullptr) return;
-    constexpr auto highest = std::numeric_limits<T>::max();
-    const auto value = values.read_count(entry->value, highest, entry->key, entry->pos());
-    if (value) out = static_cast<T>(*value);
-  }
-
-  void flag(bool& out, std::string_view key, ValueReader& values) const {
-    const auto* entry = get(key);
-    if (entry != nullptr) out = values.read_flag(entry->value, entry->key, entry->pos());
-  }
-
- private:
-  std::span<const IniEntry> entries_;
-  Report& report_;
-};
 
 /// N of `BaudRate_N`; `BaudRate_auto` is none.
 std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
@@ -68,7 +22,7 @@ std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
   return rate;
 }
 
-void read_baud_rates(DeviceInfo& device, std::span<const IniEntry> entries, ValueReader& values) {
+void read_baud_rates(DeviceInfo& device, const IniEntries& entries, ValueReader& values) {
   for (const auto& entry : entries) {
     const auto rate = baud_rate_of(entry.key);
     if (!rate || !values.read_flag(entry.value, entry.key, entry.pos())) continue;
@@ -80,9 +34,48 @@ void read_baud_rates(DeviceInfo& device, std::span<const IniEntry> entries, Valu
 
 }  // namespace
 
-void read_device_info(DeviceInfo& device, const IniSection& section,
-                      std::span<const IniEntry> entries, ValueReader& values, Report& report) {
-  const Keys keys{entries, report};
+void read_file_info(FileInfo& info, const IniEntries& entries, Report& report) {
+  const SectionKeys keys{entries, report};
+  info.file_name = keys.text("filename");
+  info.file_version = keys.text("fileversion");
+  info.file_revision = keys.text("filerevision");
+  info.eds_version = keys.text("edsversion");
+  info.description = keys.text("description");
+  info.creation_date = keys.text("creationdate");
+  info.creation_time = keys.text("creationtime");
+  info.created_by = keys.text("createdby");
+  info.modification_date = keys.text("modificationdate");
+  info.modification_time = keys.text("modificationtime");
+  info.modified_by = keys.text("modifiedby");
+  info.last_eds = keys.text("lasteds");
+}
+
+std::vector<std::string> read_comments(const IniEntries& entries) {
+  std::vector<std::string> lines;
+  for (const auto& entry : entries) {
+    if (!same_word(entry.key, "lines")) lines.push_back(to_utf8(entry.value));
+  }
+  return lines;
+}
+
+VendorTool read_tool(const IniEntries& entries, Report& report) {
+  const SectionKeys keys{entries, report};
+  return {keys.text("name"), keys.text("command")};
+}
+
+ObjectLinks read_links(std::uint16_t index, const IniEntries& entries, ValueReader& values) {
+  ObjectLinks links{index, {}};
+  for (const auto& entry : entries) {
+    if (same_word(entry.key, "objectlinks") || entry.value.empty()) continue;
+    const auto other = values.read_count(entry.value, 0xFFFF, entry.key, entry.pos());
+    if (other) links.to.push_back(static_cast<std::uint16_t>(*other));
+  }
+  return links;
+}
+
+void read_device_info(DeviceInfo& device, const IniSection& section, const IniEntries& entries,
+                      ValueReader& values, Report& report) {
+  const SectionKeys keys{entries, report};
   device.pos = section.pos;
   device.vendor_name = keys.text("vendorname");
   device.product_name = keys.text("productname");
@@ -102,11 +95,12 @@ void read_device_info(DeviceInfo& device, const IniSection& section,
   read_baud_rates(device, entries, values);
 }
 
-void read_commissioning(Commissioning& commissioning, std::span<const IniEntry> entries,
+void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
                         ValueReader& values, Report& report) {
-  const Keys keys{entries, report};
+  const SectionKeys keys{entries, report};
   commissioning.node_name = keys.text("nodename");
   commissioning.network_name = keys.text("networkname");
+  keys.flag(commissioning.manager, "canopenmanager", values);
   if (const auto* entry = keys.get("nodeid")) {
     const auto id = values.read_count(entry->value, 0xFFFF'FFFF, entry->key, entry->pos());
     if (id) commissioning.node_id = NodeId::from(*id);
@@ -126,8 +120,7 @@ void read_commissioning(Commissioning& commissioning, std::span<const IniEntry> 
   commissioning.baudrate_kbit = static_cast<std::uint16_t>(kbit);
 }
 
-void read_dummy_usage(std::array<bool, 8>& usage, std::span<const IniEntry> entries,
-                      ValueReader& values) {
+void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values) {
   constexpr std::string_view prefix = "dummy000";
   for (const auto& entry : entries) {
     if (entry.key.size() != prefix.size() + 1) continue;

@@ -8,14 +8,22 @@
 
 namespace takt {
 
+/// [FileInfo]. CiA 306, 4.4.
+void read_file_info(FileInfo& info, const IniEntries& entries, Report& report);
+/// Line1, Line2 ... of [Comments], in order of the file. CiA 306, 4.6.5.
+std::vector<std::string> read_comments(const IniEntries& entries);
+/// [Tool1].
+VendorTool read_tool(const IniEntries& entries, Report& report);
+/// [xxxxObjectLinks]. CiA 306, 4.6.4.
+ObjectLinks read_links(std::uint16_t index, const IniEntries& entries, ValueReader& values);
+
 /// [DeviceInfo]. CiA 306, 4.5.
-void read_device_info(DeviceInfo& device, const IniSection& section,
-                      std::span<const IniEntry> entries, ValueReader& values, Report& report);
+void read_device_info(DeviceInfo& device, const IniSection& section, const IniEntries& entries,
+                      ValueReader& values, Report& report);
 /// [DeviceComissioning]. CiA 306, 5.3.
-void read_commissioning(Commissioning& commissioning, std::span<const IniEntry> entries,
+void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
                         ValueReader& values, Report& report);
 /// [DummyUsage]. CiA 306, 4.6.2.
-void read_dummy_usage(std::array<bool, 8>& usage, std::span<const IniEntry> entries,
-                      ValueReader& values);
+void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values);
 
 }  // namespace takt

@@ -45,15 +45,14 @@ std::optional<std::uint32_t> entry_number(std::string_view key) noexcept {
 ObjectLists::ObjectLists(const IndexSet& described, Report& report)
     : described_{described}, report_{report}, membership_(65536, ObjectList::unlisted) {}
 
-void ObjectLists::read(ObjectList list, const IniSection& section,
-                       std::span<const IniEntry> entries) {
+void ObjectLists::read(ObjectList list, const IniSection& section, const IniEntries& entries) {
   any_ = true;
-  const IniEntry* count = nullptr;
+  std::optional<IniEntry> count;
   std::uint32_t found = 0;
   std::uint32_t highest = 0;
   for (const auto& entry : entries) {
     if (is_count_key(entry.key)) {
-      if (count == nullptr) count = &entry;
+      if (!count) count = entry;
       if (entry.key.find_first_of(" \t") == std::string_view::npos) continue;
       report_.warning(entry.key_pos(), "blank-in-key",
                       "blank inside the key " + quoted(entry.key) +
@@ -68,8 +67,8 @@ void ObjectLists::read(ObjectList list, const IniSection& section,
                           "] is neither SupportedObjects nor a decimal number; it was left out");
     }
   }
-  const auto said = count == nullptr ? std::nullopt : small_number(count->value);
-  const auto pos = count == nullptr ? section.pos : count->pos();
+  const auto said = count ? small_number(count->value) : std::nullopt;
+  const auto pos = count ? count->pos() : section.pos;
   if (!said) {
     report_.warning(pos, "list-count-missing",
                     "[" + to_utf8(section.name) + "] has no SupportedObjects");
@@ -139,6 +138,7 @@ void ObjectLists::check_place(ObjectList list, std::uint16_t index, const IniEnt
 
 void ObjectLists::tell_unlisted(const Object& object) const {
   if (!any_ || membership_[object.index] != ObjectList::unlisted || object.index < 0x1000) return;
+  if (!report_.wants("object-not-listed")) return;
   report_.warning(object.pos, "object-not-listed",
                   "object " + hex(object.index) +
                       " is in none of the object lists; it was read, other tools drop it");

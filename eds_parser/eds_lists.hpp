@@ -18,7 +18,7 @@ class ObjectLists {
   /// `described`: indices that have a section.
   ObjectLists(const IndexSet& described, Report& report);
 
-  void read(ObjectList list, const IniSection& section, std::span<const IniEntry> entries);
+  void read(ObjectList list, const IniSection& section, const IniEntries& entries);
   ObjectList list_of(std::uint16_t index) const noexcept { return membership_[index]; }
   /// Tells of an object that no list names.
   void tell_unlisted(const Object& object) const;

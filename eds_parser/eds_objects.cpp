@@ -16,11 +16,6 @@ bool is_structured(ObjectType type) noexcept {
 std::string section_text(const IniSection& section) { return '[' + to_utf8(section.name) + ']'; }
 
 /// Type with the given code, unknown where takt does not know it.
-DataType data_type_of(std::uint32_t code) noexcept {
-  const auto type = static_cast<DataType>(code);
-  return code <= 0x1B && name(type) != "unknown" ? type : DataType::unknown;
-}
-
 std::optional<Access> access_of(std::string_view text) noexcept {
   struct Known {
     std::string_view text;
@@ -51,7 +46,7 @@ std::uint32_t role_of(const SectionName& name) noexcept {
 }
 
 bool inverted(const Value& low, const Value& high) noexcept {
-  if (low.index() != high.index() || std::holds_alternative<std::string>(low)) return false;
+  if (low.index() != high.index() || std::holds_alternative<BoxedText>(low)) return false;
   return high < low;
 }
 
@@ -105,8 +100,9 @@ Object ObjectReader::read(std::span<const ObjectSection> group) {
 
 SubExtension ObjectReader::read_extension(const IniSection& section, std::uint16_t index) {
   const ObjectFields fields{file_.entries(section), section.name, report_};
-  SubExtension extension{.pattern = read_sub(fields, {index, 1}, section),
-                         .count = fields.text(Keyword::module_count)};
+  SubExtension extension;
+  extension.count = fields.text(Keyword::module_count);
+  read_sub(extension.pattern, fields, {index, 1}, section);
   const auto extend = values_.read_count(fields.text(Keyword::module_extend), 254, "ObjExtend",
                                          fields.pos(Keyword::module_extend, section.pos));
   extension.last_sub = extend.value_or(0);
@@ -139,7 +135,7 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
 
 void ObjectReader::read_single(Object& object, const ObjectFields& fields,
                                const IniSection& section) {
-  object.subs.push_back(read_sub(fields, {object.index, 0}, section));
+  read_sub(object.subs.emplace_back(), fields, {object.index, 0}, section);
   auto& sub = object.subs.back();
   if (object.type == ObjectType::domain && !fields.has(Keyword::data_type)) {
     sub.type = DataType::domain;
@@ -156,7 +152,7 @@ void ObjectReader::read_subs(Object& object, const Parts& parts) {
       report_.warning(section.pos, "parameter-name-missing",
                       section_text(section) + " has no ParameterName");
     }
-    object.subs.push_back(read_sub(fields, {part.index(), part.sub()}, section));
+    read_sub(object.subs.emplace_back(), fields, {part.index(), part.sub()}, section);
   }
 }
 
@@ -191,7 +187,8 @@ void ObjectReader::expand(Object& object, const ObjectFields& fields, const IniS
     report_.warning(fields.pos(Keyword::sub_number, section.pos), "compact-and-sub-number",
                     "SubNumber is 0 or missing beside CompactSubObj; it was left out");
   }
-  const SubObject pattern = read_sub(fields, {object.index, 1}, section);
+  SubObject pattern;
+  read_sub(pattern, fields, {object.index, 1}, section);
   expand_compact_subs(object, pattern, static_cast<std::uint8_t>(count));
 }
 
@@ -237,23 +234,27 @@ ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniS
   return ObjectType::record;
 }
 
-SubObject ObjectReader::read_sub(const ObjectFields& fields, ObjectKey key,
-                                 const IniSection& section) {
-  SubObject sub;
+void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                            const IniSection& section) {
   sub.sub = key.sub;
   sub.name = to_utf8(fields.text(Keyword::parameter_name));
   sub.pos = section.pos;
   sub.default_pos = fields.pos(Keyword::default_value, section.pos);
   read_type(sub, fields, key, section);
   sub.access = read_access(fields, key, section, sub.type == DataType::domain);
-  if (const auto* mapping = fields.get(Keyword::pdo_mapping)) {
+  if (const auto mapping = fields.get(Keyword::pdo_mapping)) {
     sub.pdo_mappable = values_.read_flag(mapping->value, "PDOMapping", mapping->pos());
   }
-  if (const auto* flags = fields.get(Keyword::obj_flags)) {
+  if (const auto flags = fields.get(Keyword::obj_flags)) {
     sub.flags = values_.read_count(flags->value, 0xFFFF'FFFF, "ObjFlags", flags->pos()).value_or(0);
   }
   read_values(sub, fields, key, section);
-  return sub;
+  if (fields.has(Keyword::upload_file) || fields.has(Keyword::download_file)) {
+    domain_files_.push_back(
+        {key, to_utf8(fields.text(Keyword::upload_file)),
+         to_utf8(fields.text(Keyword::download_file)),
+         fields.pos(Keyword::download_file, fields.pos(Keyword::upload_file, section.pos))});
+  }
 }
 
 void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
@@ -305,15 +306,17 @@ Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
 
 void ObjectReader::read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                                const IniSection& section) {
-  const auto read = [&](Keyword keyword, std::string_view what, Severity misfit) {
-    const auto* entry = fields.get(keyword);
-    if (entry == nullptr || entry->value.empty()) return std::optional<Value>{};
-    return values_.read(entry->value, sub.type, {key, what, entry->pos(), misfit});
+  const auto read = [&](Keyword keyword, std::string_view what, Severity misfit,
+                        Severity unreadable = Severity::warning) {
+    const auto text = fields.text(keyword);
+    if (text.empty()) return std::optional<Value>{};
+    return values_.read(text, sub.type, {key, what, fields.pos(keyword, {}), misfit, unreadable});
   };
   sub.default_value = read(Keyword::default_value, "DefaultValue", Severity::error);
   sub.default_text = to_utf8(fields.text(Keyword::default_value));
   if (fields.has(Keyword::parameter_value)) {
-    sub.parameter_value = read(Keyword::parameter_value, "ParameterValue", Severity::error);
+    sub.parameter_value =
+        read(Keyword::parameter_value, "ParameterValue", Severity::error, Severity::error);
     sub.parameter_text = to_utf8(fields.text(Keyword::parameter_value));
     sub.parameter_pos = fields.pos(Keyword::parameter_value, section.pos);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/compact.hpp"
@@ -25,6 +26,7 @@ struct ObjectSection {
   std::uint16_t index() const noexcept { return static_cast<std::uint16_t>(order >> 9); }
   std::uint32_t role() const noexcept { return order & 0x1FF; }
   bool is_sub() const noexcept { return role() >= first_sub_role && role() < first_list_role; }
+  bool is_list() const noexcept { return role() >= first_list_role; }
   std::uint8_t sub() const noexcept { return static_cast<std::uint8_t>(role() - first_sub_role); }
 };
 
@@ -44,6 +46,8 @@ class ObjectReader {
   /// `group`: all sections of one index in ascending order. A false `Object::subs.empty()` is not
   /// promised: a record without sub-objects stays in the dictionary.
   Object read(std::span<const ObjectSection> group);
+  /// Those of the objects read so far.
+  std::vector<DomainFiles> take_domain_files() noexcept { return std::move(domain_files_); }
   SubExtension read_extension(const IniSection& section, std::uint16_t index);
 
  private:
@@ -59,7 +63,8 @@ class ObjectReader {
                         const IniSection& section);
   ObjectType read_object_type(const ObjectFields& fields, const IniSection& section,
                               std::uint16_t index, bool has_subs);
-  SubObject read_sub(const ObjectFields& fields, ObjectKey key, const IniSection& section);
+  void read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                const IniSection& section);
   void read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                  const IniSection& section);
   Access read_access(const ObjectFields& fields, ObjectKey key, const IniSection& section,
@@ -72,6 +77,7 @@ class ObjectReader {
   ValueReader& values_;
   Report& report_;
   ExpansionBudget budget_;
+  std::vector<DomainFiles> domain_files_;
 };
 
 }  // namespace takt

@@ -1,5 +1,9 @@
 #include "eds_parser/eds_section.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -87,6 +91,91 @@ bool is_tool(std::string_view name) noexcept {
   return name.find_first_not_of("0123456789", 4) == std::string_view::npos;
 }
 
+/// Letters, whatever their case: bit 5 tells lower from upper, and of all bytes only the letter
+/// itself becomes a lower one.
+template <std::size_t n>
+constexpr std::uint64_t folded(const char* letters) noexcept {
+  std::array<char, 8> eight{};
+  std::copy_n(letters, n, eight.begin());
+  return std::bit_cast<std::uint64_t>(eight) | 0x2020'2020'2020'2020;
+}
+
+/// A keyword of 4 to 16 letters in two numbers.
+struct FoldedWord {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  std::size_t size = 0;
+
+  constexpr FoldedWord() = default;
+  constexpr explicit FoldedWord(std::string_view word) noexcept : size{word.size()} {
+    const bool is_short = size < 8;
+    first = is_short ? folded<4>(word.data()) : folded<8>(word.data());
+    last = is_short ? folded<4>(word.data() + size - 4) : folded<8>(word.data() + size - 8);
+  }
+  constexpr bool operator==(const FoldedWord&) const = default;
+  constexpr std::size_t hash(std::uint64_t factor) const noexcept {
+    return ((first ^ std::rotl(last, 7)) * factor) >> 58;
+  }
+};
+
+struct KnownKey {
+  std::string_view name;
+  Keyword keyword = Keyword::unknown;
+};
+
+constexpr KnownKey known_keys[] = {
+    {"parametername", Keyword::parameter_name},
+    {"objecttype", Keyword::object_type},
+    {"datatype", Keyword::data_type},
+    {"lowlimit", Keyword::low_limit},
+    {"highlimit", Keyword::high_limit},
+    {"accesstype", Keyword::access_type},
+    {"defaultvalue", Keyword::default_value},
+    {"pdomapping", Keyword::pdo_mapping},
+    {"subnumber", Keyword::sub_number},
+    {"objflags", Keyword::obj_flags},
+    {"compactsubobj", Keyword::compact_sub_obj},
+    {"parametervalue", Keyword::parameter_value},
+    {"denotation", Keyword::denotation},
+    {"uploadfile", Keyword::upload_file},
+    {"downloadfile", Keyword::download_file},
+    {"count", Keyword::module_count},
+    {"objextend", Keyword::module_extend},
+    {"paramrefd", Keyword::other_known},
+    {"srdomapping", Keyword::other_known},
+    {"invertedsrad", Keyword::other_known},
+    {"description", Keyword::other_known},
+    {"factor", Keyword::other_known},
+    {"unit", Keyword::other_known},
+};
+
+/// A hash table in which every keyword has a place of its own: one look, one comparison.
+struct KeyTable {
+  struct Place {
+    FoldedWord word;
+    Keyword keyword = Keyword::unknown;
+  };
+  std::array<Place, 64> places{};
+  std::uint64_t factor = 0;
+};
+
+consteval KeyTable make_key_table() {
+  for (std::uint64_t factor = 0x9E37'79B9'7F4A'7C15;; factor += 0x1000'0000'0002) {
+    KeyTable table;
+    table.factor = factor;
+    const bool all = std::ranges::all_of(known_keys, [&](const KnownKey& key) {
+      const FoldedWord word{key.name};
+      auto& place = table.places[word.hash(factor)];
+      const bool free = place.keyword == Keyword::unknown;
+      place = {word, key.keyword};
+      return free;
+    });
+    if (all) return table;
+  }
+}
+
+constexpr KeyTable key_table = make_key_table();
+
 }  // namespace
 
 SectionName classify_section(std::string_view name) noexcept {
@@ -110,75 +199,35 @@ SectionName classify_section(std::string_view name) noexcept {
 }
 
 Keyword classify_key(std::string_view key) noexcept {
-  struct Known {
-    std::string_view name;
-    Keyword keyword;
-  };
-  const auto match = [key](std::initializer_list<Known> candidates) {
-    for (const auto& known : candidates) {
-      if (same_word(key, known.name)) return known.keyword;
-    }
-    return Keyword::unknown;
-  };
-  switch (key.size()) {
-    case 4:
-      return match({{"unit", Keyword::other_known}});
-    case 5:
-      return match({{"count", Keyword::module_count}});
-    case 6:
-      return match({{"factor", Keyword::other_known}});
-    case 8:
-      return match({{"datatype", Keyword::data_type},
-                    {"objflags", Keyword::obj_flags},
-                    {"lowlimit", Keyword::low_limit}});
-    case 9:
-      return match({{"highlimit", Keyword::high_limit},
-                    {"subnumber", Keyword::sub_number},
-                    {"paramrefd", Keyword::other_known},
-                    {"objextend", Keyword::module_extend}});
-    case 10:
-      return match({{"objecttype", Keyword::object_type},
-                    {"accesstype", Keyword::access_type},
-                    {"pdomapping", Keyword::pdo_mapping},
-                    {"denotation", Keyword::denotation},
-                    {"uploadfile", Keyword::upload_file}});
-    case 11:
-      return match({{"srdomapping", Keyword::other_known}, {"description", Keyword::other_known}});
-    case 12:
-      return match({{"defaultvalue", Keyword::default_value},
-                    {"downloadfile", Keyword::download_file},
-                    {"invertedsrad", Keyword::other_known}});
-    case 13:
-      return match({{"parametername", Keyword::parameter_name},
-                    {"compactsubobj", Keyword::compact_sub_obj}});
-    case 14:
-      return match({{"parametervalue", Keyword::parameter_value}});
-    default:
-      return Keyword::unknown;
-  }
+  if (key.size() < 4 || key.size() > 16) return Keyword::unknown;
+  const FoldedWord word{key};
+  const auto& place = key_table.places[word.hash(key_table.factor)];
+  return place.word == word ? place.keyword : Keyword::unknown;
 }
 
-ObjectFields::ObjectFields(std::span<const IniEntry> entries, std::string_view section,
-                           Report& report) {
-  for (const auto& entry : entries) {
-    const auto keyword = classify_key(entry.key);
+ObjectFields::ObjectFields(const IniEntries& entries, std::string_view section, Report& report)
+    : text_{entries.text()} {
+  for (const auto& spot : entries.spots()) {
+    const auto keyword = classify_key(spot.key_in(text_));
     if (keyword == Keyword::other_known) continue;
     if (keyword == Keyword::unknown) {
       if (report.wants("unknown-key")) {
+        const auto entry = spot.entry_in(text_);
         report.warning(entry.key_pos(), "unknown-key",
                        "key " + quoted(entry.key) + " of [" + to_utf8(section) +
                            "] is not one of CiA 306; it was left out");
       }
       continue;
     }
-    auto& slot = slots_[static_cast<std::size_t>(keyword)];
-    if (slot == nullptr) {
-      slot = &entry;
-    } else if (slot->value != entry.value && report.wants("duplicate-key")) {
+    auto& first = slots_[static_cast<std::size_t>(keyword)];
+    if (first == nullptr) {
+      first = &spot;
+    } else if (first->value_in(text_) != spot.value_in(text_) && report.wants("duplicate-key")) {
+      const auto entry = spot.entry_in(text_);
       report.warning(entry.pos(), "duplicate-key",
                      "key " + quoted(entry.key) + " of [" + to_utf8(section) +
                          "] repeated with another value; the first one counts, " +
-                         quoted(slot->value));
+                         quoted(first->value_in(text_)));
     }
   }
 }

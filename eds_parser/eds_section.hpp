@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "eds_parser/ini.hpp"
@@ -75,25 +76,32 @@ Keyword classify_key(std::string_view key) noexcept;
 /// The entries of one object's section by keyword; of a repeated key the first counts.
 class ObjectFields {
  public:
-  ObjectFields(std::span<const IniEntry> entries, std::string_view section, Report& report);
+  ObjectFields(const IniEntries& entries, std::string_view section, Report& report);
 
-  bool has(Keyword keyword) const noexcept { return get(keyword) != nullptr; }
-  const IniEntry* get(Keyword keyword) const noexcept {
-    return slots_[static_cast<std::size_t>(keyword)];
+  bool has(Keyword keyword) const noexcept { return slot(keyword) != nullptr; }
+  std::optional<IniEntry> get(Keyword keyword) const noexcept {
+    const auto* spot = slot(keyword);
+    if (spot == nullptr) return std::nullopt;
+    return spot->entry_in(text_);
   }
   /// The value as written, empty where the key is missing.
   std::string_view text(Keyword keyword) const noexcept {
-    const auto* entry = get(keyword);
-    return entry == nullptr ? std::string_view{} : entry->value;
+    const auto* spot = slot(keyword);
+    return spot == nullptr ? std::string_view{} : spot->value_in(text_);
   }
   /// Place of a value, or `otherwise` where the key is missing.
   SourcePos pos(Keyword keyword, SourcePos otherwise) const noexcept {
-    const auto* entry = get(keyword);
-    return entry == nullptr ? otherwise : entry->pos();
+    const auto* spot = slot(keyword);
+    return spot == nullptr ? otherwise : spot->pos_in(text_);
   }
 
  private:
-  std::array<const IniEntry*, static_cast<std::size_t>(Keyword::other_known)> slots_{};
+  const IniSpot* slot(Keyword keyword) const noexcept {
+    return slots_[static_cast<std::size_t>(keyword)];
+  }
+
+  const char* text_;
+  std::array<const IniSpot*, static_cast<std::size_t>(Keyword::other_known)> slots_{};
 };
 
 }  // namespace takt

@@ -1,39 +1,101 @@
 #include "eds_parser/ini.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
 #include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::size_t longest_line = 255;  // CiA 306, 4.2
+constexpr std::ptrdiff_t longest_line = 255;  // CiA 306, 4.2
 
-/// Cuts a text into lines, whatever ends them, and notes the first `=` of each on the way.
+struct Line {
+  const char* first;
+  const char* last;              ///< behind it
+  const char* equals = nullptr;  ///< the first `=`, if any
+};
+
+/// Cuts a text into lines, whatever ends them, and notes the first `=` of each on the way. Looks at
+/// 64 bytes at a time and remembers where control characters and `=` are.
 class Lines {
  public:
   explicit Lines(std::string_view text) noexcept
-      : at_{text.data()}, end_{text.data() + text.size()} {}
+      : at_{text.data()}, end_{text.data() + text.size()}, block_{at_} {
+    mark();
+  }
 
   bool done() const noexcept { return at_ == end_; }
-  /// Of the line taken last; nullptr where it has none.
-  const char* equals() const noexcept { return equals_; }
 
-  std::string_view take() noexcept {
-    const char* const first = at_;
-    equals_ = nullptr;
-    const char* at = first;
-    for (; at != end_ && *at != '\n' && *at != '\r'; ++at) {
-      if (*at == '=' && equals_ == nullptr) equals_ = at;
+  Line take() noexcept {
+    Line line{.first = at_, .last = next()};
+    while (line.last != end_ && *line.last == '=') {
+      if (line.equals == nullptr) line.equals = line.last;
+      line.last = next();
     }
-    at_ = at;
-    if (at_ != end_ && *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
-    if (at_ != end_) ++at_;
-    return {first, static_cast<std::size_t>(at - first)};
+    while (line.last != end_ && *line.last != '\n' && *line.last != '\r') take_odd(line);
+    at_ = line.last;
+    if (at_ == end_) return line;
+    const bool two = *at_ == '\r' && end_ - at_ > 1 && at_[1] == '\n';
+    if (two) next();
+    at_ += two ? 2 : 1;
+    return line;
   }
 
  private:
+  static constexpr std::uint64_t ones = 0x0101'0101'0101'0101;
+  static constexpr std::uint64_t tops = ones << 7;
+  static constexpr std::size_t block_size = 64;
+
+  /// Tabs and other control characters, and what looked like one of the wanted.
+  void take_odd(Line& line) noexcept {
+    if (*line.last == '=' && line.equals == nullptr) line.equals = line.last;
+    line.last = next();
+  }
+
+  /// The next character that may matter: every control character and `=`, few others; or the end.
+  const char* next() noexcept {
+    while (marks_ == 0) {
+      if (end_ - block_ <= static_cast<std::ptrdiff_t>(block_size)) return end_;
+      block_ += block_size;
+      mark();
+    }
+    const char* const at = block_ + std::countr_zero(marks_);
+    marks_ &= marks_ - 1;
+    return at;
+  }
+
+  void mark() noexcept {
+    if (end_ - block_ >= static_cast<std::ptrdiff_t>(block_size)) {
+      marks_ = marks_of(block_);
+      return;
+    }
+    std::array<char, block_size> last;
+    last.fill(' ');
+    std::copy(block_, end_, last.begin());
+    marks_ = marks_of(last.data());
+  }
+
+  static std::uint64_t marks_of(const char* block) noexcept {
+    std::uint64_t marks = 0;
+    for (std::size_t at = 0; at < block_size; at += 8) {
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, block + at, 8);
+      if constexpr (std::endian::native == std::endian::big) eight = std::byteswap(eight);
+      const std::uint64_t other = eight ^ (ones * '=');
+      const std::uint64_t found = ((eight - ones * ' ') & ~eight) | ((other - ones) & ~other);
+      // bit 7 of each byte, side by side
+      marks |= (((found & tops) >> 7) * 0x0102'0408'1020'4080 >> 56) << at;
+    }
+    return marks;
+  }
+
   const char* at_;
   const char* end_;
-  const char* equals_ = nullptr;
+  const char* block_;
+  std::uint64_t marks_ = 0;  ///< bit n: block_[n] may matter and was not taken yet
 };
 
 class Reader {
@@ -41,37 +103,58 @@ class Reader {
   Reader(IniFile& file, Report& report) noexcept : file_{file}, report_{report} {}
 
   void read(std::string_view text) {
-    file_.all_entries.reserve(text.size() / 24 + 16);
-    file_.sections.reserve(text.size() / 160 + 16);
+    file_.text = text.data();
+    file_.spots.reserve(text.size() / 16 + 16);
+    file_.sections.reserve(text.size() / 128 + 16);
     for (Lines lines{text}; !lines.done();) {
-      line_ = lines.take();
-      equals_ = lines.equals();
       ++number_;
-      read_line();
+      read_line(lines.take());
     }
     close_section();
   }
 
  private:
-  void read_line() {
-    const char* at = line_.data();
-    const char* const end = at + line_.size();
-    while (at != end && is_blank(*at)) ++at;
-    if (at == end || *at == ';') return;
-    const auto rest = trim({at, static_cast<std::size_t>(end - at)});
+  void read_line(const Line& line) {
+    const char* first = line.first;
+    const char* last = line.last;
+    while (first != last && is_blank(*first)) ++first;
+    while (first != last && is_blank(last[-1])) --last;
+    if (first == last || *first == ';') return;
+    start_ = line.first;
+    if (line.equals != nullptr && *first != '[' && *first != '#') {
+      read_entry(first, line.equals, last);
+    } else {
+      read_other({first, static_cast<std::size_t>(last - first)});
+    }
+    if (line.last - line.first > longest_line) tell_long(line);
+  }
+
+  void read_entry(const char* key, const char* equals, const char* last) {
+    if (file_.sections.empty()) {
+      return leave_out("entry-outside-section", "entry before the first [section]",
+                       {key, static_cast<std::size_t>(last - key)});
+    }
+    file_.spots.push_back(
+        {.key = offset(key), .equals = offset(equals), .end = offset(last), .line = number_});
+  }
+
+  /// Neither blank nor an entry.
+  void read_other(std::string_view rest) {
     if (rest.front() == '[') {
       read_header(rest);
     } else if (rest.front() == '#') {
       report_.note(here(rest), "hash-comment",
                    "'#' does not start a comment in CiA 306, taken as one; use ';'");
     } else {
-      read_entry(rest);
+      leave_out("no-equals", "neither [section] nor key=value", rest);
     }
-    if (line_.size() > longest_line && report_.wants("long-line")) {
-      report_.warning({number_, 1}, "long-line",
-                      "line of " + std::to_string(line_.size()) +
-                          " characters; CiA 306 allows 255, other tools may cut it");
-    }
+  }
+
+  void tell_long(const Line& line) {
+    if (!report_.wants("long-line")) return;
+    report_.warning({number_, 1}, "long-line",
+                    "line of " + std::to_string(line.last - line.first) +
+                        " characters; CiA 306 allows 255, other tools may cut it");
   }
 
   void read_header(std::string_view rest) {
@@ -86,21 +169,7 @@ class Reader {
     }
     close_section();
     file_.sections.push_back({trim(rest.substr(1, close - 1)), here(rest),
-                              static_cast<std::uint32_t>(file_.all_entries.size()), 0});
-  }
-
-  void read_entry(std::string_view rest) {
-    if (equals_ == nullptr) {
-      return leave_out("no-equals", "neither [section] nor key=value", rest);
-    }
-    const auto length = static_cast<std::size_t>(equals_ - rest.data());
-    const auto key = trim(rest.substr(0, length));
-    auto value = rest.substr(length + 1);
-    while (!value.empty() && is_blank(value.front())) value.remove_prefix(1);
-    if (file_.sections.empty()) {
-      return leave_out("entry-outside-section", "entry before the first [section]", rest);
-    }
-    file_.all_entries.push_back({key, value, number_, column(rest), column(value)});
+                              static_cast<std::uint32_t>(file_.spots.size()), 0});
   }
 
   void leave_out(std::string_view rule, std::string_view why, std::string_view line) {
@@ -111,19 +180,21 @@ class Reader {
   void close_section() noexcept {
     if (file_.sections.empty()) return;
     auto& last = file_.sections.back();
-    last.count = static_cast<std::uint32_t>(file_.all_entries.size()) - last.first;
+    last.count = static_cast<std::uint32_t>(file_.spots.size()) - last.first;
   }
 
-  std::uint32_t column(std::string_view part) const noexcept {
-    return static_cast<std::uint32_t>(part.data() - line_.data()) + 1;
+  std::uint32_t offset(const char* at) const noexcept {
+    return static_cast<std::uint32_t>(at - file_.text);
   }
-  SourcePos here(std::string_view part) const noexcept { return {number_, column(part)}; }
+  std::uint32_t column(const char* at) const noexcept {
+    return static_cast<std::uint32_t>(at - start_) + 1;
+  }
+  SourcePos here(std::string_view part) const noexcept { return {number_, column(part.data())}; }
 
   IniFile& file_;
   Report& report_;
-  std::string_view line_;
-  const char* equals_ = nullptr;  ///< first `=` of the line
-  std::uint32_t number_ = 0;
+  const char* start_ = nullptr;  ///< of the line
+  std::uint32_t number_ = 0;     ///< of the line
 };
 
 /// UTF-16 by its mark, or by the NULs that every second byte of ASCII text then is.
@@ -142,6 +213,15 @@ Encoding encoding_of(std::string_view text) noexcept {
 }
 
 }  // namespace
+
+IniEntry IniSpot::entry_in(const char* text) const noexcept {
+  const auto indent = static_cast<std::uint32_t>(text + key - line_in(text));
+  return {.key = key_in(text),
+          .value = value_in(text),
+          .line = line,
+          .key_column = indent + 1,
+          .value_column = pos_in(text).column};
+}
 
 IniFile read_ini(std::string_view text, Report& report) {
   IniFile file;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -8,6 +9,7 @@
 
 #include "eds_parser/report.hpp"
 #include "eds_parser/source.hpp"
+#include "eds_parser/text.hpp"
 
 namespace takt {
 
@@ -23,6 +25,80 @@ struct IniEntry {
   SourcePos key_pos() const noexcept { return {line, key_column}; }
 };
 
+/// Where an entry is: offsets into the text. A large file has so many that each byte here counts;
+/// the rest of an IniEntry is found again when it is asked for.
+struct IniSpot {
+  std::uint32_t key = 0;
+  std::uint32_t equals = 0;
+  std::uint32_t end = 0;  ///< behind the value
+  std::uint32_t line = 0;
+
+  std::string_view key_in(const char* text) const noexcept {
+    const char* last = text + equals;
+    while (last != text + key && is_blank(last[-1])) --last;
+    return {text + key, last};
+  }
+  std::string_view value_in(const char* text) const noexcept {
+    const char* first = text + equals + 1;
+    while (first < text + end && is_blank(*first)) ++first;
+    return {first, text + end};
+  }
+  SourcePos pos_in(const char* text) const noexcept {
+    const auto column = value_in(text).data() - line_in(text);
+    return {line, static_cast<std::uint32_t>(column) + 1};
+  }
+  IniEntry entry_in(const char* text) const noexcept;
+
+ private:
+  /// Start of the line, before the blanks in front of the key.
+  const char* line_in(const char* text) const noexcept {
+    const char* first = text + key;
+    while (first != text && is_blank(first[-1]) && first[-1] != '\n' && first[-1] != '\r') --first;
+    return first;
+  }
+};
+
+/// The entries of a section in order.
+class IniEntries {
+ public:
+  class Iterator {
+   public:
+    using value_type = IniEntry;
+    using difference_type = std::ptrdiff_t;
+
+    Iterator() = default;
+    Iterator(const char* text, const IniSpot* at) noexcept : text_{text}, at_{at} {}
+    IniEntry operator*() const noexcept { return at_->entry_in(text_); }
+    Iterator& operator++() noexcept {
+      ++at_;
+      return *this;
+    }
+    Iterator operator++(int) noexcept { return {text_, at_++}; }
+    bool operator==(const Iterator& other) const noexcept { return at_ == other.at_; }
+
+   private:
+    const char* text_ = nullptr;
+    const IniSpot* at_ = nullptr;
+  };
+
+  IniEntries() = default;
+  IniEntries(const char* text, std::span<const IniSpot> spots) noexcept
+      : text_{text}, spots_{spots} {}
+
+  Iterator begin() const noexcept { return {text_, spots_.data()}; }
+  Iterator end() const noexcept { return {text_, spots_.data() + spots_.size()}; }
+  std::size_t size() const noexcept { return spots_.size(); }
+  bool empty() const noexcept { return spots_.empty(); }
+  const char* text() const noexcept { return text_; }
+  std::span<const IniSpot> spots() const noexcept { return spots_; }
+  IniEntry operator[](std::size_t at) const noexcept { return spots_[at].entry_in(text_); }
+  IniEntry back() const noexcept { return spots_.back().entry_in(text_); }
+
+ private:
+  const char* text_ = nullptr;
+  std::span<const IniSpot> spots_;
+};
+
 struct IniSection {
   std::string_view name;
   SourcePos pos;
@@ -34,17 +110,18 @@ struct IniSection {
 /// into `recoded` where that was UTF-16. CiA 306, 4.2.
 struct IniFile {
   std::vector<IniSection> sections;  ///< in order of the file, duplicates included
-  std::vector<IniEntry> all_entries;
+  std::vector<IniSpot> spots;
   std::unique_ptr<std::string> recoded;
+  const char* text = nullptr;  ///< what the spots count from
 
-  std::span<const IniEntry> entries(const IniSection& section) const noexcept {
-    return std::span{all_entries}.subspan(section.first, section.count);
+  IniEntries entries(const IniSection& section) const noexcept {
+    return {text, std::span{spots}.subspan(section.first, section.count)};
   }
 };
 
-/// Splits a text into sections and entries. Line ends LF, CR LF, CR, also mixed; UTF-8 with or
-/// without mark, any one-byte page, UTF-16 with mark. Lines that are neither give a finding.
-/// `text` must outlive the result. Time and memory are proportional to the text.
+/// Splits a text of less than 4 GB into sections and entries. Line ends LF, CR LF, CR, also mixed;
+/// UTF-8 with or without mark, any one-byte page, UTF-16 with mark. Lines that are neither give a
+/// finding. `text` must outlive the result. Time and memory are proportional to the text.
 IniFile read_ini(std::string_view text, Report& report);
 
 }  // namespace takt

@@ -144,6 +144,8 @@ std::size_t end_of_term(std::string_view text) noexcept {
 /// The forms that nearly all numbers have, decimal and 0x; none where there is anything else.
 std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
   ParsedNumber number;
+  const bool minus = text.starts_with('-');
+  if (minus) text.remove_prefix(1);
   if (text.size() > 2 && text[0] == '0' && fold(text[1]) == 'x') {
     if (text.size() > 2 + 16) return std::nullopt;
     number.hex = true;
@@ -152,6 +154,7 @@ std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
       if (digit < 0) return std::nullopt;
       number.magnitude = number.magnitude << 4 | static_cast<unsigned>(digit);
     }
+    number.negative = minus && number.magnitude != 0;
     return number;
   }
   const bool leading_zero = text.size() > 1 && text.front() == '0';
@@ -160,6 +163,7 @@ std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
     if (c < '0' || c > '9') return std::nullopt;
     number.magnitude = number.magnitude * 10 + static_cast<unsigned>(c - '0');
   }
+  number.negative = minus && number.magnitude != 0;
   return number;
 }
 

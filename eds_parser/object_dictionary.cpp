@@ -49,8 +49,9 @@ std::optional<std::int64_t> as_integer(const Value& value) noexcept {
 }
 
 std::vector<std::byte> to_bytes(const Value& value, DataType type) {
-  if (const auto* text = std::get_if<std::string>(&value)) {
-    return type == DataType::unicode_string ? bytes_of(utf8_to_utf16le(*text)) : bytes_of(*text);
+  if (const auto* boxed = std::get_if<BoxedText>(&value)) {
+    const auto& text = boxed->text();
+    return type == DataType::unicode_string ? bytes_of(utf8_to_utf16le(text)) : bytes_of(text);
   }
   std::vector<std::byte> bytes(byte_width(type));
   std::uint64_t pattern = pattern_of(value, type);

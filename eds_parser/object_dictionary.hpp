@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "eds_parser/boxed_text.hpp"
 #include "eds_parser/source.hpp"
 #include "eds_parser/table/data_type.hpp"
 #include "eds_parser/table/device_table.hpp"
@@ -16,7 +17,7 @@ namespace takt {
 
 /// A value of the dictionary: signed types as int64, unsigned types and BOOLEAN as uint64, reals as
 /// double, strings and byte types as the bytes themselves.
-using Value = std::variant<std::int64_t, std::uint64_t, double, std::string>;
+using Value = std::variant<std::int64_t, std::uint64_t, double, BoxedText>;
 
 /// Object codes. CiA 306, 4.6.3.2.
 enum class ObjectType : std::uint8_t {
@@ -32,15 +33,19 @@ enum class ObjectType : std::uint8_t {
 /// Which list of the file names the object; `unlisted` objects are read all the same.
 enum class ObjectList : std::uint8_t { mandatory, optional, manufacturer, unlisted };
 
-/// An object that holds a value: a VAR, or one entry of an ARRAY or RECORD.
+/// An object that holds a value: a VAR, or one entry of an ARRAY or RECORD. Large files have tens
+/// of thousands: the small members stand together.
 struct SubObject {
   std::uint8_t sub = 0;
-  std::string name;  ///< UTF-8
-  DataType type = DataType::unknown;
-  std::uint16_t type_code = 0;  ///< as the file says, also where takt does not know it
   Access access = Access::rw;
   bool pdo_mappable = false;
+  DataType type = DataType::unknown;
+  std::uint16_t type_code = 0;  ///< as the file says, also where takt does not know it
   std::uint32_t flags = 0;  ///< ObjFlags: bit 0 refuse write on download, bit 1 refuse read on scan
+  SourcePos pos;            ///< of its section
+  SourcePos default_pos;    ///< of DefaultValue, or of the section
+  SourcePos parameter_pos;  ///< of ParameterValue; 0:0 where there is none
+  std::string name;         ///< UTF-8
   std::optional<Value> low_limit;
   std::optional<Value> high_limit;
   std::optional<Value> default_value;    ///< $NODEID resolved; none where the node id is unknown
@@ -48,9 +53,6 @@ struct SubObject {
   std::string default_text;              ///< as written
   std::string parameter_text;
   std::string denotation;
-  SourcePos pos;            ///< of its section
-  SourcePos default_pos;    ///< of DefaultValue, or of the section
-  SourcePos parameter_pos;  ///< of ParameterValue; 0:0 where there is none
 
   /// ParameterValue of the DCF, else the default.
   const std::optional<Value>& value() const noexcept {
@@ -96,6 +98,63 @@ struct Commissioning {
   std::string node_name;
   std::uint16_t baudrate_kbit = 0;
   std::string network_name;
+  bool manager = false;  ///< CANopenManager: this is the master
+};
+
+/// [FileInfo], as written. CiA 306, 4.4.
+struct FileInfo {
+  std::string file_name;
+  std::string file_version;
+  std::string file_revision;
+  std::string eds_version;
+  std::string description;
+  std::string creation_date;
+  std::string creation_time;
+  std::string created_by;
+  std::string modification_date;
+  std::string modification_time;
+  std::string modified_by;
+  std::string last_eds;  ///< of a DCF: the EDS that it was made from
+};
+
+/// [ToolN]: a program of the vendor for this device.
+struct VendorTool {
+  std::string name;
+  std::string command;  ///< may hold $DCF, $EDS, $NODEID
+};
+
+/// What the file says for people and for other programs; nothing of it goes to the device.
+struct FileNotes {
+  FileInfo info;
+  std::vector<std::string> comments;  ///< lines of [Comments]
+  std::vector<VendorTool> tools;
+};
+
+/// Files of a DOMAIN in a DCF. CiA 306, 5.3.
+struct DomainFiles {
+  ObjectKey key;
+  std::string upload;                ///< what is read from the device goes there
+  std::string download;              ///< comes from there
+  SourcePos pos{};                   ///< of DownloadFile, or of UploadFile where there is none
+  std::vector<std::byte> content{};  ///< of `download`, where a network is loaded
+};
+
+/// [xxxxObjectLinks]: objects that belong together. CiA 306, 4.6.4.
+struct ObjectLinks {
+  std::uint16_t index = 0;
+  std::vector<std::uint16_t> to;
+};
+
+/// A segment of [DynamicChannels]: objects that the program of the device may make.
+struct DynamicChannel {
+  std::uint16_t type_code = 0;
+  DataType type = DataType::unknown;
+  Access direction = Access::ro;  ///< as others see these objects
+  std::uint16_t first = 0;        ///< index
+  std::uint16_t last = 0;
+  std::uint32_t offset = 0;  ///< PPOffset: in the process picture of the program
+  std::uint32_t most = 0;    ///< MaxCnt: objects; 0: as many as the range has
+  SourcePos pos;             ///< of Range
 };
 
 /// What an EDS or DCF says of a device.
@@ -107,6 +166,10 @@ struct ObjectDictionary {
   Commissioning commissioning;
   std::array<bool, 8> dummy_usage{};  ///< [n]: data type n may be mapped as a dummy
   std::vector<Object> objects;        ///< ascending index
+  FileNotes notes;
+  std::vector<DomainFiles> domain_files;  ///< in order of the file
+  std::vector<ObjectLinks> links;         ///< in order of the file
+  std::vector<DynamicChannel> channels;   ///< in order of the file
 
   const Object* find(std::uint16_t index) const noexcept;
   const SubObject* find(ObjectKey key) const noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/number.hpp"
 
 namespace takt {
@@ -12,9 +13,7 @@ constexpr std::uint16_t pdos_per_direction = 512;
 constexpr std::uint8_t most_entries = 64;  // CiA 301, 7.5.2.36; above are the MPDO marks
 
 std::optional<std::uint64_t> unsigned_value(const ObjectDictionary& dictionary, ObjectKey key) {
-  const auto* sub = dictionary.find(key);
-  if (sub == nullptr || !sub->value()) return std::nullopt;
-  const auto integer = as_integer(*sub->value());
+  const auto integer = integer_of(dictionary, key);
   if (!integer) return std::nullopt;
   return static_cast<std::uint64_t>(*integer);
 }
@@ -40,6 +39,7 @@ void read_cob_id(PdoDescription& pdo, const ObjectDictionary& dictionary) {
   pdo.cob_id_raw = narrow<std::uint32_t>(unsigned_value(dictionary, key));
   const auto flags = pdo.cob_id_raw ? *pdo.cob_id_raw : constant_term(*sub);
   if (!flags) return;
+  if (!pdo.cob_id_raw) pdo.cob_id_offset = static_cast<std::uint32_t>(*flags & 0x1FFF'FFFF);
   pdo.valid = (*flags & 0x8000'0000) == 0;
   pdo.rtr_allowed = (*flags & 0x4000'0000) == 0;
   pdo.extended = (*flags & 0x2000'0000) != 0;

@@ -24,9 +24,11 @@ struct PdoDescription {
   std::uint16_t number = 1;  ///< 1..512
   bool is_tpdo = false;
   std::optional<std::uint32_t> cob_id_raw;  ///< sub 1 with its flags; none: no value or no node id
-  bool valid = false;                       ///< bit 31 is clear
-  bool rtr_allowed = false;                 ///< bit 30 is clear
-  bool extended = false;                    ///< bit 29 is set
+  /// What is added to a node id that is not known: `$NODEID+0x180`; none: absolute, or known.
+  std::optional<std::uint32_t> cob_id_offset;
+  bool valid = false;        ///< bit 31 is clear
+  bool rtr_allowed = false;  ///< bit 30 is clear
+  bool extended = false;     ///< bit 29 is set
   std::optional<std::uint8_t> transmission_type;
   std::uint32_t inhibit_time_us = 0;
   std::uint16_t event_timer_ms = 0;

@@ -67,4 +67,9 @@ DataType standard_type(ObjectKey key) noexcept {
   return key.sub == 0 ? single(key.index) : DataType::unknown;
 }
 
+DataType data_type_of(std::uint32_t code) noexcept {
+  const auto type = static_cast<DataType>(code);
+  return code <= 0x1B && name(type) != "unknown" ? type : DataType::unknown;
+}
+
 }  // namespace takt

@@ -10,6 +10,8 @@
 namespace takt {
 namespace {
 
+using Expected = std::expected<ParsedNumber, NumberFault>;
+
 struct QuirkText {
   NumberQuirk quirk;
   Severity severity;
@@ -190,7 +192,8 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
   const auto bare = without_comment(text);
   if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
     const auto pattern = parse_number(bare);
-    const bool fits = pattern && pattern->magnitude <= highest_unsigned(bit_width(type));
+    const bool fits =
+        pattern && !pattern->relative() && pattern->magnitude <= highest_unsigned(bit_width(type));
     if (!fits) {
       unreadable(text, name(type), place);
       return std::nullopt;
@@ -251,21 +254,22 @@ std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValueP
   return bytes;
 }
 
-/// Milliseconds since midnight and days, as two numbers, or the 48 bits as one.
+/// Days and milliseconds since midnight, as two numbers, or the 48 bits as one. CiA 306 has no form
+/// for times; other tools write the days first, so do the two numbers count where both orders fit.
 std::optional<Value> ValueReader::read_time(std::string_view text, DataType type,
                                             const ValuePlace& place) {
   const auto bare = without_comment(text);
   const auto gap = bare.find_first_of(" \t");
   if (gap == std::string_view::npos) return read_integer(text, type, place);
-  const auto milliseconds = parse_number(bare.substr(0, gap));
-  const auto days = parse_number(bare.substr(gap));
-  const bool fits = milliseconds && days && !milliseconds->negative && !days->negative &&
-                    milliseconds->magnitude < (1U << 28) && days->magnitude < (1U << 16);
-  if (!fits) {
-    unreadable(text, "milliseconds and days", place);
-    return std::nullopt;
-  }
-  return milliseconds->magnitude | days->magnitude << 32;
+  const auto first = parse_number(bare.substr(0, gap));
+  const auto second = parse_number(bare.substr(gap));
+  const auto in_bits = [](const Expected& number, unsigned bits) {
+    return number && !number->negative && !number->relative() && number->magnitude >> bits == 0;
+  };
+  if (in_bits(first, 16) && in_bits(second, 28)) return second->magnitude | first->magnitude << 32;
+  if (in_bits(first, 28) && in_bits(second, 16)) return first->magnitude | second->magnitude << 32;
+  unreadable(text, "days and milliseconds", place);
+  return std::nullopt;
 }
 
 /// Type unknown: an integer where it looks like one, so that it can be shown.
@@ -344,9 +348,9 @@ void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value
 
 void ValueReader::unreadable(std::string_view text, std::string_view wanted,
                              const ValuePlace& place) {
-  report_.warning(place.pos, "value-unreadable",
-                  to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
-                      "; it has no value now");
+  say(report_, place.unreadable, place.pos, "value-unreadable",
+      to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
+          "; it has no value now");
 }
 
 }  // namespace takt

@@ -15,6 +15,7 @@ struct ValuePlace {
   std::string_view what;  ///< "DefaultValue", a literal
   SourcePos pos;
   Severity misfit = Severity::error;  ///< of a number that the type cannot hold
+  Severity unreadable = Severity::warning;
 };
 
 /// Turns texts of a file into values of a data type, and says what was odd about them. A text that

@@ -7,6 +7,7 @@
 #include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/print/findings_json.hpp"
 
 namespace takt {
 namespace {
@@ -21,6 +22,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   unsigned node = 0;
   bool quiet = false;
+  bool json = false;
   bool rules = false;
 };
 
@@ -58,14 +60,21 @@ int print_rules() {
 
 int check_files(const CheckOptions& options) {
   bool any_error = false;
+  std::vector<JudgedFile> judged;
   for (const auto& path : options.files) {
-    const auto file = read_and_check(path, options.node);
-    for (const auto& finding : file.findings) {
-      if (options.quiet && finding.severity == Severity::note) continue;
-      std::cout << to_string(finding) << '\n';
-    }
+    auto file = read_and_check(path, options.node);
     any_error = any_error || has_error(file.findings);
+    if (options.quiet) {
+      std::erase_if(file.findings,
+                    [](const Finding& finding) { return finding.severity == Severity::note; });
+    }
+    if (options.json) {
+      judged.push_back({path, file.readable, std::move(file.findings)});
+    } else {
+      for (const auto& finding : file.findings) std::cout << to_string(finding) << '\n';
+    }
   }
+  if (options.json) print_findings_json(std::cout, judged);
   return any_error ? 1 : 0;
 }
 
@@ -89,6 +98,7 @@ void add_check(CLI::App& eds, int& exit_code) {
   command->add_option("--node", options->node, "node id that $NODEID stands for")
       ->check(CLI::Range(1U, 127U));
   command->add_flag("--quiet", options->quiet, "leave out notes");
+  command->add_flag("--json", options->json, "one JSON document")->excludes(rules);
   command->footer(
       "Findings are written as file:line:column: severity: message [rule].\n"
       "  error    the device would refuse it, or a master would do something else than meant\n"

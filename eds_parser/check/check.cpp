@@ -1,6 +1,7 @@
 #include "eds_parser/check/check.hpp"
 
 #include "eds_parser/check/rules.hpp"
+#include "eds_parser/integer_of.hpp"
 
 namespace takt {
 
@@ -14,9 +15,7 @@ std::string section_name(ObjectKey key) {
 }
 
 std::optional<std::uint64_t> number_of(const ObjectDictionary& dictionary, ObjectKey key) {
-  const auto* sub = dictionary.find(key);
-  if (sub == nullptr || !sub->value()) return std::nullopt;
-  const auto integer = as_integer(*sub->value());
+  const auto integer = integer_of(dictionary, key);
   if (!integer) return std::nullopt;
   return static_cast<std::uint64_t>(*integer);
 }

@@ -96,10 +96,28 @@ void check_count(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
   }
 }
 
+/// Entries with a value behind one without: nobody knows at which bit they begin.
+void check_gap(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
+  if (!pdo.mapping_count || pdo.mapping.empty()) return;
+  std::optional<std::uint8_t> missing;
+  for (unsigned at = 1; at <= *pdo.mapping_count && at <= 64; ++at) {
+    const ObjectKey key{pdo.mapping_index(), static_cast<std::uint8_t>(at)};
+    if (number_of(dictionary, key).value_or(0) == 0) {
+      if (!missing) missing = key.sub;
+    } else if (missing) {
+      return report.error(dictionary.find(key)->value_pos(), "pdo-mapping-gap",
+                          section_name(key) + " has a value, but " +
+                              section_name({key.index, *missing}) +
+                              " before it has none; the places of all behind are unknown");
+    }
+  }
+}
+
 }  // namespace
 
 void check_mapping(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   check_count(dictionary, pdo, report);
+  check_gap(dictionary, pdo, report);
   const auto* record = dictionary.find(pdo.mapping_index());
   if (record == nullptr || pdo.mapping.empty()) return;
   std::size_t next = 0;

@@ -1,4 +1,5 @@
 #include "eds_parser/check/rules.hpp"
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/standard_types.hpp"
 #include "eds_parser/text.hpp"
 
@@ -8,7 +9,7 @@ namespace {
 /// Below the low or above the high limit.
 bool outside(const Value& value, const SubObject& sub) noexcept {
   const auto comparable = [&value](const std::optional<Value>& limit) {
-    return limit && limit->index() == value.index() && !std::holds_alternative<std::string>(value);
+    return limit && limit->index() == value.index() && !std::holds_alternative<BoxedText>(value);
   };
   if (comparable(sub.low_limit) && value < *sub.low_limit) return true;
   return comparable(sub.high_limit) && value > *sub.high_limit;
@@ -60,7 +61,7 @@ void check_count(const Object& object, Report& report) {
   for (const auto& sub : object.subs) {
     if (sub.sub != 0xFF) highest = sub.sub;
   }
-  const auto said = first.default_value ? as_integer(*first.default_value) : std::nullopt;
+  const auto said = integer_of(first.default_value);
   if (said && *said != highest && report.wants("sub-0-count")) {
     report.note(first.default_pos, "sub-0-count",
                 section_name({object.index, 0}) + ": DefaultValue is " + std::to_string(*said) +

@@ -27,7 +27,7 @@ Json json_of(const std::string& bytes, DataType type) {
 
 Json json_of(const std::optional<Value>& value, DataType type) {
   if (!value) return nullptr;
-  if (const auto* bytes = std::get_if<std::string>(&*value)) return json_of(*bytes, type);
+  if (const auto* bytes = std::get_if<BoxedText>(&*value)) return json_of(bytes->text(), type);
   if (const auto* real = std::get_if<double>(&*value)) return json_of(*real);
   if (const auto* number = std::get_if<std::uint64_t>(&*value)) return *number;
   return std::get<std::int64_t>(*value);
@@ -55,6 +55,38 @@ Json json_of(const DeviceInfo& device) {
           {"nr_tx_pdo", device.nr_tx_pdo},
           {"lss_supported", device.lss_supported},
           {"compact_pdo", device.compact_pdo}};
+}
+
+Json json_of(const FileInfo& info) {
+  return {{"file_name", info.file_name},
+          {"file_version", info.file_version},
+          {"file_revision", info.file_revision},
+          {"eds_version", info.eds_version},
+          {"description", info.description},
+          {"creation_date", info.creation_date},
+          {"creation_time", info.creation_time},
+          {"created_by", info.created_by},
+          {"modification_date", info.modification_date},
+          {"modification_time", info.modification_time},
+          {"modified_by", info.modified_by},
+          {"last_eds", info.last_eds}};
+}
+
+Json json_of(const VendorTool& tool) { return {{"name", tool.name}, {"command", tool.command}}; }
+
+Json json_of(const DomainFiles& files) {
+  return {{"index", files.key.index},
+          {"sub", files.key.sub},
+          {"upload_file", files.upload},
+          {"download_file", files.download}};
+}
+
+Json json_of(const ObjectLinks& links) { return {{"index", links.index}, {"to", links.to}}; }
+
+Json json_of(const DynamicChannel& channel) {
+  return {{"data_type", channel.type_code}, {"direction", access_name(channel.direction)},
+          {"first", channel.first},         {"last", channel.last},
+          {"offset", channel.offset},       {"max_count", channel.most}};
 }
 
 Json json_of(const SubObject& sub) {
@@ -148,6 +180,12 @@ void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Fin
   print_items(out, "objects", dictionary.objects, all);
   print_items(out, "rpdos", pdos, [](const PdoDescription& pdo) { return !pdo.is_tpdo; });
   print_items(out, "tpdos", pdos, [](const PdoDescription& pdo) { return pdo.is_tpdo; });
+  out << ",\n\"file_info\":" << text_of(json_of(dictionary.notes.info));
+  out << ",\n\"comments\":" << text_of(dictionary.notes.comments);
+  print_items(out, "tools", dictionary.notes.tools, all);
+  print_items(out, "domain_files", dictionary.domain_files, all);
+  print_items(out, "object_links", dictionary.links, all);
+  print_items(out, "dynamic_channels", dictionary.channels, all);
   print_items(out, "diagnostics", findings, all);
   out << "}\n";
 }

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <ostream>
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/pdo_description.hpp"
 #include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/print/names.hpp"
@@ -56,7 +57,7 @@ std::string text_of(const Value& value, DataType type) {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
   if (const auto* number = std::get_if<std::uint64_t>(&value)) return std::to_string(*number);
   if (const auto* real = std::get_if<double>(&value)) return text_of(*real);
-  const auto& bytes = std::get<std::string>(value);
+  const auto& bytes = std::get<BoxedText>(value).text();
   const bool is_text = type == DataType::visible_string || type == DataType::unicode_string;
   return is_text ? '"' + to_utf8(bytes) + '"' : hex_bytes(bytes);
 }
@@ -67,7 +68,7 @@ std::string value_text(const SubObject& sub) {
   const auto& text = sub.parameter_text.empty() ? sub.default_text : sub.parameter_text;
   if (!value) return text.empty() ? "-" : text;
   const auto shown = text_of(*value, sub.type);
-  if (std::holds_alternative<std::string>(*value) || text == shown) return shown;
+  if (std::holds_alternative<BoxedText>(*value) || text == shown) return shown;
   return shown + " (" + text + ')';
 }
 
@@ -92,12 +93,42 @@ std::string bit_rates(const DeviceInfo& device) {
 }
 
 std::string profile_text(const ObjectDictionary& dictionary) {
-  const auto* sub = dictionary.find(ObjectKey{0x1000, 0});
-  const auto value = sub && sub->value() ? as_integer(*sub->value()) : std::nullopt;
+  const auto value = integer_of(dictionary, {0x1000, 0});
   if (!value) return "unknown";
   const auto profile = static_cast<std::uint32_t>(*value) & 0xFFFF;
   return (profile == 0 ? "none" : "CiA " + std::to_string(profile)) + ", device type " +
          hex(static_cast<std::uint32_t>(*value), 8);
+}
+
+/// `version 1.2, EDS 4.0, modified 05-12-2026 by A. Author`.
+std::string file_text(const FileInfo& info) {
+  std::string text;
+  const auto add = [&text](std::string_view before, std::string_view what) {
+    if (what.empty()) return;
+    if (!text.empty()) text += ", ";
+    text.append(before).append(what);
+  };
+  add("version ", info.file_version + (info.file_revision.empty() ? "" : '.' + info.file_revision));
+  add("EDS ", info.eds_version);
+  const bool modified = !info.modification_date.empty();
+  const auto& by = modified ? info.modified_by : info.created_by;
+  add(modified ? "modified " : "created ", modified ? info.modification_date : info.creation_date);
+  if (!by.empty()) text.append(" by ").append(by);
+  add("made from ", info.last_eds);
+  return text;
+}
+
+void print_notes(std::ostream& out, const FileNotes& notes) {
+  constexpr std::size_t most_lines = 20;
+  print_fact(out, "file", shortened(file_text(notes.info), 100));
+  std::string_view label = "comments";
+  for (std::size_t i = 0; i < notes.comments.size() && i < most_lines; ++i) {
+    print_fact(out, label, shortened(notes.comments[i], 100));
+    label = "";
+  }
+  for (std::size_t i = 0; i < notes.tools.size() && i < most_lines; ++i) {
+    print_fact(out, "tool", shortened(notes.tools[i].name + "  " + notes.tools[i].command, 100));
+  }
 }
 
 void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
@@ -118,10 +149,18 @@ void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   if (!dictionary.commissioning.node_name.empty()) {
     print_fact(out, "node name", dictionary.commissioning.node_name);
   }
+  for (const auto& channel : dictionary.channels) {
+    print_fact(out, "channels",
+               hex(channel.first) + "-" + hex(channel.last) + "  " +
+                   std::string{name(channel.type)} + "  " +
+                   std::string{access_name(channel.direction)});
+  }
+  print_notes(out, dictionary.notes);
 }
 
 std::string cob_id_text(const PdoDescription& pdo) {
   if (const auto id = pdo.cob_id()) return hex(*id, pdo.extended ? 8 : 3);
+  if (pdo.cob_id_offset) return hex(*pdo.cob_id_offset, pdo.extended ? 8 : 3) + "+id";
   return "no COB-ID";
 }
 

@@ -61,6 +61,17 @@ TEST(Check, NamesTheMappingEntryThatADeviceWouldRefuse) {
                                      "(PDOMapping=0) [pdo-not-mappable]");
 }
 
+TEST(Check, RefusesAMappingWhoseEntriesBeginNobodyKnowsWhere) {
+  const std::string device = entry("1A00sub3", "7", "0x60640020") + entry("1A00sub2", "7", "") +
+                             entry("1A00sub1", "7", "0x60410010") + entry("1800sub1", "7", "0x181");
+  const auto gap = check(read(device + entry("1A00sub0", "5", "3")).dictionary);
+
+  ASSERT_TRUE(has(gap, "pdo-mapping-gap"));
+  EXPECT_EQ(find(gap, "pdo-mapping-gap")->pos, (SourcePos{line_of(6), 14}));
+  EXPECT_FALSE(
+      has(check(read(device + entry("1A00sub0", "5", "2")).dictionary), "pdo-mapping-gap"));
+}
+
 TEST(Check, JudgesMappingEntries) {
   EXPECT_TRUE(has(tpdo("0x60990010"), "pdo-object-missing"));
   EXPECT_TRUE(has(tpdo("0x60410110"), "pdo-object-missing"));

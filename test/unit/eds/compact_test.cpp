@@ -8,8 +8,10 @@
 namespace takt {
 namespace {
 
+using test::find;
 using test::has;
 using test::integer;
+using test::line_of;
 using test::read;
 
 // The worked example of CiA 306, 4.6.3.4.2.
@@ -45,6 +47,20 @@ TEST(Compact, ExpandsNamesAndValuesByDecimalSub) {
   EXPECT_EQ(object.subs[10].name, "Gain10");
   EXPECT_EQ(integer(file, {0x3100, 0x0A}), 32);
   EXPECT_EQ(integer(file, {0x3100, 12}), 7);
+}
+
+TEST(Compact, TakesTheFirstOfARepeatedListEntry) {
+  const auto file = read(std::string{gain} + "1=1001\n");
+
+  EXPECT_EQ(integer(file, {0x3100, 1}), 1000);
+  EXPECT_EQ(find(file.findings, "duplicate-key")->pos, (SourcePos{line_of(16), 1}));
+}
+
+TEST(Compact, MakesNoObjectOfAListAlone) {
+  const auto file = read("[2000Value]\nNrOfEntries=1\n1=5\n");
+
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000}), nullptr);
+  EXPECT_EQ(find(file.findings, "object-section-missing")->pos.line, line_of(1));
 }
 
 TEST(Compact, LetsExplicitSectionsCount) {

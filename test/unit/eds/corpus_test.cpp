@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -8,31 +7,14 @@
 
 #include "eds_parser/pdo_description.hpp"
 #include "eds_parser/print/dictionary.hpp"
+#include "test/unit/eds/device_files.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path own_files = TAKT_SOURCE_DIR "/test/unit/eds/data";
-
-/// Files of real devices: $TAKT_CORPUS, else a folder beside the source tree. May be missing.
-fs::path corpus() {
-  const char* given = std::getenv("TAKT_CORPUS");
-  return given != nullptr ? fs::path{given} : fs::path{TAKT_SOURCE_DIR} / "../shared/eds";
-}
-
-std::vector<fs::path> device_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::recursive_directory_iterator{folder, error}) {
-    const auto kind = entry.path().extension();
-    if (kind == ".eds" || kind == ".dcf") files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
+using test::device_files;
 
 /// Through reader, checks, text and JSON; the JSON must be JSON.
 EdsFile run(const fs::path& path, std::optional<NodeId> node) {
@@ -54,7 +36,7 @@ EdsFile run(const fs::path& path, std::optional<NodeId> node) {
 }
 
 TEST(Corpus, OwnNastyFilesGoThrough) {
-  const auto files = device_files(own_files);
+  const auto files = device_files(test::nasty_eds_files());
   EXPECT_GE(files.size(), 8U);
   for (const auto& path : files) {
     run(path, {});
@@ -65,7 +47,7 @@ TEST(Corpus, OwnNastyFilesGoThrough) {
 TEST(Corpus, EveryEncodingGivesTheSameDictionary) {
   for (const auto* name : {"utf16_le.eds", "utf16_be.eds", "no_mark_utf16.eds", "latin1_cr.eds",
                            "utf8_bom_mixed.eds"}) {
-    const auto file = run(own_files / name, 5_node);
+    const auto file = run(test::nasty_eds_files() / name, 5_node);
     EXPECT_EQ(test::integer(file, {0x1000, 0}), 0x00020192) << name;
     ASSERT_NE(file.dictionary.find(std::uint16_t{0x1001}), nullptr) << name;
     EXPECT_EQ(file.dictionary.find(std::uint16_t{0x1001})->name,
@@ -76,13 +58,14 @@ TEST(Corpus, EveryEncodingGivesTheSameDictionary) {
 }
 
 TEST(Corpus, ChaosKeepsWhatCanBeRead) {
-  const auto file = run(own_files / "chaos.eds", 5_node);
+  const auto file = run(test::nasty_eds_files() / "chaos.eds", 5_node);
 
   EXPECT_EQ(test::integer(file, {0x1001, 0}), 0);
   EXPECT_EQ(test::integer(file, {0x2000, 0}), 11);
   EXPECT_EQ(test::integer(file, {0x2000, 1}), -2147483647);
   EXPECT_EQ(*file.dictionary.find(ObjectKey{0x2001, 0})->value(), Value{0xFFFFFFFFFFFFFFFFU});
-  EXPECT_EQ(*file.dictionary.find(ObjectKey{0x2003, 0})->value(), Value{"\x01\xA1\x05\x3C"});
+  EXPECT_EQ(*file.dictionary.find(ObjectKey{0x2003, 0})->value(),
+            Value{std::string{"\x01\xA1\x05\x3C"}});
   EXPECT_EQ(test::integer(file, {0x2004, 0}), 17);
   EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2007})->subs.size(), 255U);
   EXPECT_EQ(test::integer(file, {0x2007, 254}), 0xBEEF);
@@ -92,8 +75,8 @@ TEST(Corpus, ChaosKeepsWhatCanBeRead) {
 }
 
 TEST(Corpus, RealFilesGoThrough) {
-  const auto files = device_files(corpus() / "files");
-  if (files.empty()) GTEST_SKIP() << "no corpus at " << corpus();
+  const auto files = device_files(test::eds_corpus() / "files");
+  if (files.empty()) GTEST_SKIP() << "no corpus at " << test::eds_corpus();
   std::size_t refused = 0;
   for (const auto& path : files) {
     if (!run(path, 1_node).readable) ++refused;
@@ -215,8 +198,8 @@ const Expected expected[] = {
 };
 
 TEST(Corpus, SmallCasesComeOutAsExpected) {
-  const auto folder = corpus() / "mini";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no corpus at " << corpus();
+  const auto folder = test::eds_corpus() / "mini";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no corpus at " << test::eds_corpus();
   for (const auto& wanted : expected) {
     const bool is_dcf = std::string_view{wanted.file}.ends_with(".dcf");
     const auto file = run(folder / wanted.file, is_dcf ? std::optional<NodeId>{} : 1_node);

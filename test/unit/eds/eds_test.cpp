@@ -97,8 +97,17 @@ TEST(Eds, ReadsEveryOtherType) {
   EXPECT_EQ(value("0x000A", "01a1053c"), (Value{std::string{"\x01\xA1\x05\x3C"}}));
   EXPECT_EQ(value("0x000A", "0x01 A1"), (Value{std::string{"\x01\xA1"}}));
   EXPECT_EQ(value("0x0001", "true"), Value{std::uint64_t{1}});
+  EXPECT_EQ(value("0x000C", "365 43200000"), Value{std::uint64_t{365} << 32 | 43200000U});
+  EXPECT_EQ(value("0x000D", "1 2"), Value{std::uint64_t{1} << 32 | 2U});
   EXPECT_EQ(value("0x000C", "3600000 2"), Value{std::uint64_t{2} << 32 | 3600000U});
   EXPECT_EQ(value("0x001B", "18446744073709551615"), Value{18446744073709551615U});
+}
+
+TEST(Eds, TakesNoFormulaForABitPattern) {
+  const auto file = read(var("0x0008", "0x3F800000+$NODEID"));
+
+  EXPECT_FALSE(file.dictionary.find(ObjectKey{0x2000, 0})->value());
+  EXPECT_TRUE(has(file.findings, "value-unreadable"));
 }
 
 TEST(Eds, DropsLimitsThatAreInverted) {
@@ -119,6 +128,19 @@ TEST(Eds, TakesTheFirstOfARepeatedKeyOrSection) {
   EXPECT_EQ(find(key.findings, "duplicate-key")->pos, (SourcePos{line_of(6), 14}));
   EXPECT_EQ(integer(section, {0x2000, 0}), 5);
   EXPECT_EQ(find(section.findings, "duplicate-section")->pos.line, line_of(6));
+}
+
+TEST(Eds, CallsAConfiguredValueThatCannotBeReadAnError) {
+  const auto file = read(var("6", "five") + "ParameterValue=six\n");
+
+  EXPECT_EQ(find(file.findings, "value-unreadable")->severity, Severity::warning);
+  EXPECT_EQ(std::ranges::count_if(file.findings,
+                                  [](const Finding& finding) {
+                                    return finding.rule == "value-unreadable" &&
+                                           finding.severity == Severity::error &&
+                                           finding.pos == SourcePos{line_of(6), 16};
+                                  }),
+            1);
 }
 
 TEST(Eds, KeepsSubObjectsWhateverSubNumberSays) {
@@ -193,6 +215,111 @@ TEST(Eds, OrderOfSectionsDoesNotMatter) {
   for (std::size_t i = 0; i < forward.dictionary.objects.size(); ++i) {
     EXPECT_EQ(forward.dictionary.objects[i].index, backward.dictionary.objects[i].index);
   }
+}
+
+TEST(Eds, KeepsWhatItSaysForPeopleAndOtherPrograms) {
+  const auto file = read_eds(R"([FileInfo]
+FileName=lift.dcf
+FileVersion=1
+FileRevision=2
+EDSVersion=4.0
+CreationDate=05-12-2026
+CreatedBy=Joerg
+LastEDS=lift.eds
+[Comments]
+Lines=2
+Line1=for the lift
+Line2=; not a comment here
+[Tools]
+Items=1
+[Tool1]
+Name=Wizard
+Command=wizard.exe $DCF $NODEID
+[2000]
+ParameterName=Program
+ObjectType=0x2
+DataType=0xF
+AccessType=rw
+DownloadFile=app.bin
+UploadFile=back.bin
+[2000ObjectLinks]
+ObjectLinks=2
+1=0x2001
+2=0x2002
+)",
+                             "lift.dcf");
+  const auto& notes = file.dictionary.notes;
+  EXPECT_EQ(notes.info.file_name, "lift.dcf");
+  EXPECT_EQ(notes.info.file_version, "1");
+  EXPECT_EQ(notes.info.file_revision, "2");
+  EXPECT_EQ(notes.info.eds_version, "4.0");
+  EXPECT_EQ(notes.info.creation_date, "05-12-2026");
+  EXPECT_EQ(notes.info.last_eds, "lift.eds");
+  EXPECT_EQ(notes.comments, (std::vector<std::string>{"for the lift", "; not a comment here"}));
+  ASSERT_EQ(notes.tools.size(), 1U);
+  EXPECT_EQ(notes.tools[0].name, "Wizard");
+  EXPECT_EQ(notes.tools[0].command, "wizard.exe $DCF $NODEID");
+  ASSERT_EQ(file.dictionary.domain_files.size(), 1U);
+  EXPECT_EQ(file.dictionary.domain_files[0].key, (ObjectKey{0x2000, 0}));
+  EXPECT_EQ(file.dictionary.domain_files[0].download, "app.bin");
+  EXPECT_EQ(file.dictionary.domain_files[0].upload, "back.bin");
+  ASSERT_EQ(file.dictionary.links.size(), 1U);
+  EXPECT_EQ(file.dictionary.links[0].to, (std::vector<std::uint16_t>{0x2001, 0x2002}));
+}
+
+EdsFile with_channels(const std::string& lines, bool supported = true) {
+  return read_eds("[DeviceInfo]\nDynamicChannelsSupported=" + std::string{supported ? "1" : "0"} +
+                      "\n[DynamicChannels]\n" + lines +
+                      "[1000]\nParameterName=Device type\nDataType=7\nAccessType=ro\n",
+                  "plc.eds");
+}
+
+std::size_t count_of(const EdsFile& file, std::string_view rule) {
+  return static_cast<std::size_t>(std::ranges::count(file.findings, rule, &Finding::rule));
+}
+
+TEST(Eds, KeepsDynamicChannels) {
+  const auto file = with_channels(
+      "NrOfSeg=2\nType1=0x0005\nDir1=RO\nRange1=0xA080-0xA0BF\nPPOffset1=0x10\n"
+      "Type2=6\nDir2=wo\nRange2=0xA100 - 0xA13F\nPPOffset2=64\nMaxCnt2=8\n");
+
+  ASSERT_EQ(file.dictionary.channels.size(), 2U);
+  const auto& inputs = file.dictionary.channels[0];
+  EXPECT_EQ(inputs.type, DataType::unsigned8);
+  EXPECT_EQ(inputs.direction, Access::ro);
+  EXPECT_EQ(inputs.first, 0xA080);
+  EXPECT_EQ(inputs.last, 0xA0BF);
+  EXPECT_EQ(inputs.offset, 16U);
+  EXPECT_EQ(inputs.pos, (SourcePos{7, 8}));
+  EXPECT_EQ(file.dictionary.channels[1].direction, Access::wo);
+  EXPECT_EQ(file.dictionary.channels[1].most, 8U);
+  for (const auto& finding : file.findings) EXPECT_FALSE(finding.rule.starts_with("channel"));
+}
+
+TEST(Eds, SaysWhatIsWrongWithDynamicChannels) {
+  EXPECT_EQ(count_of(with_channels("Type1=5\n"), "channel-incomplete"), 2U);
+  EXPECT_EQ(count_of(with_channels("NrOfSeg=1\nType1=5\nDir1=ro\n"), "channel-incomplete"), 1U);
+  const std::string good = "NrOfSeg=1\nType1=5\nDir1=ro\n";
+  for (const auto* range : {"0xA0BF-0xA080", "0x0000-0x0000", "0xA000", "0xAF00-0xB000"}) {
+    const auto file = with_channels(good + "Range1=" + range + '\n');
+    EXPECT_EQ(count_of(file, "channel-range"), 1U) << range;
+    EXPECT_TRUE(file.dictionary.channels.empty());
+  }
+  EXPECT_EQ(count_of(with_channels("NrOfSeg=1\nType1=0\nDir1=ro\nRange1=0xA000-0xA001\n"),
+                     "channel-type"),
+            1U);
+  EXPECT_EQ(count_of(with_channels("NrOfSeg=1\nType1=5\nDir1=in\nRange1=0xA000-0xA001\n"),
+                     "channel-direction"),
+            1U);
+  EXPECT_EQ(count_of(with_channels("NrOfSeg=2\nType1=5\nDir1=ro\nRange1=0xA000-0xA010\nType2="
+                                   "5\nDir2=wo\nRange2=0xA010-0xA020\n"),
+                     "channel-range"),
+            1U);
+  EXPECT_EQ(count_of(with_channels(good + "Range1=0xA000-0xA001\n", false), "channels-unsupported"),
+            1U);
+  const auto none = read_eds(
+      "[DeviceInfo]\nDynamicChannelsSupported=1\n[1000]\nParameterName=T\nDataType=7\n", "plc.eds");
+  EXPECT_EQ(count_of(none, "channels-missing"), 1U);
 }
 
 }  // namespace

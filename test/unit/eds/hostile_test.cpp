@@ -54,7 +54,9 @@ TEST(Hostile, TheSameSectionAndKeyForever) {
 
 TEST(Hostile, LongListsOfNothing) {
   EXPECT_FALSE(survive("[OptionalObjects]\n" + repeated("1=0x2000\n", 5 * megabyte)).readable);
-  EXPECT_TRUE(survive("[2000Name]\n" + repeated("1=x\n", 5 * megabyte)).readable);
+  EXPECT_FALSE(survive("[2000Name]\n" + repeated("1=x\n", 5 * megabyte)).readable);
+  EXPECT_TRUE(
+      survive("[2000]\nDataType=7\n[2000Name]\n" + repeated("1=x\n", 5 * megabyte)).readable);
 }
 
 TEST(Hostile, CompactSubObjEverywhere) {

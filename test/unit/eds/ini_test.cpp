@@ -9,6 +9,7 @@ namespace {
 
 struct Read {
   explicit Read(std::string_view text) : report{"t"}, file{read_ini(text, report)} {}
+  IniEntries entries(std::size_t section) const { return file.entries(file.sections[section]); }
   Report report;
   IniFile file;
 };
@@ -19,25 +20,42 @@ TEST(Ini, KeepsNamesKeysValuesAndTheirPlaces) {
   ASSERT_EQ(read.file.sections.size(), 2U);
   EXPECT_EQ(read.file.sections[0].name, "One");
   EXPECT_EQ(read.file.sections[0].pos, (SourcePos{2, 1}));
-  const auto entries = read.file.entries(read.file.sections[0]);
+  const auto entries = read.entries(0);
   ASSERT_EQ(entries.size(), 2U);
   EXPECT_EQ(entries[0].pos(), (SourcePos{3, 5}));
   EXPECT_EQ(entries[1].key, "spaced");
   EXPECT_EQ(entries[1].key_pos(), (SourcePos{4, 3}));
   EXPECT_EQ(entries[1].value, "a = b ;c");
-  EXPECT_TRUE(read.file.entries(read.file.sections[1]).empty());
+  EXPECT_TRUE(read.entries(1).empty());
   EXPECT_TRUE(read.report.take().empty());
 }
 
 TEST(Ini, TakesEveryLineEnd) {
   Read read{"[a]\r\nx=1\ry=2\n\rz=3"};
 
-  const auto entries = read.file.entries(read.file.sections[0]);
+  const auto entries = read.entries(0);
   ASSERT_EQ(entries.size(), 3U);
   EXPECT_EQ(entries[0].line, 2U);
   EXPECT_EQ(entries[1].line, 3U);
   EXPECT_EQ(entries[2].line, 5U);
   EXPECT_EQ(entries[2].value, "3");
+}
+
+TEST(Ini, TakesLinesWhereverTheyBegin) {
+  for (std::size_t length = 0; length < 200; ++length) {
+    const std::string key(length, 'k');
+    const std::string text = "[a]\r\n" + key + "=1\r\n y=\x01=2\t \r\n\r\n\tz\t=\t3";
+    Read read{text};
+
+    const auto entries = read.entries(0);
+    ASSERT_EQ(entries.size(), 3U) << length;
+    EXPECT_EQ(entries[0].key, key);
+    EXPECT_EQ(entries[0].value, "1");
+    EXPECT_EQ(entries[1].value, "=2");
+    EXPECT_EQ(entries[1].pos(), (SourcePos{3, 5}));
+    EXPECT_EQ(entries[2].key, "z");
+    EXPECT_EQ(entries[2].pos(), (SourcePos{5, 6}));
+  }
 }
 
 TEST(Ini, TellsOfLinesItCannotUse) {
@@ -50,7 +68,7 @@ TEST(Ini, TellsOfLinesItCannotUse) {
   EXPECT_EQ(test::find(findings, "text-after-section")->pos, (SourcePos{4, 5}));
   EXPECT_EQ(test::find(findings, "hash-comment")->pos.line, 6U);
   ASSERT_EQ(read.file.sections.size(), 1U);
-  EXPECT_EQ(read.file.entries(read.file.sections[0]).size(), 1U);
+  EXPECT_EQ(read.entries(0).size(), 1U);
 }
 
 TEST(Ini, ReadsUtf16AndSkipsTheMark) {
@@ -59,7 +77,7 @@ TEST(Ini, ReadsUtf16AndSkipsTheMark) {
   for (const auto& text : {little, big}) {
     Read read{text};
     ASSERT_EQ(read.file.sections.size(), 1U);
-    EXPECT_EQ(read.file.entries(read.file.sections[0])[0].value, "\xC3\xA4");
+    EXPECT_EQ(read.entries(0)[0].value, "\xC3\xA4");
   }
   Read marked{"\xEF\xBB\xBF[a]\nx=1\n"};
   EXPECT_EQ(marked.file.sections[0].pos, (SourcePos{1, 1}));

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/print/findings_json.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {
@@ -18,6 +19,28 @@ nlohmann::json first_default(std::string_view type, std::string_view value,
                              std::optional<NodeId> node = 5_node) {
   const auto json = json_of(read_eds(test::var(type, value), "t.eds", node));
   return json["objects"][0]["subs"][0]["default"];
+}
+
+TEST(EdsJson, ListsTheFindingsOfEveryFile) {
+  const auto good = read_eds("[1000]\nParameterName=x\nDataType=7\nAccessType=ro\n", "good.eds");
+  const JudgedFile files[] = {
+      {"bad.eds", false, {{"bad.eds", {3, 7}, Severity::error, "some-rule", "w\xE4r"}}},
+      {"good.eds", good.readable, {}}};
+  std::ostringstream out;
+
+  print_findings_json(out, files);
+
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json["files"][0]["file"], "bad.eds");
+  EXPECT_EQ(json["files"][0]["readable"], false);
+  EXPECT_EQ(json["files"][0]["findings"][0]["line"], 3);
+  EXPECT_EQ(json["files"][0]["findings"][0]["column"], 7);
+  EXPECT_EQ(json["files"][0]["findings"][0]["severity"], "error");
+  EXPECT_EQ(json["files"][0]["findings"][0]["rule"], "some-rule");
+  EXPECT_EQ(json["files"][1]["readable"], true);
+  EXPECT_TRUE(json["files"][1]["findings"].empty());
+  EXPECT_EQ(json["errors"], 1);
+  EXPECT_EQ(json["warnings"], 0);
 }
 
 TEST(EdsJson, KeepsNumbersAsNumbersToTheLastBit) {

@@ -65,6 +65,14 @@ TEST(PdoDescription, KnowsTheFlagsWithoutANodeId) {
   EXPECT_TRUE(on.valid);
 }
 
+TEST(PdoDescription, TellsWhatIsAddedToAnUnknownNodeId) {
+  const auto pdo = first(tpdo("$NODEID+0x40000180", "2"), std::nullopt);
+
+  EXPECT_EQ(pdo.cob_id(), std::nullopt);
+  EXPECT_EQ(pdo.cob_id_offset, 0x180U);
+  EXPECT_EQ(first(tpdo("$NODEID+0x40000180", "2")).cob_id_offset, std::nullopt);
+}
+
 TEST(PdoDescription, LetsSub0DecideHowManyEntriesAreActive) {
   EXPECT_EQ(first(tpdo("0x181", "0")).mapping.size(), 0U);
   EXPECT_EQ(first(tpdo("0x181", "1")).bits, 16U);

@@ -13,9 +13,12 @@ const RuleInfo* rule(std::string_view name) {
   return it == eds_rules().end() ? nullptr : &*it;
 }
 
-TEST(RuleList, IsSortedAndWithoutRepetition) {
+TEST(RuleList, IsSortedAndGivesEachRuleAMeaningAndAnExample) {
   EXPECT_TRUE(std::ranges::is_sorted(eds_rules(), std::less_equal{}, &RuleInfo::name));
-  for (const auto& info : eds_rules()) EXPECT_FALSE(info.meaning.empty()) << info.name;
+  for (const auto& info : eds_rules()) {
+    EXPECT_FALSE(info.meaning.empty()) << info.name;
+    EXPECT_FALSE(info.example.empty()) << info.name;
+  }
 }
 
 TEST(RuleList, KnowsEveryRuleThatANastyFileBreaks) {

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "eds_parser/object_dictionary.hpp"
+
+namespace takt {
+
+/// None: there is no value, or it is no integer.
+inline std::optional<std::int64_t> integer_of(const std::optional<Value>& value) noexcept {
+  return value ? as_integer(*value) : std::nullopt;
+}
+
+/// The value that an object has by its file, see SubObject::value().
+inline std::optional<std::int64_t> integer_of(const ObjectDictionary& dictionary,
+                                              ObjectKey key) noexcept {
+  const SubObject* sub = dictionary.find(key);
+  return sub == nullptr ? std::nullopt : integer_of(sub->value());
+}
+
+}  // namespace takt

@@ -1,0 +1,21 @@
+#pragma once
+#include <iosfwd>
+#include <span>
+#include <string>
+
+#include "eds_parser/source.hpp"
+
+namespace takt {
+
+/// One file that was judged.
+struct JudgedFile {
+  std::string file;
+  bool readable = false;
+  Findings findings;
+};
+
+/// {"files": [{"file", "readable", "findings": [{"line", "column", "severity", "rule",
+/// "message"}]}], "errors", "warnings", "notes"}.
+void print_findings_json(std::ostream& out, std::span<const JudgedFile> files);
+
+}  // namespace takt

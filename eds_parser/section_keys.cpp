@@ -1,0 +1,37 @@
+#include "eds_parser/section_keys.hpp"
+
+#include "eds_parser/text.hpp"
+
+namespace takt {
+
+SectionKeys::SectionKeys(const IniEntries& entries, Report& report) : report_{report} {
+  for (const auto& entry : entries) entries_.push_back(entry);
+}
+
+const IniEntry* SectionKeys::get(std::string_view key) const {
+  const IniEntry* found = nullptr;
+  for (const auto& entry : entries_) {
+    if (!same_word(entry.key, key)) continue;
+    if (found == nullptr) {
+      found = &entry;
+    } else if (found->value != entry.value) {
+      report_.warning(entry.pos(), "duplicate-key",
+                      "key " + quoted(entry.key) +
+                          " repeated with another value; the first one counts, " +
+                          quoted(found->value));
+    }
+  }
+  return found;
+}
+
+std::string SectionKeys::text(std::string_view key) const {
+  const auto* entry = get(key);
+  return entry == nullptr ? std::string{} : to_utf8(entry->value);
+}
+
+void SectionKeys::flag(bool& out, std::string_view key, ValueReader& values) const {
+  const auto* entry = get(key);
+  if (entry != nullptr) out = values.read_flag(entry->value, entry->key, entry->pos());
+}
+
+}  // namespace takt

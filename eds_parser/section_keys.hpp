@@ -1,0 +1,38 @@
+#pragma once
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eds_parser/ini.hpp"
+#include "eds_parser/report.hpp"
+#include "eds_parser/value_reader.hpp"
+
+namespace takt {
+
+/// The entries of a section by key; of a repeated key the first counts. Keys are given in lower
+/// case.
+class SectionKeys {
+ public:
+  SectionKeys(const IniEntries& entries, Report& report);
+
+  const IniEntry* get(std::string_view key) const;
+  /// As UTF-8, empty where the key is missing.
+  std::string text(std::string_view key) const;
+  void flag(bool& out, std::string_view key, ValueReader& values) const;
+
+  template <class T>
+  void number(T& out, std::string_view key, ValueReader& values) const {
+    const auto* entry = get(key);
+    if (entry == nullptr) return;
+    constexpr auto highest = std::numeric_limits<T>::max();
+    const auto value = values.read_count(entry->value, highest, entry->key, entry->pos());
+    if (value) out = static_cast<T>(*value);
+  }
+
+ private:
+  std::vector<IniEntry> entries_;
+  Report& report_;
+};
+
+}  // namespace takt
