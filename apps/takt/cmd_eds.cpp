@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/takt/commands.hpp"
+#include "apps/takt/eds_commands.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/eds.hpp"
@@ -115,11 +116,13 @@ void add_check(CLI::App& eds, int& exit_code) {
 }  // namespace
 
 void add_eds(CLI::App& app, int& exit_code) {
-  auto* eds = app.add_subcommand("eds", "read and judge EDS and DCF files");
+  auto* eds = app.add_subcommand("eds", "read, judge and write EDS and DCF files");
   eds->require_subcommand(1);
   eds->footer("Example:\n  takt eds check drive.eds\n  takt eds show --node 5 drive.eds");
   add_show(*eds, exit_code);
   add_check(*eds, exit_code);
+  add_eds_dcf(*eds, exit_code);
+  add_eds_cdcf(*eds, exit_code);
 }
 
 }  // namespace takt

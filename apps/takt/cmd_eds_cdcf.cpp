@@ -1,0 +1,76 @@
+#include <iostream>
+#include <memory>
+
+#include "apps/takt/eds_commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "apps/takt/text_file.hpp"
+#include "eds_parser/eds.hpp"
+#include "eds_parser/write/configured_values.hpp"
+
+namespace takt {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string out;
+  unsigned node = 0;
+  bool decode = false;
+};
+
+std::string line_of(const ConciseEntry& entry) {
+  std::string line = to_string(entry.object);
+  for (const auto byte : entry.value) {
+    line += ' ' + hex(std::to_integer<unsigned>(byte), 2).substr(2);
+  }
+  return line;
+}
+
+int decode(const Options& options) {
+  const auto content = read_whole_file(options.file);
+  if (!content) return complain(content.error(), 1);
+  const auto entries = decode_concise_dcf(std::as_bytes(std::span{*content}));
+  if (!entries) return complain(options.file + ": the concise DCF " + entries.error(), 1);
+  for (const auto& entry : *entries) std::cout << line_of(entry) << '\n';
+  return 0;
+}
+
+int encode(const Options& options) {
+  auto file = read_eds_file(options.file, NodeId::from(options.node));
+  Report report{options.file};
+  const auto entries = configured_values(file.dictionary, report);
+  std::ranges::move(report.take(), std::back_inserter(file.findings));
+  for (const auto& finding : file.findings) {
+    if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
+  }
+  if (!file.readable) return 1;
+  if (entries.empty()) {
+    return complain(options.file + ": no object has a ParameterValue that can be written", 1);
+  }
+  const auto bytes = encode_concise_dcf(entries);
+  const auto written =
+      write_whole_file(options.out, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return written ? 0 : complain(written.error(), 1);
+}
+
+}  // namespace
+
+void add_eds_cdcf(CLI::App& eds, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = eds.add_subcommand("cdcf", "concise DCF (0x1F22) of a DCF, or what one holds");
+  command->add_option("FILE", options->file, "DCF, or with --decode a concise DCF")->required();
+  command->add_option("--node", options->node, "node id that $NODEID stands for")
+      ->check(CLI::Range(1U, 127U));
+  auto* out = command->add_option("-o,--output", options->out, "the concise DCF; - for stdout");
+  auto* decoding = command->add_flag("--decode", options->decode, "print a concise DCF as text");
+  out->excludes(decoding);
+  command->footer(
+      "Holds each ParameterValue of the DCF, ascending; a PDO as one piece: invalid, mapping\n"
+      "off, mapping, parameters, valid.\n\n"
+      "Examples:\n  takt eds cdcf axis.dcf -o axis.bin\n  takt eds cdcf --decode axis.bin");
+  command->callback([options, out, &exit_code] {
+    if (!options->decode && out->empty()) throw CLI::RequiredError{"--output"};
+    exit_code = options->decode ? decode(*options) : encode(*options);
+  });
+}
+
+}  // namespace takt

@@ -1,0 +1,67 @@
+#include <iostream>
+#include <memory>
+
+#include "apps/takt/eds_commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "apps/takt/text_file.hpp"
+#include "eds_parser/write/dcf_writer.hpp"
+
+namespace takt {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string out;
+  unsigned node = 0;
+  unsigned bitrate = 0;
+  std::string name;
+  std::vector<std::string> values;
+};
+
+std::optional<DcfValue> parse_value(const std::string& argument) {
+  const auto equals = argument.find('=');
+  if (equals == std::string::npos) return std::nullopt;
+  const auto object = parse_object(std::string_view{argument}.substr(0, equals));
+  if (!object) return std::nullopt;
+  return DcfValue{*object, argument.substr(equals + 1)};
+}
+
+int run(const Options& options) {
+  DcfOptions wanted{.node = NodeId::from(options.node), .node_name = options.name};
+  if (options.out != "-") wanted.out_name = options.out;
+  if (options.bitrate != 0) wanted.baudrate_kbit = static_cast<std::uint16_t>(options.bitrate);
+  for (const auto& argument : options.values) {
+    const auto value = parse_value(argument);
+    if (!value) return complain("--set " + argument + ": not as 6081:00=1000", 2);
+    wanted.values.push_back(*value);
+  }
+  const auto source = read_whole_file(options.file);
+  if (!source) return complain(source.error(), 1);
+  const auto dcf = write_dcf(*source, options.file, wanted);
+  for (const auto& finding : dcf.findings) std::cerr << to_string(finding) << '\n';
+  if (has_error(dcf.findings)) return 1;
+  const auto written = write_whole_file(options.out, dcf.text);
+  return written ? 0 : complain(written.error(), 1);
+}
+
+}  // namespace
+
+void add_eds_dcf(CLI::App& eds, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = eds.add_subcommand("dcf", "write the DCF of one device");
+  command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
+  command->add_option("--node", options->node, "node id")->check(CLI::Range(1U, 127U));
+  command->add_option("--bitrate", options->bitrate, "kbit/s of the network")
+      ->check(CLI::Range(1U, 1000U));
+  command->add_option("--name", options->name, "name of the device in the network");
+  command->add_option("--set", options->values,
+                      "a value: OBJECT=VALUE; VALUE as an EDS writes it, for a DOMAIN @FILE");
+  command->add_option("-o,--output", options->out, "the DCF; - for stdout")->required();
+  command->footer(
+      "The text of FILE stays byte for byte but for what is set. A value that the device\n"
+      "would refuse is an error, and nothing is written.\n\n"
+      "Example:\n  takt eds dcf drive.eds --node 5 --set 6081:00=1000 --set 1017=100 -o axis.dcf");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,307 @@
+#include "eds_parser/write/dcf_writer.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "eds_parser/eds.hpp"
+#include "eds_parser/number.hpp"
+#include "eds_parser/text.hpp"
+#include "eds_parser/value_reader.hpp"
+#include "eds_parser/write/object_sections.hpp"
+#include "eds_parser/write/section_index.hpp"
+#include "eds_parser/write/text_edits.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t refuse_write = 1;  // ObjFlags, bit 0
+
+bool is_writable(Access access) noexcept {
+  return access != Access::ro && access != Access::constant;
+}
+
+std::string_view base_name(std::string_view path) noexcept {
+  const auto slash = path.rfind('/');
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+/// Whether a value can be compared with limits, and lies outside.
+bool outside(const Value& value, const SubObject& sub) {
+  if (const auto* real = std::get_if<double>(&value)) {
+    const auto* low = sub.low_limit ? std::get_if<double>(&*sub.low_limit) : nullptr;
+    const auto* high = sub.high_limit ? std::get_if<double>(&*sub.high_limit) : nullptr;
+    return (low != nullptr && *real < *low) || (high != nullptr && *real > *high);
+  }
+  const bool comparable = !std::holds_alternative<BoxedText>(value);
+  const auto same = [&](const std::optional<Value>& limit) {
+    return comparable && limit && limit->index() == value.index();
+  };
+  return (same(sub.low_limit) && value < *sub.low_limit) ||
+         (same(sub.high_limit) && value > *sub.high_limit);
+}
+
+class DcfWriter {
+ public:
+  DcfWriter(const IniFile& file, std::string_view text, const ObjectDictionary& dictionary,
+            const DcfOptions& options, Report& report)
+      : sections_{file},
+        edits_{text},
+        dictionary_{dictionary},
+        options_{options},
+        report_{report},
+        values_{report, options.node ? options.node : dictionary.node_id} {}
+
+  std::string write() {
+    std::map<ObjectKey, const DcfValue*> last;  // of two values for one object the later counts
+    for (const auto& value : options_.values) last[value.object] = &value;
+    for (const auto& [object, value] : last) write_value(*value);
+    write_new_lists();
+    write_implied_objects();
+    write_file_info();
+    write_commissioning();
+    return std::move(edits_).apply();
+  }
+
+ private:
+  void write_value(const DcfValue& value) {
+    const auto* sub = dictionary_.find(value.object);
+    if (sub == nullptr || !allowed(value, *sub)) {
+      if (sub == nullptr) {
+        refuse({}, "unknown-object",
+               to_string(value.object) + " is not an object of " + dictionary_.file);
+      }
+      return;
+    }
+    const bool from_file = sub->type == DataType::domain && value.text.starts_with('@');
+    if (from_file) {
+      place(value.object, "DownloadFile", value.text.substr(1));
+    } else if (good(value, *sub)) {
+      place(value.object, "ParameterValue", value.text);
+    }
+  }
+
+  bool allowed(const DcfValue& value, const SubObject& sub) {
+    const auto what = to_string(value.object) + ' ' + sub.name;
+    if (!is_writable(sub.access)) {
+      return refuse(sub.pos, "read-only",
+                    what + " is read-only: the device would refuse the value");
+    }
+    if ((sub.flags & refuse_write) != 0) {
+      return refuse(sub.pos, "refuses-write",
+                    what + " is not to be written by a configuration (ObjFlags bit 0)");
+    }
+    if (value.text.find_first_of("\r\n") != std::string::npos) {
+      return refuse(sub.pos, "line-break", what + ": a value can't hold a line break");
+    }
+    return true;
+  }
+
+  /// Whether the device would take the value: read as the reader will.
+  bool good(const DcfValue& value, const SubObject& sub) {
+    if (trim(value.text).size() != value.text.size()) {
+      return refuse(sub.pos, "outer-blanks",
+                    to_string(value.object) + ": blanks around a value are lost in a DCF");
+    }
+    const auto read =
+        values_.read(value.text, sub.type, {value.object, "new value", sub.pos, Severity::error});
+    if (!read) {
+      return refuse(sub.pos, "value-unreadable",
+                    to_string(value.object) + ": " + takt::quoted(value.text) + " is no value of " +
+                        std::string{name(sub.type)} +
+                        (parse_number(value.text) ? " (or $NODEID without --node)" : ""));
+    }
+    if (!outside(*read, sub)) return true;
+    const auto limit = [&](const std::optional<Value>& end) {
+      return end ? eds_value_text(*end, sub.type) : std::string{"any"};
+    };
+    return refuse(sub.pos, "value-outside-limits",
+                  to_string(value.object) + ": " + value.text + " lies outside " +
+                      limit(sub.low_limit) + ".." + limit(sub.high_limit) +
+                      ": the device would refuse it");
+  }
+
+  /// Where the value of an object stands depends on how the file describes the object.
+  void place(ObjectKey key, std::string_view keyword, std::string text) {
+    const auto* own = sections_.sub_object(key);
+    const auto* main = sections_.object(key.index);
+    const auto* object = dictionary_.find(key.index);
+    const bool single = object->type == ObjectType::var || object->type == ObjectType::domain;
+    if (own == nullptr && single && key.sub == 0) own = main;
+    if (own != nullptr) {
+      set(*own, keyword, std::move(text));
+    } else if (main != nullptr && sections_.entry(*main, "compactsubobj")) {
+      place_in_list(key, std::move(text));
+    } else {
+      implied_[key.index][key.sub] = std::string{keyword} + '=' + text;
+    }
+  }
+
+  /// Sets one key of a section; what stands behind the old value as a comment stays.
+  void set(const IniSection& section, std::string_view key, std::string text) {
+    std::string lower{key};
+    std::ranges::transform(lower, lower.begin(), fold);
+    const auto entry = sections_.entry(section, lower);
+    if (!entry) {
+      const auto beside = sections_.entry(section, "defaultvalue");
+      const auto anchor = !beside                 ? sections_.last_line(section)
+                          : beside->value.empty() ? beside->key
+                                                  : beside->value;
+      edits_.insert_line_after(anchor, std::string{key} + '=' + text);
+      return;
+    }
+    const auto bare = without_comment(entry->value);
+    const auto old = parse_number(bare) ? bare : entry->value;  // a text may hold a `;`
+    if (old != text) edits_.replace(old, std::move(text));
+  }
+
+  void place_in_list(ObjectKey key, std::string text) {
+    const auto* list = sections_.value_list(key.index);
+    const auto number = std::to_string(key.sub);
+    const auto entry = list == nullptr ? std::nullopt : sections_.entry(*list, number);
+    if (entry) {
+      edits_.replace(entry->value, std::move(text));
+    } else {
+      list_entries_[key.index].push_back(number + '=' + text);
+    }
+  }
+
+  void write_new_lists() {
+    for (const auto& [index, lines] : list_entries_) {
+      const auto* list = sections_.value_list(index);
+      if (list == nullptr) {
+        const auto anchor = sections_.last_line(*sections_.object(index));
+        edits_.insert_line_after(anchor, "");
+        edits_.insert_line_after(anchor, '[' + hex(index).substr(2) + "Value]");
+        edits_.insert_line_after(anchor, "NrOfEntries=" + std::to_string(lines.size()));
+        for (const auto& line : lines) edits_.insert_line_after(anchor, line);
+        continue;
+      }
+      add_to_count(*list, "nrofentries", lines.size());
+      for (const auto& line : lines) edits_.insert_line_after(sections_.last_line(*list), line);
+    }
+  }
+
+  /// Returns the new number.
+  std::uint64_t add_to_count(const IniSection& section, std::string_view lower_key,
+                             std::size_t more) {
+    const auto count = sections_.entry(section, lower_key);
+    const auto before = count ? std::optional{parse_number(count->value)} : std::nullopt;
+    const auto number = (before && *before ? (*before)->magnitude : 0) + more;
+    if (count) edits_.replace(count->value, std::to_string(number));
+    return number;
+  }
+
+  void write_implied_objects() {
+    if (implied_.empty()) return;
+    add_pdo_partners();
+    for (const auto& [index, values] : implied_) {
+      const auto* object = dictionary_.find(index);
+      list_object(*object);
+      const auto lines = object_sections(*object);
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        edits_.append_line(lines[i]);
+        if (!lines[i].starts_with("DefaultValue=")) continue;
+        const auto value = values.find(sub_of(lines, i));
+        if (value != values.end()) edits_.append_line(value->second);
+      }
+    }
+  }
+
+  /// Communication and mapping of a PDO that CompactPDO implies stand or fall together.
+  void add_pdo_partners() {
+    std::vector<std::uint16_t> partners;
+    for (const auto& [index, values] : implied_) {
+      const bool communication = (index & 0xFE00) == 0x1400 || (index & 0xFE00) == 0x1800;
+      const bool mapping = (index & 0xFE00) == 0x1600 || (index & 0xFE00) == 0x1A00;
+      if (!communication && !mapping) continue;
+      const auto partner =
+          static_cast<std::uint16_t>(communication ? index + 0x200 : index - 0x200);
+      const bool implied = dictionary_.find(partner) != nullptr && !sections_.object(partner);
+      if (implied) partners.push_back(partner);
+    }
+    for (const auto partner : partners) implied_[partner];
+  }
+
+  /// Sub-index that line i of an object's sections belongs to.
+  static std::uint8_t sub_of(const std::vector<std::string>& lines, std::size_t i) {
+    while (!lines[i].starts_with('[')) --i;
+    return classify_section(std::string_view{lines[i]}.substr(1, lines[i].size() - 2)).sub;
+  }
+
+  void list_object(const Object& object) {
+    const bool manufacturer = object.index >= 0x2000 && object.index < 0x6000;
+    const auto* list = sections_.other(manufacturer ? SectionKind::manufacturer_objects
+                                                    : SectionKind::optional_objects);
+    if (list == nullptr) return;
+    auto& more = listed_[list];
+    const auto count = sections_.entry(*list, "supportedobjects");
+    const auto number = parse_number(count ? count->value : "0");
+    const auto next = (number ? number->magnitude : 0) + ++more;
+    edits_.insert_line_after(sections_.last_line(*list),
+                             std::to_string(next) + '=' + hex(object.index));
+  }
+
+  void write_file_info() {
+    for (const auto& [list, more] : listed_) add_to_count(*list, "supportedobjects", more);
+    const auto* info = sections_.other(SectionKind::file_info);
+    if (info == nullptr) return;
+    if (!options_.out_name.empty())
+      set(*info, "FileName", std::string{base_name(options_.out_name)});
+    if (!dictionary_.is_dcf) set(*info, "LastEDS", std::string{base_name(dictionary_.file)});
+  }
+
+  void write_commissioning() {
+    std::vector<std::pair<std::string_view, std::string>> keys;
+    if (options_.node) keys.emplace_back("NodeID", std::to_string(options_.node->value()));
+    if (!options_.node_name.empty()) keys.emplace_back("NodeName", options_.node_name);
+    if (options_.baudrate_kbit) {
+      keys.emplace_back("Baudrate", std::to_string(*options_.baudrate_kbit));
+    }
+    const auto* section = sections_.other(SectionKind::commissioning);
+    if (section == nullptr && !keys.empty()) {
+      edits_.append_line("");
+      edits_.append_line("[DeviceComissioning]");
+    }
+    for (auto& [key, text] : keys) {
+      if (section != nullptr) {
+        set(*section, key, std::move(text));
+      } else {
+        edits_.append_line(std::string{key} + '=' + text);
+      }
+    }
+  }
+
+  bool refuse(SourcePos pos, std::string_view rule, std::string message) {
+    report_.error(pos, rule, std::move(message));
+    return false;
+  }
+
+  SectionIndex sections_;
+  TextEdits edits_;
+  const ObjectDictionary& dictionary_;
+  const DcfOptions& options_;
+  Report& report_;
+  ValueReader values_;
+  std::map<std::uint16_t, std::vector<std::string>> list_entries_;  ///< [xxxxValue], by index
+  std::map<std::uint16_t, std::map<std::uint8_t, std::string>> implied_;
+  std::map<const IniSection*, std::size_t> listed_;  ///< objects added to each list
+};
+
+}  // namespace
+
+DcfText write_dcf(std::string_view source, const std::string& source_name,
+                  const DcfOptions& options) {
+  const auto eds = read_eds(source, source_name, options.node);
+  if (!eds.readable) return {{}, eds.findings};
+  Report ignored{source_name};
+  const auto file = read_ini(source, ignored);
+  Report report{source_name};
+  const std::string_view text = file.recoded ? std::string_view{*file.recoded} : source;
+  DcfText result;
+  result.text = DcfWriter{file, text, eds.dictionary, options, report}.write();
+  result.findings = report.take();
+  if (has_error(result.findings)) result.text.clear();
+  return result;
+}
+
+}  // namespace takt
