@@ -123,6 +123,7 @@ void add_eds(CLI::App& app, int& exit_code) {
   add_check(*eds, exit_code);
   add_eds_dcf(*eds, exit_code);
   add_eds_cdcf(*eds, exit_code);
+  add_eds_fix(*eds, exit_code);
 }
 
 }  // namespace takt

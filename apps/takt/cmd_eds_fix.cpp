@@ -1,0 +1,73 @@
+#include <iostream>
+#include <memory>
+
+#include "apps/takt/eds_commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "apps/takt/text_file.hpp"
+#include "eds_parser/ini.hpp"
+#include "eds_parser/text_diff.hpp"
+#include "eds_parser/write/eds_fix.hpp"
+
+namespace takt {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string out;
+  bool quiet = false;
+};
+
+/// For the eye: UTF-16 as UTF-8.
+std::string readable(const std::string& source) {
+  Report ignored{""};
+  const IniFile file = read_ini(source, ignored);
+  return file.recoded ? *file.recoded : source;
+}
+
+int run(const Options& options) {
+  const auto source = read_whole_file(options.file);
+  if (!source) return complain(source.error(), 1);
+  const FixedEds fixed = fix_eds(*source, options.file);
+  for (const Finding& finding : fixed.left) {
+    if (options.quiet && finding.severity == Severity::note) continue;
+    std::cerr << to_string(finding) << '\n';
+  }
+  if (!fixed.readable) return 1;
+  const std::string name = options.out.empty() || options.out == "-" ? options.file : options.out;
+  std::ostream& diff = options.out == "-" ? std::cerr : std::cout;
+  diff << unified_diff(readable(*source), fixed.text, options.file, name,
+                       [](std::string_view line) { return line.starts_with('['); });
+  std::cerr << options.file << ": " << fixed.fixed.size() << " findings mended, "
+            << fixed.left.size() << " left\n";
+  if (!options.out.empty()) {
+    const auto written = write_whole_file(options.out, fixed.text);
+    if (!written) return complain(written.error(), 1);
+  }
+  return has_error(fixed.left) ? 1 : 0;
+}
+
+}  // namespace
+
+void add_eds_fix(CLI::App& eds, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = eds.add_subcommand("fix", "mend what can be read in only one way");
+  command->add_option("FILE", options->file, "EDS or DCF")->required();
+  command->add_option("-o,--output", options->out,
+                      "the mended file; - for stdout; without it only the difference is shown");
+  command->add_flag("--quiet", options->quiet, "leave out notes of what is left");
+  std::string rules;
+  for (const std::string_view rule : fixable_rules) {
+    rules += (rules.empty() ? "" : rules.size() - rules.rfind('\n') > 75 ? ",\n" : ", ");
+    rules += rule;
+  }
+  command->footer(
+      "The difference goes to stdout as diff -u prints it, what is left to stderr (named as by\n"
+      "`takt eds check`). No object and no value becomes another one; the text elsewhere stays\n"
+      "byte for byte. Exit code 1 if an error is left. Mended are:\n" +
+      rules +
+      ",\nand unknown keys that are slips of a known one.\n\n"
+      "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt
