@@ -29,7 +29,7 @@ int run_on_bus(const NmtOptions& options) {
   if (!id && options.node != "all") {
     return complain("'" + options.node + "' is not a node id 1..127 or all", 2);
   }
-  auto channel = FrameChannel::open(options.bus);
+  auto channel = FrameChannel::open(options.bus, BusMember::guest);
   if (!channel) return complain(channel.error().message, 3);
   const std::uint8_t node = id ? id->value() : std::uint8_t{0};
   const Frame frame =

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-std::expected<FrameChannel, BusError> FrameChannel::open(std::string_view bus) {
+std::expected<FrameChannel, BusError> FrameChannel::open(std::string_view bus, BusMember member) {
   const BusName name = BusName::parse(bus);
   const auto wrap = [](auto port) -> std::expected<FrameChannel, BusError> {
     if (!port) return std::unexpected{port.error()};
@@ -15,7 +15,7 @@ std::expected<FrameChannel, BusError> FrameChannel::open(std::string_view bus) {
   };
   switch (name.kind) {
     case BusName::Kind::unix_path:
-      return wrap(UnixBusPort::open({.path = name.name}));
+      return wrap(UnixBusPort::open({.path = name.name, .member = member}));
     case BusName::Kind::can_interface:
       return wrap(
           SocketCanPort::open({.interface = name.name, .filters = {{.can_id = 0, .can_mask = 0}}}));

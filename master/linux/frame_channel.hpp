@@ -18,7 +18,8 @@ namespace takt {
 class FrameChannel {
  public:
   /// `can0`, `vcan0`, `unix:PATH`.
-  static std::expected<FrameChannel, BusError> open(std::string_view bus);
+  static std::expected<FrameChannel, BusError> open(std::string_view bus,
+                                                    BusMember member = BusMember::resident);
   /// The devices' end of make_socket_pair_bus().
   explicit FrameChannel(UnixBusPort port) : port_{std::move(port)} {}
   explicit FrameChannel(SocketCanPort port) : port_{std::move(port)} {}

@@ -19,12 +19,13 @@ namespace {
 constexpr std::size_t batch_frames = 256;
 constexpr Time look_again = std::chrono::milliseconds{10};
 constexpr Time open_limit = std::chrono::seconds{2};
+constexpr Time guest_patience = std::chrono::milliseconds{60};  // a host is replaced within 20 ms
 
 }  // namespace
 
 struct UnixBusPort::State {
   FileDescriptor socket;
-  std::optional<UnixBusHub> hub;       // none: an end of a socket pair
+  std::optional<UnixBusHub> hub;       // none: an end of a socket pair, or a guest
   std::optional<sockaddr_un> address;  // none: an end of a socket pair
   std::optional<canid_t> sync_id;
   bool echoes = false;
@@ -39,6 +40,7 @@ struct UnixBusPort::State {
   void note(int error) noexcept;
   void disconnected() noexcept;
   void look_for_hub() noexcept;
+  bool connect_until(Time limit) noexcept;
   void echo(std::size_t count) noexcept;
   bool take(std::size_t i, StampedFrame& frame) noexcept;
 };
@@ -94,24 +96,33 @@ UnixBusPort::UnixBusPort(UnixBusPort&&) noexcept = default;
 UnixBusPort& UnixBusPort::operator=(UnixBusPort&&) noexcept = default;
 UnixBusPort::~UnixBusPort() = default;
 
+/// Connects, and tries again until `limit` where nobody listens (yet).
+bool UnixBusPort::State::connect_until(Time limit) noexcept {
+  while (!(socket = connect_unix(*address))) {
+    if (monotonic_now() > limit) return false;
+    takt::sleep_until(monotonic_now() + std::chrono::milliseconds{1});
+  }
+  return true;
+}
+
 std::expected<UnixBusPort, BusError> UnixBusPort::open(const UnixBusOptions& options) {
-  auto hub = UnixBusHub::join(options.path);
-  if (!hub) return std::unexpected{hub.error()};
   auto state = std::make_unique<State>();
-  state->hub = std::move(*hub);
   state->address = unix_address(options.path);
+  const bool guest = options.member == BusMember::guest && state->address &&
+                     state->connect_until(monotonic_now() + guest_patience);
+  if (!guest) {
+    auto hub = UnixBusHub::join(options.path);
+    if (!hub) return std::unexpected{hub.error()};
+    state->hub = std::move(*hub);
+  }
   state->spin = options.spin;
   state->sent = options.sent;
   if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
   // Another process may hold the lock and not listen yet.
-  const Time limit = monotonic_now() + open_limit;
-  while (!(state->socket = connect_unix(*state->address))) {
+  if (!guest && !state->connect_until(monotonic_now() + open_limit)) {
     const int error = errno;
-    if (monotonic_now() > limit) {
-      return std::unexpected{
-          BusError{"unix:" + options.path + ": cannot connect: " + std::strerror(error), error}};
-    }
-    takt::sleep_until(monotonic_now() + std::chrono::milliseconds{1});
+    return std::unexpected{
+        BusError{"unix:" + options.path + ": cannot connect: " + std::strerror(error), error}};
   }
   return UnixBusPort{std::move(state)};
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <expected>
 #include <memory>
 #include <optional>
@@ -12,11 +13,18 @@
 
 namespace takt {
 
+/// Who hosts a bus between processes.
+enum class BusMember : std::uint8_t {
+  resident,  ///< where nobody else does; takes over from a host that ends
+  guest,     ///< a short-lived tool: only where nobody hosts when it comes
+};
+
 struct UnixBusOptions {
   std::string path;                    ///< of `unix:PATH`, without `unix:`
   std::optional<CobId> sync_cob_id{};  ///< own frames whose echo is news().last_sync_echo
   Time spin{};
   SentFrames* sent = nullptr;  ///< counts what was sent, for a DiagnosticSocket
+  BusMember member = BusMember::resident;
 };
 
 /// A bus between the processes of one machine (`unix:PATH`) as a Port, for machines whose kernel

@@ -24,6 +24,7 @@ namespace {
 constexpr std::size_t max_clients = 64;
 constexpr std::size_t batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
+constexpr int most_batches = 4096;  // of one client that are handed over
 
 struct Client {
   FileDescriptor socket;
@@ -61,7 +62,8 @@ class UnixBusHub::Impl {
   void run();
   bool stopping(int timeout_ms);
   void serve();
-  void accept_client();
+  void hand_over();
+  bool accept_client();
   void forward_from(Client& sender);
   void deliver(Client& receiver, bool own, std::size_t count);
 
@@ -104,6 +106,7 @@ void UnixBusHub::Impl::run() {
     if (!try_to_host()) return;
   }
   serve();
+  hand_over();
 }
 
 void UnixBusHub::Impl::serve() {
@@ -125,11 +128,28 @@ void UnixBusHub::Impl::serve() {
   }
 }
 
-void UnixBusHub::Impl::accept_client() {
+/// The host ends: what clients have sent already still reaches the others, what they send from now
+/// on is refused to them.
+void UnixBusHub::Impl::hand_over() {
+  while (accept_client()) {
+  }
+  listener_.reset();
+  for (const Client& client : clients_) shutdown(client.socket.get(), SHUT_RD);
+  for (Client& sender : clients_) {
+    const bool was_gone = sender.gone;
+    for (int batch = 0; batch < most_batches && !sender.gone; ++batch) forward_from(sender);
+    sender.gone = was_gone;
+  }
+}
+
+/// False: nobody waits.
+bool UnixBusHub::Impl::accept_client() {
   FileDescriptor socket{accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
-  if (!socket || clients_.size() == max_clients) return;
+  if (!socket) return false;
+  if (clients_.size() == max_clients) return true;
   enlarge_send_buffer(socket.get());
   clients_.push_back({.socket = std::move(socket)});
+  return true;
 }
 
 void UnixBusHub::Impl::forward_from(Client& sender) {

@@ -10,7 +10,7 @@ namespace takt {
 /// The wire of `unix:PATH`. Every process that uses the bus owns one; exactly one of them, the
 /// holder of the lock file PATH.lock, listens on PATH and hands each frame to all others, and back
 /// to its sender as an echo. When that process ends, however it ends, another one takes over within
-/// 20 ms.
+/// 20 ms; where it ends in order, frames that it has taken still arrive.
 ///
 /// A client that does not read loses frames (each later frame tells it how many); it never blocks
 /// the bus. At most 64 clients.

@@ -221,6 +221,39 @@ TEST_F(UnixBus, AnotherProcessTakesOverWhenTheHostIsKilled) {
   close(ready[1]);
 }
 
+TEST_F(UnixBus, WhatTheHostHasTakenArrivesAlthoughItEnds) {
+  for (int run = 0; run < 20; ++run) {
+    auto host = std::make_unique<UnixBusPort>(port());
+    UnixBusPort sender = port();
+    UnixBusPort receiver = port();
+    make_acquainted(sender, receiver);
+    const std::vector<Frame> frames(200, sync_frame);
+
+    const std::size_t taken = sender.send(frames).sent;
+    host.reset();
+
+    EXPECT_EQ(receive_all(receiver, taken).size(), taken);
+    EXPECT_EQ(receiver.news().receive_overruns, 0u);
+  }
+}
+
+TEST_F(UnixBus, AGuestHostsOnlyWhereNobodyElseDoes) {
+  const auto guest = [this] {
+    return UnixBusPort::open({.path = path_, .member = BusMember::guest});
+  };
+  auto resident = std::make_unique<UnixBusPort>(port());
+  auto among_others = guest();
+  ASSERT_TRUE(among_others);
+  resident.reset();
+
+  EXPECT_FALSE(connect_unix(*unix_address(path_))) << "the guest has taken over";
+
+  auto alone = guest();
+  ASSERT_TRUE(alone);
+  EXPECT_TRUE(soon(*alone, [&] { return !alone->news().interface_down; }));
+  EXPECT_TRUE(connect_unix(*unix_address(path_)));
+}
+
 TEST_F(UnixBus, ExactlyOneHubHosts) {
   auto first = UnixBusHub::join(path_);
   auto second = UnixBusHub::join(path_);
