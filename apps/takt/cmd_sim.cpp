@@ -67,7 +67,9 @@ int run(const Arguments& arguments) {
   if (has_error(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
   if (devices.empty()) return 2;
-  sim::WorldOptions options{.seed = arguments.seed, .bitrate = network.plan.bitrate};
+  // What becomes of the bit rate of that interface isn't known here.
+  sim::WorldOptions options{
+      .seed = arguments.seed, .bitrate = network.plan.bitrate, .one_bit_rate = false};
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan);
     for (const Finding& finding : file.findings) std::cerr << to_string(finding) << '\n';

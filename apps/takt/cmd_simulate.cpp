@@ -75,12 +75,15 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
   command->add_flag("--json", arguments->json, "one JSON document; equal for equal seeds");
   command->footer(
-      "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss duplicate "
-      "delay\n"
-      "error_frames (probability, time), babble (cob_id, data, time), power_off, drift (ppm),\n"
-      "mute_sdo, refuse_object (object, abort_code), override_value (object, value), late_bootup\n"
-      "(time), no_bootup, no_heartbeat, bootup_storm (time), self_start, fixed_mapping, mute_pdo,\n"
-      "device_error (emcy_code), reset, bus_off, stall_master, interface_down.\n\n"
+      "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss, duplicate,\n"
+      "error_frames (probability), delay (time), babble (cob_id, data, time), power_off, drift\n"
+      "(ppm), mute_sdo (object), refuse_object and refuse_write (object, abort_code), "
+      "ignore_write\n"
+      "(object), override_value (object, value), fixed_mapping, late_bootup and bootup_storm "
+      "(time),\n"
+      "no_bootup, self_start, no_start, no_heartbeat, no_guarding, stuck_toggle, mute_pdo,\n"
+      "device_error (emcy_code), lss_silent, lss_no_store, reset, bus_off, stall_master,\n"
+      "interface_down. share/doc/faults.md has a line of each.\n\n"
       "Example:\n  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
   command->callback([arguments, &exit_code] {

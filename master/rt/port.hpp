@@ -25,6 +25,7 @@ struct PortNews {
   std::uint8_t tx_error_counter = 0;
   std::uint8_t rx_error_counter = 0;
   int last_error = 0;     ///< errno of the newest trouble
+  Time since_1970{};      ///< UTC minus the clock of the port; 0 = not known
   Time last_sync_echo{};  ///< when our newest SYNC was on the wire by its echo; 0 = no echo yet
 };
 

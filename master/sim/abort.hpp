@@ -27,6 +27,7 @@ enum class Abort : std::uint32_t {
   value = 0x0609'0030,
   value_high = 0x0609'0031,
   value_low = 0x0609'0032,
+  general = 0x0800'0000,
   store = 0x0800'0020,
   device_state = 0x0800'0022,
   no_data = 0x0800'0024,

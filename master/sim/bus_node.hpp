@@ -18,6 +18,9 @@ struct BusNodeOptions {
   QueueOrder order = QueueOrder::priority;
   std::size_t capacity = 64;  ///< frames
   Time restart = Time{};      ///< after bus-off, besides 128 x 11 bits; `never`: stays off
+  /// Its frames have been on a wire elsewhere: they have won, so that nobody's can collide with
+  /// them.
+  bool relays = false;
 };
 
 /// Faults of the frames that one node sends.

@@ -8,6 +8,7 @@ namespace takt::sim {
 namespace {
 
 constexpr std::uint16_t pdos_a_direction = 512;
+constexpr std::uint16_t sdo_servers = 128;
 constexpr Time fast_tick = std::chrono::milliseconds{1};   // while event-driven TPDOs want changes
 constexpr Time slow_tick = std::chrono::milliseconds{10};  // the longest time a model sleeps
 
@@ -15,13 +16,14 @@ constexpr Time slow_tick = std::chrono::milliseconds{10};  // the longest time a
 
 Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
     : node_{table.node},
+      address_{table.node},
       times_{times},
       dummy_usage_{table.dummy_usage},
       store_{table},
       emcy_{store_, table.node},
-      sdo_{*this, table.node},
       sync_{store_, emcy_},
       sync_producer_{store_},
+      time_{store_},
       heartbeat_{store_, table.node},
       watch_{store_, emcy_},
       guarding_{store_, emcy_, table.node},
@@ -36,8 +38,17 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
       rpdos_.emplace_back(PdoRecord{store_, PdoDirection::receive, n});
     }
   }
-  sdo_.set_latency(times_.sdo);
-  routes_.reserve(4 + watch_.watches().size() + tpdos_.size() + rpdos_.size());
+  const auto has_quirk = [&table](std::string_view quirk) {
+    return std::ranges::find(table.quirks, quirk) != table.quirks.end();
+  };
+  if (has_quirk("lss") || has_quirk("no_node_id")) {
+    lss_.emplace(store_, has_quirk("no_node_id") ? LssSlave::none : node_.value());
+  }
+  for (std::uint16_t n = 0; n < sdo_servers && (n == 0 || store_.has_index(0x1200u + n)); ++n) {
+    Dictionary& dictionary = *this;
+    sdo_.emplace_back(dictionary, node_, faults_.sdo).set_times(times_.sdo, times_.segment);
+  }
+  routes_.reserve(5 + sdo_.size() + watch_.watches().size() + tpdos_.size() + rpdos_.size());
   model_ = make_model(table, store_, emcy_, random);
   const DeviceTraits traits = model_->traits();
   for (Tpdo& tpdo : tpdos_) tpdo.set_traits(traits);
@@ -47,17 +58,20 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
 Device::~Device() = default;
 
 void Device::power_on(Time now) noexcept {
-  if (state_ == DeviceState::off) reset_node(now);
+  if (state_ != DeviceState::off) return;
+  if (lss_) lss_->power_on();
+  reset_node(now);
 }
 
 void Device::power_off() noexcept {
   stop_pdos();
   heartbeat_.stop();
-  sdo_.reset();
+  for (SdoServer& server : sdo_) server.reset();
   watch_.forget();
   guarding_.reset();
   sync_.reset();
   sync_producer_.stop();
+  time_.reset();
   state_ = DeviceState::off;
   boots_at_ = next_storm_ = tick_ = deadline_ = never;
   routes_.clear();
@@ -80,9 +94,10 @@ void Device::begin_reset(Time startup, Time now) noexcept {
   stop_pdos();
   state_ = DeviceState::initialising;
   heartbeat_.stop();
-  sdo_.reset();
+  for (SdoServer& server : sdo_) server.reset();
   sync_.reset();
   sync_producer_.stop();
+  take_address();
   store_.reset(0x1000, 0x1FFF);
   emcy_.reset();
   watch_.forget();
@@ -97,6 +112,7 @@ void Device::begin_reset(Time startup, Time now) noexcept {
 /// The end of Initialising: boot-up message, then PRE-OPERATIONAL. CiA 301, 7.3.2.2.
 void Device::boot(Time now) noexcept {
   boots_at_ = never;
+  if (speaks_only_lss()) return build_routes();
   send_bootup(now);
   state_ = DeviceState::preoperational;
   heartbeat_.start(now);
@@ -113,7 +129,7 @@ void Device::start_storm(Time now) noexcept {
 }
 
 void Device::send_bootup(Time now) noexcept {
-  if (!faults_.no_bootup) out_.send(make_frame(CobId::base(0x700u + node_.value()), {0}), now);
+  if (!faults_.no_bootup) out_.send(make_frame(CobId::base(0x700u + address_.value()), {0}), now);
 }
 
 void Device::on_frame(const Frame& frame, Time now) noexcept {
@@ -137,7 +153,7 @@ void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept
       if (communicates()) on_sync(frame, now);
       return;
     case RouteKind::sdo:
-      if (communicates() && !faults_.mute_sdo) sdo_.on_frame(frame, now, out_);
+      if (communicates() && !faults_.mute_sdo) sdo_[route.index].on_frame(frame, now, out_);
       return;
     case RouteKind::rpdo:
       return on_rpdo(rpdos_[route.index], frame, now);
@@ -145,6 +161,11 @@ void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept
       if (communicates() && frame.length == 1) {
         watch_.on_heartbeat(static_cast<std::uint8_t>(frame.id.id() & 0x7F), frame.data[0], now);
       }
+      return;
+    case RouteKind::lss:
+      return on_lss(frame, now);
+    case RouteKind::time:
+      if (communicates()) time_.on_frame(frame, now);
       return;
     case RouteKind::tpdo_request:
     case RouteKind::guarding:
@@ -164,7 +185,10 @@ void Device::on_request(const Route& route, Time now) noexcept {
 }
 
 void Device::on_nmt(const Frame& frame, Time now) noexcept {
-  if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != node_.value())) return;
+  if (frame.length != 2 || (lss_ && lss_->switching())) return;
+  const bool for_it = frame.data[1] == address_.value() && !speaks_only_lss();
+  if (frame.data[1] != 0 && !for_it) return;
+  if (speaks_only_lss() && frame.data[0] < 129) return;
   switch (frame.data[0]) {
     case 1:
       if (!faults_.no_start) enter(DeviceState::operational, now);
@@ -193,7 +217,7 @@ void Device::enter(DeviceState state, Time now) noexcept {
   }
   if (state == DeviceState::operational) start_pdos(now);
   if (state == DeviceState::stopped) {
-    sdo_.reset();
+    for (SdoServer& server : sdo_) server.reset();
     sync_.reset();
     sync_producer_.stop();
     watch_.forget();
@@ -202,6 +226,7 @@ void Device::enter(DeviceState state, Time now) noexcept {
 }
 
 void Device::on_time(Time now) noexcept {
+  if (lss_) lss_->on_time(now);
   if (now >= boots_at_) boot(now);
   if (now >= next_storm_) {
     send_bootup(now);
@@ -214,7 +239,9 @@ void Device::on_time(Time now) noexcept {
     make_sync(now);
     if (sync_.on_time(now)) model_->sync_lost(now);
     program_.on_time(now);
-    sdo_.on_time(now, out_);
+    for (SdoServer& server : sdo_) {
+      if (now >= server.deadline()) server.on_time(now, out_);
+    }
   }
   if (state_ == DeviceState::operational) {
     for (Rpdo& rpdo : rpdos_) rpdo.on_time(now, emcy_);
@@ -260,7 +287,9 @@ void Device::fail(std::uint16_t emcy_code, Time now) noexcept {
 /// After every call: errors are told, and the next deadline is known.
 void Device::finish_call(Time now) noexcept {
   emcy_.on_time(now, communicates(), out_);
+  if (lss_ && lss_->switching()) out_.clear();
   deadline_ = std::min({boots_at_, next_storm_, heartbeat_.deadline()});
+  if (lss_) deadline_ = std::min(deadline_, lss_->deadline());
   if (!communicates()) {
     tick_ = never;
     return;
@@ -268,7 +297,8 @@ void Device::finish_call(Time now) noexcept {
   plan_tick();
   deadline_ =
       std::min({deadline_, tick_, watch_.deadline(), guarding_.deadline(), program_.deadline(),
-                sync_.deadline(), sync_producer_.deadline(), sdo_.deadline(), emcy_.deadline()});
+                sync_.deadline(), sync_producer_.deadline(), emcy_.deadline()});
+  for (const SdoServer& server : sdo_) deadline_ = std::min(deadline_, server.deadline());
   if (state_ != DeviceState::operational) return;
   for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
   for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());
@@ -285,11 +315,30 @@ void Device::plan_tick() noexcept {
   tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
 }
 
+/// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
+void Device::route_sdo_servers() noexcept {
+  constexpr std::uint32_t invalid = 0x8000'0000;
+  for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
+    if (n != 0) {
+      const auto index = static_cast<std::uint16_t>(0x1200u + n);
+      const auto request = static_cast<std::uint32_t>(store_.number({index, 1}, invalid));
+      const auto answer = static_cast<std::uint32_t>(store_.number({index, 2}, invalid));
+      if (((request | answer) & invalid) != 0) continue;
+      sdo_[n].set_channel(CobId::base(request), CobId::base(answer));
+    }
+    routes_.push_back({sdo_[n].request_id(), RouteKind::sdo, n});
+  }
+}
+
 void Device::build_routes() noexcept {
   routes_.clear();
   routes_.push_back({CobId::base(0), RouteKind::nmt, 0});
+  if (lss_) routes_.push_back({LssSlave::id(), RouteKind::lss, 0});
+  routes_changed_ = true;
+  if (speaks_only_lss()) return;
   routes_.push_back({sync_.id(), RouteKind::sync, 0});
-  routes_.push_back({sdo_.request_id(), RouteKind::sdo, 0});
+  if (const auto time = time_.id()) routes_.push_back({*time, RouteKind::time, 0});
+  route_sdo_servers();
   routes_.push_back({guarding_.id(), RouteKind::guarding, 0});
   for (const auto& watch : watch_.watches()) {
     if (watch.node != 0) {
@@ -309,7 +358,6 @@ void Device::build_routes() noexcept {
   std::ranges::sort(routes_, {}, [](const Route& route) {
     return std::tuple{route.id, route.kind, route.index};
   });
-  routes_changed_ = true;
 }
 
 }  // namespace takt::sim

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "master/sim/emcy_producer.hpp"
 #include "master/sim/guarding.hpp"
 #include "master/sim/heartbeat.hpp"
+#include "master/sim/lss_slave.hpp"
 #include "master/sim/model.hpp"
 #include "master/sim/multiplexed_pdos.hpp"
 #include "master/sim/object_store.hpp"
@@ -24,6 +26,7 @@
 #include "master/sim/sdo_server.hpp"
 #include "master/sim/sync_consumer.hpp"
 #include "master/sim/sync_producer.hpp"
+#include "master/sim/time_consumer.hpp"
 #include "master/sim/tpdo.hpp"
 #include "master/sim/transmitter.hpp"
 #include "master/wire/frame.hpp"
@@ -43,8 +46,9 @@ enum class DeviceState : std::uint8_t {
 struct DeviceTimes {
   Time startup = std::chrono::milliseconds{50};  ///< power on or reset node, to the boot-up message
   Time communication_reset = std::chrono::milliseconds{5};
-  Time sdo = std::chrono::microseconds{200};  ///< request to answer
-  Time pdo = std::chrono::microseconds{30};   ///< SYNC to TPDO
+  Time sdo = std::chrono::microseconds{200};      ///< request to answer
+  Time pdo = std::chrono::microseconds{30};       ///< SYNC to TPDO
+  Time segment = std::chrono::microseconds{112};  ///< of a block upload, to the next
 };
 
 /// A CANopen device made from its tables. Takes frames and its own time, hands out frames; knows no
@@ -80,11 +84,19 @@ class Device final : private Dictionary {
   /// DeviceFaults::storm_period has been changed.
   void start_storm(Time now) noexcept;
 
+  /// The id that the network file gives it.
   NodeId node() const noexcept { return node_; }
+  /// The one that it has: LSS may have changed it. None: it has none, and speaks LSS only.
+  std::optional<NodeId> address() const noexcept;
+  /// kbit/s; 0: that of the bus.
+  unsigned bit_rate() const noexcept { return lss_ ? lss_->bit_rate() : 0; }
   DeviceState state() const noexcept { return state_; }
   ObjectStore& objects() noexcept { return store_; }
   const ObjectStore& objects() const noexcept { return store_; }
   DeviceFaults& faults() noexcept { return faults_; }
+  /// Null: it has no LSS.
+  LssSlave* lss() noexcept { return lss_ ? &*lss_ : nullptr; }
+  const TimeConsumer& time_of_day() const noexcept { return time_; }
 
  private:
   /// In the order in which those of one identifier hear a frame.
@@ -96,6 +108,8 @@ class Device final : private Dictionary {
     rpdo,
     tpdo_request,
     guarding,
+    lss,
+    time,
   };
   struct Route {
     CobId id;
@@ -120,6 +134,9 @@ class Device final : private Dictionary {
   void reset_communication(Time now) noexcept;
   void begin_reset(Time startup, Time now) noexcept;
   void boot(Time now) noexcept;
+  void on_lss(const Frame& frame, Time now) noexcept;
+  void take_address() noexcept;
+  bool speaks_only_lss() const noexcept { return lss_ && lss_->node_id() == LssSlave::none; }
   void send_bootup(Time now) noexcept;
   void communication_error(Time now) noexcept;
   void start_pdos(Time now) noexcept;
@@ -131,6 +148,7 @@ class Device final : private Dictionary {
   void forget_configuration_date(const Object& changed) noexcept;
   void pdo_written(ObjectKey key, Time now) noexcept;
   void build_routes() noexcept;
+  void route_sdo_servers() noexcept;
   void look_at_inputs(Time now) noexcept;
   void plan_tick() noexcept;
   void finish_call(Time now) noexcept;
@@ -139,20 +157,23 @@ class Device final : private Dictionary {
   }
 
   NodeId node_;
+  NodeId address_;
   DeviceTimes times_;
   std::uint8_t dummy_usage_;
   ObjectStore store_;
   Transmitter out_;
   DeviceFaults faults_;
   EmcyProducer emcy_;
-  SdoServer sdo_;
+  std::vector<SdoServer> sdo_;  ///< 0x1200, 0x1201 ...
   SyncConsumer sync_;
   SyncProducer sync_producer_;
+  TimeConsumer time_;
   HeartbeatProducer heartbeat_;
   HeartbeatConsumer watch_;
   GuardingResponder guarding_;
   ParameterStorage storage_;
   ProgramMemory program_;
+  std::optional<LssSlave> lss_;  ///< quirks "lss" and "no_node_id"
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
   MultiplexedPdos multiplexed_;

@@ -82,7 +82,8 @@ Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcep
     return tpdo.record().check_write({PdoDirection::transmit, dummy_usage_}, object, raw);
   }
   for (const Abort refused : {program_.check_control(object, raw), emcy_.check_write(object, raw),
-                              watch_.check_write(object, raw), sync_.check_write(object, raw)}) {
+                              watch_.check_write(object, raw), sync_.check_write(object, raw),
+                              time_.check_write(object, raw)}) {
     if (refused != Abort::none) return refused;
   }
   return Abort::none;
@@ -113,7 +114,8 @@ void Device::written(const Object& object, Time now) noexcept {
   if (index == 0x1006) sync_.reset();
   if (index == 0x1005 || index == 0x1006 || index == 0x1019) sync_producer_.start(now);
   if (between(index, 0x1400, 0x1BFF)) pdo_written(object.key, now);
-  if (index == 0x1005 || index == 0x1016 || index >= 0x1400) build_routes();
+  const bool listens = index == 0x1005 || index == 0x1012 || index == 0x1016;
+  if (listens || index >= 0x1200) build_routes();
   model_->communication_written(object);
 }
 

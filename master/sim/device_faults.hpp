@@ -8,6 +8,7 @@
 #include "eds_parser/table/time.hpp"
 #include "master/sim/abort.hpp"
 #include "master/sim/guarding.hpp"
+#include "master/sim/sdo_faults.hpp"
 
 namespace takt::sim {
 
@@ -29,6 +30,7 @@ struct DeviceFaults {
   bool self_start = false;
   bool no_start = false;
   bool fixed_mapping = false;
+  SdoFaults sdo{};
   Time bootup_delay{};
   Time storm_period{};  ///< of boot-up messages; 0 = no storm
 

@@ -29,6 +29,8 @@ class EmcyProducer {
   using Detail = std::array<std::uint8_t, 5>;
 
   EmcyProducer(ObjectStore& store, NodeId node);
+  /// LSS has given the device another node id.
+  void set_node(NodeId node) noexcept { node_ = node; }
 
   void reset() noexcept;
   /// Told once; again only after it has gone. The first byte of the detail tells errors of one

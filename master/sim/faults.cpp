@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::array<std::pair<FaultKind, std::string_view>, 27> names{{
+constexpr std::array<std::pair<FaultKind, std::string_view>, 29> names{{
     {FaultKind::loss, "loss"},
     {FaultKind::duplicate, "duplicate"},
     {FaultKind::delay, "delay"},
@@ -28,6 +28,8 @@ constexpr std::array<std::pair<FaultKind, std::string_view>, 27> names{{
     {FaultKind::self_start, "self_start"},
     {FaultKind::no_start, "no_start"},
     {FaultKind::fixed_mapping, "fixed_mapping"},
+    {FaultKind::lss_silent, "lss_silent"},
+    {FaultKind::lss_no_store, "lss_no_store"},
     {FaultKind::mute_pdo, "mute_pdo"},
     {FaultKind::device_error, "device_error"},
     {FaultKind::reset, "reset"},

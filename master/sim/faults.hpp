@@ -35,6 +35,8 @@ enum class FaultKind : std::uint8_t {
   self_start,      ///< the node goes to OPERATIONAL by itself after its boot-up
   no_start,        ///< NMT start is not obeyed
   fixed_mapping,   ///< PDO mapping is read-only
+  lss_silent,      ///< no answer to LSS
+  lss_no_store,    ///< LSS store fails with error 2
   mute_pdo,        ///< no TPDO is sent
   device_error,    ///< once: the device reports EMCY `emcy_code`; a drive goes to Fault
   reset,           ///< once: the device resets by itself

@@ -16,6 +16,8 @@ class GuardingResponder {
   enum class Fault : std::uint8_t { none, mute, stuck_toggle };
 
   GuardingResponder(ObjectStore& store, EmcyProducer& emcy, NodeId node);
+  /// LSS has given the device another node id.
+  void set_node(NodeId node) noexcept { node_ = node; }
 
   CobId id() const noexcept { return CobId::base(0x700u + node_.value()); }
   /// Communication was reset: the next answer has toggle bit 0.

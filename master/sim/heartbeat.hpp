@@ -16,6 +16,8 @@ class HeartbeatProducer {
  public:
   HeartbeatProducer(ObjectStore& store, NodeId node)
       : period_{store.find({0x1017, 0})}, node_{node} {}
+  /// LSS has given the device another node id.
+  void set_node(NodeId node) noexcept { node_ = node; }
 
   /// The boot-up message counts as the first heartbeat.
   void start(Time now) noexcept;

@@ -8,7 +8,8 @@ namespace takt::sim {
 
 /// A device in its place on the bus: with its clock and what the world has changed of it.
 struct HostedDevice {
-  HostedDevice(const DeviceTable& table, Random random) : device{table, random} {
+  HostedDevice(const DeviceTable& table, Random random, DeviceTimes times)
+      : device{table, random, times} {
     ids.reserve(device.most_ids());
   }
 

@@ -56,9 +56,8 @@ class Model {
   virtual Time next_change() const noexcept { return never; }
 };
 
-/// The model of this name: "drive402", "io401", "encoder406", "lenze8400", "beckhoff", "plain301",
-/// "astraada_drv28"; anything else: a plain device. What a model needs and the dictionary lacks is
-/// left out.
+/// The model of this name (one of sim_models); anything else: a plain device. What a model needs
+/// and the dictionary lacks is left out.
 std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy,
                                   Random random);
 

@@ -19,6 +19,8 @@ namespace takt::sim {
 class MultiplexedPdos {
  public:
   MultiplexedPdos(ObjectStore& store, NodeId node);
+  /// LSS has given the device another node id.
+  void set_node(NodeId node) noexcept { node_ = node; }
 
   /// OPERATIONAL is entered, or an object of a PDO was written: `tpdos` anew.
   void clear() noexcept { sources_.clear(); }

@@ -44,7 +44,7 @@ struct Object {
 class ObjectStore {
  public:
   /// Largest string or domain that may be written, in bytes.
-  static constexpr std::size_t bytes_limit = 65536;
+  static constexpr std::size_t bytes_limit = 1 << 20;
 
   explicit ObjectStore(const DeviceTable& table);
 

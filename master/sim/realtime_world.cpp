@@ -18,7 +18,7 @@ Time monotonic() noexcept {
 RealtimeWorld::RealtimeWorld(std::span<const DeviceTable> devices, WorldOptions options,
                              FrameChannel& channel)
     : world_{devices, std::move(options)},
-      port_{world_.attach({.tx_queue = 4096, .rx_queue = 4096})},
+      port_{world_.attach({.tx_queue = 4096, .rx_queue = 4096, .relays = true})},
       channel_{channel} {}
 
 RealtimeWorld::~RealtimeWorld() { stop(); }

@@ -49,6 +49,7 @@ PortNews RemotePort::news() const noexcept {
               static_cast<std::uint8_t>(std::min<std::uint32_t>(node.transmit_errors, 255)),
           .rx_error_counter = static_cast<std::uint8_t>(node.receive_errors(frames)),
           .last_error = last_error_,
+          .since_1970 = options_.epoch,
           .last_sync_echo = last_sync_echo_};
 }
 

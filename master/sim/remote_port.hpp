@@ -18,8 +18,10 @@ struct RemotePortOptions {
   std::size_t rx_queue = 1024;      ///< frames; full: receive_overruns
   CobId sync = CobId::base(0x080);  ///< own frames of this identifier are told as SYNC echo
   Time restart = std::chrono::milliseconds{100};  ///< after bus-off; `never`: stays off
-  Time wake_jitter{};  ///< sleep_until and wait_frame come back up to this late
-  Time spin_jitter{};  ///< sleep_precisely_until comes back up to this late
+  bool relays = false;                            ///< as in BusNodeOptions
+  Time epoch = std::chrono::days{20454};  ///< time of day at the world's time 0: 2026-01-01 UTC
+  Time wake_jitter{};                     ///< sleep_until and wait_frame come back up to this late
+  Time spin_jitter{};                     ///< sleep_precisely_until comes back up to this late
 };
 
 /// The controller of somebody outside the world: queues as SocketCAN has them.

@@ -8,29 +8,48 @@
 #include "eds_parser/table/time.hpp"
 #include "master/sim/abort.hpp"
 #include "master/sim/dictionary.hpp"
+#include "master/sim/sdo_faults.hpp"
+#include "master/sim/sdo_server_block.hpp"
 #include "master/sim/transmitter.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::sim {
 
-/// The default SDO server of a device: expedited and segmented transfers both ways, one at a time.
+/// One SDO server of a device: expedited, segmented and block transfers both ways, one at a time.
 /// CiA 301, 7.2.4.
 class SdoServer {
  public:
-  SdoServer(Dictionary& dictionary, NodeId node);
+  /// On the default channel until set_channel.
+  SdoServer(Dictionary& dictionary, NodeId node, const SdoFaults& faults);
 
-  CobId request_id() const noexcept { return CobId::base(0x600u + node_.value()); }
+  void set_channel(CobId request, CobId answer) noexcept {
+    request_id_ = request;
+    answer_id_ = answer;
+  }
+  CobId request_id() const noexcept { return request_id_; }
   /// Silent: NMT stopped or reset.
   void reset() noexcept;
-  /// Answers are ready after `latency`, the time that the device computes.
-  void set_latency(Time latency) noexcept { latency_ = latency; }
+  /// Answers are ready after `latency`, the time that the device computes; segments of a block
+  /// follow each other after `segment`.
+  void set_times(Time latency, Time segment) noexcept {
+    latency_ = latency;
+    segment_time_ = segment;
+  }
   void on_frame(const Frame& frame, Time now, Transmitter& out) noexcept;
-  /// The client has fallen silent within a transfer.
+  /// The client has fallen silent within a transfer, or the next segment of a block is due.
   void on_time(Time now, Transmitter& out) noexcept;
-  Time deadline() const noexcept { return deadline_; }
+  Time deadline() const noexcept { return deadline_ < next_segment_ ? deadline_ : next_segment_; }
 
  private:
-  enum class State : std::uint8_t { idle, uploading, downloading };
+  enum class State : std::uint8_t {
+    idle,
+    uploading,
+    downloading,
+    block_receiving,
+    block_offered,  // an upload whose start is awaited
+    block_sending,
+    block_ended,  // the end of an upload waits for its confirmation
+  };
 
   void on_initiate(const Frame& frame, Time now, Transmitter& out) noexcept;
   void start_upload(Time now, Transmitter& out) noexcept;
@@ -39,6 +58,13 @@ class SdoServer {
   void start_segmented_download(const Frame& frame, Time now, Transmitter& out) noexcept;
   void download_segment(const Frame& frame, Time now, Transmitter& out) noexcept;
   void finish_download(Time now, Transmitter& out) noexcept;
+  void start_block_download(const Frame& frame, Time now, Transmitter& out) noexcept;
+  void block_received(BlockReceiver::Then then, Time now, Transmitter& out) noexcept;
+  void start_block_upload(const Frame& frame, Time now, Transmitter& out) noexcept;
+  void on_block_upload(const Frame& frame, Time now, Transmitter& out) noexcept;
+  void send_block_segment(Time now, Transmitter& out) noexcept;
+  void reply(const SdoBytes& bytes, Time now, Transmitter& out) noexcept;
+  std::uint32_t announced(std::size_t size) const noexcept;
   void answer(std::uint8_t command, std::span<const std::byte> data, Time now,
               Transmitter& out) noexcept;
   void confirm(std::uint8_t command, Time now, Transmitter& out) noexcept;
@@ -46,9 +72,12 @@ class SdoServer {
   void send(Frame frame, Time now, Transmitter& out) noexcept;
   Abort check_size(std::size_t size) const noexcept;
 
-  Dictionary& dictionary_;
-  NodeId node_;
+  Dictionary* dictionary_;
+  const SdoFaults* faults_;
+  CobId request_id_;
+  CobId answer_id_;
   Time latency_{};
+  Time segment_time_{};
   State state_ = State::idle;
   ObjectKey key_;
   bool toggle_ = false;
@@ -56,7 +85,10 @@ class SdoServer {
   std::size_t size_ = 0;
   std::size_t done_ = 0;
   std::vector<std::byte> buffer_;
+  BlockReceiver receiver_;
+  BlockSender sender_;
   Time deadline_ = never;
+  Time next_segment_ = never;
 };
 
 }  // namespace takt::sim

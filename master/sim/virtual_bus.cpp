@@ -15,8 +15,13 @@ constexpr std::uint32_t recovery_bits = 128 * 11;
 
 }  // namespace
 
-VirtualBus::VirtualBus(std::uint32_t bitrate, Random random)
-    : bitrate_{std::clamp(bitrate, 1'000u, 10'000'000u)}, random_{random} {}
+VirtualBus::VirtualBus(std::uint32_t bitrate, Random random) : random_{random} {
+  set_bitrate(bitrate);
+}
+
+void VirtualBus::set_bitrate(std::uint32_t bitrate) noexcept {
+  bitrate_ = std::clamp(bitrate, 1'000u, 10'000'000u);
+}
 
 BusNodeIndex VirtualBus::attach(BusNodeOptions options) {
   const auto index = static_cast<BusNodeIndex>(nodes_.size());
@@ -123,7 +128,8 @@ void VirtualBus::arbitrate(Time now) noexcept {
       if (offer == BusNode::none) continue;
       const std::uint32_t rank = node.at(offer).rank;
       if (sender_ != nobody && rank >= best) {
-        if (rank == best) rival_ = index;
+        const bool relayed = node.options.relays || nodes_[sender_].options.relays;
+        if (rank == best && !relayed) rival_ = index;
         continue;
       }
       best = rank;

@@ -51,6 +51,8 @@ class VirtualBus {
     return Time{static_cast<Time::rep>(bits * std::uint64_t{1'000'000'000} / bitrate_)};
   }
   std::uint32_t bitrate() const noexcept { return bitrate_; }
+  /// From the next frame on.
+  void set_bitrate(std::uint32_t bitrate) noexcept;
   const BusCounters& counters() const noexcept { return counters_; }
 
   /// A node has gone bus-off or come back since the last call; nobody: none.
@@ -72,7 +74,7 @@ class VirtualBus {
   void mark(BusNodeIndex index) noexcept;
   bool acknowledged(BusNodeIndex sender) const noexcept;
 
-  std::uint32_t bitrate_;
+  std::uint32_t bitrate_ = 1'000'000;
   Random random_;
   std::vector<BusNode> nodes_;
   std::vector<std::uint64_t> waiting_;  ///< bit set: nodes with queued frames

@@ -8,6 +8,8 @@
 namespace takt::sim {
 namespace {
 
+constexpr std::uint32_t shortest_segment_bits = 112;  // eight bytes, hardly any stuff bit
+
 /// What a quirk of this name means where nobody gives numbers.
 Fault quirk(FaultKind kind, NodeId node) {
   Fault fault{.kind = kind, .node = node};
@@ -20,14 +22,18 @@ Fault quirk(FaultKind kind, NodeId node) {
 
 World::World(std::span<const DeviceTable> devices, WorldOptions options)
     : random_{options.seed},
+      first_bitrate_{options.bitrate},
+      one_bit_rate_{options.one_bit_rate},
       bus_{options.bitrate, random_.fork(1)},
       timers_{devices.size() + 1},
       schedule_{std::move(options.faults)} {
   words_ = devices.size() / 64 + 1;
   takers_.assign(2048 * words_, 0);
   for (const DeviceTable& table : devices) {
-    devices_.push_back(
-        std::make_unique<HostedDevice>(table, random_.fork(100 + table.node.value())));
+    // The wire is always a little slower than a device with segments to send.
+    devices_.push_back(std::make_unique<HostedDevice>(
+        table, random_.fork(100 + table.node.value()),
+        DeviceTimes{.segment = bus_.bit_time(shortest_segment_bits)}));
     bus_.attach({.order = QueueOrder::priority, .capacity = 576});
   }
   babbler_ = bus_.attach({.order = QueueOrder::fifo, .capacity = 4});
@@ -109,9 +115,15 @@ void World::run_device(std::size_t index) noexcept {
   }
 }
 
+bool World::fits_bus(const Device& device) const noexcept {
+  const std::uint32_t own = device.bit_rate() == 0 ? first_bitrate_ : device.bit_rate() * 1000;
+  return !one_bit_rate_ || own == bus_.bitrate();
+}
+
 void World::after_call(std::size_t index) noexcept {
   HostedDevice& hosted = *devices_[index];
   Device& device = hosted.device;
+  if (!fits_bus(device)) device.out().clear();
   for (const Transmission& item : device.out().pending()) {
     bus_.queue(static_cast<BusNodeIndex>(index), item.frame, hosted.clock.world(item.ready),
                hosted.clock.world(item.expires));
@@ -164,6 +176,7 @@ void World::deliver_to_devices(const WireFrame& wire) noexcept {
 void World::deliver(std::size_t index, const Frame& frame) noexcept {
   HostedDevice& hosted = *devices_[index];
   if (!bus_.node(static_cast<BusNodeIndex>(index)).on_bus()) return;
+  if (!fits_bus(hosted.device)) return;
   hosted.device.on_frame(frame, hosted.clock.local(now_));
   after_call(index);
 }
@@ -183,8 +196,10 @@ void World::tell_bus_changes() noexcept {
 }
 
 RemotePort& World::attach(RemotePortOptions options) {
-  const BusNodeIndex node = bus_.attach(
-      {.order = QueueOrder::fifo, .capacity = options.tx_queue, .restart = options.restart});
+  const BusNodeIndex node = bus_.attach({.order = QueueOrder::fifo,
+                                         .capacity = options.tx_queue,
+                                         .restart = options.restart,
+                                         .relays = options.relays});
   ports_.push_back(std::make_unique<RemotePort>(bus_, node, options, random_.fork(10'000u + node)));
   return *ports_.back();
 }

@@ -18,13 +18,14 @@
 namespace takt::sim {
 
 class Device;
-class HostedDevice;
+struct HostedDevice;
 
 struct WorldOptions {
   std::uint64_t seed = 1;
   std::uint32_t bitrate = 1'000'000;
   Faults faults{};
-  Time power_on_spread{};  ///< devices are switched on at random times within this
+  bool one_bit_rate = true;  ///< a device whose bit rate is not that of the bus is deaf and mute
+  Time power_on_spread{};    ///< devices are switched on at random times within this
 };
 
 /// A bus with devices in virtual time. Time stands still unless somebody advances it. The same
@@ -56,6 +57,8 @@ class World {
 
   void observe(BusObserver* observer) noexcept { observer_ = observer; }
   const VirtualBus& bus() const noexcept { return bus_; }
+  /// Everybody but the devices, whom LSS changes, has another bit rate from now on.
+  void set_bitrate(std::uint32_t bitrate) noexcept { bus_.set_bitrate(bitrate); }
   /// Node of a device by its position on the bus; 0: a remote port or a babbler.
   std::uint8_t node_of(BusNodeIndex sender) const noexcept;
 
@@ -66,6 +69,7 @@ class World {
   void after_call(std::size_t index) noexcept;
   void route(std::size_t index) noexcept;
   void on_wire_end(const WireFrame& wire) noexcept;
+  bool fits_bus(const Device& device) const noexcept;
   void deliver_to_devices(const WireFrame& wire) noexcept;
   void deliver(std::size_t index, const Frame& frame) noexcept;
   void tell_bus_changes() noexcept;
@@ -80,6 +84,8 @@ class World {
 
   Time now_{};
   Random random_;
+  std::uint32_t first_bitrate_;
+  bool one_bit_rate_;
   VirtualBus bus_;
   std::vector<std::unique_ptr<HostedDevice>> devices_;
   std::vector<std::unique_ptr<RemotePort>> ports_;

@@ -173,6 +173,13 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::fixed_mapping:
       faults.fixed_mapping = begins;
       return;
+    case FaultKind::lss_silent:
+    case FaultKind::lss_no_store:
+      if (LssSlave* const lss = device.lss()) {
+        (fault.kind == FaultKind::lss_silent ? lss->faults().silent : lss->faults().refuses_store) =
+            begins;
+      }
+      return;
     case FaultKind::mute_pdo:
       faults.mute_pdo = begins;
       return;

@@ -9,6 +9,9 @@ namespace abort_code {
 inline constexpr std::uint32_t toggle_not_alternated = 0x0503'0000;
 inline constexpr std::uint32_t timeout = 0x0504'0000;
 inline constexpr std::uint32_t command_unknown = 0x0504'0001;
+inline constexpr std::uint32_t block_size = 0x0504'0002;
+inline constexpr std::uint32_t sequence = 0x0504'0003;
+inline constexpr std::uint32_t crc = 0x0504'0004;
 inline constexpr std::uint32_t out_of_memory = 0x0504'0005;
 inline constexpr std::uint32_t access_unsupported = 0x0601'0000;
 inline constexpr std::uint32_t write_only = 0x0601'0001;

@@ -21,6 +21,19 @@ constexpr CobId sdo_answer_cob_id(NodeId server) noexcept {
   return CobId::base(0x580U + server.value());
 }
 
+/// Identifier of a client's frames: of a channel, or of the default channel of a server.
+struct SdoRequestId {
+  CobId value;
+  constexpr SdoRequestId(NodeId server) noexcept : value{sdo_request_cob_id(server)} {}
+  constexpr SdoRequestId(CobId id) noexcept : value{id} {}
+};
+/// The same of a server's frames.
+struct SdoAnswerId {
+  CobId value;
+  constexpr SdoAnswerId(NodeId server) noexcept : value{sdo_answer_cob_id(server)} {}
+  constexpr SdoAnswerId(CobId id) noexcept : value{id} {}
+};
+
 /// What the client asks: its command specifier, bits 7..5 of byte 0.
 enum class SdoRequest : std::uint8_t {
   download_segment = 0,
@@ -139,32 +152,32 @@ constexpr SdoSegment sdo_segment(std::span<B> left, bool toggle) noexcept {
 
 // client to server
 
-constexpr Frame upload_request(NodeId server, ObjectKey object) noexcept {
-  return sdo_detail::frame(sdo_request_cob_id(server), 0x40, object);
+constexpr Frame upload_request(SdoRequestId channel, ObjectKey object) noexcept {
+  return sdo_detail::frame(channel.value, 0x40, object);
 }
-constexpr Frame upload_segment_request(NodeId server, bool toggle) noexcept {
-  return sdo_detail::frame(sdo_request_cob_id(server), toggle ? 0x70 : 0x60, {});
+constexpr Frame upload_segment_request(SdoRequestId channel, bool toggle) noexcept {
+  return sdo_detail::frame(channel.value, toggle ? 0x70 : 0x60, {});
 }
-constexpr Frame download_request(NodeId server, const SdoInitiate& begin) noexcept {
-  return sdo_detail::initiate(sdo_request_cob_id(server), 0x20, begin);
+constexpr Frame download_request(SdoRequestId channel, const SdoInitiate& begin) noexcept {
+  return sdo_detail::initiate(channel.value, 0x20, begin);
 }
-constexpr Frame download_segment_request(NodeId server, const SdoSegment& part) noexcept {
-  return sdo_detail::segment(sdo_request_cob_id(server), part);
+constexpr Frame download_segment_request(SdoRequestId channel, const SdoSegment& part) noexcept {
+  return sdo_detail::segment(channel.value, part);
 }
 
 // server to client
 
-constexpr Frame upload_answer(NodeId server, const SdoInitiate& begin) noexcept {
-  return sdo_detail::initiate(sdo_answer_cob_id(server), 0x40, begin);
+constexpr Frame upload_answer(SdoAnswerId channel, const SdoInitiate& begin) noexcept {
+  return sdo_detail::initiate(channel.value, 0x40, begin);
 }
-constexpr Frame upload_segment_answer(NodeId server, const SdoSegment& part) noexcept {
-  return sdo_detail::segment(sdo_answer_cob_id(server), part);
+constexpr Frame upload_segment_answer(SdoAnswerId channel, const SdoSegment& part) noexcept {
+  return sdo_detail::segment(channel.value, part);
 }
-constexpr Frame download_answer(NodeId server, ObjectKey object) noexcept {
-  return sdo_detail::frame(sdo_answer_cob_id(server), 0x60, object);
+constexpr Frame download_answer(SdoAnswerId channel, ObjectKey object) noexcept {
+  return sdo_detail::frame(channel.value, 0x60, object);
 }
-constexpr Frame download_segment_answer(NodeId server, bool toggle) noexcept {
-  return sdo_detail::frame(sdo_answer_cob_id(server), toggle ? 0x30 : 0x20, {});
+constexpr Frame download_segment_answer(SdoAnswerId channel, bool toggle) noexcept {
+  return sdo_detail::frame(channel.value, toggle ? 0x30 : 0x20, {});
 }
 
 // both ways

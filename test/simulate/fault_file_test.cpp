@@ -1,7 +1,9 @@
 #include "apps/simulate/fault_file.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <set>
 
 #include "apps/simulate/duration.hpp"
 
@@ -67,6 +69,40 @@ TEST_F(FaultFileTest, ListsAllErrorsWithTheirLines) {
   EXPECT_EQ(file.findings[4].pos.line, 4u);
   EXPECT_TRUE(file.findings[5].message.contains("object")) << file.findings[5].message;
   EXPECT_EQ(file.findings[6].pos.line, 5u);
+}
+
+/// The YAML block of a text file.
+std::string yaml_block(const std::string& path) {
+  std::ifstream in{path};
+  std::string block;
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("```")) {
+      inside = line == "```yaml";
+    } else if (inside) {
+      block += line + "\n";
+    }
+  }
+  return block;
+}
+
+TEST_F(FaultFileTest, ReadsEveryLineOfItsDescriptionWhichHasEveryKind) {
+  const std::string block = yaml_block(TAKT_SOURCE_DIR "/share/doc/faults.md");
+  const FaultFile file = read(block);
+
+  for (const Finding& finding : file.findings) ADD_FAILURE() << to_string(finding);
+  std::set<std::string_view> told;
+  for (const sim::Fault& fault : file.faults) told.insert(sim::name(fault.kind));
+  std::size_t kinds = 0;
+  for (unsigned kind = 0; sim::name(static_cast<sim::FaultKind>(kind)) != "unknown"; ++kind) {
+    EXPECT_TRUE(told.contains(sim::name(static_cast<sim::FaultKind>(kind))))
+        << sim::name(static_cast<sim::FaultKind>(kind)) << " is not described";
+    ++kinds;
+  }
+  EXPECT_EQ(kinds, 29u);
+  EXPECT_EQ(told.size(), kinds);
+  EXPECT_EQ(file.faults.size(), static_cast<std::size_t>(std::ranges::count(block, '{')))
+      << "one on each line";
 }
 
 TEST_F(FaultFileTest, SurvivesWhatIsNoFaultFile) {

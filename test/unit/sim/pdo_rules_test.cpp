@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "master/sim/device.hpp"
+#include "master/wire/bytes.hpp"
 #include "test/unit/sim/sample_device.hpp"
 
 namespace takt::sim {
@@ -36,8 +37,7 @@ class PdoRules : public testing::Test {
     device_.out().clear();
     if (answer[0] == 0x60) return 0;
     EXPECT_EQ(answer[0], 0x80);
-    return answer[4] | answer[5] << 8 | answer[6] << 16 |
-           static_cast<std::uint32_t>(answer[7]) << 24;
+    return load_le<std::uint32_t>(std::span{answer}.subspan(4));
   }
   void disable(std::uint16_t communication, std::uint32_t cob) {
     ASSERT_EQ(write(communication, 1, cob | 0x8000'0000, 4), 0u);

@@ -207,6 +207,24 @@ TEST_F(Bus, MergesTwoEqualFramesOfOneIdentifier) {
   EXPECT_EQ(run(1ms).size(), 1u);
 }
 
+TEST_F(Bus, LetsNothingCollideWithAFrameThatWasOnAnotherWire) {
+  const BusNodeIndex relay = bus_.attach({.order = QueueOrder::fifo, .relays = true});
+  const Frame heartbeat = make_frame(CobId::base(0x702), {0x05});
+  const Frame boot_up = make_frame(CobId::base(0x702), {0x00});
+  bus_.queue(0, boot_up, 0ns);
+  bus_.queue(relay, heartbeat, 0ns);
+  bus_.queue(relay, boot_up, 0ns);
+
+  const auto sent = run(1ms);
+
+  ASSERT_EQ(sent.size(), 3u);
+  for (const WireFrame& wire : sent) EXPECT_EQ(wire.result, WireResult::sent);
+  EXPECT_EQ(sent[0].frame, boot_up);
+  EXPECT_EQ(sent[1].frame, heartbeat);
+  EXPECT_EQ(sent[2].frame, boot_up);
+  EXPECT_EQ(bus_.node(0).transmit_errors, 0u);
+}
+
 TEST_F(Bus, GivesTheSameRunForTheSameSeed) {
   const auto run_once = [](std::uint64_t seed) {
     VirtualBus bus{500'000, Random{seed}};
