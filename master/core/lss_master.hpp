@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "master/core/lss_command.hpp"
+#include "master/core/lss_scan.hpp"
+#include "master/core/machine.hpp"
+
+namespace takt {
+
+/// The LSS master: one service at a time, each with a deadline. CiA 305. Where several devices may
+/// answer, the wait lasts its full time; within a scan it shrinks to what the devices need, and is
+/// full again where a reaction was doubtful.
+class LssMaster {
+ public:
+  static constexpr Time gap = std::chrono::milliseconds{1};  ///< between two frames of the master
+  static constexpr Time shortest_wait = std::chrono::milliseconds{10};
+
+  /// Only when idle. `timeout` of each answer; 0: the default of the service.
+  void begin(const LssCommand& command, Time timeout, Time now) noexcept;
+  void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  void on_time(Time now, Outbox& out) noexcept;
+  Time deadline() const noexcept;
+  /// Once, when it is over.
+  std::optional<LssResult> take_result() noexcept;
+  /// Gives up; there will be no result.
+  void cancel() noexcept { phase_ = Phase::idle; }
+  bool idle() const noexcept { return phase_ == Phase::idle; }
+
+ private:
+  enum class Phase : std::uint8_t { idle, sending, waiting, over };
+  enum class Wait : std::uint8_t { none, first_answer, all_answers };
+
+  void ask() noexcept;
+  void ask_scan() noexcept;
+  void put(const Frame& frame) noexcept { frames_[count_++] = frame; }
+  void sent_all(Time now) noexcept;
+  void on_reaction(Time now) noexcept;
+  void on_scan_reaction() noexcept;
+  void end_scan(LssScanState state, const LssAddress& address) noexcept;
+  void finish(LssOutcome outcome) noexcept;
+  bool expects(const lss::Answer& answer) const noexcept;
+  bool scans() const noexcept {
+    return command_.op == LssOp::fast_scan || command_.op == LssOp::slow_scan;
+  }
+  Time wait() const noexcept;
+
+  LssCommand command_;
+  LssResult result_;
+  LssFastScan fast_;
+  LssSlowScan slow_;
+  Phase phase_ = Phase::idle;
+  Wait wait_for_ = Wait::none;
+  std::array<Frame, 6> frames_{};  // of this question
+  std::uint8_t count_ = 0;
+  std::uint8_t next_ = 0;
+  bool answered_ = false;
+  bool patient_ = false;  // waits of a scan are full
+  Time timeout_{};
+  Time send_at_{};
+  Time asked_at_{};
+  Time wait_until_ = never;
+  Time slowest_{};  // answer of this scan
+};
+static_assert(Machine<LssMaster>);
+
+}  // namespace takt

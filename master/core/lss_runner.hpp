@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "master/core/lss_master.hpp"
+
+namespace takt {
+
+/// Runs a list of LSS services, one after the other, until one is not done. A list that has
+/// brought devices into configuration state and fails ends by sending all of them to waiting.
+class LssRunner {
+ public:
+  static constexpr std::size_t most_commands = 28;
+
+  /// `commands` beyond most_commands are not run. `timeout` of each answer; 0: the defaults.
+  void begin(std::span<const LssCommand> commands, Time timeout) noexcept;
+  void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  void on_time(Time now, Outbox& out) noexcept;
+  Time deadline() const noexcept;
+  /// Gives up the list. Where a device may be in configuration state, all are sent to waiting
+  /// first: running() until that frame is out.
+  void leave(Time now) noexcept;
+
+  bool running() const noexcept { return state_ == State::running || state_ == State::leaving; }
+  /// Of the services that were run; the last of them says why where not all of them are done.
+  std::span<const LssResult> results() const noexcept {
+    return std::span{results_}.first(results_count_);
+  }
+  bool done() const noexcept { return state_ == State::done; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(configuring_, left_there_);
+  }
+
+ private:
+  enum class State : std::uint8_t { idle, running, leaving, done, failed };
+
+  void step(Time now) noexcept;
+  void on_result(const LssResult& result, Time now) noexcept;
+
+  LssMaster master_;
+  std::array<LssCommand, most_commands> commands_{};
+  std::array<LssResult, most_commands> results_{};
+  std::size_t count_ = 0;
+  std::size_t results_count_ = 0;
+  Time timeout_{};
+  State state_ = State::idle;
+  bool configuring_ = false;  // this list has brought some device into configuration state
+  bool left_there_ = false;   // and so has one that is over
+};
+static_assert(Machine<LssRunner>);
+
+}  // namespace takt

@@ -1,0 +1,88 @@
+#include "master/core/lss_scan.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint8_t parts = 4;
+
+}  // namespace
+
+void LssFastScan::begin_part(std::uint8_t part) noexcept {
+  question_ = {.number = known_[part] & mask_[part], .part = part, .next = part};
+  confirming_ = false;
+  ask_below(32);
+}
+
+/// The highest unknown bit below `bit`; where there is none, the whole part is asked for again and
+/// the devices go on to the next one.
+void LssFastScan::ask_below(int bit) noexcept {
+  do {
+    --bit;
+  } while (bit >= 0 && ((mask_[question_.part] >> bit) & 1) != 0);
+  confirming_ = bit < 0;
+  question_.bit_check = static_cast<std::uint8_t>(confirming_ ? 0 : bit);
+  if (confirming_) question_.next = static_cast<std::uint8_t>((question_.part + 1) % parts);
+}
+
+void LssFastScan::on_reaction(bool answered) noexcept {
+  if (question_.bit_check == lss::FastScan::everybody) return on_anybody(answered);
+  if (confirming_) return on_confirm(answered);
+  const std::uint8_t bit = question_.bit_check;
+  if (!answered) question_.number |= std::uint32_t{1} << bit;
+  ask_below(bit);
+}
+
+/// One lost or late answer must not make all devices unfound: silence counts the second time.
+void LssFastScan::on_anybody(bool answered) noexcept {
+  if (!answered && repeated_) state_ = LssScanState::nobody;
+  repeated_ = !answered;
+  if (answered) begin_part(0);
+}
+
+/// An answer that was lost or late has been taken for a 1: the part is asked for once more. A part
+/// with known bits may just belong to nobody.
+void LssFastScan::on_confirm(bool answered) noexcept {
+  const std::uint8_t part = question_.part;
+  if (answered) {
+    address_[part] = question_.number;
+    repeated_ = false;
+    if (part + 1 < parts) return begin_part(static_cast<std::uint8_t>(part + 1));
+    state_ = LssScanState::found;
+  } else if (!repeated_) {
+    repeated_ = true;
+    begin_part(part);
+  } else {
+    state_ = mask_[part] != 0 ? LssScanState::nobody : LssScanState::lost;
+  }
+}
+
+void LssSlowScan::on_reaction(bool answered) noexcept {
+  if (first_) {
+    first_ = false;
+    if (!answered) {
+      state_ = LssScanState::nobody;
+      return;
+    }
+  } else if (confirming_) {
+    state_ = answered ? LssScanState::found : LssScanState::lost;
+    return;
+  } else {
+    const std::size_t from = left_[2] != left_[3] ? 2 : 4;
+    if (answered) {
+      left_[from + 1] = question_[from + 1];
+    } else {
+      left_[from] = question_[from + 1] + 1;
+    }
+  }
+  ask();
+}
+
+/// The lower half of the revisions, then of the serial numbers, then the one that is left.
+void LssSlowScan::ask() noexcept {
+  question_ = left_;
+  const std::size_t from = left_[2] != left_[3] ? 2 : 4;
+  confirming_ = left_[from] == left_[from + 1];
+  if (!confirming_) question_[from + 1] = left_[from] + (left_[from + 1] - left_[from]) / 2;
+}
+
+}  // namespace takt

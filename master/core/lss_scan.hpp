@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "eds_parser/table/lss_plan.hpp"
+#include "master/wire/lss.hpp"
+
+namespace takt {
+
+enum class LssScanState : std::uint8_t { running, found, nobody, lost };
+
+/// Finds the LSS address of a device without node id, bit by bit; of several the lowest. It is then
+/// in configuration state. CiA 305, 3.9.5.
+class LssFastScan {
+ public:
+  LssFastScan() = default;
+  /// Bits of `mask` are known and need no question.
+  LssFastScan(const LssAddress& known, const LssAddress& mask) noexcept
+      : known_{known}, mask_{mask} {}
+
+  /// What to ask next, while running.
+  lss::FastScan question() const noexcept { return question_; }
+  /// Somebody has answered it, or nobody has.
+  void on_reaction(bool answered) noexcept;
+  LssScanState state() const noexcept { return state_; }
+  const LssAddress& address() const noexcept { return address_; }
+  /// A question had a reaction that can't be: wait for as long as may be.
+  bool doubtful() const noexcept { return repeated_; }
+
+ private:
+  void begin_part(std::uint8_t part) noexcept;
+  void ask_below(int bit) noexcept;
+  void on_anybody(bool answered) noexcept;
+  void on_confirm(bool answered) noexcept;
+
+  LssAddress known_{};
+  LssAddress mask_{};
+  LssAddress address_{};
+  lss::FastScan question_{};
+  LssScanState state_ = LssScanState::running;
+  bool confirming_ = false;
+  bool repeated_ = false;
+};
+
+/// Finds the lowest LSS address in ranges of revision and serial number of one product, by halving
+/// them; devices with a node id answer as well and stay as they are. CiA 305, 3.9.4.
+class LssSlowScan {
+ public:
+  LssSlowScan() = default;
+  /// `ranges`: vendor, product, revision from and to, serial from and to.
+  explicit LssSlowScan(const std::array<std::uint32_t, 6>& ranges) noexcept
+      : left_{ranges}, question_{ranges} {}
+
+  /// The six numbers to ask for next, while running.
+  const std::array<std::uint32_t, 6>& question() const noexcept { return question_; }
+  void on_reaction(bool answered) noexcept;
+  LssScanState state() const noexcept { return state_; }
+  LssAddress address() const noexcept { return {left_[0], left_[1], left_[2], left_[4]}; }
+
+ private:
+  void ask() noexcept;
+
+  std::array<std::uint32_t, 6> left_{};  // where the device is
+  std::array<std::uint32_t, 6> question_{};
+  LssScanState state_ = LssScanState::running;
+  bool first_ = true;
+  bool confirming_ = false;
+};
+
+}  // namespace takt
