@@ -1,14 +1,18 @@
 #include "eds_parser/boot_compiler.hpp"
 
 #include <algorithm>
-#include <set>
 
+#include "eds_parser/boot_error_control.hpp"
+#include "eds_parser/boot_limits.hpp"
+#include "eds_parser/boot_part.hpp"
 #include "eds_parser/boot_pdos.hpp"
 #include "eds_parser/boot_program.hpp"
 #include "eds_parser/boot_steps.hpp"
+#include "eds_parser/boot_sync.hpp"
 #include "eds_parser/boot_values.hpp"
 #include "eds_parser/configuration_date.hpp"
 #include "eds_parser/device_data.hpp"
+#include "eds_parser/integer_of.hpp"
 
 namespace takt {
 namespace {
@@ -27,7 +31,8 @@ class BootCompiler {
         tweaks_{node.node.data == nullptr ? BootTweaks{} : node.node.data->boot},
         context_{context},
         report_{report},
-        steps_{dictionary_, context.sdo_timeout} {}
+        steps_{dictionary_, context.sdo_timeout},
+        part_{spec_, dictionary_, context_, steps_, report_} {}
 
   BootPlan run() {
     reset();
@@ -36,9 +41,10 @@ class BootCompiler {
     ConfigurationDate date{spec_, dictionary_, steps_, report_};
     date.skip_if_there();
     restore();
-    heartbeat();
-    emergency();
-    sync();
+    append_error_control(part_);
+    append_emergency(part_);
+    append_time(part_);
+    append_sync(part_);
     if (!tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
     if (tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
@@ -46,7 +52,9 @@ class BootCompiler {
     store();
     date.land();
     start();
-    return steps_.take();
+    BootPlan plan = steps_.take();
+    judge_limits(node_, plan, report_);
+    return plan;
   }
 
  private:
@@ -98,9 +106,7 @@ class BootCompiler {
   /// believed: its product number is wrong in one of 25 files.
   std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key) const {
     if (wanted.given) return *wanted;
-    const SubObject* sub = dictionary_.find(key);
-    if (sub == nullptr || !sub->value()) return 0;
-    return static_cast<std::uint32_t>(as_integer(*sub->value()).value_or(0));
+    return static_cast<std::uint32_t>(integer_of(dictionary_, key).value_or(0));
   }
 
   void expect(ObjectKey key, std::uint32_t value, char letter, const std::string& purpose) {
@@ -118,6 +124,18 @@ class BootCompiler {
       steps_.integer(BootAction::read_serial, {0x1018, 4}, 0, "serial number, to know it again")
           .value.clear();
     }
+    firmware();
+  }
+
+  /// Read where the device data depend on it.
+  void firmware() {
+    if (node_.node.data == nullptr) return;
+    const auto plan = firmware_plan(*node_.node.data, node_.node.firmware);
+    if (!plan || !steps_.has(plan->object)) return;
+    steps_
+        .integer(BootAction::read_firmware, plan->object, 0,
+                 "firmware, taken for " + to_string(plan->assumed))
+        .value.clear();
   }
 
   void restore() {
@@ -154,170 +172,6 @@ class BootCompiler {
         .timeout = std::max(restore_timeout, context_.sdo_timeout);
   }
 
-  /// 0x1014 of the network file, else of a DCF.
-  std::optional<std::int64_t> emcy_cob_id() const {
-    if (spec_.emcy_cob_id.given) return *spec_.emcy_cob_id;
-    const SubObject* sub = dictionary_.find(ObjectKey{0x1014, 0});
-    if (!dictionary_.is_dcf || sub == nullptr || !sub->parameter_value) return std::nullopt;
-    return as_integer(*sub->parameter_value);
-  }
-
-  void emergency() {
-    const ObjectKey id{0x1014, 0};
-    const auto wanted = emcy_cob_id();
-    if (spec_.emcy_cob_id.given && !steps_.writable(id)) {
-      missing(spec_.emcy_cob_id.pos, "emcy_cob_id", id);
-    } else if (wanted && steps_.writable(id)) {
-      const std::int64_t value = *wanted;
-      const std::string text = "EMCY on " + hex(static_cast<std::uint32_t>(value), 3);
-      steps_.integer(BootAction::compare, id, value, text);
-      const std::size_t skip = steps_.skip_if_same("EMCY has its identifier");
-      steps_.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
-      steps_.integer(BootAction::enable_pdo, id, value, text);
-      steps_.land(skip);
-    }
-    const ObjectKey inhibit{0x1015, 0};
-    if (!spec_.emcy_inhibit_time.given) return;
-    if (!steps_.writable(inhibit)) {
-      return missing(spec_.emcy_inhibit_time.pos, "emcy_inhibit_time", inhibit);
-    }
-    steps_.integer(BootAction::write_if_differs, inhibit, *spec_.emcy_inhibit_time,
-                   "EMCY at most every " + std::to_string(*spec_.emcy_inhibit_time) + " x 100 us",
-                   2);
-  }
-
-  void missing(SourcePos pos, const std::string& key, ObjectKey object) {
-    report_.error(pos, "no-such-object",
-                  "`" + key + "` of node `" + spec_.name + "` needs " + to_string(object) +
-                      ", which " + dictionary_.file + " does not have or can't change");
-  }
-
-  void heartbeat() {
-    if (context_.producer_ms != 0 && steps_.writable({0x1017, 0})) {
-      steps_.integer(BootAction::write_if_differs, {0x1017, 0}, context_.producer_ms,
-                     "heartbeat every " + std::to_string(context_.producer_ms) + " ms");
-    } else if (spec_.heartbeat_producer.given && *spec_.heartbeat_producer == 0 &&
-               steps_.writable({0x1017, 0})) {
-      steps_.integer(BootAction::write_if_differs, {0x1017, 0}, 0, "no heartbeat");
-    } else if (spec_.heartbeat_producer.given && *spec_.heartbeat_producer != 0 &&
-               !steps_.has({0x1017, 0})) {
-      report_.error(spec_.heartbeat_producer.pos, "no-such-object",
-                    "`heartbeat_producer` of node `" + spec_.name + "` needs 1017:00, which " +
-                        dictionary_.file + " does not have");
-    }
-    watch_master();
-    guarding();
-    for (const SdoSpec& sdo : spec_.error_behavior) {
-      if (!steps_.has(sdo.object)) {
-        report_.error(sdo.pos, "no-such-object",
-                      "`error_behavior` of node `" + spec_.name + "` needs " +
-                          to_string(sdo.object) + ", which " + dictionary_.file + " does not have");
-        continue;
-      }
-      steps_.integer(BootAction::write_if_differs, sdo.object, std::get<std::int64_t>(sdo.value),
-                     "error behaviour", 1);
-    }
-  }
-
-  /// Values that follow from the plan are not forced upon a device whose limits exclude them.
-  bool takes(ObjectKey key, std::int64_t value, SourcePos pos, const std::string& consequence) {
-    const SubObject* sub = dictionary_.find(key);
-    const auto low = sub->low_limit ? as_integer(*sub->low_limit) : std::nullopt;
-    const auto high = sub->high_limit ? as_integer(*sub->high_limit) : std::nullopt;
-    if ((!low || value >= *low) && (!high || value <= *high)) return true;
-    report_.warning(pos == SourcePos{} ? spec_.pos : pos, "limits",
-                    "node `" + spec_.name + "`: " + label(dictionary_, key) + " = " +
-                        std::to_string(value) + " is outside the limits " +
-                        (low ? std::to_string(*low) : "") + ".." +
-                        (high ? std::to_string(*high) : "") + " of " + dictionary_.file +
-                        "; it is not written" + (consequence.empty() ? "" : ", ") + consequence);
-    return false;
-  }
-
-  /// 0x1016: an entry that already names the master, else the first one.
-  void watch_master() {
-    if (context_.master_consumer_ms == 0 || !*spec_.heartbeat_consumer) return;
-    const Object* object = dictionary_.find(std::uint16_t{0x1016});
-    if (object == nullptr) return;
-    ObjectKey key{0x1016, 1};
-    for (const SubObject& sub : object->subs) {
-      const auto value = sub.value() ? as_integer(*sub.value()) : std::nullopt;
-      if (sub.sub != 0 && value && ((*value >> 16) & 0x7F) == context_.master_id.value()) {
-        key.sub = sub.sub;
-      }
-    }
-    if (!steps_.writable(key)) return;
-    const std::int64_t value =
-        (std::int64_t{context_.master_id.value()} << 16) | context_.master_consumer_ms;
-    if (!takes(key, value, spec_.heartbeat_consumer.pos, "the device would not watch the master")) {
-      return;
-    }
-    steps_.integer(BootAction::write_if_differs, key, value,
-                   "the device watches the master (node " +
-                       std::to_string(context_.master_id.value()) + ") for " +
-                       std::to_string(context_.master_consumer_ms) + " ms");
-  }
-
-  /// 0x100C and 0x100D, for the device's own life guarding.
-  void guarding() {
-    if (context_.guard.period == Time{}) return;
-    const auto ms = context_.guard.period / std::chrono::milliseconds{1};
-    if (steps_.writable({0x100C, 0})) {
-      steps_.integer(BootAction::write_if_differs, {0x100C, 0}, ms,
-                     "guard time " + std::to_string(ms) + " ms", 2);
-    }
-    if (!spec_.life_time_factor.given || !steps_.writable({0x100D, 0})) return;
-    steps_.integer(BootAction::write_if_differs, {0x100D, 0}, *spec_.life_time_factor,
-                   *spec_.life_time_factor == 0
-                       ? "no life guarding"
-                       : "the device misses the master after " +
-                             std::to_string(ms * *spec_.life_time_factor) + " ms",
-                   1);
-  }
-
-  void sync() {
-    if (!context_.sync) return;
-    if (steps_.writable({0x1005, 0})) {
-      steps_
-          .integer(BootAction::write_if_differs, {0x1005, 0}, context_.sync_cob_id,
-                   "SYNC comes from the master, on " + hex(context_.sync_cob_id, 3))
-          .mask = 0x7FFF'FFFF;
-    }
-    sync_counter();
-    if (steps_.writable({0x1006, 0}) && takes({0x1006, 0}, context_.sync_period_us, {}, "")) {
-      steps_.integer(BootAction::write_if_differs, {0x1006, 0}, context_.sync_period_us,
-                     "SYNC period " + std::to_string(context_.sync_period_us) + " us");
-    }
-    if (!context_.sync_window_us.given) return;
-    if (steps_.writable({0x1007, 0})) {
-      steps_.integer(BootAction::write_if_differs, {0x1007, 0}, *context_.sync_window_us,
-                     "synchronous window " + std::to_string(*context_.sync_window_us) + " us");
-    }
-  }
-
-  /// 0x1019 may change only while 0x1006 is 0. CiA 301, 7.5.2.22.
-  void sync_counter() {
-    const ObjectKey key{0x1019, 0};
-    if (!steps_.writable(key)) {
-      if (context_.sync_overflow != 0 && !steps_.has(key)) {
-        report_.warning(spec_.pos, "sync-counter",
-                        "node `" + spec_.name + "` has no " + to_string(key) +
-                            ": it may report each SYNC with a counter as a length error");
-      }
-      return;
-    }
-    const std::string purpose = context_.sync_overflow == 0
-                                    ? "SYNC without counter"
-                                    : "SYNC counter 1.." + std::to_string(context_.sync_overflow);
-    steps_.integer(BootAction::compare, key, context_.sync_overflow, purpose, 1);
-    const std::size_t skip = steps_.skip_if_same("SYNC counter is right");
-    if (steps_.writable({0x1006, 0})) {
-      steps_.integer(BootAction::write, {0x1006, 0}, 0, "period 0, so that 1019 may change");
-    }
-    steps_.integer(BootAction::write, key, context_.sync_overflow, purpose, 1);
-    steps_.land(skip);
-  }
-
   void start() {
     const bool watched = context_.heartbeat_timeout != Time{};
     if (watched) {
@@ -344,6 +198,7 @@ class BootCompiler {
   const BootContext& context_;
   NetworkReport& report_;
   BootSteps steps_;
+  BootPart part_;
 };
 
 }  // namespace

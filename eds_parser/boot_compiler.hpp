@@ -18,6 +18,8 @@ struct BootContext {
   GuardPlan guard{};                      ///< where there is no heartbeat
   bool sync = false;
   std::uint32_t sync_cob_id = 0x80;
+  std::string sync_source{};  ///< who makes it, for people
+  bool makes_sync = false;    ///< this node does
   std::uint32_t sync_period_us = 0;
   std::uint8_t sync_overflow = 0;
   Sourced<std::uint32_t> sync_window_us;

@@ -1,13 +1,13 @@
 #include "eds_parser/boot_steps.hpp"
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/table/access_name.hpp"
 
 namespace takt {
 namespace {
 
 std::string limit(const std::optional<Value>& value) {
-  if (!value) return "";
-  const auto integer = as_integer(*value);
+  const auto integer = integer_of(value);
   return integer ? std::to_string(*integer) : "";
 }
 

@@ -11,6 +11,8 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t refuse_write_on_download = 1;
+constexpr std::size_t longest_compared = 256;
+constexpr Time segment_time = std::chrono::seconds{5};  // between two answers of a download
 
 /// Objects that other parts of the boot set, or that only a person should write.
 bool is_set_elsewhere(std::uint16_t index) {
@@ -73,6 +75,7 @@ class ValueSteps {
   void device_values() {
     for (const Object& object : dictionary_.objects) {
       if (is_set_elsewhere(object.index)) continue;
+      domains(object.index);
       for (const SubObject& sub : object.subs) {
         const ObjectKey key{object.index, sub.sub};
         const bool refused = (sub.flags & refuse_write_on_download) != 0;
@@ -82,6 +85,24 @@ class ValueSteps {
         write(key, to_bytes(*sub.parameter_value, sub.type),
               "DCF: " + label(dictionary_, key) + " = " + sub.parameter_text);
       }
+    }
+  }
+
+  /// What a DCF names as DownloadFile. Short ones are compared first, where they can be read.
+  void domains(std::uint16_t index) {
+    for (const DomainFiles& files : dictionary_.domain_files) {
+      if (files.key.index != index || files.content.empty()) continue;
+      const SubObject* sub = dictionary_.find(files.key);
+      const bool refused = sub == nullptr || (sub->flags & refuse_write_on_download) != 0;
+      if (refused || configured_value(files.key)) continue;
+      std::string purpose = "DCF: " + label(dictionary_, files.key) + " = file " + files.download +
+                            ", " + std::to_string(files.content.size()) + " bytes";
+      if (files.content.size() <= longest_compared && steps_.readable(files.key)) {
+        write(files.key, files.content, std::move(purpose));
+        continue;
+      }
+      steps_.bytes(BootAction::download_program, files.key, files.content, std::move(purpose))
+          .timeout = segment_time;
     }
   }
 
@@ -190,12 +211,14 @@ class ValueSteps {
   std::optional<std::vector<std::byte>> bytes_of(const SdoSpec& sdo, const SubObject& sub) {
     if (const auto* raw = std::get_if<std::vector<std::byte>>(&sdo.value)) return *raw;
     if (is_bytes(sub.type)) {
+      if (sdo.quoted) return to_bytes(Value{*sdo.quoted}, sub.type);
       if (const auto* text = std::get_if<std::string>(&sdo.value)) {
         return to_bytes(Value{*text}, sub.type);
       }
       wrong_value(sdo, sub, "takes text in quotes");
       return {};
     }
+    tell_quoted(sdo, sub);
     if (const auto* real = std::get_if<double>(&sdo.value)) {
       if (is_real(sub.type)) return to_bytes(Value{*real}, sub.type);
       wrong_value(sdo, sub, "takes whole numbers");
@@ -209,6 +232,14 @@ class ValueSteps {
     if (is_real(sub.type)) return to_bytes(Value{static_cast<double>(*integer)}, sub.type);
     if (!fits(sdo, sub, *integer)) return {};
     return little_endian(*integer, byte_width(sub.type));
+  }
+
+  void tell_quoted(const SdoSpec& sdo, const SubObject& sub) {
+    if (!sdo.quoted || std::holds_alternative<std::string>(sdo.value)) return;
+    report_.note(sdo.value_pos, "quoted-number",
+                 "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) + " (" +
+                     std::string{name(sub.type)} + ") takes the number in the quotes, " +
+                     *sdo.quoted + "; write it without them");
   }
 
   /// A bit pattern of the width (0xFFFFFFFF for -1) passes as well.
@@ -226,20 +257,7 @@ class ValueSteps {
                       std::to_string(value));
       return false;
     }
-    warn_of_limits(sdo, sub, value);
     return true;
-  }
-
-  void warn_of_limits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
-    const auto low = sub.low_limit ? as_integer(*sub.low_limit) : std::nullopt;
-    const auto high = sub.high_limit ? as_integer(*sub.high_limit) : std::nullopt;
-    if ((!low || value >= *low) && (!high || value <= *high)) return;
-    report_.warning(sdo.value_pos, "limits",
-                    "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) +
-                        " = " + std::to_string(value) + " is outside the limits " +
-                        (low ? std::to_string(*low) : "") + ".." +
-                        (high ? std::to_string(*high) : "") + " of " + dictionary_.file +
-                        "; the device may refuse it");
   }
 
   const NodeSpec& spec_;

@@ -36,9 +36,12 @@ class CobIdAssigner {
     each([&](NodePdos& n, EffectivePdo& p) {
       if (device(p) && is_own(n, p)) claim_of_device(n, p);
     });
-    each([&](NodePdos& n, EffectivePdo& p) {
-      if (device(p) && !is_own(n, p)) claim_of_device(n, p);
-    });
+    for (const bool is_tpdo :
+         {true, false}) {  // senders first, so that an RPDO finds whom it hears
+      each([&](NodePdos& n, EffectivePdo& p) {
+        if (device(p) && !is_own(n, p) && p.is_tpdo == is_tpdo) claim_of_device(n, p);
+      });
+    }
     each([&](NodePdos& n, EffectivePdo& p) {
       if (!p.has_cob_id && p.number <= 4) claim_automatic(n, p);
     });
@@ -104,15 +107,18 @@ class CobIdAssigner {
   }
 
   /// A TPDO and an RPDO of one id: the devices talk to each other, the master only listens.
-  void link(EffectivePdo& pdo, const User& other, const User& user) {
+  void link(EffectivePdo& pdo, User other, User user) {
     EffectivePdo& receiver = pdo.is_tpdo ? *other.pdo : pdo;
     const User& sender = pdo.is_tpdo ? user : other;
     const User& fed = pdo.is_tpdo ? other : user;
     receiver.use = PdoUse::linked;
     used_[pdo.cob_id] = sender;
+    const bool stated = receiver.origin == CobIdOrigin::device_file;
     report_.note(pdo.cob_id_pos, "linked",
                  fed.text() + " is fed by " + sender.text() + " (both " + to_string(pdo.cob_id) +
-                     "); the master does not send it");
+                     (stated ? ", as " + fed.node->dictionary->file + " has it" : "") +
+                     "); the master does not send it" +
+                     (stated ? ". With `cob_id: auto` for it under `rpdo:` the master would" : ""));
   }
 
   void claim_of_device(NodePdos& node, EffectivePdo& pdo) {
@@ -121,14 +127,43 @@ class CobIdAssigner {
     const auto other = used_.find(pdo.cob_id);
     if (service.empty() && other == used_.end()) {
       take(node, pdo, pdo.cob_id);
-      return;
+    } else if (service.empty() && is_link(node, pdo, other->second)) {
+      link(pdo, other->second, user);
+    } else {
+      move(node, pdo, service.empty() ? &other->second : nullptr, service);
     }
+  }
+
+  /// Whether `pdo` and `other`, of one id, are a link that a device file states together with the
+  /// network file or another device file. Not where the master is to send the RPDO (the network
+  /// file has a word on it, but no id), and not where both ids are only those of their nodes.
+  static bool is_link(const NodePdos& node, const EffectivePdo& pdo, const User& other) {
+    if (pdo.is_tpdo == other.pdo->is_tpdo || other.node == &node.node) return false;
+    if (other.pdo->origin == CobIdOrigin::network_file) return pdo.is_tpdo || !pdo.named;
+    return !pdo.is_tpdo && !pdo.named && !is_own(node, pdo);
+  }
+
+  /// `other`: who has the id already; nullptr: `service` says why no PDO may have it.
+  void move(NodePdos& node, EffectivePdo& pdo, const User* other, const std::string& service) {
+    const User user{&pdo, &node.node};
+    const CobId was = pdo.cob_id;
     const CobId id = CobId::base(automatic(node, pdo));
-    report_.note(pdo.cob_id_pos, "cob-id-moved",
-                 user.text() + " has COB-ID " + to_string(pdo.cob_id) + " in " +
-                     node.node.dictionary->file + ", which " +
-                     (service.empty() ? "is " + other->second.text() : service) + "; it becomes " +
-                     to_string(id));
+    const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
+                             node.node.dictionary->file + ", which " +
+                             (other == nullptr ? service : "is " + other->text()) +
+                             "; it becomes " + to_string(id);
+    const bool cut =
+        other != nullptr && other->node != &node.node && other->pdo->is_tpdo != pdo.is_tpdo;
+    if (cut) {
+      report_.warning(pdo.cob_id_pos, "cob-id-moved",
+                      text +
+                          ". If the two devices are to talk to each other by this id, write "
+                          "`cob_id: " +
+                          to_string(was) +
+                          "` for both PDOs; if not, `cob_id: " + "auto` for this one");
+    } else {
+      report_.note(pdo.cob_id_pos, "cob-id-moved", text);
+    }
     pdo.origin = CobIdOrigin::automatic;
     take(node, pdo, id);
   }

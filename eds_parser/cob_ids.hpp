@@ -18,8 +18,9 @@ bool is_restricted(std::uint32_t id) noexcept;
 
 /// Gives every exchanged PDO its COB-ID and reports clashes. Ids of the network file stand; ids of
 /// device files that work are never moved; absolute ids of device files that clash become
-/// node-relative, with a note. `auto`: the predefined set for PDO 1..4, above that the lowest free
-/// id in 0x181..0x57F.
+/// node-relative, with a note, unless they are a link: an RPDO with the id of another device's TPDO
+/// is fed by it. `auto`: the predefined set for PDO 1..4, above that the lowest free id in
+/// 0x181..0x57F.
 void assign_cob_ids(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report);
 
 }  // namespace takt

@@ -1,5 +1,7 @@
 #include "eds_parser/configuration_date.hpp"
 
+#include "eds_parser/integer_of.hpp"
+
 namespace takt {
 namespace {
 
@@ -9,8 +11,8 @@ constexpr std::uint32_t day_ms = 86'400'000;
 
 std::uint32_t parameter(const ObjectDictionary& dictionary, ObjectKey key) {
   const SubObject* sub = dictionary.find(key);
-  if (!dictionary.is_dcf || sub == nullptr || !sub->parameter_value) return 0;
-  return static_cast<std::uint32_t>(as_integer(*sub->parameter_value).value_or(0));
+  if (!dictionary.is_dcf || sub == nullptr) return 0;
+  return static_cast<std::uint32_t>(integer_of(sub->parameter_value).value_or(0));
 }
 
 /// FNV-1a, 64 bit.

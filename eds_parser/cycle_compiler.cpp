@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "eds_parser/frame_time.hpp"
+#include "eds_parser/integer_of.hpp"
 
 namespace takt {
 namespace {
@@ -11,6 +12,7 @@ constexpr unsigned longest_data = 8;
 constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
 constexpr std::uint16_t most_service_frames = 16;
 constexpr int event_share = 4;  ///< event-driven outputs get at most a quarter of the period
+constexpr Time longest_window = std::chrono::milliseconds{50};
 constexpr Time shortest_margin = std::chrono::microseconds{20};
 constexpr Time longest_margin = std::chrono::microseconds{200};
 
@@ -58,7 +60,7 @@ class CycleCompiler {
 
   /// The middle of the time between the earliest arrival of all inputs and the outputs: a device
   /// may be late by half of it, and an application still has the other half. At most 80 % of the
-  /// period.
+  /// period, and no longer than services can wait.
   void set_receive_window(const TimeBudget& wire) {
     if (spec_.receive_window_us.given) {
       cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
@@ -72,7 +74,8 @@ class CycleCompiler {
     }
     const Time middle = wire.earliest + (cycle_.output_deadline - wire.earliest) / 2;
     cycle_.receive_window =
-        std::min<Time>(std::max<Time>(wire.earliest, middle), cycle_.period * 4 / 5);
+        std::min<Time>({std::max<Time>(wire.earliest, middle), cycle_.period * 4 / 5,
+                        std::max<Time>(wire.earliest, longest_window)});
   }
 
   /// SDO requests with their answers in the time that nothing else needs.
@@ -81,8 +84,8 @@ class CycleCompiler {
         cycle_.period - wire.inputs_wire - wire.outputs_wire - cycle_.quiet_before_sync;
     const Time pair = wire_time(service_pair_bits, plan_.bitrate);
     const Time::rep pairs = left / pair;
-    cycle_.service_frames =
-        static_cast<std::uint16_t>(std::clamp<Time::rep>(pairs, 1, most_service_frames));
+    cycle_.service_frames = spec_.master.service_frames.value_or(
+        static_cast<std::uint16_t>(std::clamp<Time::rep>(pairs, 1, most_service_frames)));
   }
 
   void judge(const TimeBudget& wire) {
@@ -90,7 +93,7 @@ class CycleCompiler {
     const std::string frames = std::to_string(us(wire.inputs_wire)) + " us of SYNC and TPDOs and " +
                                std::to_string(us(wire.outputs_wire)) + " us of RPDOs at " +
                                std::to_string(plan_.bitrate / 1000) + " kbit/s";
-    if (wire.inputs_wire + wire.outputs_wire + cycle_.quiet_before_sync > cycle_.period) {
+    if (!fits_period(plan_)) {
       report_.error(period_pos(), "does-not-fit",
                     frames + ", and " + std::to_string(us(cycle_.quiet_before_sync)) +
                         " us of quiet before SYNC, do not fit into a period of " +
@@ -118,7 +121,7 @@ class CycleCompiler {
       });
       const SubObject* object = node.node.dictionary->find(ObjectKey{0x1007, 0});
       if (!listens || object == nullptr) continue;
-      const auto device = object->value() ? as_integer(*object->value()) : std::nullopt;
+      const auto device = integer_of(object->value());
       const std::int64_t window = spec_.master.sync_window_us.given
                                       ? std::int64_t{*spec_.master.sync_window_us}
                                       : device.value_or(0);
@@ -175,6 +178,12 @@ TimeBudget time_budget(const BusPlan& plan) noexcept {
   budget.latest = plan.cycle.output_deadline;
   budget.next_sync = budget.latest > budget.earliest;
   return budget;
+}
+
+bool fits_period(const BusPlan& plan) noexcept {
+  if (!plan.cycle.sync) return true;
+  const TimeBudget wire = time_budget(plan);
+  return wire.inputs_wire + wire.outputs_wire + plan.cycle.quiet_before_sync <= plan.cycle.period;
 }
 
 void compile_cycle(const NetworkSpec& spec, std::span<const NodePdos> nodes, BusPlan& plan,

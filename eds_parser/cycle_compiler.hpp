@@ -21,6 +21,10 @@ struct TimeBudget {
 
 TimeBudget time_budget(const BusPlan& plan) noexcept;
 
+/// SYNC, the PDOs, and the quiet before the next SYNC are not longer than the period; `taktd`
+/// refuses a network where they are.
+bool fits_period(const BusPlan& plan) noexcept;
+
 /// Fills `plan.cycle` but for what `spec` says directly; `plan.pdos` are there. Reports cycles that
 /// can't fit.
 void compile_cycle(const NetworkSpec& spec, std::span<const NodePdos> nodes, BusPlan& plan,

@@ -3,15 +3,14 @@
 #include <algorithm>
 
 #include "eds_parser/device_data.hpp"
+#include "eds_parser/integer_of.hpp"
 
 namespace takt {
 namespace {
 
 std::string model_of(const NodeSource& node) {
   if (!node.spec->sim.model.empty()) return node.spec->sim.model;
-  const SubObject* type = node.dictionary->find(ObjectKey{0x1000, 0});
-  const auto value = type != nullptr && type->value() ? as_integer(*type->value()) : std::nullopt;
-  switch (value.value_or(0) & 0xFFFF) {
+  switch (integer_of(*node.dictionary, {0x1000, 0}).value_or(0) & 0xFFFF) {
     case 401:
       return "io401";
     case 402:
@@ -33,7 +32,7 @@ bool is_pdo_cob_id(ObjectKey key) {
 
 /// A device takes what its own file says of it, whatever limits the file has beside it.
 void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
-  const auto value = own ? as_integer(*own) : std::nullopt;
+  const auto value = integer_of(own);
   if (!value) return;
   if (object.low_limit) object.low_limit = std::min(*object.low_limit, *value);
   if (object.high_limit) object.high_limit = std::max(*object.high_limit, *value);
@@ -58,8 +57,8 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   } else {
     object.value.resize(byte_width(sub.type));
   }
-  if (sub.low_limit) object.low_limit = as_integer(*sub.low_limit);
-  if (sub.high_limit) object.high_limit = as_integer(*sub.high_limit);
+  object.low_limit = integer_of(sub.low_limit);
+  object.high_limit = integer_of(sub.high_limit);
   for (const auto& own : {sub.default_value, sub.parameter_value}) widen_limits(object, own);
   return object;
 }
@@ -72,6 +71,15 @@ void set_firmware(const NodeSource& node, DeviceTable& table) {
       std::uint64_t{node.firmware->parts[0]} << 16 | node.firmware->parts[1];
   for (DeviceObject& object : table.objects) {
     if (object.key == ObjectKey{0x1018, 3}) object.value = to_bytes(Value{revision}, object.type);
+  }
+}
+
+/// The simulated device is the one that the network file expects.
+void set_serial_number(const NodeSpec& node, DeviceTable& table) {
+  if (!node.serial_number.given || *node.serial_number == 0) return;
+  const std::uint64_t serial = *node.serial_number;
+  for (DeviceObject& object : table.objects) {
+    if (object.key == ObjectKey{0x1018, 4}) object.value = to_bytes(Value{serial}, object.type);
   }
 }
 
@@ -93,6 +101,7 @@ DeviceTable compile_device(const NodeSource& node) {
     for (const SubObject& sub : object.subs) table.objects.push_back(object_of(object.index, sub));
   }
   if (node.firmware) set_firmware(node, table);
+  set_serial_number(*node.spec, table);
   return table;
 }
 

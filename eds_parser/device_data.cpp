@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/suggest.hpp"
 
 namespace takt {
@@ -10,9 +11,7 @@ namespace {
 constexpr std::string_view no_entry = "none";
 
 std::uint32_t number_of(const ObjectDictionary& dictionary, ObjectKey key) noexcept {
-  const SubObject* sub = dictionary.find(key);
-  if (sub == nullptr || !sub->value()) return 0;
-  return static_cast<std::uint32_t>(as_integer(*sub->value()).value_or(0));
+  return static_cast<std::uint32_t>(integer_of(dictionary, key).value_or(0));
 }
 
 std::uint32_t first_known(const Sourced<std::uint32_t>& given, std::uint32_t of_object,
@@ -99,8 +98,36 @@ std::optional<Firmware> firmware_of(const DeviceData* data, const NodeSpec& node
   if (data == nullptr || !data->revision_is_firmware) return {};
   const std::uint32_t revision = identity_of(node, dictionary).revision;
   if (revision == 0) return {};
-  return Firmware{{static_cast<std::uint16_t>(revision >> 16),
-                   static_cast<std::uint16_t>(revision & 0xFFFF), 0}};
+  return Firmware::of_revision(revision);
+}
+
+std::optional<FirmwarePlan> firmware_plan(const DeviceData& data,
+                                          std::optional<Firmware> firmware) {
+  if (!firmware) return {};
+  FirmwarePlan plan{
+      .assumed = *firmware,
+      .object = data.revision_is_firmware ? ObjectKey{0x1018, 3} : ObjectKey{0x100A, 0}};
+  if (data.sync.own_tpdos_from) {
+    plan.rules.push_back({.from = data.sync.own_tpdos_from,
+                          .below = {},
+                          .text = "a SYNC of its own triggers its TPDOs"});
+  }
+  for (const ObjectEdit& edit : data.objects) {
+    if (!edit.from && !edit.below) continue;
+    const std::string name = edit.whole ? hex(edit.object.index).substr(2) : to_string(edit.object);
+    const std::string what =
+        edit.access ? "these objects have another access: " : "these objects are missing: ";
+    const auto same = std::ranges::find_if(plan.rules, [&](const FirmwareRule& rule) {
+      return rule.from == edit.from && rule.below == edit.below && rule.text.starts_with(what);
+    });
+    if (same == plan.rules.end()) {
+      plan.rules.push_back({.from = edit.from, .below = edit.below, .text = what + name});
+    } else {
+      same->text += ", " + name;
+    }
+  }
+  if (plan.rules.empty()) return {};
+  return plan;
 }
 
 ObjectDictionary with_object_edits(const ObjectDictionary& dictionary, const DeviceData& data,

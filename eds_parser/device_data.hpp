@@ -9,6 +9,7 @@
 #include "eds_parser/network_report.hpp"
 #include "eds_parser/network_spec.hpp"
 #include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
 
 namespace takt {
@@ -108,6 +109,7 @@ struct DeviceData {
   std::vector<ObjectEdit> objects;
   BootTweaks boot;
   std::vector<EmcyMeaning> emcy;
+  std::string on_sync_loss;  ///< what its outputs do when 0x1006 has run out; empty: not known
 
   /// The rule of a PDO; nullptr: as CiA 301.
   const PdoRule* rule(bool is_tpdo, std::uint16_t number) const noexcept;
@@ -124,6 +126,9 @@ struct DeviceIdentity {
 
 /// By the network file; else by 0x1018 of the device file, else by its [DeviceInfo].
 DeviceIdentity identity_of(const NodeSpec& node, const ObjectDictionary& dictionary) noexcept;
+
+/// What of an entry depends on the firmware; none: nothing does, or the plan knows no firmware.
+std::optional<FirmwarePlan> firmware_plan(const DeviceData& data, std::optional<Firmware> firmware);
 
 /// The entry of a node: the one that `device:` names, else the first one that its identity matches;
 /// nullptr where there is none.

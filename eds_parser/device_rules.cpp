@@ -1,6 +1,7 @@
 #include "eds_parser/device_rules.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "eds_parser/device_data.hpp"
 
@@ -31,8 +32,12 @@ const PdoSpec* spec_of(const NodeSpec& node, const EffectivePdo& pdo) {
 
 class Judge {
  public:
-  Judge(const NodePdos& node, const DeviceData& data, NetworkReport& report)
-      : node_{node}, spec_{*node.node.spec}, data_{data}, report_{report} {}
+  Judge(const NodePdos& node, const Sourced<std::string>& sync_source, NetworkReport& report)
+      : node_{node},
+        spec_{*node.node.spec},
+        data_{*node.node.data},
+        sync_source_{sync_source},
+        report_{report} {}
 
   void run() {
     for (const EffectivePdo& pdo : node_.pdos) {
@@ -45,6 +50,7 @@ class Judge {
       if (pdo.is_tpdo) inhibit(pdo);
     }
     sync_producer();
+    reset();
   }
 
  private:
@@ -109,19 +115,33 @@ class Judge {
     }
   }
 
-  const SdoSpec* producer_request() const {
+  /// Where the network file makes this node the producer of SYNC.
+  std::optional<SourcePos> producer_request() const {
+    if (sync_source_.given && *sync_source_ == spec_.name) return sync_source_.pos;
     for (const SdoSpec& sdo : spec_.sdo) {
       const auto* value = std::get_if<std::int64_t>(&sdo.value);
       if (sdo.object == ObjectKey{0x1005, 0} && value != nullptr && (*value & produce_bit) != 0) {
-        return &sdo;
+        return sdo.value_pos;
       }
     }
-    return nullptr;
+    return std::nullopt;
+  }
+
+  /// The network file decides, though it may not know.
+  void reset() {
+    const auto& wanted = data_.boot.reset;
+    if (!wanted || !spec_.reset.given || data_.boot.fact.reason.empty()) return;
+    const bool whole = *spec_.reset == ResetPolicy::node;
+    const bool whole_wanted = *wanted == ResetPolicy::node;
+    if (whole == whole_wanted || *spec_.reset == ResetPolicy::none) return;
+    report_.warning(spec_.reset.pos, "device-data",
+                    "node `" + spec_.name + "` is better reset by `reset: " +
+                        (whole_wanted ? "node" : "communication") + '`' + source(data_.boot.fact));
   }
 
   void sync_producer() {
-    const SdoSpec* request = producer_request();
-    if (request == nullptr || !data_.sync.own_tpdos_from) return;
+    const std::optional<SourcePos> request = producer_request();
+    if (!request || !data_.sync.own_tpdos_from) return;
     const Firmware needed = *data_.sync.own_tpdos_from;
     const auto firmware = node_.node.firmware;
     const auto synchronous = std::ranges::find_if(node_.pdos, [](const EffectivePdo& pdo) {
@@ -130,13 +150,13 @@ class Judge {
     if (synchronous == node_.pdos.end() || (firmware && *firmware >= needed)) return;
     const std::string what = label(*synchronous) + " is synchronous, and this node makes the SYNC";
     if (!firmware) {
-      report_.warning(request->value_pos, "device-data",
+      report_.warning(*request, "device-data",
                       what + ": that needs firmware " + to_string(needed) +
                           " or newer; say which one it has with `firmware:`" +
                           source(data_.sync.fact));
       return;
     }
-    report_.error(request->value_pos, "device-data",
+    report_.error(*request, "device-data",
                   what + ": " + data_.name + " with firmware " + to_string(*firmware) +
                       " does not send it then, that begins with " + to_string(needed) +
                       source(data_.sync.fact));
@@ -145,6 +165,7 @@ class Judge {
   const NodePdos& node_;
   const NodeSpec& spec_;
   const DeviceData& data_;
+  const Sourced<std::string>& sync_source_;
   NetworkReport& report_;
 };
 
@@ -165,8 +186,9 @@ std::string rule_text(const PdoRule& rule) {
 
 }  // namespace
 
-void judge_by_device_data(const NodePdos& node, NetworkReport& report) {
-  if (node.node.data != nullptr) Judge{node, *node.node.data, report}.run();
+void judge_by_device_data(const NodePdos& node, const Sourced<std::string>& sync_source,
+                          NetworkReport& report) {
+  if (node.node.data != nullptr) Judge{node, sync_source, report}.run();
 }
 
 std::vector<std::string> device_notes(const NodePdos& node) {
@@ -182,6 +204,10 @@ std::vector<std::string> device_notes(const NodePdos& node) {
              ? ""
              : ", " + time_text(std::uint64_t{data.inhibit.factory} * data.inhibit.unit_us) +
                    " by default"));
+  }
+  if (data.inhibit.unit_us == 100 && data.inhibit.least == 0 && data.inhibit.factory != 0) {
+    notes.push_back("inhibit times of " + time_text(std::uint64_t{data.inhibit.factory} * 100) +
+                    " by default");
   }
   if (data.timer.meaning == TimerMeaning::additional) {
     notes.emplace_back("event timers send besides changes, which do not shift them");

@@ -10,18 +10,22 @@
 #include "eds_parser/cycle_compiler.hpp"
 #include "eds_parser/device_compiler.hpp"
 #include "eds_parser/device_rules.hpp"
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/device_watch.hpp"
+#include "eds_parser/error_control.hpp"
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/layout_compiler.hpp"
+#include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
 #include "eds_parser/signal_rules.hpp"
+#include "eds_parser/sync_source.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::uint16_t default_producer_ms = 100;
 constexpr std::uint32_t default_sdo_timeout_ms = 500;
 constexpr std::uint32_t default_boot_timeout_ms = 3000;
+constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
@@ -39,14 +43,9 @@ std::string channel_form(const std::string& name) {
   return out;
 }
 
-std::int64_t value_of(const ObjectDictionary& dictionary, ObjectKey key) {
-  const SubObject* sub = dictionary.find(key);
-  return sub != nullptr && sub->value() ? as_integer(*sub->value()).value_or(0) : 0;
-}
-
 bool is_cia402(const NodeSource& node) {
   if (node.spec->profile.given) return *node.spec->profile == "cia402";
-  return (value_of(*node.dictionary, {0x1000, 0}) & 0xFFFF) == 402 &&
+  return (integer_of(*node.dictionary, {0x1000, 0}).value_or(0) & 0xFFFF) == 402 &&
          node.dictionary->find(ObjectKey{0x6040, 0}) != nullptr &&
          node.dictionary->find(ObjectKey{0x6041, 0}) != nullptr;
 }
@@ -58,14 +57,16 @@ class NetworkCompiler {
       : spec_{spec},
         dictionaries_{dictionaries},
         device_data_{device_data},
-        report_{spec.file, findings} {}
+        report_{spec.file, findings},
+        error_control_{spec, report_} {}
 
   CompiledNetwork run() {
     bus();
     collect_nodes();
+    compile_sync_source(spec_, nodes_, plan(), report_);
     for (NodePdos& node : nodes_) {
       node.pdos = compile_pdos(node.node, report_);
-      judge_by_device_data(node, report_);
+      judge_by_device_data(node, spec_.master.sync_source, report_);
     }
     assign_cob_ids(nodes_, *spec_.master.sync_cob_id, report_);
     for (const NodePdos& node : nodes_) add_node(node);
@@ -103,6 +104,13 @@ class NetworkCompiler {
         std::chrono::microseconds{bus.cycle.sync ? *master.sync_period_us : *master.cycle_us};
     bus.cycle.sync_cob_id = CobId::base(*master.sync_cob_id);
     bus.cycle.sync_overflow = *master.sync_overflow;
+    bus.time = {.period = milliseconds(*master.time_period_ms),
+                .cob_id = CobId::base(*master.time_cob_id & 0x7FF)};
+    if (*master.time_period_ms != 0 && is_restricted(*master.time_cob_id & 0x7FF)) {
+      report_.error(master.time_cob_id.pos, "cob-id",
+                    "`time_cob_id` " + hex(*master.time_cob_id & 0x7FF, 3) +
+                        " is reserved by CiA 301; 0x100 is its default");
+    }
     bus.cycle.sync_window = std::chrono::microseconds{*master.sync_window_us};
     if (*master.sync_cob_id != 0x80 && is_restricted(*master.sync_cob_id)) {
       report_.error(master.sync_cob_id.pos, "cob-id",
@@ -180,15 +188,18 @@ class NetworkCompiler {
         .boot_plan = {},
         .sdo_timeout = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms)),
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
-    node.heartbeat_timeout = heartbeat_timeout(source.node);
-    node.heartbeat_period = milliseconds(*spec.boot ? producer_ms(source.node) : 0);
-    node.guard = guard(source.node);
+    node.heartbeat_timeout = error_control_.heartbeat_timeout(source.node);
+    node.heartbeat_period = milliseconds(*spec.boot ? error_control_.producer_ms(source.node) : 0);
+    node.guard = error_control_.guard(source.node);
     node.emcy_cob_id = emcy_cob_id(source.node);
     node.start_later = plan().start_up.start_all && *spec.boot;
     node.on_loss = *spec.on_loss;
     node.group = group(*spec.group);
-    check_keep_alive(spec, node);
+    check_keep_alive(spec, node, report_);
+    node.lss = compile_lss(spec, dictionary, plan().nodes, report_);
     add_device_data(source, node);
+    node.sdo = sdo_access(spec);
+    check_channel(spec, node);
     check_fallback(source.node, node.cia402, report_);
     check_node_values(source, report_);
     check_bit_rate(source.node);
@@ -201,12 +212,14 @@ class NetworkCompiler {
     node.device_data = data.name;
     node.device_data_file = data.id + ".yaml";
     node.device_notes = device_notes(source);
+    node.on_sync_loss = data.on_sync_loss;
+    node.firmware = firmware_plan(data, source.node.firmware);
     for (const EmcyMeaning& emcy : data.emcy) node.emcy_texts.push_back({emcy.code, emcy.text});
   }
 
   /// Of the network file, else of the device file; none: the predefined 0x080 + id.
   static std::optional<CobId> emcy_cob_id(const NodeSource& node) {
-    const std::int64_t own = value_of(*node.dictionary, {0x1014, 0});
+    const std::int64_t own = integer_of(*node.dictionary, {0x1014, 0}).value_or(0);
     const std::int64_t id = node.spec->emcy_cob_id.given ? *node.spec->emcy_cob_id : own;
     const bool off = (id & 0x8000'0000) != 0;
     if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
@@ -222,62 +235,35 @@ class NetworkCompiler {
     return static_cast<std::uint8_t>(found - groups.begin() + 1);
   }
 
-  void check_keep_alive(const NodeSpec& spec, const NodePlan& node) {
-    const bool shows_life = node.heartbeat_timeout != Time{} || node.guard.period != Time{};
-    if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
-    report_.error(spec.reset.pos, "keep-alive",
-                  "node `" + spec.name +
-                      "` is to be kept running, but shows its state neither by "
-                      "heartbeat nor by guarding: give it `heartbeat_producer` or `guard_time`, or "
-                      "write `reset: none`");
-  }
-
-  double multiplier(const NodeSpec& node) const {
-    if (node.heartbeat_multiplier.given) return *node.heartbeat_multiplier;
-    return spec_.master.heartbeat_multiplier.value_or(*spec_.heartbeat_multiplier);
-  }
-
-  /// 0x1017 of a node: of the network file; else of the device file; else, where the device can,
-  /// 100 ms or as much as keeps all heartbeats below 2 % of the bus.
-  std::uint16_t producer_ms(const NodeSource& node) const {
-    if (node.spec->heartbeat_producer.given) return *node.spec->heartbeat_producer;
-    const std::int64_t own = value_of(*node.dictionary, {0x1017, 0});
-    if (own > 0 && own <= 0xFFFF) return static_cast<std::uint16_t>(own);
-    if (!has_heartbeat_producer(*node.dictionary) || !*node.spec->boot) return 0;
-    const Time all = wire_time(worst_frame_bits(1) * spec_.nodes.size(), out_.plan.bitrate);
-    const auto floor = static_cast<std::uint32_t>(all * 50 / std::chrono::milliseconds{1}) + 1;
-    return static_cast<std::uint16_t>(
-        std::clamp<std::uint32_t>((floor + 49) / 50 * 50, default_producer_ms, 60'000));
-  }
-
-  Time heartbeat_timeout(const NodeSource& node) const {
-    if (!*spec_.master.heartbeat_consumer) return Time{};
-    const double ms = producer_ms(node) * std::max(1.5, multiplier(*node.spec));
-    return Time{static_cast<Time::rep>(std::llround(ms * 1e6))};
-  }
-
-  /// Guarding where the device file or the network file has a guard time and there is no heartbeat.
-  GuardPlan guard(const NodeSource& node) {
-    const NodeSpec& spec = *node.spec;
-    const std::int64_t own = value_of(*node.dictionary, {0x100C, 0});
-    const std::int64_t ms = spec.guard_time.given ? *spec.guard_time : own;
-    if (ms <= 0 || ms > 0xFFFF || !*spec.boot || !*spec_.master.heartbeat_consumer) return {};
-    if (producer_ms(node) != 0) {
-      if (spec.guard_time.given) {
-        report_.note(spec.guard_time.pos, "guarding",
-                     "node `" + spec.name +
-                         "` has a heartbeat, and with it it does not answer "
-                         "guarding (CiA 301): `guard_time` is left alone; `heartbeat_producer: 0` "
-                         "would switch to guarding");
-      }
-      return {};
+  /// Parameters that are stored or restored take their time wherever nobody says how long.
+  static SdoAccess sdo_access(const NodeSpec& spec) {
+    SdoAccess access{.block = spec.sdo_block.value_or(SdoBlockUse::automatic),
+                     .timeouts = spec.sdo_timeouts};
+    if (spec.sdo_channel.given) access.channel = *spec.sdo_channel;
+    for (const std::uint16_t index : {std::uint16_t{0x1010}, std::uint16_t{0x1011}}) {
+      const Time own = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms));
+      const Time otherwise = std::max<Time>(storing_timeout, own);
+      access.timeouts.push_back({.index = index, .timeout = otherwise});
     }
-    const std::int64_t factor = value_of(*node.dictionary, {0x100D, 0});
-    const auto of_device = static_cast<std::uint8_t>(
-        factor > 0 && factor <= 255 ? factor : std::int64_t{*spec_.retry_factor});
-    return {.period = milliseconds(static_cast<std::uint32_t>(ms)),
-            .retries = spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor
-                                                                           : of_device)};
+    return access;
+  }
+
+  /// Answers of two devices on one COB-ID can't be told apart.
+  void check_channel(const NodeSpec& spec, const NodePlan& node) {
+    if (!node.sdo.channel) return;
+    for (const NodePdos& other : nodes_) {
+      const NodeSpec& its = *other.node.spec;
+      if (&its == &spec) continue;
+      const SdoChannel used =
+          its.sdo_channel.given ? *its.sdo_channel : default_sdo_channel(other.node.id);
+      if (used.answer != node.sdo.channel->answer && used.request != node.sdo.channel->request) {
+        continue;
+      }
+      report_.error(spec.sdo_channel.pos, "cob-id-clash",
+                    "`sdo_channel` of `" + spec.name + "` uses a COB-ID of the SDO channel of `" +
+                        its.name + "` (" + to_string(used.request) + ", " + to_string(used.answer) +
+                        ")");
+    }
   }
 
   void check_bit_rate(const NodeSource& node) {
@@ -295,19 +281,25 @@ class NetworkCompiler {
   void add_boot(std::size_t index) {
     const NodePdos& source = nodes_[index];
     NodePlan& node = plan().nodes[index];
-    if (!node.boot) return;
+    if (node.boot) compile_boot_of(source, node);
+    set_device_watch(*source.node.dictionary, node);
+  }
+
+  void compile_boot_of(const NodePdos& source, NodePlan& node) {
     const MasterSpec& master = spec_.master;
     const std::uint16_t master_ms = *master.heartbeat_producer;
-    const double accepted = master_ms * std::max(1.5, multiplier(*source.node.spec));
+    const double accepted = master_ms * error_control_.multiplier(*source.node.spec);
     const BootContext context{
         .master_id = out_.plan.master_id,
         .master_heartbeat_ms = master_ms,
         .master_consumer_ms = static_cast<std::uint16_t>(std::min(65535.0, std::ceil(accepted))),
-        .producer_ms = producer_ms(source.node),
+        .producer_ms = error_control_.producer_ms(source.node),
         .heartbeat_timeout = node.heartbeat_timeout,
         .guard = node.guard,
         .sync = out_.plan.cycle.sync,
         .sync_cob_id = *master.sync_cob_id,
+        .sync_source = out_.plan.cycle.sync_followed ? *master.sync_source : "the master",
+        .makes_sync = out_.plan.cycle.sync_producer == source.node.id,
         .sync_period_us = *master.sync_period_us,
         .sync_overflow = *master.sync_overflow,
         .sync_window_us = master.sync_window_us,
@@ -318,6 +310,11 @@ class NetworkCompiler {
         .boot_timeout =
             milliseconds(source.node.spec->boot_timeout_ms.value_or(default_boot_timeout_ms))};
     node.boot_plan = compile_boot(source, context, report_);
+    const SdoAccess of_file{.timeouts = source.node.spec->sdo_timeouts};
+    for (BootStep& step : node.boot_plan.steps) {
+      const bool waits_only = step.object == ObjectKey{} || step.action == BootAction::probe;
+      if (!waits_only) step.timeout = of_file.timeout_of(step.object, step.timeout);
+    }
   }
 
   const NetworkSpec& spec_;
@@ -325,6 +322,7 @@ class NetworkCompiler {
   std::span<const DeviceData> device_data_;
   std::deque<ObjectDictionary> edited_;  ///< stable addresses
   NetworkReport report_;
+  ErrorControl error_control_;
   std::vector<NodePdos> nodes_;
   CompiledNetwork out_;
 };

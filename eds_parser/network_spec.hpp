@@ -10,6 +10,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/run_options.hpp"
+#include "eds_parser/table/sdo_access.hpp"
 
 namespace takt {
 
@@ -61,6 +62,7 @@ struct SdoSpec {
   std::variant<std::int64_t, double, std::string, std::vector<std::byte>> value;
   SourcePos pos;
   SourcePos value_pos;
+  std::optional<std::string> quoted{};  ///< as written, where it is in quotes
 };
 
 /// SI value = sign * counts * scale + offset.
@@ -141,6 +143,9 @@ struct NodeSpec {
   Sourced<std::string> device;    ///< entry of the device data, "none"; not given: by identity
   Sourced<std::string> firmware;  ///< "16.00.00"
 
+  Sourced<bool> lss;                                  ///< it gets its id by LSS where it has none
+  Sourced<bool> lss_store{.value = true, .pos = {}};  ///< and keeps it
+
   Sourced<bool> boot{.value = true, .pos = {}};
   Sourced<bool> mandatory;
   Sourced<ResetPolicy> reset;
@@ -156,6 +161,9 @@ struct NodeSpec {
   Sourced<std::uint32_t> boot_timeout_ms;
   Sourced<std::uint32_t> sdo_timeout_ms;
   Sourced<std::uint32_t> reboot_delay_ms;
+  Sourced<SdoBlockUse> sdo_block;
+  Sourced<SdoChannel> sdo_channel;
+  std::vector<SdoObjectTimeout> sdo_timeouts;
 
   Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the device watches the master
   Sourced<std::uint16_t> heartbeat_producer;                   ///< ms
@@ -166,6 +174,7 @@ struct NodeSpec {
   std::vector<SdoSpec> error_behavior;       ///< 0x1029 by sub-index
   Sourced<std::uint32_t> emcy_cob_id;        ///< 0x1014
   Sourced<std::uint16_t> emcy_inhibit_time;  ///< 0x1015, 100 us
+  Sourced<std::uint32_t> time_cob_id{};      ///< 0x1012 with its flags: bit 31 consumes TIME
   Sourced<LossReaction> on_loss;
   Sourced<std::string> group;
 
@@ -187,10 +196,15 @@ struct MasterSpec {
   Sourced<std::uint32_t> sync_window_us;
   Sourced<std::uint8_t> sync_overflow;
   Sourced<std::uint32_t> sync_cob_id{.value = 0x80, .pos = {}};
+  Sourced<std::string> sync_source;        ///< "master", "external" or the name of a node
+  Sourced<std::uint32_t> sync_timeout_us;  ///< of a SYNC that another device makes
+  Sourced<SyncLoss> on_sync_loss{.value = SyncLoss::fallback, .pos = {}};
   Sourced<std::uint32_t> cycle_us{.value = 10'000, .pos = {}};  ///< of the image, without SYNC
   Sourced<std::uint16_t> heartbeat_producer{.value = 100, .pos = {}};  ///< ms, 0 = none
   Sourced<double> heartbeat_multiplier;
-  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};  ///< the master watches the nodes
+  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};     ///< the master watches the nodes
+  Sourced<std::uint32_t> time_period_ms;                          ///< of TIME, 0 = none
+  Sourced<std::uint32_t> time_cob_id{.value = 0x100, .pos = {}};  ///< as in 0x1012
   Sourced<bool> start_nodes{.value = true, .pos = {}};
   Sourced<bool> start{.value = true, .pos = {}};  ///< the master becomes operational by itself
   Sourced<bool> start_all_nodes;
@@ -199,6 +213,7 @@ struct MasterSpec {
   Sourced<std::uint32_t> boot_time_ms;
   Sourced<std::uint16_t> nmt_inhibit_time;  ///< 100 us
   Sourced<std::uint32_t> stop_timeout_ms{.value = 5000, .pos = {}};
+  Sourced<std::uint16_t> service_frames;  ///< SDO and NMT frames a cycle at most
 };
 
 struct BusSpec {
@@ -217,6 +232,7 @@ struct NetworkSpec {
   RealtimeOptions realtime;
   Sourced<std::uint32_t> receive_window_us;
   LcmOptions lcm;
+  RecordingOptions recording;   ///< folder as written
   std::vector<NodeSpec> nodes;  ///< in the order of the file
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eds_parser/cob_id_bits.hpp"
 #include "eds_parser/device_data.hpp"
 #include "eds_parser/mapping_compiler.hpp"
 #include "eds_parser/mpdo_compiler.hpp"
@@ -165,23 +166,12 @@ class PdoCompiler {
       pdo.origin = CobIdOrigin::automatic;
       return;
     }
-    const std::uint32_t raw = *spec.cob_id.value;
-    if ((raw & 0x8000'0000) != 0) {
-      pdo.use = PdoUse::off;
-      return;
-    }
-    const bool extended = (raw & 0x2000'0000) != 0;
-    if (!extended && (raw & 0x1FFF'FFFF) > 0x7FF) {
-      report_.error(
-          spec.cob_id.pos, "cob-id",
-          "`cob_id` " + hex(raw) + " of " + label(pdo) +
-              " needs 29 bits: set bit 29 (0x2...) for an extended frame, or use an id up "
-              "to 0x7FF");
-      return;
-    }
+    const FileCobId file = read_cob_id_bits(spec, pdo.is_tpdo, label(pdo), report_);
+    if (file.off) pdo.use = PdoUse::off;
+    if (!file.id) return;
     pdo.has_cob_id = true;
     pdo.origin = CobIdOrigin::network_file;
-    pdo.cob_id = extended ? CobId::extended(raw) : CobId::base(raw);
+    pdo.cob_id = *file.id;
   }
 
   /// event_timer is the sender's, event_deadline the receiver's (as dcfgen means them).

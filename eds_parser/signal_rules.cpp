@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/object_units.hpp"
 
 namespace takt {
@@ -48,7 +50,7 @@ std::int64_t raw_value(const SdoSpec& sdo, DataType type) {
   if (const auto* real = std::get_if<double>(&sdo.value)) {
     if (type == DataType::real32) return std::bit_cast<std::int32_t>(static_cast<float>(*real));
     if (type == DataType::real64) return std::bit_cast<std::int64_t>(*real);
-    return static_cast<std::int64_t>(*real);
+    return std::abs(*real) < 0x1p63 ? static_cast<std::int64_t>(*real) : 0;
   }
   return 0;
 }
@@ -70,8 +72,7 @@ std::optional<std::int64_t> safe_value(const NodeSource& node, bool cia402, cons
   if (cia402 && (role == Role::controlword || role == Role::rate_target)) return 0;
   if (auto value = written_value(node.spec->sdo, signal)) return value;
   const SubObject* sub = node.dictionary->find(signal.object);
-  if (sub != nullptr && sub->parameter_value) return as_integer(*sub->parameter_value);
-  return {};
+  return sub == nullptr ? std::nullopt : integer_of(sub->parameter_value);
 }
 
 void set_value(Signal& signal, std::int64_t value) {

@@ -13,6 +13,7 @@
 #include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_compiler.hpp"
+#include "eds_parser/network_file/domain_files.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
@@ -57,7 +58,7 @@ constexpr std::ptrdiff_t torn_from = 8;
 
 class Loader {
  public:
-  explicit Loader(const fs::path& path) : path_{path} {}
+  Loader(const fs::path& path, DeviceDataUse use) : path_{path}, use_{use} {}
 
   LoadedNetwork run() {
     const auto text = read_text(path_);
@@ -70,12 +71,19 @@ class Loader {
     for (NodeSpec& node : spec.nodes) read_node_files(spec, node);
     std::vector<const ObjectDictionary*> dictionaries;
     for (const NodeSpec& node : spec.nodes) dictionaries.push_back(dictionary_of(spec, node));
-    const std::vector<DeviceData> device_data = load_device_data(device_folders(), out_.findings);
+    std::vector<DeviceData> device_data;
+    if (use_ == DeviceDataUse::applied) {
+      device_data = load_device_data(device_folders(), out_.findings);
+    }
     CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings, device_data);
     out_.plan = std::move(compiled.plan);
     out_.devices = std::move(compiled.devices);
     out_.realtime = spec.realtime;
     out_.lcm = spec.lcm;
+    out_.recording = spec.recording;
+    if (!spec.recording.folder.empty()) {
+      out_.recording.folder = (path_.parent_path() / spec.recording.folder).string();
+    }
     out_.bus_named = spec.bus.name.given || spec.bus.interface.given;
     sort_findings();
     return std::move(out_);
@@ -99,16 +107,30 @@ class Loader {
                                  "this one"});
   }
 
+  /// `@BUS_CONFIG_PATH@/x.eds` is `x.eds`.
+  static std::string without_placeholder(const std::string& name) {
+    const auto end = name.starts_with('@') ? name.find("@/", 1) : std::string::npos;
+    return end == std::string::npos ? name : name.substr(end + 2);
+  }
+
   /// Where a file of a node may be: beside the network file, then in dcf_path of the node, of
   /// options.
   std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node,
-                                   const std::string& name) const {
+                                   const std::string& written) const {
     const fs::path folder = path_.parent_path();
+    const std::string name = without_placeholder(written);
     std::vector<fs::path> paths{folder / name};
     for (const auto& extra : {node.dcf_path, spec.dcf_path}) {
       if (extra.given && !is_placeholder(*extra)) paths.push_back(folder / *extra / name);
     }
     return paths;
+  }
+
+  /// Without `x/..`, where that is the same file: a folder may be a link.
+  static fs::path tidy(const fs::path& path) {
+    std::error_code error;
+    fs::path plain = path.lexically_normal();
+    return fs::equivalent(path, plain, error) && !error ? plain : path;
   }
 
   static const fs::path* existing(const std::vector<fs::path>& paths) {
@@ -174,7 +196,7 @@ class Loader {
   const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
     if (!node.dcf.given || !node.id.given) return nullptr;
     const std::vector<fs::path> paths = candidates(spec, node, *node.dcf);
-    if (const fs::path* found = existing(paths)) return read(*found, node);
+    if (const fs::path* found = existing(paths)) return read(tidy(*found), node);
     report_missing(node, paths);
     return nullptr;
   }
@@ -210,6 +232,7 @@ class Loader {
       return nullptr;
     }
     add_device_finding(path, file.findings);
+    read_domain_files(path, file.dictionary, out_.findings);
     return &file.dictionary;
   }
 
@@ -263,6 +286,7 @@ class Loader {
   }
 
   fs::path path_;
+  DeviceDataUse use_;
   LoadedNetwork out_;
   std::map<std::pair<fs::path, std::uint8_t>, EdsFile> files_;  // stable addresses
   std::set<fs::path> told_;
@@ -270,6 +294,8 @@ class Loader {
 
 }  // namespace
 
-LoadedNetwork load_network(const fs::path& path) { return Loader{path}.run(); }
+LoadedNetwork load_network(const fs::path& path, DeviceDataUse device_data) {
+  return Loader{path, device_data}.run();
+}
 
 }  // namespace takt

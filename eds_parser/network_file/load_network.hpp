@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -15,11 +16,16 @@ struct LoadedNetwork {
   std::vector<DeviceTable> devices;  ///< one a node, for the simulation; same order as plan.nodes
   RealtimeOptions realtime;
   LcmOptions lcm;
+  RecordingOptions recording;
   bool bus_named = false;  ///< the file names the bus or its interface; else plan.name is "sim"
   Findings findings;       ///< of the network file and of the device files it names
 };
 
+/// Whether devices get what the device data say of them; `ignored` only to show the difference.
+enum class DeviceDataUse : std::uint8_t { applied, ignored };
+
 /// Reads, checks and compiles a network file. All errors are listed at once.
-LoadedNetwork load_network(const std::filesystem::path& path);
+LoadedNetwork load_network(const std::filesystem::path& path,
+                           DeviceDataUse device_data = DeviceDataUse::applied);
 
 }  // namespace takt

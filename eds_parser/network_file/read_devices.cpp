@@ -28,6 +28,7 @@ class DeviceReader {
     section(reader, "sync_producer", [&](MapReader& map) { sync(map); });
     list(reader, "objects", [&](const YamlNode& item) { object(item); });
     section(reader, "boot", [&](MapReader& map) { boot(map); });
+    data_.on_sync_loss = text(reader, "on_sync_loss");
     emcy(reader);
     reader.finish();
     if (data_.name.empty()) report_.error(root_.pos, "missing-key", "the entry lacks `name`");

@@ -13,8 +13,8 @@
 namespace takt {
 namespace {
 
-constexpr std::array<std::string_view, 7> section_names{"options", "master", "defaults", "nodes",
-                                                        "bus",     "lcm",    "realtime"};
+constexpr std::array<std::string_view, 8> section_names{
+    "options", "master", "defaults", "nodes", "bus", "lcm", "realtime", "black_box"};
 constexpr std::size_t max_nodes = 127;
 
 bool is_section(std::string_view key) {
@@ -66,6 +66,7 @@ class NetworkReader {
     section("master", read_master);
     section("realtime", read_realtime);
     section("lcm", read_lcm);
+    section("black_box", read_black_box);
   }
 
   void read_top_level(const YamlPair& pair) {

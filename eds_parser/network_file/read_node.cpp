@@ -4,6 +4,7 @@
 
 #include "eds_parser/network_file/sections.hpp"
 #include "eds_parser/table/firmware.hpp"
+#include "eds_parser/table/sim_names.hpp"
 
 namespace takt {
 namespace {
@@ -40,15 +41,12 @@ constexpr std::array<std::string_view, 32> keys_of_others{"driver",
                                                           "container_name",
                                                           "description",
                                                           "comment"};
-constexpr std::array<std::string_view, 8> sim_models{"plain",      "drive402",      "io401",
-                                                     "encoder406", "lenze8400",     "beckhoff",
-                                                     "plain301",   "astraada_drv28"};
 constexpr std::array<std::string_view, 14> scales{
     "scale_pos_to_dev",  "scale_pos_from_dev",  "scale_vel_to_dev",  "scale_vel_from_dev",
     "scale_eff_to_dev",  "scale_eff_from_dev",  "offset_pos_to_dev", "offset_pos_from_dev",
     "offset_vel_to_dev", "offset_vel_from_dev", "offset_eff_to_dev", "offset_eff_from_dev",
     "scale_acc_to_dev",  "scale_acc_from_dev"};
-constexpr std::array<std::string_view, 2> not_supported{"time_cob_id", "time_cobid"};
+constexpr std::array<std::string_view, 1> not_supported{"time_cobid"};
 
 void read_firmware(MapReader& reader, Sourced<std::string>& out) {
   reader.text("firmware", out);
@@ -66,6 +64,20 @@ void read_identity(MapReader& reader, NodeSpec& node) {
   reader.integer("serial_number", node.serial_number);
   reader.text("device", node.device);
   read_firmware(reader, node.firmware);
+}
+
+/// `true`, or a map: `{store: false}`.
+void read_lss(MapReader& outer, NodeSpec& node) {
+  const YamlNode* value = outer.take("lss");
+  if (value == nullptr) return;
+  node.lss = {true, value->pos, true};
+  if (value->kind == YamlNode::Kind::map) {
+    MapReader reader{*value, "`lss` of " + outer.what(), outer.report()};
+    reader.boolean("store", node.lss_store);
+    reader.finish();
+  } else if (const auto wanted = read_bool(*value, "lss", outer.report())) {
+    node.lss.value = *wanted;
+  }
 }
 
 void read_reset(MapReader& reader, NodeSpec& node) {
@@ -145,6 +157,7 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
   reader.integer("life_time_factor", node.life_time_factor, {0, 255});
   reader.integer("emcy_cob_id", node.emcy_cob_id, {0x001, 0x7FF});
   reader.integer("emcy_inhibit_time", node.emcy_inhibit_time, {0, 65535, " x 100 us"});
+  reader.integer("time_cob_id", node.time_cob_id);
   reader.integer("retry_factor", node.retry_factor, {1, 255});
   const YamlNode* behavior = reader.take("error_behavior");
   if (behavior == nullptr || behavior->kind == YamlNode::Kind::null) return;
@@ -184,6 +197,18 @@ void read_timeout(MapReader& outer, NodeSpec& node) {
   reader.finish();
 }
 
+/// One word, or a list of them.
+void read_quirks(const YamlNode& quirks, NodeSpec& node, NetworkReport& report) {
+  if (quirks.kind == YamlNode::Kind::null) return;
+  const auto add = [&](const YamlNode& word) {
+    if (const auto choice = read_choice(word, "quirks", sim_quirks, report)) {
+      node.sim.quirks.emplace_back(sim_quirks[*choice]);
+    }
+  };
+  if (quirks.kind != YamlNode::Kind::sequence) return add(quirks);
+  for (const YamlNode* item : quirks.items) add(*item);
+}
+
 void read_sim(MapReader& outer, NodeSpec& node) {
   const YamlNode* map = outer.take("sim");
   if (map == nullptr) return;
@@ -194,14 +219,7 @@ void read_sim(MapReader& outer, NodeSpec& node) {
     }
   }
   read_firmware(reader, node.sim.firmware);
-  if (const YamlNode* quirks = reader.take("quirks")) {
-    if (quirks->kind == YamlNode::Kind::scalar) node.sim.quirks.push_back(quirks->text);
-    for (const YamlNode* item : quirks->items) {
-      if (auto text = read_text(*item, "quirks", outer.report())) {
-        node.sim.quirks.push_back(std::move(*text));
-      }
-    }
-  }
+  if (const YamlNode* quirks = reader.take("quirks")) read_quirks(*quirks, node, outer.report());
   reader.finish();
 }
 
@@ -255,7 +273,9 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   reader.text("dcf", spec.dcf);
   reader.text("dcf_path", spec.dcf_path);
   read_identity(reader, spec);
+  read_lss(reader, spec);
   read_boot(reader, spec);
+  read_sdo_access(reader, spec);
   read_heartbeat(reader, spec);
   read_loss(reader, spec);
   if (const YamlNode* profile = reader.take("profile")) {
@@ -271,10 +291,16 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   reader.ignore(scales,
                 "is left alone: takt scales by `units: {position: {scale: ..., unit: rad}}`");
   reader.ignore(not_supported, "is not acted on by this version of takt");
+  const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
   reader.finish();
   if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
   if (!has_id) report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
-  if (!spec.dcf.given && node.find("dcf") == nullptr) {
+  if (misnamed != nullptr) {
+    report.error(reader.key_pos("eds"), "missing-key",
+                 "node `" + name +
+                     "` names its device file by `eds`: no reader of such files takes that; the "
+                     "key is `dcf`, for an EDS as well");
+  } else if (!spec.dcf.given && node.find("dcf") == nullptr) {
     report.error(pos, "missing-key",
                  "node `" + name + "` lacks `dcf`, the name of its EDS or DCF file");
   }

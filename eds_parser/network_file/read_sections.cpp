@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/table/lcm_url.hpp"
 
 namespace takt {
 namespace {
@@ -35,6 +36,40 @@ void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_
   out = rate;
 }
 
+/// Keys of a SYNC that another device makes.
+void read_sync_source(MapReader& reader, MasterSpec& master) {
+  NetworkReport& report = reader.report();
+  reader.text("sync_source", master.sync_source);
+  reader.integer("sync_timeout", master.sync_timeout_us, {1, 60'000'000, " us"});
+  if (const YamlNode* reaction = reader.take("on_sync_loss")) {
+    constexpr std::array<std::string_view, 3> names{"hold", "fallback", "stop"};
+    if (const auto choice = read_choice(*reaction, "on_sync_loss", names, report)) {
+      master.on_sync_loss = {static_cast<SyncLoss>(*choice), reaction->pos, true};
+    }
+  }
+  const bool followed = master.sync_source.given && *master.sync_source != "master";
+  const auto needs_source = [&](const SourcePos& pos, const std::string& key) {
+    report.error(pos, "sync-source",
+                 "`" + key +
+                     "` is for a SYNC that another device makes: name it with "
+                     "`sync_source` (a node, or `external`)");
+  };
+  if (!followed && master.sync_timeout_us.given) {
+    needs_source(master.sync_timeout_us.pos, "sync_timeout");
+  }
+  if (!followed && master.on_sync_loss.given) needs_source(master.on_sync_loss.pos, "on_sync_loss");
+  const std::uint32_t period = *master.sync_period_us;
+  if (followed && period == 0) {
+    report.error(master.sync_source.pos, "sync-source",
+                 "`sync_source` needs `sync_period`: the period in us that the producer keeps");
+  } else if (followed && master.sync_timeout_us.given && *master.sync_timeout_us < period) {
+    report.error(master.sync_timeout_us.pos, "out-of-range",
+                 "`sync_timeout` of " + std::to_string(*master.sync_timeout_us) +
+                     " us is shorter than `sync_period` of " + std::to_string(period) +
+                     " us: every SYNC would count as lost");
+  }
+}
+
 void read_sync(MapReader& reader, MasterSpec& master) {
   NetworkReport& report = reader.report();
   reader.integer("sync_period", master.sync_period_us, {0, 60'000'000, " us"});
@@ -58,14 +93,29 @@ void read_sync(MapReader& reader, MasterSpec& master) {
                  "`sync_window` of " + std::to_string(*master.sync_window_us) +
                      " us is longer than `sync_period` of " + std::to_string(period) + " us");
   }
+  read_sync_source(reader, master);
 }
 
-bool is_multicast(std::string_view url) {
-  const std::string_view address = url.substr(7);
-  int first = 0;
-  const auto [end, error] = std::from_chars(address.data(), address.data() + address.size(), first);
-  return address.empty() || address[0] == ':' || address[0] == '?' ||
-         (error == std::errc{} && first >= 224 && first <= 239);
+/// TIME of the master. `time_cob_id` of other readers has the flags of 0x1012: bit 30 produces.
+void read_time(MapReader& reader, MasterSpec& master) {
+  constexpr std::uint32_t produces = 0x4000'0000;
+  constexpr std::uint32_t flags = 0xC000'0000;
+  reader.integer("time_period", master.time_period_ms, {0, 86'400'000, " ms"});
+  reader.integer("time_cob_id", master.time_cob_id);
+  const std::uint32_t id = *master.time_cob_id & ~flags;
+  if (id == 0 || id > 0x7FF) {
+    reader.report().error(master.time_cob_id.pos, "out-of-range",
+                          "`time_cob_id` is an identifier of 0x001 .. 0x7FF; bits 30 (produce) and "
+                          "31 (consume) may be set as in 0x1012");
+    return;
+  }
+  if ((*master.time_cob_id & produces) != 0 && !master.time_period_ms.given) {
+    master.time_period_ms = {1000, master.time_cob_id.pos, true};
+  }
+  if (master.time_period_ms.given && *master.time_period_ms > 0 && *master.time_period_ms < 100) {
+    reader.report().error(master.time_period_ms.pos, "out-of-range",
+                          "`time_period` is in ms and at least 100: TIME goes before every PDO");
+  }
 }
 
 /// Linux takes 15 bytes for an interface, and 107 for the path of a socket.
@@ -125,6 +175,7 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
                  "`baudrate` of `master` and `bitrate_kbit` of `bus` differ: keep one");
   }
   read_sync(reader, master);
+  read_time(reader, master);
   reader.integer("heartbeat_producer", master.heartbeat_producer, {0, 65535, " ms"});
   reader.number("heartbeat_multiplier", master.heartbeat_multiplier);
   reader.boolean("heartbeat_consumer", master.heartbeat_consumer);
@@ -136,15 +187,16 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   reader.integer("boot_time", master.boot_time_ms, {0, 3'600'000, " ms"});
   reader.integer("nmt_inhibit_time", master.nmt_inhibit_time, {0, 65535, " x 100 us"});
   reader.integer("stop_timeout", master.stop_timeout_ms, {100, 60'000, " ms"});
+  reader.integer("service_frames", master.service_frames, {1, 250, " frames"});
   reader.ignore(
       std::array<std::string_view, 11>{"driver", "package", "namespace", "polling", "period",
                                        "diagnostics", "vendor_id", "product_code",
                                        "revision_number", "serial_number", "remappings"},
       other_reader);
-  reader.ignore(std::array<std::string_view, 7>{"time_cob_id", "emcy_inhibit_time",
-                                                "error_behavior", "boot_timeout", "boot_timeout_ms",
-                                                "sdo_timeout_ms", "non_transmit_timeout"},
-                not_yet);
+  reader.ignore(
+      std::array<std::string_view, 6>{"emcy_inhibit_time", "error_behavior", "boot_timeout",
+                                      "boot_timeout_ms", "sdo_timeout_ms", "non_transmit_timeout"},
+      not_yet);
   reader.finish();
 }
 
@@ -171,25 +223,32 @@ void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& repor
   if (late_us.given) options.late_limit = std::chrono::microseconds{*late_us};
 }
 
+void read_black_box(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
+  MapReader reader{node, "`black_box`", report};
+  Sourced<std::string> folder;
+  Sourced<std::uint32_t> size_mb, keep;
+  reader.text("folder", folder);
+  reader.integer("size_mb", size_mb, {1, 1024, " MiB"});
+  reader.integer("keep", keep, {1, 10'000, " recordings"});
+  reader.finish();
+  spec.recording.folder = *folder;
+  if (size_mb.given) spec.recording.bytes = std::size_t{*size_mb} << 20U;
+  if (keep.given) spec.recording.keep = *keep;
+}
+
 void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   MapReader reader{node, "`lcm`", report};
   Sourced<std::string> url;
   Sourced<bool> broker;
+  Sourced<bool> typed{.value = true, .pos = {}};
   reader.text("url", url);
   reader.boolean("broker", broker);
+  reader.boolean("typed", typed);
   reader.finish();
-  spec.lcm = {.url = *url, .broker = *broker};
+  spec.lcm = {.url = *url, .broker = *broker, .typed = *typed};
   if (!url.given) return;
-  const std::size_t scheme = url->find("://");
-  if (scheme == std::string::npos) {
-    report.error(url.pos, "lcm-url",
-                 "`url`: expected `udpm://239.255.76.67:7667?ttl=0`, `tcpq://HOST:PORT` or another "
-                 "LCM URL");
-  } else if (url->starts_with("udpm://") && !is_multicast(*url)) {
-    report.error(url.pos, "lcm-url",
-                 "`udpm://` takes a multicast address (224.0.0.0 .. 239.255.255.255), as "
-                 "`udpm://239.255.76.67:7667?ttl=0`; for one host use `tcpq://`");
-  }
+  const auto parsed = parse_lcm_url(*url);
+  if (!parsed) report.error(url.pos, "lcm-url", "`url` of `lcm`: " + parsed.error());
 }
 
 }  // namespace takt

@@ -10,6 +10,7 @@ void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+void read_black_box(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 
 /// One node; keys that it does not have itself are already merged in from `defaults`.
@@ -26,5 +27,8 @@ UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkRepo
 
 /// `index` and `sub_index` of a list entry; none: reported.
 std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos);
+
+/// `sdo_block`, `sdo_channel`, `sdo_timeouts` of a node.
+void read_sdo_access(MapReader& reader, NodeSpec& node);
 
 }  // namespace takt

@@ -12,6 +12,12 @@ using Json = nlohmann::ordered_json;
 
 double us(Time time) { return static_cast<double>(time.count()) / 1000.0; }
 
+std::string source_of_sync(const CyclePlan& cycle) {
+  if (!cycle.sync) return "none";
+  if (!cycle.sync_followed) return "master";
+  return cycle.sync_producer ? "node " + std::to_string(cycle.sync_producer->value()) : "external";
+}
+
 Json cycle_json(const BusPlan& plan) {
   const CyclePlan& c = plan.cycle;
   const TimeBudget budget = time_budget(plan);
@@ -19,6 +25,10 @@ Json cycle_json(const BusPlan& plan) {
           {"sync", c.sync},
           {"sync_cob_id", c.sync_cob_id.id()},
           {"sync_overflow", c.sync_overflow},
+          {"time_period_us", us(plan.time.period)},
+          {"time_cob_id", plan.time.cob_id.id()},
+          {"sync_source", source_of_sync(c)},
+          {"sync_timeout_us", us(c.sync_timeout)},
           {"receive_window_us", us(c.receive_window)},
           {"output_deadline_us", us(c.output_deadline)},
           {"quiet_before_sync_us", us(c.quiet_before_sync)},
@@ -123,6 +133,7 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"group", node.group == 0 ? "" : plan.groups[node.group - 1U]},
           {"sdo_timeout_us", us(node.sdo_timeout)},
           {"reboot_delay_us", us(node.reboot_delay)},
+          {"lss", node.lss.has_value()},
           {"device_data", node.device_data},
           {"device_data_file", node.device_data_file},
           {"device_notes", node.device_notes},
@@ -167,7 +178,7 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
     const bool wanted = !what.node || *what.node == plan.layout.signals[i].node;
     if (wanted) signals.push_back(signal_json(plan, i));
   }
-  for (const LcmChannel& channel : lcm_channels(plan)) {
+  for (const LcmChannel& channel : lcm_channels(plan, what.lcm)) {
     channels.push_back({{"channel", channel.name}, {"type", channel.type}});
   }
   const Json document{{"bus", plan.name},

@@ -1,7 +1,9 @@
 #include "eds_parser/print/plan_names.hpp"
 
 #include <algorithm>
-#include <cctype>
+
+#include "eds_parser/table/lcm_channel.hpp"
+#include "eds_parser/table/typed_message.hpp"
 
 namespace takt {
 namespace {
@@ -36,14 +38,6 @@ std::string download(ObjectKey object, const std::vector<std::byte>& value) {
                                     : static_cast<unsigned>(value.size() >> (8 * i));
     add_byte(out, byte);
   }
-  return out;
-}
-
-std::string capitals(std::string_view text) {
-  std::string out{text};
-  std::ranges::transform(out, out.begin(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ? static_cast<char>(std::toupper(c)) : '_';
-  });
   return out;
 }
 
@@ -89,6 +83,8 @@ std::string_view action_name(BootAction action) noexcept {
       return "write if changed";
     case BootAction::read_serial:
       return "read serial";
+    case BootAction::read_firmware:
+      return "read firmware";
     case BootAction::pause:
       return "pause";
   }
@@ -126,6 +122,7 @@ std::string frame_text(const BootStep& step, NodeId node) {
     case BootAction::probe:
     case BootAction::await_value:
     case BootAction::read_serial:
+    case BootAction::read_firmware:
     case BootAction::expect:
     case BootAction::compare:
     case BootAction::verify:
@@ -174,19 +171,32 @@ std::string span_text(Time time) {
   return std::to_string(time / std::chrono::milliseconds{1}) + " ms";
 }
 
-std::vector<LcmChannel> lcm_channels(const BusPlan& plan) {
-  const std::string bus = capitals(plan.name);
-  return {
-      {bus + "_IMAGE", "takt.image_t", "every cycle: all values, raw, in the order of the layout"},
-      {bus + "_LAYOUT", "takt.layout_t", "at start and once a second: what the values mean"},
-      {bus + "_COMMAND", "takt.command_t", "set-points from applications"},
-      {bus + "_STATUS", "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
-      {bus + "_PDOS", "takt.pdo_status_t", "2 Hz: each PDO, its age, count and troubles"},
-      {bus + "_TIMING", "takt.timing_t", "1 Hz: histograms of jitter and latency"},
-      {bus + "_EVENT", "takt.event_t", "boot reports, EMCY, state changes, faults"},
-      {bus + "_REQUEST", "takt.request_t", "SDO and NMT on behalf of applications"},
-      {bus + "_REPLY", "takt.reply_t", "their answers"},
+std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& options) {
+  const auto channel = [&](std::string_view what) { return channel_name(plan.name, what); };
+  std::vector<LcmChannel> channels{
+      {channel("IMAGE"), "takt.image_t",
+       "every cycle: all values, raw, in the order of the layout"},
+      {channel("LAYOUT"), "takt.layout_t", "at start and once a second: what the values mean"},
+      {channel("COMMAND"), "takt.command_t", "set-points from applications"},
+      {channel("STATUS"), "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
+      {channel("SYNC"), "takt.sync_status_t",
+       "10 Hz: who makes SYNC, and whether the cycle keeps to it"},
+      {channel("PDOS"), "takt.pdo_status_t", "2 Hz: each PDO, its age, count and troubles"},
+      {channel("TIMING"), "takt.timing_t", "1 Hz: histograms of jitter and latency"},
+      {channel("EVENT"), "takt.event_t", "boot reports, EMCY, state changes, faults"},
+      {channel("REQUEST"), "takt.request_t", "SDO and NMT on behalf of applications"},
+      {channel("REPLY"), "takt.reply_t", "their answers"},
+      {channel("TRANSFER"), "takt.transfer_t", "files to and from domains of devices, in parts"},
+      {channel("TRANSFER_STATE"), "takt.transfer_state_t", "how far they are, and what was read"},
   };
+  if (!options.typed) return channels;
+  for (const TypedMessage& message : typed_messages(plan)) {
+    channels.push_back({message.channel, message.package + '.' + message.name,
+                        message.command
+                            ? "set-points for that node alone, SI where it has units"
+                            : "every cycle: inputs of that node, SI where it has units"});
+  }
+  return channels;
 }
 
 }  // namespace takt

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/run_options.hpp"
 
 namespace takt {
 
@@ -28,6 +29,6 @@ struct LcmChannel {
   std::string type;
   std::string content;
 };
-std::vector<LcmChannel> lcm_channels(const BusPlan& plan);
+std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& options);
 
 }  // namespace takt

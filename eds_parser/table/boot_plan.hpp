@@ -39,6 +39,7 @@ enum class BootAction : std::uint8_t {
   download_program,   ///< as write, but large; its progress is told
   write_if_changed,   ///< as write, where this boot has written anything
   read_serial,        ///< upload `object`, to know the device again; may be missing
+  read_firmware,      ///< upload `object`, to compare it with NodePlan::firmware; may be missing
   await_operational,  ///< the node reports OPERATIONAL within `timeout` (heartbeat or SDO-silent
                       ///< wait)
   pause,              ///< wait for `timeout`

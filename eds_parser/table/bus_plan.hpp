@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/image_layout.hpp"
+#include "eds_parser/table/lss_plan.hpp"
 #include "eds_parser/table/pdo_table.hpp"
+#include "eds_parser/table/sdo_access.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
@@ -23,6 +26,12 @@ struct GuardPlan {
   Time period{};             ///< between two requests; 0 = not guarded
   std::uint8_t retries = 3;  ///< silence of so many periods is a loss
   Time life_time() const noexcept { return period * retries; }
+};
+
+/// Somebody whose heartbeats a device watches: 0x1016.
+struct HeartbeatConsumer {
+  NodeId producer;
+  Time longest{};  ///< silence that it takes
 };
 
 /// What the master does when a node that was ready falls silent, beyond telling it.
@@ -45,6 +54,26 @@ struct StartUpPlan {
   Time nmt_inhibit{};  ///< least time between two NMT commands
 };
 
+/// Something that holds for some versions of a device's firmware only.
+struct FirmwareRule {
+  std::optional<Firmware> from{};
+  std::optional<Firmware> below{};
+  std::string text{};  ///< "these objects are missing: 1403"
+
+  bool holds(const Firmware& version) const noexcept {
+    return (!from || version >= *from) && (!below || version < *below);
+  }
+};
+
+/// What the plan takes a device's firmware for, and what depends on it.
+struct FirmwarePlan {
+  Firmware assumed{};
+  ObjectKey object{};  ///< 0x1018:03, else 0x100A
+  std::vector<FirmwareRule> rules{};
+
+  bool of_revision() const noexcept { return object.index == 0x1018; }
+};
+
 /// One device as the master sees it.
 struct NodePlan {
   std::string name;  ///< from the network file: "shoulder"
@@ -55,25 +84,42 @@ struct NodePlan {
   bool mandatory = false;  ///< its failure ends taktd with exit code 4
   bool cia402 = false;     ///< axis features: ordered stop, quick stop fallback
   BootPlan boot_plan{};
-  Time heartbeat_timeout{};            ///< longest silence; 0 = not watched
-  GuardPlan guard{};                   ///< only where there is no heartbeat
-  Time heartbeat_period{};             ///< of the device; 0 = not known
+  std::optional<LssPlan> lss{};              ///< gets its id by LSS where it has none
+  Time heartbeat_timeout{};                  ///< longest silence; 0 = not watched
+  GuardPlan guard{};                         ///< only where there is no heartbeat
+  Time heartbeat_period{};                   ///< of the device; 0 = not known
+  std::vector<HeartbeatConsumer> watches{};  ///< once it has booted
+  Time life_guarding{};                ///< silence of the master's guarding that it takes; 0 = any
   std::optional<CobId> emcy_cob_id{};  ///< none: 0x080 + id
   bool start_later = false;  ///< with the network (StartUpPlan::start_all), not by the boot plan
   LossReaction on_loss = LossReaction::report;
-  std::uint8_t group = 0;                   ///< index into BusPlan::groups + 1; 0 = none
-  Time sdo_timeout{};                       ///< of requests while running
+  std::uint8_t group = 0;  ///< index into BusPlan::groups + 1; 0 = none
+  Time sdo_timeout{};      ///< of requests while running
+  SdoAccess sdo{};
   Time reboot_delay{};                      ///< pause before a failed boot is tried again
   std::string device_data{};                ///< entry that was applied: "Lenze 8400 HighLine"
   std::string device_data_file{};           ///< "lenze8400.yaml"
   std::vector<std::string> device_notes{};  ///< what it says, a line each
   std::vector<EmcyText> emcy_texts{};       ///< of this device family
+  std::optional<FirmwarePlan> firmware{};
+  std::string on_sync_loss{};  ///< what such a device does; empty: not known
+};
+
+/// What the master does when the SYNC that another device makes stays away, beyond telling it.
+enum class SyncLoss : std::uint8_t {
+  hold,      ///< no outputs are sent: the devices keep what they have
+  fallback,  ///< commanded outputs take their fallback, as when their commands grow old
+  stop,      ///< NMT stop to every node but the producer; started again when SYNC is back
 };
 
 /// SYNC and the times of a cycle, all counted from SYNC.
 struct CyclePlan {
-  Time period{};     ///< of SYNC; without SYNC the image's own period
-  bool sync = true;  ///< false: no SYNC is sent
+  Time period{};                          ///< of SYNC; without SYNC the image's own period
+  bool sync = true;                       ///< false: there is no SYNC
+  bool sync_followed = false;             ///< another device makes it
+  std::optional<NodeId> sync_producer{};  ///< that device, where the network file has it
+  Time sync_timeout{};                    ///< silence after which a followed SYNC is lost
+  SyncLoss on_sync_loss = SyncLoss::fallback;
   CobId sync_cob_id = CobId::base(0x080);
   std::uint8_t sync_overflow = 0;  ///< 0x1019; 0 = SYNC without counter
   Time receive_window{};           ///< after this an expected PDO counts as missing
@@ -81,6 +127,14 @@ struct CyclePlan {
   Time quiet_before_sync{};  ///< nothing of the master's is on the wire for so long before SYNC
   Time sync_window{};        ///< 0x1007 of the devices, 0 = none
   std::uint16_t service_frames = 4;  ///< SDO and NMT frames a cycle at most
+
+  bool makes_sync() const noexcept { return sync && !sync_followed; }
+};
+
+/// The master as producer of TIME. CiA 301, 7.2.6.
+struct TimePlan {
+  Time period{};  ///< 0: none is sent
+  CobId cob_id = CobId::base(0x100);
 };
 
 /// Everything the master needs to know of a bus; compiled, printable, constant while it runs.
@@ -94,6 +148,7 @@ struct BusPlan {
   StartUpPlan start_up{};
   std::vector<std::string> groups{};  ///< names
   CyclePlan cycle{};
+  TimePlan time{};
   ImageLayout layout{};
   PdoTable pdos{};
   std::vector<NodePlan> nodes{};                ///< ascending node id

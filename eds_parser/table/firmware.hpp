@@ -30,6 +30,35 @@ struct Firmware {
     }
     return {};
   }
+
+  /// The first version in a text such as "V16.00 build 7" (0x100A).
+  static std::optional<Firmware> find_in(std::string_view text) noexcept {
+    constexpr std::string_view digits = "0123456789";
+    const std::size_t first = text.find_first_of(digits);
+    if (first == text.npos) return {};
+    text.remove_prefix(first);
+    text = text.substr(0, text.find_first_not_of("0123456789."));
+    for (;;) {
+      if (const auto version = parse(text)) return version;
+      const std::size_t dot = text.find_last_of('.');
+      if (dot == text.npos) return {};
+      text = text.substr(0, dot);
+    }
+  }
+  /// 0x1018:03 of a device whose revision is its firmware: main version in the upper half.
+  static constexpr Firmware of_revision(std::uint32_t revision) noexcept {
+    return {{static_cast<std::uint16_t>(revision >> 16),
+             static_cast<std::uint16_t>(revision & 0xFFFF), 0}};
+  }
+
+  /// As one number, 16 bits a part.
+  constexpr std::int64_t packed() const noexcept {
+    return std::int64_t{parts[0]} << 32 | std::int64_t{parts[1]} << 16 | parts[2];
+  }
+  static constexpr Firmware unpacked(std::int64_t number) noexcept {
+    return {{static_cast<std::uint16_t>(number >> 32), static_cast<std::uint16_t>(number >> 16),
+             static_cast<std::uint16_t>(number)}};
+  }
 };
 
 /// "16.00.00".

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,10 +24,18 @@ struct RealtimeOptions {
   Time late_limit{};  ///< enforce: a SYNC later than this ends taktd with exit code 5; 0 = none
 };
 
+/// `black_box:` of the network file.
+struct RecordingOptions {
+  std::string folder;            ///< for the recordings; empty: none are made
+  std::size_t bytes = 16 << 20;  ///< of each of the two tapes in memory
+  std::size_t keep = 20;         ///< recordings of this bus; older ones are removed
+};
+
 /// `lcm:` of the network file.
 struct LcmOptions {
   std::string url;      ///< empty: LCM_DEFAULT_URL, else LCM's own default
   bool broker = false;  ///< serve tcpq:// on loopback by ourselves
+  bool typed = true;    ///< a typed message of each node as well
 };
 
 }  // namespace takt

@@ -27,6 +27,7 @@ void BootRunner::start(From from, Time now) noexcept {
   guards_ = running_ = wrote_ = false;
   left_alone_ = 0;
   serial_number_.reset();
+  firmware_.reset();
   bootup_seen_ = from == From::bootup;
   heartbeat_seen_ = false;
   heard_ = from == From::bootup ? NmtState::bootup : NmtState::unknown;
@@ -185,6 +186,7 @@ void BootRunner::begin(const BootStep& step) noexcept {
     case BootAction::compare:
     case BootAction::verify:
     case BootAction::read_serial:
+    case BootAction::read_firmware:
     case BootAction::write_if_differs:
       phase_ = Phase::upload_next;
       return;

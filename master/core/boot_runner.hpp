@@ -6,6 +6,7 @@
 #include <span>
 
 #include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/firmware.hpp"
 #include "master/core/event.hpp"
 #include "master/core/request.hpp"
 #include "master/core/sdo_client.hpp"
@@ -50,6 +51,8 @@ class BootRunner {
   std::uint16_t left_alone() const noexcept { return left_alone_; }
   ObjectKey first_left_alone() const noexcept { return first_left_alone_; }
   std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
+  /// As the device tells it, where the plan asks.
+  std::optional<Firmware> firmware() const noexcept { return firmware_; }
   /// Bytes of the program that is being downloaded; 0: none is.
   std::size_t program_size() const noexcept;
   /// The plan has come to where the node is guarded.
@@ -93,6 +96,7 @@ class BootRunner {
   void on_downloaded(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_written() noexcept;
+  void take_firmware() noexcept;
   void remember_cob_id() noexcept;
   void write_cob_id() noexcept;
   void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept {
@@ -122,6 +126,7 @@ class BootRunner {
   std::uint16_t left_alone_ = 0;
   ObjectKey first_left_alone_;
   std::optional<std::uint32_t> serial_number_;
+  std::optional<Firmware> firmware_;
   bool bootup_seen_ = false;
   bool bootup_in_step_ = false;
   bool heartbeat_in_step_ = false;

@@ -85,6 +85,9 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
     case BootAction::read_serial:
       if (result.fault == SdoFault::none) serial_number_ = load_le<std::uint32_t>(received());
       return next();
+    case BootAction::read_firmware:
+      if (result.fault == SdoFault::none) take_firmware();
+      return next();
     case BootAction::disable_pdo:
     case BootAction::enable_pdo:
       if (cob_id_object_ == step.object) return write_cob_id();
@@ -108,6 +111,19 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
   }
   to_write_ = step.value;
   phase_ = Phase::download_next;
+}
+
+/// A number is a revision, anything else a text.
+void BootRunner::take_firmware() noexcept {
+  const auto bytes = received();
+  if (current().object.index == 0x1018) {
+    firmware_ = Firmware::of_revision(load_le<std::uint32_t>(bytes));
+    return;
+  }
+  std::array<char, 64> text{};
+  const std::size_t size = std::min(bytes.size(), text.size());
+  for (std::size_t i = 0; i < size; ++i) text[i] = std::to_integer<char>(bytes[i]);
+  firmware_ = Firmware::find_in({text.data(), size});
 }
 
 void BootRunner::remember_cob_id() noexcept {

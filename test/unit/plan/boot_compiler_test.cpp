@@ -47,6 +47,25 @@ std::string arm(std::string_view more = "") {
          std::string{more} + "}\n";
 }
 
+TEST(BootCompiler, TextInQuotesIsTextForAStringAndANumberForTheRest) {
+  const std::string eds =
+      test::tiny_eds() + "[2008]\nParameterName=Label\nDataType=9\nAccessType=rw\n";
+
+  const auto net =
+      compile(arm("sdo: [{index: 0x2008, value: \"12\"}, {index: 0x6081, value: '0x10'}]"), eds);
+  const auto wrong = compile(arm("sdo: [{index: 0x6081, value: \"1.2.3\"}]"), eds);
+  const auto plain = compile(arm("sdo: [{index: 0x2008, value: 12}]"), eds);
+
+  EXPECT_THAT(
+      part(net, "write if differs 2008:00 0x3231", 2),
+      ElementsAre("write if differs 2008:00 0x3231", "write if differs 6081:00 0x00000010"));
+  EXPECT_THAT(
+      net.said("quoted-number"),
+      HasSubstr("6081:00 Profile velocity (UNSIGNED32) takes the number in the quotes, 0x10"));
+  EXPECT_THAT(wrong.said("out-of-range"), HasSubstr("takes a number"));
+  EXPECT_THAT(plain.said("out-of-range"), HasSubstr("takes text in quotes"));
+}
+
 TEST(BootCompiler, WholeBootOfATinyDriveInOrder) {
   const auto net = compile(arm("sdo: [{index: 0x6081, value: 1000}]"));
 
@@ -144,6 +163,36 @@ TEST(BootCompiler, LimitsOfTheEdsKeepPlannedValuesOutWithAWarning) {
   EXPECT_THAT(net.complaints(), ElementsAre("2:1 warning [limits]", "2:1 warning [limits]"));
   EXPECT_THAT(steps(net), testing::Not(testing::Contains(HasSubstr("differs 1016:01"))));
   EXPECT_THAT(steps(net), testing::Not(testing::Contains(HasSubstr("differs 1006:00"))));
+}
+
+TEST(BootCompiler, AValueOutsideTheLimitsOfTheEdsIsAWarningAndAWordInThePlan) {
+  std::string eds = test::tiny_eds();
+  for (const std::string section : {"[1800sub2]\n", "[6081]\n"}) {
+    eds.insert(eds.find(section) + section.size(), "LowLimit=2\nHighLimit=240\n");
+  }
+  eds.insert(eds.find("[1017]\n") + 7, "LowLimit=0\nHighLimit=0\n");  // an editor filled them in
+
+  const auto net =
+      compile(arm("sdo: [{index: 0x6081, value: 500}], tpdo: {1: {transmission: 254}}"), eds);
+
+  EXPECT_THAT(net.complaints(), ElementsAre("2:56 warning [limits]", "2:70 warning [limits]"));
+  EXPECT_THAT(net.said("limits"),
+              HasSubstr("`sdo` of node `arm`: 6081:00 Profile velocity = 500 is "
+                        "outside the limits 2..240 of tiny.eds"));
+  EXPECT_THAT(net.said("limits"), HasSubstr("1800:02 type = 254 is outside the limits 2..240"));
+  EXPECT_THAT(step_at(net, "write if differs 6081:00 0x000001F4").purpose,
+              HasSubstr("outside the limits 2..240 of the device file"));
+}
+
+TEST(BootCompiler, AValueOfADcfOutsideItsLimitsIsAWarningThatNamesItsLine) {
+  std::string dcf = test::tiny_eds() + "[DeviceComissioning]\nNodeID=5\n";
+  dcf.insert(dcf.find("[6081]\n") + 7, "ParameterValue=7\nHighLimit=5\n");
+
+  const auto net = compile(arm(), dcf, "tiny.dcf");
+
+  EXPECT_THAT(net.said("limits"), HasSubstr("ParameterValue in line "));
+  EXPECT_THAT(net.said("limits"),
+              HasSubstr("6081:00 Profile velocity = 7 is outside the limits ..5"));
 }
 
 TEST(BootCompiler, ResetPoliciesAreHonoured) {

@@ -59,8 +59,8 @@ TEST(DeviceData, HasAnEntryForEachFamily) {
   std::vector<std::string> ids;
   for (const DeviceData& entry : shipped()) ids.push_back(entry.id);
 
-  EXPECT_EQ(ids,
-            (std::vector<std::string>{"astraada_drv28", "beckhoff_io", "lenze8400", "plain301"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_io", "elmo", "lenze8400",
+                                           "plain301", "technosoft"}));
 }
 
 TEST(DeviceData, ReadsAnEntry) {
@@ -265,6 +265,30 @@ TEST(DeviceData, TweaksTheBoot) {
   EXPECT_LT(pdo, value);
   ASSERT_NE(start, steps.end());
   EXPECT_EQ((start - 1)->timeout, std::chrono::milliseconds{20});
+}
+
+TEST(DeviceData, WarnsOfAResetOfTheWholeElmoDrive) {
+  const std::string node = "arm: {node_id: 4, dcf: x, vendor_id: 0x9A, reset: ";
+  const auto whole = compile_device_file(node + "node}\n", "takt_drive402.eds");
+  const auto only_communication =
+      compile_device_file(node + "communication}\n", "takt_drive402.eds");
+
+  EXPECT_EQ(whole.plan.nodes.at(0).device_data, "Elmo drives");
+  EXPECT_NE(whole.said("device-data").find("pulls the CAN lines down"), std::string::npos);
+  EXPECT_EQ(whole.plan.nodes.at(0).boot_plan.steps.at(0).command, NmtCommand::reset_node);
+  EXPECT_EQ(only_communication.said("device-data"), "");
+}
+
+TEST(DeviceData, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
+  const auto net =
+      compile_device_file("arm: {node_id: 4, dcf: x, vendor_id: 0x1A3}\n", "takt_drive402.eds");
+
+  const auto& plan = net.plan.nodes.at(0);
+  EXPECT_EQ(plan.device_data, "Technosoft iPOS");
+  ASSERT_EQ(plan.emcy_texts.size(), 1U);
+  EXPECT_EQ(plan.emcy_texts[0].code, 0xFF01);
+  EXPECT_NE(std::ranges::find(plan.device_notes, "inhibit times of 30 ms by default"),
+            plan.device_notes.end());
 }
 
 TEST(DeviceData, OfTheUserComesBeforeWhatWasShipped) {

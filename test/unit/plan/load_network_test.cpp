@@ -65,6 +65,24 @@ TEST(LoadNetwork, TheDemoLoadsWithoutAFinding) {
   EXPECT_EQ(network.devices[2].node, 10_node);
 }
 
+TEST(LoadNetwork, TheFolderOfTheBlackBoxIsBesideTheNetworkFile) {
+  const Folder folder;
+  const std::string node =
+      "nodes: {io: {node_id: 5, dcf: " + (source / "share/eds/takt_io401.eds").string() + "}}\n";
+  const auto network = load_network(
+      folder.write("box.yaml", "black_box: {folder: box, size_mb: 2, keep: 3}\n" + node));
+  const auto absolute =
+      load_network(folder.write("far.yaml", "black_box: {folder: /var/lib/takt}\n" + node));
+  const auto none = load_network(folder.write("none.yaml", node));
+
+  EXPECT_THAT(findings(network, Severity::warning), IsEmpty());
+  EXPECT_EQ(network.recording.folder, (folder.path() / "box").string());
+  EXPECT_EQ(network.recording.bytes, std::size_t{2} << 20);
+  EXPECT_EQ(network.recording.keep, 3U);
+  EXPECT_EQ(absolute.recording.folder, "/var/lib/takt");
+  EXPECT_EQ(none.recording.folder, "");
+}
+
 /// Read by a person when it changes: `takt plan share/demo/two_axes.yaml > two_axes.plan.txt`.
 TEST(LoadNetwork, ThePlanOfTheDemoIsTheGoldenOne) {
   const auto network = load_network(source / "share/demo/two_axes.yaml");
@@ -135,7 +153,7 @@ TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
                                  "options: {dcf_path: eds}\n"
                                  "master: {sync_period: 10000}\n"
                                  "nodes:\n"
-                                 "  a: {node_id: 1, dcf: near.eds}\n"
+                                 "  a: {node_id: 1, dcf: \"@CONFIG@/near.eds\"}\n"
                                  "  b: {node_id: 2, dcf: far.eds}\n"
                                  "  c: {node_id: 3, dcf: gone.eds}\n");
 
@@ -164,6 +182,86 @@ TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
   for (const Finding& finding : network.findings) lines += finding.rule == "device-file";
   EXPECT_EQ(lines, 1U);
   EXPECT_THAT(findings(network, Severity::error), IsEmpty());
+}
+
+/// A DCF with a DOMAIN, and a network that has it.
+struct DomainNetwork {
+  Folder folder;
+
+  LoadedNetwork load(const std::string& keys,
+                     const std::string& object = "ObjectType=0x2\nDataType=0xF\n") {
+    folder.write("cam.dcf", read(source / "share/eds/plain301.eds") +
+                                "\n[2F00]\nParameterName=Cam table\n" + object + keys);
+    return load_network(folder.write("net.yaml",
+                                     "bus: {name: b, bitrate_kbit: 500}\nmaster: {sync_period: "
+                                     "10000}\nnodes:\n  arm: {dcf: cam.dcf, "
+                                     "node_id: 5}\n"));
+  }
+};
+
+const BootStep* step_of(const LoadedNetwork& network, ObjectKey object) {
+  if (network.plan.nodes.empty()) return nullptr;
+  const auto& steps = network.plan.nodes[0].boot_plan.steps;
+  const auto found = std::ranges::find(steps, object, &BootStep::object);
+  return found == steps.end() ? nullptr : &*found;
+}
+
+TEST(LoadNetwork, ADomainGetsTheFileThatItsDcfNames) {
+  DomainNetwork net;
+  fs::create_directories(net.folder.path() / "tables");
+  net.folder.write("tables/cam.bin", "12345678");
+
+  const auto network = net.load("AccessType=wo\nDownloadFile=tables\\cam.bin\n");
+
+  EXPECT_THAT(findings(network, Severity::error), IsEmpty());
+  const auto* step = step_of(network, {0x2F00, 0});
+  ASSERT_NE(step, nullptr);
+  EXPECT_EQ(step->action, BootAction::download_program);
+  EXPECT_EQ(step->value.size(), 8U);
+  EXPECT_EQ(std::to_integer<char>(step->value[7]), '8');
+  EXPECT_EQ(step->purpose, "DCF: 2F00:00 Cam table = file tables\\cam.bin, 8 bytes");
+}
+
+TEST(LoadNetwork, AShortDomainThatCanBeReadIsWrittenOnlyWhereItDiffers) {
+  DomainNetwork net;
+  net.folder.write("cam.bin", "12345678");
+
+  const auto network = net.load("AccessType=rw\nDownloadFile=cam.bin\n");
+
+  const auto* step = step_of(network, {0x2F00, 0});
+  ASSERT_NE(step, nullptr);
+  EXPECT_EQ(step->action, BootAction::write_if_differs);
+}
+
+TEST(LoadNetwork, AMissingFileOfADomainIsAnErrorAtItsLine) {
+  DomainNetwork net;
+
+  for (const std::string name : {"no.bin", "/etc/hostname", ".."}) {
+    const auto network = net.load("AccessType=rw\nDownloadFile=" + name + "\n");
+
+    const auto found = std::ranges::find(network.findings, "no-file", &Finding::rule);
+    ASSERT_NE(found, network.findings.end()) << name;
+    EXPECT_EQ(found->severity, Severity::error);
+    EXPECT_THAT(found->file, testing::EndsWith("cam.dcf"));
+    const std::string text = read(net.folder.path() / "cam.dcf");
+    const auto lines =
+        1 + std::count(text.begin(),
+                       text.begin() + static_cast<std::ptrdiff_t>(text.find("DownloadFile")), '\n');
+    EXPECT_EQ(found->pos.line, lines);
+    EXPECT_THAT(found->message, HasSubstr(name));
+  }
+}
+
+TEST(LoadNetwork, AFileForWhatIsNoDomainIsLeftOut) {
+  DomainNetwork net;
+  net.folder.write("cam.bin", "12345678");
+
+  const auto network = net.load("AccessType=rw\nDownloadFile=cam.bin\nUploadFile=back.bin\n",
+                                "ObjectType=0x7\nDataType=0x7\n");
+
+  EXPECT_THAT(findings(network, Severity::note), testing::Contains(HasSubstr("it was left out")));
+  EXPECT_THAT(findings(network, Severity::note), testing::Contains(HasSubstr("`takt sdo upload`")));
+  EXPECT_EQ(step_of(network, {0x2F00, 0}), nullptr);
 }
 
 TEST(LoadNetwork, WhatIsNoFileIsAnErrorNotACrash) {

@@ -251,6 +251,69 @@ TEST(CobIds, AnRpdoWithTheIdOfATpdoIsFedByThatDevice) {
   EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a`"));
 }
 
+/// Each device hears, by its RPDO1, TPDO1 of node 1.
+const std::string listener = test::tiny_objects() +
+                             test::pdo(false, 1, "0x181", 1, {"0x60400010"}) +
+                             test::pdo(true, 1, "$NODEID+0x180", 1, {"0x60410010"});
+
+TEST(CobIds, ALinkThatOnlyTheEdsStatesIsKept) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, rpdo: {1: {enabled: false}}}\n"
+      "b: {node_id: 2, dcf: x}\n"
+      "c: {node_id: 3, dcf: x}\n",
+      listener);
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_TRUE(net.plan.pdos.rpdos.empty());
+  EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
+  EXPECT_THAT(net.said("linked"),
+              testing::AllOf(HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a` (both 0x181, "
+                                       "as tiny.eds has it); the master does not send it"),
+                             HasSubstr("RPDO1 of node `c` is fed by TPDO1 of node `a`")));
+}
+
+TEST(CobIds, ALinkOfTheEdsThatTheNetworkFileCutsIsAWarningWithItsRemedy) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, rpdo: {1: {enabled: false}}}\n"
+      "b: {node_id: 2, dcf: x, rpdo: {1: {transmission: 255}}}\n",
+      listener);
+
+  EXPECT_THAT(net.complaints(), ElementsAre("3:32 warning [cob-id-moved]"));
+  EXPECT_EQ(net.plan.pdos.rpdos.at(0).cob_id, CobId::base(0x202));
+  EXPECT_THAT(net.said("cob-id-moved"),
+              testing::AllOf(HasSubstr("write `cob_id: 0x181` for both PDOs"),
+                             HasSubstr("`cob_id: auto` for this one")));
+  EXPECT_THAT(compile("master: {sync_period: 10000}\n"
+                      "a: {node_id: 1, dcf: x, rpdo: {1: {enabled: false}}}\n"
+                      "b: {node_id: 2, dcf: x, rpdo: {1: {cob_id: auto}}}\n",
+                      listener)
+                  .complaints(),
+              IsEmpty());
+}
+
+TEST(CobIds, ATpdoAndAnRpdoOfOneDeviceWithOneIdAreNoLink) {
+  const auto net = compile("master: {sync_period: 10000}\na: {node_id: 1, dcf: x}\n", listener);
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(net.said("linked"), IsEmpty());
+  EXPECT_EQ(net.plan.pdos.rpdos.at(0).cob_id, CobId::base(0x201));
+}
+
+TEST(CobIds, AnIdOfTheNetworkFileAndOneOfAnEdsMakeALinkToo) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, tpdo: {1: {cob_id: 0x202}}}\n"
+      "b: {node_id: 2, dcf: x}\n"
+      "c: {node_id: 3, dcf: x, rpdo: {1: {cob_id: 0x182}}}\n");
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(net.said("linked"),
+              testing::AllOf(HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a` (both 0x202"),
+                             HasSubstr("RPDO1 of node `c` is fed by TPDO1 of node `b`")));
+}
+
 TEST(CobIds, RestrictedRangesAreThoseOfTable40) {
   for (const std::uint32_t id : {0x000U, 0x07FU, 0x101U, 0x180U, 0x581U, 0x5FFU, 0x601U, 0x67FU,
                                  0x6E0U, 0x6FFU, 0x701U, 0x7FFU}) {

@@ -157,6 +157,13 @@ TEST(ReadNetwork, MissingKeysAreNamed) {
   EXPECT_THAT(net.said("missing-key"), HasSubstr("lacks `index`"));
 }
 
+TEST(ReadNetwork, AnEdsUnderTheKeyEdsIsToldItsKey) {
+  const auto net = read("nodes: {arm: {node_id: 1, eds: a.eds}}\n");
+
+  EXPECT_THAT(net.complaints(), ElementsAre("1:27 error [missing-key]"));
+  EXPECT_THAT(net.said("missing-key"), HasSubstr("the key is `dcf`"));
+}
+
 TEST(ReadNetwork, TheSameObjectWrittenTwiceIsAnErrorUnlessMeant) {
   const auto net = read(
       "nodes:\n"
@@ -188,6 +195,21 @@ TEST(ReadNetwork, ValuesOfSdoMayBeWholeRealOrText) {
   EXPECT_EQ(std::get<std::int64_t>(sdo[1].value), 0xFFFFFFFF);
   EXPECT_EQ(std::get<double>(sdo[2].value), 1500.0);
   EXPECT_EQ(std::get<std::string>(sdo[3].value), "save");
+}
+
+TEST(ReadNetwork, AnSdoValueInQuotesKeepsItsText) {
+  const auto net = read(
+      "nodes: {arm: {node_id: 1, dcf: a.eds, sdo: [{index: 1, value: \"012\"}, {index: 2, value: "
+      "'7'},\n"
+      "        {index: 3, value: 7}]}}\n");
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  const auto& sdo = net.spec.nodes[0].sdo;
+  EXPECT_EQ(sdo[0].quoted, "012");
+  EXPECT_EQ(std::get<std::string>(sdo[0].value), "012");
+  EXPECT_EQ(sdo[1].quoted, "7");
+  EXPECT_EQ(std::get<std::int64_t>(sdo[1].value), 7);
+  EXPECT_EQ(sdo[2].quoted, std::nullopt);
 }
 
 TEST(ReadNetwork, AUnicastAddressIsNoUdpmUrl) {

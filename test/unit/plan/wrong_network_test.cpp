@@ -131,5 +131,47 @@ TEST_F(WrongNetwork, ANodeThatIsNoMapLacksNothingElse) {
                           HasSubstr("this is a list"), Not(HasSubstr("lacks"))));
 }
 
+TEST_F(WrongNetwork, AnUnknownModelOrQuirkOfTheSimulationIsAnErrorThatListsWhatThereIs) {
+  EXPECT_THAT(
+      of_axis("    sim: {model: drive420}\n"),
+      AllOf(HasSubstr("net.yaml:6:18: error: `model`: `drive420` is none of plain, drive402"),
+            HasSubstr("did you mean `drive402`?")));
+  EXPECT_THAT(of_axis("    sim: {quirks: [no_bootup, mute]}\n"),
+              AllOf(HasSubstr("net.yaml:6:31: error: `quirks`: `mute` is none of late_bootup"),
+                    HasSubstr("mute_sdo, mute_pdo"), HasSubstr("loopback")));
+  EXPECT_THAT(of_axis("    sim: {quirks: {mute_sdo: true}}\n"), HasSubstr("net.yaml:6:19: error"));
+  EXPECT_THAT(of_axis("    sim: {quirks: mute_sdo}\n"), Not(HasSubstr("error")));
+}
+
+TEST_F(WrongNetwork, AWrongLcmUrlIsAnErrorOfTheFile) {
+  EXPECT_THAT(
+      told_of("lcm: {url: \"upd://1.2.3.4\"}\n"),
+      AllOf(HasSubstr("net.yaml:1:12: error: `url` of `lcm`"), HasSubstr("expected udpm://")));
+  EXPECT_THAT(told_of("lcm: {url: \"tcpq://127.0.0.1:99999\"}\n"), HasSubstr("0..65535"));
+  EXPECT_THAT(told_of("black_box: {folder: a, size_mb: 0}\n"), HasSubstr("1..1024 MiB"));
+  EXPECT_THAT(told_of("black_box: {dir: a}\n"), HasSubstr("`dir`"));
+  EXPECT_THAT(told_of("black_box: {folder: \"\"}\n"), HasSubstr("`folder` is empty"));
+  EXPECT_THAT(told_of("lcm: {url: \"udpm://239.255.76:7667\"}\n"), HasSubstr("dotted"));
+}
+
+TEST_F(WrongNetwork, TheHighBitsOfACobIdAreExplained) {
+  const auto tpdo = [this](const std::string& keys) {
+    return of_axis("    tpdo: {1: {" + keys + "}}\n");
+  };
+
+  EXPECT_THAT(tpdo("cob_id: 0x80000181"), AllOf(HasSubstr("net.yaml:6:24: warning"),
+                                                HasSubstr("bit 31 set: the PDO is switched "
+                                                          "off"),
+                                                HasSubstr("0x181 would have it on")));
+  EXPECT_THAT(tpdo("cob_id: 0x40000181"),
+              AllOf(HasSubstr("net.yaml:6:24: note"), HasSubstr("stays as the device has it")));
+  EXPECT_THAT(tpdo("cob_id: 0x40000181, poll_ms: 100, transmission: 253"),
+              AllOf(HasSubstr("net.yaml:6:24: error"), HasSubstr("clear the bit")));
+  EXPECT_THAT(tpdo("cob_id: 0x20000181"),
+              AllOf(HasSubstr("net.yaml:6:24: warning"), HasSubstr("identifier 0x00000181")));
+  EXPECT_THAT(of_axis("    rpdo: {1: {cob_id: 0x40000201}}\n"),
+              AllOf(HasSubstr("net.yaml:6:24: warning"), HasSubstr("nothing for an RPDO")));
+}
+
 }  // namespace
 }  // namespace takt

@@ -1,0 +1,76 @@
+#include "eds_parser/error_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eds_parser/boot_compiler.hpp"
+#include "eds_parser/frame_time.hpp"
+#include "eds_parser/integer_of.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint16_t default_producer_ms = 100;
+
+}  // namespace
+
+double ErrorControl::multiplier(const NodeSpec& node) const {
+  const double given =
+      node.heartbeat_multiplier.given
+          ? *node.heartbeat_multiplier
+          : spec_.master.heartbeat_multiplier.value_or(*spec_.heartbeat_multiplier);
+  return std::max(1.5, given);
+}
+
+std::uint16_t ErrorControl::producer_ms(const NodeSource& node) const {
+  if (node.spec->heartbeat_producer.given) return *node.spec->heartbeat_producer;
+  const std::int64_t own = integer_of(*node.dictionary, {0x1017, 0}).value_or(0);
+  if (own > 0 && own <= 0xFFFF) return static_cast<std::uint16_t>(own);
+  if (!has_heartbeat_producer(*node.dictionary) || !*node.spec->boot) return 0;
+  const Time all =
+      wire_time(worst_frame_bits(1) * spec_.nodes.size(), *spec_.master.baudrate_kbit * 1000);
+  const auto floor = static_cast<std::uint32_t>(all * 50 / std::chrono::milliseconds{1}) + 1;
+  return static_cast<std::uint16_t>(
+      std::clamp<std::uint32_t>((floor + 49) / 50 * 50, default_producer_ms, 60'000));
+}
+
+Time ErrorControl::heartbeat_timeout(const NodeSource& node) const {
+  if (!*spec_.master.heartbeat_consumer) return Time{};
+  const double ms = producer_ms(node) * multiplier(*node.spec);
+  return Time{static_cast<Time::rep>(std::llround(ms * 1e6))};
+}
+
+GuardPlan ErrorControl::guard(const NodeSource& node) const {
+  const NodeSpec& spec = *node.spec;
+  const std::int64_t own = integer_of(*node.dictionary, {0x100C, 0}).value_or(0);
+  const std::int64_t ms = spec.guard_time.given ? *spec.guard_time : own;
+  if (ms <= 0 || ms > 0xFFFF || !*spec.boot || !*spec_.master.heartbeat_consumer) return {};
+  if (producer_ms(node) != 0) {
+    if (spec.guard_time.given) {
+      report_.note(spec.guard_time.pos, "guarding",
+                   "node `" + spec.name +
+                       "` has a heartbeat, and with it it does not answer "
+                       "guarding (CiA 301): `guard_time` is left alone; `heartbeat_producer: 0` "
+                       "would switch to guarding");
+    }
+    return {};
+  }
+  const std::int64_t factor = integer_of(*node.dictionary, {0x100D, 0}).value_or(0);
+  const auto of_device = static_cast<std::uint8_t>(
+      factor > 0 && factor <= 255 ? factor : std::int64_t{*spec_.retry_factor});
+  return {.period = std::chrono::milliseconds{ms},
+          .retries = spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor
+                                                                         : of_device)};
+}
+
+void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report) {
+  const bool shows_life = node.heartbeat_timeout != Time{} || node.guard.period != Time{};
+  if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
+  report.error(spec.reset.pos, "keep-alive",
+               "node `" + spec.name +
+                   "` is to be kept running, but shows its state neither by "
+                   "heartbeat nor by guarding: give it `heartbeat_producer` or `guard_time`, or "
+                   "write `reset: none`");
+}
+
+}  // namespace takt

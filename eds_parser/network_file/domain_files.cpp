@@ -1,0 +1,108 @@
+#include "eds_parser/network_file/domain_files.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <span>
+
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t longest_file = std::uintmax_t{16} << 20U;
+constexpr std::uint16_t first_program_object = 0x1F50;
+constexpr std::uint16_t last_program_object = 0x1F57;
+
+class Reader {
+ public:
+  Reader(const fs::path& dcf, const ObjectDictionary& dictionary, Findings& findings)
+      : dcf_{dcf}, dictionary_{dictionary}, findings_{findings} {}
+
+  void read(DomainFiles& files) {
+    if (!files.upload.empty()) {
+      tell(files, Severity::note, "upload-file",
+           "UploadFile " + takt::quoted(files.upload) +
+               " names where a tool puts what it reads; taktd reads no file from a device "
+               "(`takt sdo upload` does)");
+    }
+    if (!files.download.empty() && is_for_boot(files)) load(files);
+  }
+
+ private:
+  void tell(const DomainFiles& files, Severity severity, std::string_view rule,
+            const std::string& what) {
+    findings_.push_back(
+        {dcf_.string(), files.pos, severity, rule, to_string(files.key) + ": " + what});
+  }
+
+  bool is_for_boot(const DomainFiles& files) {
+    const SubObject* sub = dictionary_.find(files.key);
+    if (sub == nullptr) return false;
+    if (sub->type != DataType::domain || sub->access == Access::ro ||
+        sub->access == Access::constant) {
+      tell(files, Severity::warning, "download-file",
+           "DownloadFile " + takt::quoted(files.download) +
+               " of an object that is no DOMAIN that can be written; it was left out");
+      return false;
+    }
+    const auto index = files.key.index;
+    if (index >= first_program_object && index <= last_program_object) {
+      tell(files, Severity::note, "download-file",
+           "DownloadFile " + takt::quoted(files.download) +
+               " is a program: `software_file` with `software_version` loads it where the device "
+               "has another one");
+      return false;
+    }
+    return true;
+  }
+
+  /// Tools for Windows write `\`.
+  static fs::path relative(std::string name) {
+    std::ranges::replace(name, '\\', '/');
+    return name;
+  }
+
+  void load(DomainFiles& files) {
+    const fs::path name = relative(files.download);
+    const fs::path path = dcf_.parent_path() / name;
+    std::error_code failed;
+    const std::string what = "DownloadFile " + takt::quoted(files.download);
+    if (name.is_absolute()) {
+      return tell(files, Severity::error, "no-file",
+                  what + " is an absolute path: put the file beside the DCF and name it alone");
+    }
+    if (!fs::is_regular_file(path, failed)) {
+      return tell(files, Severity::error, "no-file",
+                  what + " not found; looked for " + path.lexically_normal().string());
+    }
+    const auto size = fs::file_size(path, failed);
+    if (failed || size == 0 || size > longest_file) {
+      return tell(files, Severity::error, "no-file",
+                  what + " has " + std::to_string(failed ? 0 : size) + " bytes; 1 to " +
+                      std::to_string(longest_file) + " can be downloaded");
+    }
+    std::vector<char> text(static_cast<std::size_t>(size));
+    std::ifstream in{path, std::ios::binary};
+    if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+      return tell(files, Severity::error, "no-file", what + " can't be read");
+    }
+    const auto bytes = std::as_bytes(std::span{text});
+    files.content.assign(bytes.begin(), bytes.end());
+  }
+
+  const fs::path& dcf_;
+  const ObjectDictionary& dictionary_;
+  Findings& findings_;
+};
+
+}  // namespace
+
+void read_domain_files(const fs::path& dcf, ObjectDictionary& dictionary, Findings& findings) {
+  if (!dictionary.is_dcf) return;
+  Reader reader{dcf, dictionary, findings};
+  for (auto& files : dictionary.domain_files) reader.read(files);
+}
+
+}  // namespace takt

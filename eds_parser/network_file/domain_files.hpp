@@ -1,0 +1,14 @@
+#pragma once
+#include <filesystem>
+
+#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/source.hpp"
+
+namespace takt {
+
+/// Reads the files that a DCF names for its DOMAINs (DownloadFile), relative to its folder. One
+/// that is missing, empty, or larger than 16 MB is an error at its line.
+void read_domain_files(const std::filesystem::path& dcf, ObjectDictionary& dictionary,
+                       Findings& findings);
+
+}  // namespace takt

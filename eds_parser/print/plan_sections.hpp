@@ -1,0 +1,41 @@
+#pragma once
+#include <cstddef>
+#include <fmt/format.h>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/run_options.hpp"
+
+namespace takt {
+
+/// The plan's text, line by line, none with a blank at its end.
+class PlanLines {
+ public:
+  explicit PlanLines(std::ostream& out) : out_{out} {}
+
+  template <class... T>
+  void line(fmt::format_string<T...> format, T&&... values) {
+    std::string text = fmt::format(format, std::forward<T>(values)...);
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    out_ << text << '\n';
+  }
+
+ private:
+  std::ostream& out_;
+};
+
+// The sections in their order. All but the first begin with an empty line.
+void add_bus(PlanLines& lines, const BusPlan& plan, const RealtimeOptions& realtime);
+void add_cycle(PlanLines& lines, const BusPlan& plan);
+void add_node(PlanLines& lines, const BusPlan& plan, std::size_t index);
+void add_image(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
+void add_lcm(PlanLines& lines, const BusPlan& plan, const LcmOptions& options);
+void add_boot(PlanLines& lines, const NodePlan& node);
+
+/// `INTEGER16`, or the width of what has no type.
+std::string bits_text(const Signal& signal);
+
+}  // namespace takt

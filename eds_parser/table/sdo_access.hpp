@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// The two identifiers of an SDO channel. CiA 301, 7.5.2.33.
+struct SdoChannel {
+  CobId request;  ///< client to server
+  CobId answer;   ///< server to client
+
+  constexpr bool operator==(const SdoChannel&) const noexcept = default;
+};
+
+/// The channel that every device has. CiA 301, 7.3.3.
+constexpr SdoChannel default_sdo_channel(NodeId server) noexcept {
+  return {CobId::base(0x600U + server.value()), CobId::base(0x580U + server.value())};
+}
+
+/// Block transfers of values that are large enough for it.
+enum class SdoBlockUse : std::uint8_t {
+  automatic,  ///< where the device knows them
+  off,
+};
+
+/// A longer (or shorter) wait for one object: flash, parameters that are stored.
+struct SdoObjectTimeout {
+  std::uint16_t index = 0;
+  std::optional<std::uint8_t> sub{};  ///< none: every sub-index
+  Time timeout{};
+};
+
+/// How the master talks to the SDO server of one node.
+struct SdoAccess {
+  std::optional<SdoChannel> channel{};  ///< none: the default channel
+  SdoBlockUse block = SdoBlockUse::automatic;
+  std::vector<SdoObjectTimeout> timeouts{};
+
+  SdoChannel channel_of(NodeId node) const noexcept {
+    return channel.value_or(default_sdo_channel(node));
+  }
+  /// `otherwise` where the object has no time-out of its own.
+  Time timeout_of(ObjectKey key, Time otherwise) const noexcept {
+    for (const SdoObjectTimeout& entry : timeouts) {
+      if (entry.index == key.index && (!entry.sub || *entry.sub == key.sub)) return entry.timeout;
+    }
+    return otherwise;
+  }
+};
+
+}  // namespace takt
