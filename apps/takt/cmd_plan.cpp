@@ -6,6 +6,8 @@
 #include "apps/takt/commands.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan_diff.hpp"
+#include "eds_parser/print/plan_diff_json.hpp"
 
 namespace takt {
 namespace {
@@ -15,6 +17,8 @@ constexpr int invalid_file = 2;
 struct PlanOptions {
   std::string file;
   std::string node;
+  std::string other;
+  bool devices = false;
   bool json = false;
   bool quiet = false;
 };
@@ -31,26 +35,101 @@ std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
   return by_id == plan.nodes.end() ? std::nullopt : std::optional{by_id->id};
 }
 
-int print(const PlanOptions& options) {
-  const LoadedNetwork network = load_network(options.file);
+/// Findings go to stderr. False: the file is invalid.
+bool told_good(const LoadedNetwork& network, bool quiet) {
   const bool bad = has_error(network.findings);
   for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::note && (options.quiet || bad)) continue;
+    if (finding.severity == Severity::note && (quiet || bad)) continue;
     std::cerr << to_string(finding) << '\n';
   }
-  if (bad) return invalid_file;
-  PlanPrint what{.node = {}, .realtime = network.realtime, .lcm = network.lcm};
-  if (!options.node.empty()) {
-    what.node = find_node(network.plan, options.node);
-    if (!what.node) {
-      std::cerr << options.file << ": no node `" << options.node << "`; there is";
-      for (const NodePlan& node : network.plan.nodes) {
-        std::cerr << ' ' << node.name << " (" << unsigned{node.id.value()} << ')';
-      }
-      std::cerr << '\n';
-      return invalid_file;
-    }
+  return !bad;
+}
+
+/// False: there is no such node; that is told.
+bool chosen_node(const PlanOptions& options, const BusPlan& plan, std::optional<NodeId>& node) {
+  if (options.node.empty()) return true;
+  node = find_node(plan, options.node);
+  if (node) return true;
+  std::cerr << options.file << ": no node `" << options.node << "`; there is";
+  for (const NodePlan& each : plan.nodes) {
+    std::cerr << ' ' << each.name << " (" << unsigned{each.id.value()} << ')';
   }
+  std::cerr << '\n';
+  return false;
+}
+
+/// As diff does: 0 nothing differs, 1 something does, 2 trouble.
+int diff(const PlanOptions& options) {
+  const LoadedNetwork before = load_network(options.file);
+  const LoadedNetwork after = load_network(options.other);
+  std::optional<NodeId> node;
+  if (!told_good(before, true) || !told_good(after, true)) return invalid_file;
+  if (!chosen_node(options, before.plan, node)) return invalid_file;
+  const PlanSide first{before.plan, options.file};
+  const PlanSide second{after.plan, options.other};
+  const std::string text = plan_diff(first, second, node);
+  if (options.json) {
+    print_plan_diff_json(std::cout, first, second, node);
+  } else {
+    std::cout << text;
+  }
+  return text.empty() ? 0 : 1;
+}
+
+/// The two plans that show what the device data change.
+struct DeviceDataPlans {
+  const BusPlan& without;
+  const BusPlan& with;
+};
+
+void print_device_diff(const DeviceDataPlans& plans, const NodePlan& node) {
+  std::cout << "node " << unsigned{node.id.value()} << ' ' << node.name << ": " << node.device_data
+            << " (" << node.device_data_file << ")\n"
+            << node_diff({plans.without, "without device data"},
+                         {plans.with, node.device_data_file}, node.id);
+}
+
+void print_device_diffs_json(const DeviceDataPlans& plans, const std::vector<NodePlan>& nodes,
+                             const std::string& file) {
+  std::vector<DeviceChanges> all;
+  for (const NodePlan& node : nodes) {
+    all.push_back({node.id, node.name, node.device_data, node.device_data_file,
+                   node_changes({plans.without, ""}, {plans.with, ""}, node.id)});
+  }
+  print_device_changes_json(std::cout, file, all);
+}
+
+/// What each entry of the device data does to its nodes.
+int diff_devices(const PlanOptions& options) {
+  const LoadedNetwork with = load_network(options.file);
+  if (!told_good(with, true)) return invalid_file;
+  const LoadedNetwork without = load_network(options.file, DeviceDataUse::ignored);
+  std::optional<NodeId> only;
+  if (!chosen_node(options, with.plan, only)) return invalid_file;
+  std::vector<NodePlan> nodes;
+  std::ranges::copy_if(with.plan.nodes, std::back_inserter(nodes), [&](const NodePlan& node) {
+    return !node.device_data.empty() && (!only || *only == node.id);
+  });
+  const DeviceDataPlans plans{without.plan, with.plan};
+  if (options.json) {
+    print_device_diffs_json(plans, nodes, options.file);
+    return 0;
+  }
+  if (nodes.empty()) std::cout << "no entry of the device data applies\n";
+  for (const NodePlan& node : nodes) {
+    if (&node != &nodes.front()) std::cout << '\n';
+    print_device_diff(plans, node);
+  }
+  return 0;
+}
+
+int print(const PlanOptions& options) {
+  if (!options.other.empty()) return diff(options);
+  if (options.devices) return diff_devices(options);
+  const LoadedNetwork network = load_network(options.file);
+  if (!told_good(network, options.quiet)) return invalid_file;
+  PlanPrint what{.node = {}, .realtime = network.realtime, .lcm = network.lcm};
+  if (!chosen_node(options, network.plan, what.node)) return invalid_file;
   if (options.json) {
     print_plan_json(std::cout, network.plan, what);
   } else {
@@ -67,10 +146,22 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("NET", options->file, "network file (YAML, also a bus.yml)")->required();
   command->add_option("--node", options->node, "only this node, by name or id");
   command->add_flag("--json", options->json, "one JSON document");
+  auto* other = command->add_option("--diff", options->other, "what changes from NET to this file")
+                    ->type_name("OTHER");
+  command
+      ->add_flag("--diff-devices", options->devices,
+                 "what the device data change, before and after")
+      ->excludes(other);
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->footer(
-      "The plan goes to stdout, findings to stderr. Exit code 2 if the file is invalid.\n\n"
-      "Example:\n  takt plan share/demo/two_axes.yaml --node shoulder");
+      "The plan goes to stdout, findings to stderr. Exit code 2 if the file is invalid.\n"
+      "--diff compares all that happens on the bus and the image, in the form of diff -u. Nodes "
+      "are\n"
+      "matched by their id; steps and signals are listed without their numbers. Exit code as that\n"
+      "of diff: 0 nothing differs, 1 something does, 2 a file is invalid.\n\n"
+      "Example:\n  takt plan share/demo/two_axes.yaml --node shoulder\n"
+      "  takt plan lift.yaml --diff lift_new.yaml\n"
+      "  takt plan share/demo/lenze8400.yaml --diff-devices");
   command->callback([options, &exit_code] { exit_code = print(*options); });
 }
 
