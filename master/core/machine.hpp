@@ -2,12 +2,16 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "eds_parser/table/time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {
+
+/// Whether somebody answers a frame soon: the bus loop leaves time for it.
+enum class Answer : std::uint8_t { comes, none };
 
 /// Frames that machines want to send, in order; fixed room. Bus thread only.
 class Outbox {
@@ -20,17 +24,21 @@ class Outbox {
   std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
 
   /// False: full; the frame is not taken and the machine has to come back.
-  bool push(const Frame& frame) noexcept {
+  bool push(const Frame& frame, Answer answer = Answer::comes) noexcept {
     if (room() == 0) return false;
+    answers_[size_] = answer;
     frames_[size_++] = frame;
     return true;
   }
   std::span<const Frame> frames() const noexcept { return {frames_.data(), size_}; }
+  /// In the order of frames().
+  std::span<const Answer> answers() const noexcept { return {answers_.data(), size_}; }
   bool empty() const noexcept { return size_ == 0; }
   void clear() noexcept { size_ = 0; }
 
  private:
   std::array<Frame, capacity> frames_{};
+  std::array<Answer, capacity> answers_{};
   std::size_t size_ = 0;
   std::size_t limit_ = capacity;
 };

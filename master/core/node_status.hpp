@@ -31,6 +31,12 @@ struct NodeStatus {
   std::uint32_t heartbeat_lost = 0;  ///< times
   std::uint32_t sdo_aborts = 0;
   Time last_heartbeat{};  ///< 0: never
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(nmt, boot, boot_tried, boot_letter, boot_step, error_register, last_emcy, emcy_count,
+          boot_count, heartbeat_lost, sdo_aborts, last_heartbeat);
+  }
 };
 static_assert(std::is_trivially_copyable_v<NodeStatus>);
 

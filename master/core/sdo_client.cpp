@@ -7,35 +7,80 @@
 
 namespace takt {
 
-void SdoClient::upload(ObjectKey object, std::span<std::byte> buffer, Time timeout) noexcept {
+namespace {
+
+/// An object of no more bytes may come without block transfer: four segments are as quick.
+constexpr std::uint8_t switch_threshold = 28;
+/// Segments that were handed over when the server gave up have left the queue after this.
+constexpr Time settle_time = std::chrono::milliseconds{20};
+
+/// Codes by which servers say that they can't do block transfer, rather than that they can't do
+/// this transfer.
+bool refuses_block(std::uint32_t code) noexcept {
+  switch (code) {
+    case abort_code::command_unknown:
+    case abort_code::block_size:
+    case abort_code::sequence:
+    case abort_code::crc:
+    case abort_code::out_of_memory:
+    case abort_code::access_unsupported:
+    case abort_code::length_mismatch:
+    case abort_code::resource_unavailable:
+    case abort_code::general_error:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+void SdoClient::upload(ObjectKey object, std::span<std::byte> buffer, Time timeout,
+                       SdoMode mode) noexcept {
   buffer_ = buffer;
-  begin(State::upload_initiate, object, timeout, upload_request(server_, object));
+  const bool block = mode == SdoMode::block && blocks();
+  begin(block ? State::block_upload : State::upload_initiate, object, timeout);
 }
 
 void SdoClient::download(ObjectKey object, std::span<const std::byte> value,
                          Time timeout) noexcept {
   value_ = value;
-  begin(State::download_initiate, object, timeout,
-        download_request(server_, sdo_initiate(object, value)));
+  const bool block = value.size() >= block_from && blocks();
+  begin(block ? State::block_download : State::download_initiate, object, timeout);
 }
 
-void SdoClient::begin(State state, ObjectKey object, Time timeout, const Frame& frame) noexcept {
+void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   assert(idle());
-  state_ = state;
   object_ = object;
   timeout_ = timeout;
+  last_sent_ = {};
+  last_received_ = {};
+  done_ = 0;
+  if (state != State::block_upload && state != State::block_download) return begin_plain(state);
+  state_ = state;
+  deadline_ = never;
+  if (state == State::block_upload) {
+    block_upload_.begin({.channel = channel_, .object = object, .threshold = switch_threshold},
+                        buffer_);
+  } else {
+    block_download_.begin(channel_, object, value_);
+  }
+}
+
+void SdoClient::begin_plain(State state) noexcept {
+  state_ = state;
   deadline_ = never;
   toggle_ = false;
   last_segment_sent_ = false;
   done_ = 0;
   announced_.reset();
-  to_send_ = frame;
-  last_sent_ = {};
-  last_received_ = {};
+  to_send_ = state == State::upload_initiate
+                 ? upload_request(channel_.request, object_)
+                 : download_request(channel_.request, sdo_initiate(object_, value_));
 }
 
 void SdoClient::cancel() noexcept {
-  if (state_ == State::idle) return;
+  if (state_ == State::idle || state_ == State::settling) return;
   const bool begun = last_sent_.length != 0;
   abort(SdoFault::cancelled, abort_code::general_error);
   if (!begun) to_send_.reset();
@@ -44,6 +89,8 @@ void SdoClient::cancel() noexcept {
 void SdoClient::drop() noexcept {
   state_ = State::idle;
   deadline_ = never;
+  block_refused_ = false;
+  late_segments_ = false;
   to_send_.reset();
   result_.reset();
 }
@@ -52,39 +99,80 @@ std::optional<SdoResult> SdoClient::take_result() noexcept {
   return std::exchange(result_, std::nullopt);
 }
 
-Time SdoClient::deadline() const noexcept { return to_send_ || result_ ? at_once : deadline_; }
+std::size_t SdoClient::progress() const noexcept {
+  if (state_ == State::block_upload) return block_upload_.received();
+  if (state_ == State::block_download) return block_download_.confirmed();
+  return done_;
+}
+
+std::optional<Frame> SdoClient::next_frame() const noexcept {
+  if (to_send_) return to_send_;
+  if (state_ == State::block_upload) return block_upload_.to_send();
+  if (state_ == State::block_download) return block_download_.to_send();
+  return std::nullopt;
+}
+
+Answer SdoClient::answer_to_next() const noexcept {
+  if (state_ == State::idle) return Answer::none;  // an abort, or the end of a block upload
+  const bool burst = state_ == State::block_download && !block_download_.answered();
+  return burst ? Answer::none : Answer::comes;
+}
+
+Time SdoClient::deadline() const noexcept { return result_ || next_frame() ? at_once : deadline_; }
 
 void SdoClient::on_time(Time now, Outbox& out) noexcept {
-  if (state_ != State::idle && !to_send_ && now >= deadline_) {
-    abort(SdoFault::timeout, abort_code::timeout);
-  }
-  if (!to_send_ || !out.push(*to_send_)) return;
-  if (state_ != State::idle) {
-    last_sent_ = *to_send_;
-    deadline_ = now + timeout_;
-  }
+  if (state_ != State::idle && now >= deadline_ && !next_frame()) on_silence();
+  const auto frame = next_frame();
+  if (frame && out.push(*frame, answer_to_next())) frame_sent(*frame, now);
+}
+
+void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
+  const bool from_block = !to_send_;
   to_send_.reset();
+  if (from_block && state_ == State::block_upload) block_upload_.sent();
+  if (from_block && state_ == State::block_download) block_download_.sent();
+  if (state_ == State::idle) return;
+  last_sent_ = frame;
+  deadline_ = now + patience();
+}
+
+/// In a block upload the client speaks up before a server loses its own patience.
+Time SdoClient::patience() const noexcept {
+  const bool may_ask_again = state_ == State::block_upload && block_upload_.in_sub_block();
+  return may_ask_again ? timeout_ * 7 / 10 : timeout_;
+}
+
+void SdoClient::on_silence() noexcept {
+  if (state_ == State::settling) return finish(settled_);
+  if (state_ == State::block_upload && block_upload_.confirm_after_silence()) return;
+  abort(SdoFault::timeout, abort_code::timeout);
 }
 
 void SdoClient::finish(SdoResult result) noexcept {
   state_ = State::idle;
   deadline_ = never;
   given_up_.reset();
+  late_segments_ = false;
   result_ = result;
 }
 
 void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
-  to_send_ = sdo_abort(sdo_request_cob_id(server_), object_, code);
-  finish({.fault = fault, .abort_code = code, .size = done_});
+  const bool segments = state_ == State::block_upload;
+  to_send_ = sdo_abort(channel_.request, object_, code);
+  finish({.fault = fault, .abort_code = code, .size = progress()});
   given_up_ = object_;
+  late_segments_ = segments;
 }
 
-void SdoClient::on_frame(const Frame& frame, Time /*now*/) noexcept {
+void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
   // While a request waits to be sent, every answer belongs to an earlier one.
-  if (state_ == State::idle || to_send_ || frame.length < 8) return;
+  if (state_ == State::idle || state_ == State::settling) return;
+  if (to_send_ || frame.length < 8) return;
+  if (state_ == State::block_upload || state_ == State::block_download) return on_block(frame, now);
+  if (late_segments_ && in_initiate() && sdo_object(frame) != object_) return;
   switch (sdo_answer(frame)) {
     case SdoAnswer::abort:
-      return on_abort(frame);
+      return on_abort(frame, now);
     case SdoAnswer::upload_initiate:
       return on_upload_initiate(frame);
     case SdoAnswer::upload_segment:
@@ -101,14 +189,59 @@ void SdoClient::on_frame(const Frame& frame, Time /*now*/) noexcept {
   }
 }
 
-void SdoClient::on_abort(const Frame& frame) noexcept {
+void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   // Servers put any object into an abort, so all are taken, but for the late one of a transfer that
   // was given up before this one.
   const ObjectKey object = sdo_object(frame);
   if (given_up_ == object && object != object_) return;
   last_received_ = frame;
-  finish(
-      {.fault = SdoFault::aborted_by_device, .abort_code = sdo_abort_code(frame), .size = done_});
+  if (fall_back(sdo_abort_code(frame))) return;
+  settled_ = {.fault = SdoFault::aborted_by_device,
+              .abort_code = sdo_abort_code(frame),
+              .size = progress()};
+  const bool burst = state_ == State::block_download && block_download_.accepted();
+  if (!burst) return finish(settled_);
+  state_ = State::settling;
+  deadline_ = now + settle_time;
+}
+
+/// The server refuses block transfer before any data have moved: the same by segments.
+bool SdoClient::fall_back(std::uint32_t code) noexcept {
+  const bool upload = state_ == State::block_upload && !block_upload_.accepted();
+  const bool download = state_ == State::block_download && !block_download_.accepted();
+  if ((!upload && !download) || !refuses_block(code)) return false;
+  block_refused_ = block_refused_ || code == abort_code::command_unknown;
+  begin_plain(upload ? State::upload_initiate : State::download_initiate);
+  return true;
+}
+
+void SdoClient::on_block(const Frame& frame, Time now) noexcept {
+  if (frame.data[0] == 0x80)
+    return on_abort(frame, now);       // as a segment it would have the number 0
+  if (last_sent_.length == 0) return;  // nothing has been asked yet
+  const bool upload = state_ == State::block_upload;
+  const SdoBlockStep step =
+      upload ? block_upload_.on_frame(frame) : block_download_.on_frame(frame);
+  if (step.kind == SdoBlockStep::Kind::stranger) return;
+  last_received_ = frame;
+  switch (step.kind) {
+    case SdoBlockStep::Kind::stranger:
+    case SdoBlockStep::Kind::goes_on:
+      deadline_ = now + patience();
+      return;
+    case SdoBlockStep::Kind::plain:
+      begin_plain(State::upload_initiate);
+      to_send_.reset();  // this is its answer
+      return on_upload_initiate(frame);
+    case SdoBlockStep::Kind::abort:
+      return abort(step.fault, step.abort_code);
+    case SdoBlockStep::Kind::done:
+      break;
+  }
+  if (!upload) return finish({.size = value_.size()});
+  to_send_ = block_upload_.to_send();
+  const std::size_t size = block_upload_.received();
+  finish({.size = size, .shortened = size < block_upload_.announced().value_or(0)});
 }
 
 void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
@@ -124,7 +257,7 @@ void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
   }
   if (begin.size.value_or(0) != 0) announced_ = begin.size;  // 0: some mean "unknown"
   state_ = State::upload_segments;
-  to_send_ = upload_segment_request(server_, toggle_);
+  to_send_ = upload_segment_request(channel_.request, toggle_);
 }
 
 void SdoClient::on_upload_segment(const Frame& frame) noexcept {
@@ -141,17 +274,13 @@ void SdoClient::on_upload_segment(const Frame& frame) noexcept {
   if (announced_ && done_ > *announced_) {
     return abort(SdoFault::aborted_by_master, abort_code::length_too_high);
   }
-  if (part.last) {
-    if (announced_ && done_ < *announced_) {
-      return abort(SdoFault::aborted_by_master, abort_code::length_too_low);
-    }
-    return finish({.size = done_});
-  }
+  // Some announce the room for a string and send the string.
+  if (part.last) return finish({.size = done_, .shortened = done_ < announced_.value_or(0)});
   if (part.size == 0) {  // a server that never ends
     return abort(SdoFault::aborted_by_master, abort_code::length_mismatch);
   }
   toggle_ = !toggle_;
-  to_send_ = upload_segment_request(server_, toggle_);
+  to_send_ = upload_segment_request(channel_.request, toggle_);
 }
 
 bool SdoClient::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
@@ -175,7 +304,7 @@ void SdoClient::send_segment() noexcept {
   const SdoSegment part = sdo_segment(value_.subspan(done_), toggle_);
   done_ += part.size;
   last_segment_sent_ = part.last;
-  to_send_ = download_segment_request(server_, part);
+  to_send_ = download_segment_request(channel_.request, part);
 }
 
 void SdoClient::on_download_segment_confirmed(const Frame& frame) noexcept {

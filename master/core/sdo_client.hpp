@@ -5,9 +5,12 @@
 #include <span>
 
 #include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/sdo_access.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/core/event.hpp"
 #include "master/core/machine.hpp"
+#include "master/core/sdo_block_download.hpp"
+#include "master/core/sdo_block_upload.hpp"
 #include "master/wire/sdo_codec.hpp"
 
 namespace takt {
@@ -16,21 +19,31 @@ namespace takt {
 struct SdoResult {
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
-  std::size_t size = 0;  ///< bytes received, or sent
+  std::size_t size = 0;    ///< bytes received, or sent
+  bool shortened = false;  ///< fewer bytes came than the device had announced
 };
 
-/// SDO client of one node on its default channel: one transfer at a time, expedited or segmented.
+/// How an upload is asked for. Block falls back to plain where the device refuses it.
+enum class SdoMode : std::uint8_t { plain, block };
+
+/// SDO client of one node on one channel: one transfer at a time, expedited, segmented or block.
 /// Works on the caller's buffer, which must live until the result is taken. A transfer that falls
 /// silent is aborted on the bus, so that the server isn't left half-way. CiA 301, 7.2.4.
 class SdoClient {
  public:
-  explicit SdoClient(NodeId server) noexcept : server_{server} {}
+  /// Downloads of so many bytes go by block where the node allows it.
+  static constexpr std::size_t block_from = 128;
+
+  explicit SdoClient(NodeId server) noexcept : SdoClient{default_sdo_channel(server)} {}
+  explicit SdoClient(SdoChannel channel, SdoBlockUse block = SdoBlockUse::automatic) noexcept
+      : channel_{channel}, block_use_{block} {}
 
   /// Nothing is running, no result is waiting and no abort is still to be sent.
   bool idle() const noexcept { return state_ == State::idle && !result_ && !to_send_; }
 
   /// Both only when idle. `timeout` is the longest silence of the server, restarted by each frame.
-  void upload(ObjectKey object, std::span<std::byte> buffer, Time timeout) noexcept;
+  void upload(ObjectKey object, std::span<std::byte> buffer, Time timeout,
+              SdoMode mode = SdoMode::plain) noexcept;
   void download(ObjectKey object, std::span<const std::byte> value, Time timeout) noexcept;
 
   /// Ends a running transfer with an abort on the bus; its result is `cancelled`.
@@ -46,11 +59,26 @@ class SdoClient {
   /// The result of the transfer, once.
   std::optional<SdoResult> take_result() noexcept;
   /// Bytes of the running transfer that are through.
-  std::size_t progress() const noexcept { return done_; }
+  std::size_t progress() const noexcept;
 
+  /// The master itself was away for so long: the server is not late by that.
+  void excuse(Time away) noexcept {
+    if (deadline_ != never) deadline_ += away;
+  }
+
+  /// In the middle of a block transfer: the next frame of the server comes soon.
+  bool streams() const noexcept {
+    return state_ == State::block_upload || state_ == State::block_download;
+  }
+  const SdoChannel& channel() const noexcept { return channel_; }
   /// The newest frames of the newest transfer, for reports. Length 0: there is none.
   const Frame& last_sent() const noexcept { return last_sent_; }
   const Frame& last_received() const noexcept { return last_received_; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(block_refused_, late_segments_, object_, given_up_);
+  }
 
  private:
   enum class State : std::uint8_t {
@@ -59,12 +87,27 @@ class SdoClient {
     upload_segments,
     download_initiate,
     download_segments,
+    block_upload,
+    block_download,
+    settling,  // aborted while segments were under way: the server may refuse each of them
   };
 
-  void begin(State state, ObjectKey object, Time timeout, const Frame& frame) noexcept;
+  bool blocks() const noexcept { return block_use_ != SdoBlockUse::off && !block_refused_; }
+  bool in_initiate() const noexcept {
+    return state_ == State::upload_initiate || state_ == State::download_initiate;
+  }
+  void begin(State state, ObjectKey object, Time timeout) noexcept;
+  void begin_plain(State state) noexcept;
+  std::optional<Frame> next_frame() const noexcept;
+  Answer answer_to_next() const noexcept;
+  void frame_sent(const Frame& frame, Time now) noexcept;
+  Time patience() const noexcept;
+  void on_silence() noexcept;
   void finish(SdoResult result) noexcept;
   void abort(SdoFault fault, std::uint32_t code) noexcept;
-  void on_abort(const Frame& frame) noexcept;
+  void on_abort(const Frame& frame, Time now) noexcept;
+  void on_block(const Frame& frame, Time now) noexcept;
+  bool fall_back(std::uint32_t code) noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
   void on_upload_segment(const Frame& frame) noexcept;
   void on_download_confirmed(const Frame& frame) noexcept;
@@ -72,10 +115,13 @@ class SdoClient {
   bool take_bytes(std::span<const std::uint8_t> bytes) noexcept;
   void send_segment() noexcept;
 
-  NodeId server_;
+  SdoChannel channel_;
+  SdoBlockUse block_use_;
   State state_ = State::idle;
   bool toggle_ = false;
   bool last_segment_sent_ = false;
+  bool block_refused_ = false;  ///< the device knows no block transfer
+  bool late_segments_ = false;  ///< of a block upload that was given up may still come
   ObjectKey object_;
   std::optional<ObjectKey> given_up_;  ///< object of a transfer whose answer may still come
   Time timeout_{};
@@ -84,8 +130,11 @@ class SdoClient {
   std::span<const std::byte> value_;        ///< download
   std::size_t done_ = 0;                    ///< bytes
   std::optional<std::uint32_t> announced_;  ///< size that the server indicated
+  SdoBlockUpload block_upload_;
+  SdoBlockDownload block_download_;
   std::optional<Frame> to_send_;
   std::optional<SdoResult> result_;
+  SdoResult settled_;  ///< the result when it has settled
   Frame last_sent_;
   Frame last_received_;
 };

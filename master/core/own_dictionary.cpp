@@ -1,0 +1,223 @@
+#include "master/core/own_dictionary.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string_view>
+
+#include "master/wire/bytes.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+namespace {
+
+using Value = OwnDictionary::Value;
+
+constexpr std::string_view device_name = "takt CANopen master";
+constexpr std::uint8_t all_nodes = 128;  // sub-index of 0x1F82
+constexpr std::uint32_t makes_sync = 0x4000'0000;
+constexpr std::uint32_t makes_time = 0x4000'0000;
+constexpr std::uint32_t is_master = 0x01;      // 0x1F80, bit 0
+constexpr std::uint32_t starts_nobody = 0x08;  // bit 3
+constexpr std::uint32_t is_slave = 0x01;       // 0x1F81, bit 0
+constexpr std::uint32_t is_booted = 0x04;      // bit 2
+constexpr std::uint32_t is_mandatory = 0x08;   // bit 3
+
+Value refuse(std::uint32_t code) noexcept { return {.abort_code = code}; }
+
+template <std::unsigned_integral T>
+Value number(T value) noexcept {
+  Value out{.size = sizeof(T)};
+  store_le(std::span{out.bytes}, value);
+  return out;
+}
+
+Value text(std::string_view text) noexcept {
+  Value out{.size = static_cast<std::uint8_t>(std::min(text.size(), OwnDictionary::longest))};
+  for (std::size_t i = 0; i < out.size; ++i) out.bytes[i] = static_cast<std::byte>(text[i]);
+  return out;
+}
+
+template <class Unit>
+std::uint64_t count_of(Time time) noexcept {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<Unit>(time).count());
+}
+
+/// Value of 0x1F82: 0 unknown, 1 missing, else as in the heartbeat.
+std::uint8_t state_code(const NodeStatus& status) noexcept {
+  if (status.boot == BootState::lost || status.boot == BootState::failed) return 1;
+  switch (status.nmt) {
+    case NmtState::stopped:
+    case NmtState::operational:
+    case NmtState::preoperational:
+      return static_cast<std::uint8_t>(status.nmt);
+    case NmtState::bootup:
+    case NmtState::unknown:
+      break;
+  }
+  return 0;
+}
+
+std::optional<NmtCommand> requested(std::uint8_t code) noexcept {
+  switch (code) {
+    case 4:
+      return NmtCommand::stop;
+    case 5:
+      return NmtCommand::start;
+    case 6:
+      return NmtCommand::reset_node;
+    case 7:
+      return NmtCommand::reset_communication;
+    case 127:
+      return NmtCommand::enter_preoperational;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// One value for each node: 0x1F81, 0x1F84-0x1F88, and the counters 0x2100-0x2103.
+constexpr bool is_node_list(std::uint16_t index) noexcept {
+  return index == 0x1F81 || (index >= 0x1F84 && index <= 0x1F88) ||
+         (index >= 0x2100 && index <= 0x2103);
+}
+
+}  // namespace
+
+OwnDictionary::OwnDictionary(const BusPlan& plan, std::span<const NodeStatus> statuses) noexcept
+    : plan_{plan}, statuses_{statuses} {
+  position_.fill(no_node);
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    position_[plan.nodes[i].id.value()] = static_cast<std::uint8_t>(i);
+  }
+}
+
+Value OwnDictionary::read(ObjectKey key) const noexcept {
+  if (is_node_list(key.index) || key.index == 0x1F82) return read_nodes(key);
+  return read_communication(key);
+}
+
+Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
+  const CyclePlan& cycle = plan_.cycle;
+  if (key.index == 0x1016) return read_consumers(key.sub);
+  if (key.index == 0x1018) {  // takt has no vendor id of CAN in Automation
+    if (key.sub > 4) return refuse(abort_code::no_sub_index);
+    return key.sub == 0 ? number(std::uint8_t{4}) : number(std::uint32_t{0});
+  }
+  if (key.index == 0x1200) {
+    if (key.sub > 2) return refuse(abort_code::no_sub_index);
+    if (key.sub == 0) return number(std::uint8_t{2});
+    return number(std::uint32_t{(key.sub == 1 ? 0x600U : 0x580U) + plan_.master_id.value()});
+  }
+  Value value = refuse(abort_code::no_object);
+  switch (key.index) {
+    case 0x1000:
+      value = number(std::uint32_t{0});
+      break;
+    case 0x1001:
+      value = number(std::uint8_t{0});
+      break;
+    case 0x1005:
+      value = number(cycle.sync_cob_id.id() | (cycle.makes_sync() ? makes_sync : 0U));
+      break;
+    case 0x1006:
+      value = number(static_cast<std::uint32_t>(
+          cycle.sync ? count_of<std::chrono::microseconds>(cycle.period) : 0U));
+      break;
+    case 0x1008:
+      value = text(device_name);
+      break;
+    case 0x100A:
+      value = text(TAKT_VERSION);
+      break;
+    case 0x1012:
+      value = number(plan_.time.cob_id.id() | (plan_.time.period > Time{} ? makes_time : 0U));
+      break;
+    case 0x1017:
+      value = number(
+          static_cast<std::uint16_t>(count_of<std::chrono::milliseconds>(plan_.master_heartbeat)));
+      break;
+    case 0x1019:
+      value = number(cycle.sync_overflow);
+      break;
+    case 0x1F80:
+      value = number(is_master | (plan_.start_nodes ? 0U : starts_nobody));
+      break;
+    default:
+      break;
+  }
+  const bool known = value.abort_code == 0;
+  return known && key.sub != 0 ? refuse(abort_code::no_sub_index) : value;
+}
+
+/// Whose heartbeat is missed after how long, in the order of the nodes.
+Value OwnDictionary::read_consumers(std::uint8_t sub) const noexcept {
+  const std::size_t count = plan_.nodes.size();
+  if (sub == 0) return number(static_cast<std::uint8_t>(count));
+  if (sub > count) return refuse(abort_code::no_sub_index);
+  const NodePlan& node = plan_.nodes[sub - 1U];
+  const std::uint64_t ms =
+      std::min<std::uint64_t>(count_of<std::chrono::milliseconds>(node.heartbeat_timeout), 0xFFFF);
+  return number(
+      static_cast<std::uint32_t>(ms == 0 ? 0U : std::uint32_t{node.id.value()} << 16 | ms));
+}
+
+Value OwnDictionary::read_nodes(ObjectKey key) const noexcept {
+  const bool states = key.index == 0x1F82;
+  if (key.sub == 0) return number(states ? all_nodes : std::uint8_t{127});
+  if (key.sub > 127) {
+    return refuse(states && key.sub == all_nodes ? abort_code::write_only
+                                                 : abort_code::no_sub_index);
+  }
+  const std::uint8_t node = position_[key.sub];
+  if (states) return number(node == no_node ? std::uint8_t{0} : state_code(statuses_[node]));
+  return number(node == no_node ? 0U : node_value(key.index, node));
+}
+
+std::uint32_t OwnDictionary::node_value(std::uint16_t index, std::size_t position) const noexcept {
+  const NodePlan& node = plan_.nodes[position];
+  const NodeStatus& status = statuses_[position];
+  switch (index) {
+    case 0x1F81:
+      return is_slave | (node.boot ? is_booted : 0U) | (node.mandatory ? is_mandatory : 0U);
+    case 0x1F84:
+      return expected(node, {0x1000, 0});
+    case 0x2100:
+      return status.emcy_count;
+    case 0x2101:
+      return status.boot_count;
+    case 0x2102:
+      return status.heartbeat_lost;
+    case 0x2103:
+      return status.sdo_aborts;
+    default:  // 0x1F85-0x1F88
+      return expected(node, {0x1018, static_cast<std::uint8_t>(index - 0x1F84)});
+  }
+}
+
+/// What the boot of a node expects; 0: it does not look.
+std::uint32_t OwnDictionary::expected(const NodePlan& node, ObjectKey object) const noexcept {
+  for (const BootStep& step : node.boot_plan.steps) {
+    if (step.action != BootAction::expect || step.object != object) continue;
+    return load_le<std::uint32_t>(std::span{step.value});
+  }
+  return 0;
+}
+
+OwnDictionary::Order OwnDictionary::write(ObjectKey key,
+                                          std::span<const std::byte> value) const noexcept {
+  const auto no = [](std::uint32_t code) { return Order{.abort_code = code}; };
+  if (key.index != 0x1F82 || key.sub == 0) {
+    const Value present = read(key);
+    return no(present.abort_code == 0 ? abort_code::read_only : present.abort_code);
+  }
+  if (key.sub > all_nodes) return no(abort_code::no_sub_index);
+  if (value.size() > 1) return no(abort_code::length_too_high);
+  if (value.empty()) return no(abort_code::length_too_low);
+  const auto command = requested(std::to_integer<std::uint8_t>(value[0]));
+  if (!command) return no(abort_code::invalid_value);
+  if (key.sub == all_nodes) return {.command = *command, .node = 0};
+  if (position_[key.sub] == no_node) return no(abort_code::cannot_store);
+  return {.command = *command, .node = key.sub};
+}
+
+}  // namespace takt

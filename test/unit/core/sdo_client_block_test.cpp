@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <array>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "master/core/sdo_client.hpp"
+#include "test/unit/core/script.hpp"
+
+namespace takt {
+namespace {
+
+Frame segment(std::uint8_t first, std::initializer_list<std::uint8_t> data) {
+  Frame frame = rx({first});
+  std::ranges::copy(data, frame.data.begin() + 1);
+  return frame;
+}
+
+/// Block transfers of a whole client, which chooses them by itself.
+class SdoClientBlock : public testing::Test {
+ protected:
+  void download(std::size_t size) {
+    value_.assign(size, std::byte{0x55});
+    client.download({0x1F50, 1}, value_, 500ms);
+  }
+  void sends(const Frame& expected) {
+    Outbox out;
+    client.on_time(now, out);
+    ASSERT_EQ(out.frames().size(), 1U);
+    EXPECT_EQ(out.frames()[0], expected);
+    answer = out.answers()[0];
+  }
+  void sends_some(int frames) {
+    Outbox out;
+    for (int i = 0; i < frames; ++i) client.on_time(now, out);
+    ASSERT_EQ(out.frames().size(), static_cast<std::size_t>(frames));
+  }
+  void sends_nothing() {
+    Outbox out;
+    client.on_time(now, out);
+    EXPECT_TRUE(out.empty());
+  }
+  void hears(const Frame& frame) { client.on_frame(frame, now); }
+
+  Time now = 1s;
+  Answer answer = Answer::comes;
+  std::array<std::byte, 256> buffer{};
+  std::vector<std::byte> value_;
+  SdoClient client{5_node};
+};
+
+TEST_F(SdoClientBlock, ChoosesBlockFor128BytesAndSegmentsFor127) {
+  download(127);
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x7F}));
+  client.drop();
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  EXPECT_EQ(answer, Answer::comes);
+}
+
+TEST_F(SdoClientBlock, NeverUsesBlockWhereItIsForbidden) {
+  client = SdoClient{default_sdo_channel(5_node), SdoBlockUse::off};
+  download(1000);
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0xE8, 0x03}));
+  client.drop();
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends(tx({0x40, 0x21, 0x10, 0x00}));
+}
+
+TEST_F(SdoClientBlock, TalksOnAnotherChannel) {
+  client = SdoClient{{.request = CobId::base(0x645), .answer = CobId::base(0x5C5)}};
+  client.upload({0x1018, 1}, buffer, 500ms);
+  sends(padded(CobId::base(0x645), {0x40, 0x18, 0x10, 0x01}));
+  now += 500ms;
+  sends(padded(CobId::base(0x645), {0x80, 0x18, 0x10, 0x01, 0x00, 0x00, 0x04, 0x05}));
+}
+
+TEST_F(SdoClientBlock, SaysWhichFramesGetNoAnswer) {
+  download(128);  // 19 segments
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+  Outbox out;
+  for (int i = 0; i < 30; ++i) client.on_time(now, out);
+  ASSERT_EQ(out.frames().size(), 19U);
+  EXPECT_EQ(out.answers()[0], Answer::none);
+  EXPECT_EQ(out.answers()[17], Answer::none);
+  EXPECT_EQ(out.answers()[18], Answer::comes);
+  EXPECT_EQ(client.deadline(), now + 500ms);
+}
+
+TEST_F(SdoClientBlock, FallsBackToSegmentsWhenTheServerKnowsNoBlock) {
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));
+  client.cancel();
+  client.take_result();
+  sends_some(1);
+  download(128);
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
+}
+
+TEST_F(SdoClientBlock, FallsBackInAnUploadToo) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
+  hears(rx({0x80, 0x21, 0x10, 0x00, 0x02, 0x00, 0x04, 0x05}));
+  sends(tx({0x40, 0x21, 0x10, 0x00}));
+  hears(rx({0x4F, 0x21, 0x10, 0x00, 0x07}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+}
+
+TEST_F(SdoClientBlock, ReportsARefusalThatHasNothingToDoWithBlock) {
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x02, 0x00, 0x01, 0x06}));
+  EXPECT_EQ(client.take_result()->abort_code, 0x06010002U);
+  sends_nothing();
+}
+
+TEST_F(SdoClientBlock, DoesNotFallBackOnceDataHaveMoved) {
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+  sends_some(5);
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));  // a segment that was under way
+  now += 20ms;
+  sends_nothing();
+  const auto result = client.take_result();
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->fault, SdoFault::aborted_by_device);
+  EXPECT_TRUE(client.idle());
+}
+
+TEST_F(SdoClientBlock, TakesTheOrdinaryAnswerBelowTheThreshold) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
+  hears(rx({0x41, 0x21, 0x10, 0x00, 0x09}));
+  sends(tx({0x60}));
+  hears(rx({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  sends(tx({0x70}));
+  hears(rx({0x1B, 8, 9}));
+  EXPECT_EQ(client.take_result()->size, 9U);
+}
+
+TEST_F(SdoClientBlock, ConfirmsWhatItHasWhenTheServerFallsSilentInABlock) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
+  hears(rx({0xC6, 0x21, 0x10, 0x00, 0x0E}));
+  sends(tx({0xA3}));
+  now += 10ms;
+  hears(segment(0x01, {1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(client.deadline(), now + 350ms);
+  now += 350ms;
+  sends(tx({0xA2, 0x01, 0x7F}));
+  EXPECT_EQ(client.deadline(), now + 500ms);
+  now += 500ms;
+  sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::timeout);
+}
+
+TEST_F(SdoClientBlock, TimesOutInEveryStateOfADownload) {
+  const Frame timeout = tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x04, 0x05});
+  for (int steps = 0; steps < 3; ++steps) {
+    client.drop();
+    download(128);
+    sends_some(1);
+    if (steps > 0) hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+    if (steps > 0) sends_some(19);
+    if (steps > 1) hears(rx({0xA2, 0x13, 0x7F}));
+    if (steps > 1) sends_some(1);
+    now += 500ms;
+    sends(timeout);
+    EXPECT_EQ(client.take_result()->fault, SdoFault::timeout);
+    EXPECT_TRUE(client.idle());
+  }
+}
+
+TEST_F(SdoClientBlock, CancelsInTheMiddleOfABlock) {
+  download(128);
+  sends_some(1);
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+  sends_some(5);
+  client.cancel();
+  sends(tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x00, 0x08}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::cancelled);
+  sends_nothing();
+}
+
+TEST_F(SdoClientBlock, IgnoresLateSegmentsOfABlockThatWasGivenUp) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends_some(1);
+  hears(rx({0xC6, 0x21, 0x10, 0x00, 0x80}));
+  sends_some(1);
+  client.cancel();
+  client.take_result();
+  sends_some(1);
+
+  client.upload({0x1018, 1}, buffer, 500ms);
+  sends(tx({0x40, 0x18, 0x10, 0x01}));
+  for (unsigned first = 0x01; first <= 0xE1; first += 0x20) {
+    hears(segment(static_cast<std::uint8_t>(first), {1, 2, 3, 4, 5, 6, 7}));
+  }
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+}
+
+}  // namespace
+}  // namespace takt
