@@ -62,7 +62,11 @@ enum class EventKind : std::uint8_t {
   guarding_toggle,   ///< the toggle bit of a guarding answer repeats; told when it begins
   bootup_again,      ///< a boot-up message of a node that was ready
   node_replaced,     ///< another serial number than before; value: new, detail: old
+  firmware_differs,  ///< from what the device data were taken for; value: Firmware::packed
   program_progress,  ///< value: bytes that the device has taken, detail: of how many
+  lss_assigned,      ///< the node had no id and has got it; value: its serial number
+  lss_not_assigned,  ///< it was found without id, but did not take it; bytes: op, outcome, error,
+                     ///< specific of the LssResult; told when that changes
   unlisted_node,     ///< value: id of a node that is not in the network file (status A)
   network_ready,     ///< all mandatory nodes have booted; the master is operational
   network_late,      ///< mandatory nodes still missing after the boot time; detail: how many
@@ -77,6 +81,12 @@ enum class EventKind : std::uint8_t {
   pdo_length,       ///< value: TPDO number, detail: received length
   cycles_missed,    ///< value: how many periods were skipped
   receive_overrun,  ///< value: frames lost by the kernel
+  // a SYNC that another device makes
+  sync_lost,    ///< value: ns of silence, 0: none has come at all; detail: SyncLoss
+  sync_back,    ///< value: ns without it, 0: the first one; detail: SyncLoss
+  sync_jump,    ///< its counter; value: received (-1: none), detail: expected; told when it begins
+  sync_early,   ///< value: ns after the one before; told when it begins
+  sync_period,  ///< it keeps another period than the network file says; value: ns
   // outputs
   command_refused,  ///< value: signal, detail: RefusedBecause
   fallback_begun,   ///< value: signal whose command outlived its time to live

@@ -3,6 +3,8 @@
 
 #include "master/core/boot_report.hpp"
 #include "master/core/bus_trouble.hpp"
+#include "master/core/firmware_text.hpp"
+#include "master/core/lss_command.hpp"
 #include "master/core/report_text.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/emcy_text.hpp"
@@ -46,13 +48,16 @@ std::string_view emcy_meaning(const BusPlan& plan, std::uint8_t node, std::uint1
 }
 
 std::string emcy_line(const BusPlan& plan, const Event& event) {
+  const std::size_t length = event.detail == 0 ? 8 : std::min<std::size_t>(event.detail, 8);
   const std::span bytes{event.bytes};
-  const auto code = load_le<std::uint16_t>(bytes);
-  std::string text = "EMCY " + hex(code) + ": " +
-                     std::string{emcy_meaning(plan, event.node, code)} +
-                     " (error register: " + error_register_text(bytes[2]) + "; bytes";
-  for (const std::uint8_t byte : bytes) text += " " + hex(byte, 2).substr(2);
-  text += ")";
+  std::string text = "EMCY of 1 byte, too short for an error code (bytes";
+  if (length > 1) {
+    const auto code = load_le<std::uint16_t>(bytes);
+    text = "EMCY " + hex(code) + ": " + std::string{emcy_meaning(plan, event.node, code)} +
+           " (error register: " + error_register_text(bytes[2]) + "; bytes";
+  }
+  for (const std::uint8_t byte : bytes.first(length)) text += " " + hex(byte, 2).substr(2);
+  text += length == 8 ? ")" : ", always 8)";
   if (event.value > 0) text += "; " + std::to_string(event.value) + " before it were not told";
   return text;
 }
@@ -96,6 +101,22 @@ std::string reaction_text(const Event& event) {
   return "it is told";
 }
 
+std::string lss_trouble_text(const Event& event) {
+  const LssResult result{.op = static_cast<LssOp>(event.bytes[0]),
+                         .outcome = static_cast<LssOutcome>(event.bytes[1]),
+                         .error = event.bytes[2],
+                         .specific = event.bytes[3]};
+  return "a device without node id is there, but LSS came to no good end: " +
+         lss_failure_text(result);
+}
+
+std::string firmware_line(const BusPlan& plan, const Event& event) {
+  const auto found =
+      std::ranges::find(plan.nodes, event.node, [](const NodePlan& one) { return one.id.value(); });
+  if (found == plan.nodes.end() || !found->firmware) return "another firmware than planned";
+  return firmware_text(*found->firmware, Firmware::unpacked(event.value));
+}
+
 std::string node_line(const BusPlan& plan, const Event& event) {
   switch (event.kind) {
     case EventKind::boot_started:
@@ -116,10 +137,17 @@ std::string node_line(const BusPlan& plan, const Event& event) {
              "answer was lost, or somebody else asks the node too)";
     case EventKind::bootup_again:
       return "boot-up message of a node that was ready: it has restarted and is booted again";
+    case EventKind::lss_assigned:
+      return "a device without node id, serial number " + std::to_string(event.value) +
+             ", has got this id by LSS";
+    case EventKind::lss_not_assigned:
+      return lss_trouble_text(event);
     case EventKind::node_replaced:
       return "another device than before: its serial number is " + std::to_string(event.value) +
              ", it was " + std::to_string(event.detail) +
              "; `serial_number` in the network file would refuse it";
+    case EventKind::firmware_differs:
+      return firmware_line(plan, event);
     case EventKind::program_progress:
       return "program download: " + std::to_string(event.value) + " of " +
              std::to_string(event.detail) + " bytes";
@@ -162,13 +190,13 @@ std::string signal_line(const BusPlan& plan, const Event& event) {
 }
 
 std::string missed_line(const Event& event) {
-  const std::string count = std::to_string(event.value);
+  const std::string count = event.value == 1 ? "1 cycle" : std::to_string(event.value) + " cycles";
   if (event.detail == static_cast<std::uint32_t>(MissedBecause::wire_blocked)) {
     return count +
-           " cycles without SYNC: the one before was not on the wire yet (bus-off, nobody "
-           "acknowledges, or too much traffic)";
+           " without SYNC: the one before was not on the wire yet (bus-off, nobody acknowledges, "
+           "or too much traffic)";
   }
-  return count + " cycles missed: the bus thread was late; they are skipped, not caught up";
+  return count + " missed: the bus thread was late; skipped, not caught up";
 }
 
 std::string send_trouble_text(const Event& event, const std::string& interface) {
@@ -185,6 +213,65 @@ std::string send_trouble_text(const Event& event, const std::string& interface) 
          " txqueuelen 1000`";
 }
 
+std::string_view while_lost(std::uint32_t reaction) noexcept {
+  switch (static_cast<SyncLoss>(reaction)) {
+    case SyncLoss::hold:
+      return "no outputs are sent until it is back";
+    case SyncLoss::fallback:
+      return "outputs take their fallback until it is back, those in synchronous RPDOs by SDO";
+    case SyncLoss::stop:
+      return "every node but the producer is stopped until it is back";
+  }
+  return {};
+}
+
+std::string_view when_back(std::uint32_t reaction) noexcept {
+  switch (static_cast<SyncLoss>(reaction)) {
+    case SyncLoss::hold:
+      return "outputs are sent again";
+    case SyncLoss::fallback:
+      return "commands are heard again";
+    case SyncLoss::stop:
+      return "the nodes are started again";
+  }
+  return {};
+}
+
+/// A SYNC that another device makes.
+std::string sync_line(const BusPlan& plan, const Event& event) {
+  const std::string maker =
+      plan.cycle.sync_producer ? subject(plan, plan.cycle.sync_producer->value()) : "its producer";
+  const Time time{event.value};
+  switch (event.kind) {
+    case EventKind::sync_lost:
+      return (event.value == 0 ? "no SYNC has come" : "SYNC lost: none for " + time_text(time)) +
+             "; " + std::string{while_lost(event.detail)} + ". Look at " + maker +
+             ": does it run, is its 0x1006 set, and bit 30 of its 0x1005?";
+    case EventKind::sync_back:
+      return event.value == 0 ? "SYNC is there: the cycle keeps to it"
+                              : "SYNC is back after " + time_text(time) + "; " +
+                                    std::string{when_back(event.detail)};
+    case EventKind::sync_jump:
+      return (event.value < 0 ? "SYNC without counter"
+                              : "SYNC counter " + std::to_string(event.value)) +
+             (event.detail == 0 ? std::string{", but `sync_overflow` says that it has none"}
+                                : ", expected " + std::to_string(event.detail)) +
+             ": a SYNC was lost, " + maker + " has started again, or its 0x1019 is another";
+    case EventKind::sync_early:
+      return "a SYNC only " + time_text(time) + " after the one before, in a period of " +
+             time_text(plan.cycle.period) + ": it is left out; is there a second producer?";
+    default:
+      return "SYNC comes each " + time_text(time) + ", but `sync_period` says " +
+             time_text(plan.cycle.period) + ": correct the network file, or 0x1006 of " + maker;
+  }
+}
+
+bool is_of_sync(EventKind kind) noexcept {
+  return kind == EventKind::sync_lost || kind == EventKind::sync_back ||
+         kind == EventKind::sync_jump || kind == EventKind::sync_early ||
+         kind == EventKind::sync_period;
+}
+
 std::string missing_mandatory(const BusPlan& plan) {
   std::string names;
   for (const NodePlan& node : plan.nodes) {
@@ -198,9 +285,9 @@ std::string network_line(const BusPlan& plan, const Event& event) {
     case EventKind::unlisted_node:
       return "node " + std::to_string(event.value) +
              " is on the bus but not in the network file (status A of CiA 302-2: " +
-             std::string{letter_text('A')} +
-             "): add it, or leave it alone; `takt scan` says what "
-             "it is";
+             std::string{letter_text('A')} + "): add it, or leave it alone; `takt sdo read " +
+             std::to_string(event.value) + " 1018:1 u32 --bus " + interface_text(plan) +
+             "` tells its vendor";
     case EventKind::network_ready:
       return "the network is ready: every mandatory node has booted";
     case EventKind::network_late:
@@ -274,6 +361,7 @@ std::string line(const BusPlan& plan, const Event& event) {
       break;
   }
   if (is_of_network(event.kind)) return network_line(plan, event);
+  if (is_of_sync(event.kind)) return sync_line(plan, event);
   return event.kind <= EventKind::pdo_length || event.kind == EventKind::outputs_held
              ? node_line(plan, event)
              : bus_line(plan, event);

@@ -22,6 +22,12 @@ std::string_view name(EventKind kind) noexcept {
       return "guarding_toggle";
     case EventKind::bootup_again:
       return "bootup_again";
+    case EventKind::lss_assigned:
+      return "lss_assigned";
+    case EventKind::lss_not_assigned:
+      return "lss_not_assigned";
+    case EventKind::firmware_differs:
+      return "firmware_differs";
     case EventKind::node_replaced:
       return "node_replaced";
     case EventKind::program_progress:
@@ -52,6 +58,16 @@ std::string_view name(EventKind kind) noexcept {
       return "cycles_missed";
     case EventKind::receive_overrun:
       return "receive_overrun";
+    case EventKind::sync_lost:
+      return "sync_lost";
+    case EventKind::sync_back:
+      return "sync_back";
+    case EventKind::sync_jump:
+      return "sync_jump";
+    case EventKind::sync_early:
+      return "sync_early";
+    case EventKind::sync_period:
+      return "sync_period";
     case EventKind::command_refused:
       return "command_refused";
     case EventKind::fallback_begun:

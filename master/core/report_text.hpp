@@ -39,6 +39,11 @@ inline std::string time_text(Time time) {
   return count(us, 0, "us");
 }
 
+/// "can0": what to give to `--bus`.
+inline std::string interface_text(const BusPlan& plan) {
+  return plan.interface.empty() ? "can0" : plan.interface;
+}
+
 /// "node 5 'shoulder'"
 inline std::string node_text(const NodePlan& node) {
   return "node " + std::to_string(int{node.id.value()}) + " '" + node.name + "'";

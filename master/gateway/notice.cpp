@@ -14,23 +14,30 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::node_state:
     case EventKind::heartbeat_back:
     case EventKind::pdo_back:
+    case EventKind::sync_back:
     case EventKind::fallback_ended:
     case EventKind::bus_error_active:
     case EventKind::bus_recovered:
     case EventKind::program_progress:
     case EventKind::network_ready:
+    case EventKind::lss_assigned:
     case EventKind::interface_up:
     case EventKind::stopping:
     case EventKind::stopped:
       return Weight::note;
     case EventKind::bootup_again:
     case EventKind::guarding_toggle:
+    case EventKind::lss_not_assigned:
     case EventKind::node_replaced:
+    case EventKind::firmware_differs:
     case EventKind::unlisted_node:
     case EventKind::pdo_missing:
     case EventKind::pdo_late:
     case EventKind::pdo_length:
     case EventKind::cycles_missed:
+    case EventKind::sync_jump:
+    case EventKind::sync_early:
+    case EventKind::sync_period:
     case EventKind::command_refused:
     case EventKind::fallback_begun:
     case EventKind::outputs_held:
@@ -46,6 +53,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::mandatory_lost:
     case EventKind::emcy:
     case EventKind::receive_overrun:
+    case EventKind::sync_lost:
     case EventKind::bus_off:
     case EventKind::interface_down:
     case EventKind::foreign_sync:

@@ -1,0 +1,109 @@
+#include "master/rt/sync_follower.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace takt {
+namespace {
+
+constexpr int tolerance = 20;             // a share of the period: 5 % are no drift of a clock
+constexpr int smoothing = 16;             // intervals
+constexpr std::uint8_t odd_limit = 8;     // intervals in a row until the period is told
+constexpr std::uint8_t calm_after = 100;  // SYNCs until an early one is told again
+constexpr Time longest_patience = std::chrono::milliseconds{20};
+constexpr Time first_limit = std::chrono::seconds{1};
+
+}  // namespace
+
+SyncFollower::SyncFollower(const CyclePlan& plan, EventQueue& events) noexcept
+    : used_{plan.sync && plan.sync_followed},
+      id_{plan.sync_cob_id},
+      declared_{plan.period},
+      timeout_{plan.sync_timeout},
+      reaction_{plan.on_sync_loss},
+      overflow_{plan.sync_overflow},
+      events_{events},
+      period_{plan.period} {}
+
+Time SyncFollower::patience() const noexcept {
+  return std::min<Time>(declared_ / 2, longest_patience);
+}
+
+Time SyncFollower::end_of_wait(Time expected) const noexcept {
+  const Time end = expected + patience();
+  const Time lost_at = last_ ? *last_ + timeout_ : end;
+  return lost_at > end && lost_at - end <= declared_ / tolerance ? lost_at : end;
+}
+
+void SyncFollower::tell(EventKind kind, Time now, std::int64_t value,
+                        std::uint32_t detail) noexcept {
+  events_.push({.when = now, .kind = kind, .detail = detail, .value = value});
+}
+
+void SyncFollower::on_sync(const StampedFrame& sync) noexcept {
+  const Time when = sync.when;
+  if (last_ && too_early(when - *last_, when)) return;
+  check_counter(sync.frame, when);
+  if (last_) measure(when - *last_, when);
+  if (state_ != State::locked) lock(when);
+  last_ = when;
+  arrival_ = when;
+}
+
+/// Told once, until a while went without.
+bool SyncFollower::too_early(Time interval, Time when) noexcept {
+  if (interval >= declared_ / 2) {
+    if (early_ != 0) --early_;
+    return false;
+  }
+  if (early_ == 0) tell(EventKind::sync_early, when, interval.count());
+  early_ = calm_after;
+  return true;
+}
+
+void SyncFollower::check_counter(const Frame& frame, Time when) noexcept {
+  const bool counts = overflow_ >= 2;
+  const std::int64_t got = frame.length == 0 ? -1 : frame.data[0];
+  const auto expected = static_cast<std::uint8_t>(counter_ >= overflow_ ? 1 : counter_ + 1);
+  const bool known = counter_ != 0 && state_ == State::locked;
+  const bool in_range = counts && got >= 1 && got <= overflow_;
+  const bool good = counts ? in_range && (!known || got == expected) : got < 0;
+  if (!good && !jumped_) tell(EventKind::sync_jump, when, got, counts ? expected : 0U);
+  jumped_ = !good;
+  counter_ = in_range ? static_cast<std::uint8_t>(got) : std::uint8_t{0};
+}
+
+void SyncFollower::measure(Time interval, Time when) noexcept {
+  const Time off = interval - declared_;
+  if (off <= declared_ / tolerance && off >= -declared_ / tolerance) {
+    period_ += (interval - period_) / smoothing;
+    odd_ = 0;
+    odd_told_ = false;
+    return;
+  }
+  odd_ = state_ == State::locked ? static_cast<std::uint8_t>(odd_ + 1) : std::uint8_t{0};
+  if (odd_ < odd_limit) return;
+  odd_ = 0;
+  if (!std::exchange(odd_told_, true)) tell(EventKind::sync_period, when, interval.count());
+}
+
+void SyncFollower::lock(Time when) noexcept {
+  const Time without = last_ ? when - *last_ : Time{};
+  tell(EventKind::sync_back, when, without.count(), static_cast<std::uint32_t>(reaction_));
+  state_ = State::locked;
+}
+
+void SyncFollower::on_silence(Time now, std::span<const NodeStatus> nodes) noexcept {
+  if (state_ == State::lost) return;
+  if (!last_) {
+    const auto boots = [](const NodeStatus& node) { return node.boot == BootState::booting; };
+    if (std::ranges::any_of(nodes, boots) || !idle_since_) idle_since_ = now;
+  }
+  const Time limit = last_ ? timeout_ : std::max<Time>(timeout_, first_limit);
+  if (now - (last_ ? *last_ : *idle_since_) < limit) return;
+  state_ = State::lost;
+  tell(EventKind::sync_lost, now, last_ ? (now - *last_).count() : 0,
+       static_cast<std::uint32_t>(reaction_));
+}
+
+}  // namespace takt
