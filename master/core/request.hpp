@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/ids.hpp"
@@ -21,6 +23,15 @@ enum class RequestKind : std::uint8_t {
   pdo_poll,      ///< remote request for TPDO `object.index` (1..512); the reply has its bytes
   pdo_exchange,  ///< RPDO `object.index` with `data`; the reply has the bytes of the TPDO that
                  ///< answers
+  lss,           ///< LssCommands in `data`, packed; the reply has the LssResults
+};
+
+/// A value that is too long for a request. The front thread fills it or gives it its length, hands
+/// it over with a request and has it back with the reply; only `done` and `cancel` are shared.
+struct SdoTransfer {
+  std::vector<std::byte> data;
+  std::atomic<std::uint32_t> done{0};  ///< bytes that are through; at the end all of them
+  std::atomic<bool> cancel{false};     ///< asks for an early end; it is aborted on the bus
 };
 
 /// A service asked of the bus thread by the front thread. Trivially copyable.
@@ -30,7 +41,8 @@ struct Request {
   std::uint8_t node = 0;  ///< NMT: 0 = all nodes
   ObjectKey object{};
   NmtCommand command = NmtCommand::start;
-  Time timeout{};  ///< of the SDO transfer; 0 = the node's own
+  Time timeout{};                   ///< of the SDO transfer; 0 = the node's own
+  SdoTransfer* transfer = nullptr;  ///< instead of `data`; outlives the reply
   std::uint16_t size = 0;
   std::array<std::byte, request_bytes> data{};
 };

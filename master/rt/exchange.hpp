@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -45,6 +46,7 @@ struct Exchange {
   // front -> bus
   SetPoints set_points;
   SpscRing<Request, 16> requests;
+  std::array<SdoTransfer, 4> transfers;  ///< whose turn it is: see SdoTransfer
   std::atomic<bool> stop_requested{false};
 };
 
