@@ -81,6 +81,9 @@ class Master {
   /// False: too many at once, ask again later. Each accepted request is answered exactly once.
   bool submit(const Request& request) noexcept { return exchange_->requests.push(request); }
 
+  /// Buffers for values that are too long for a request; they live as long as the master.
+  std::span<SdoTransfer> transfers() noexcept { return exchange_->transfers; }
+
   void status(StatusSnapshot& snapshot) const { exchange_->status.read(snapshot); }
   const TimingHistograms& timing() const noexcept { return exchange_->timing; }
   std::uint64_t image_overruns() const noexcept { return exchange_->images.overruns(); }

@@ -18,9 +18,11 @@ void print_bus(std::ostream& out, const SimulationOutcome& outcome) {
   const double worst = static_cast<double>(outcome.worst_cycle_bits);
   out << fmt::format("{}: {:.3f} s of bus at {} kbit/s, seed {}\n", outcome.bus,
                      seconds(outcome.simulated), outcome.bitrate / 1000, outcome.seed)
-      << fmt::format("  cycles       {} of {:.0f} us, {} missed, {} with an incomplete image\n",
-                     outcome.loop.beats, us(outcome.period), outcome.loop.cycles_missed,
-                     outcome.loop.images_incomplete)
+      << fmt::format(
+             "  cycles       {} of {:.0f} us, {} missed, {} without outputs, {} with a missing "
+             "PDO\n",
+             outcome.loop.beats, us(outcome.period), outcome.loop.cycles_missed,
+             outcome.loop.outputs_skipped, outcome.loop.images_incomplete)
       << fmt::format("  frames       {} ({} SDO, {} EMCY), {} error frames\n", outcome.wire.frames,
                      outcome.sdo_frames, outcome.emcy_frames, outcome.wire.error_frames)
       << fmt::format("  bus load     {:.1f} %, fullest cycle {:.1f} %\n",

@@ -1,6 +1,7 @@
 #include "apps/simulate/wire_statistics.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -22,11 +23,13 @@ Time SyncOnWire::quantile(double part) const {
 
 WireStatistics::WireStatistics(const BusPlan& plan)
     : plan_{plan}, tpdos_(plan.pdos.tpdos.size()), rpdos_(plan.pdos.rpdos.size()) {
-  rpdo_route_.fill(PdoTable::no_row);
-  for (std::size_t row = 0; row < rpdos_.size(); ++row) {
-    const CobId id = plan.pdos.rpdos[row].cob_id;
-    if (!id.is_extended()) rpdo_route_[id.id()] = static_cast<std::uint16_t>(row);
-  }
+  const auto rows_of = [](const std::vector<PdoRow>& pdos, std::map<CobId, std::uint16_t>& rows) {
+    for (std::size_t row = 0; row < pdos.size(); ++row) {
+      rows.try_emplace(pdos[row].cob_id, static_cast<std::uint16_t>(row));
+    }
+  };
+  rows_of(plan.pdos.tpdos, tpdo_rows_);
+  rows_of(plan.pdos.rpdos, rpdo_rows_);
 }
 
 void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
@@ -34,15 +37,14 @@ void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
   if (wire.result != sim::WireResult::sent || wire.frame.rtr) return;
   const CobId id = wire.frame.id;
   if (id == plan_.cycle.sync_cob_id) return on_sync(wire.start);
-  if (id.is_extended()) return;
-  if (const std::uint16_t row = plan_.pdos.route[id.id()]; row != PdoTable::no_row) {
-    return on_tpdo(tpdos_[row], plan_.pdos.tpdos[row], wire.end);
+  if (const auto found = tpdo_rows_.find(id); found != tpdo_rows_.end()) {
+    return on_tpdo(tpdos_[found->second], plan_.pdos.tpdos[found->second], wire.end);
   }
-  if (const std::uint16_t row = rpdo_route_[id.id()]; row != PdoTable::no_row) {
-    ++rpdos_[row].frames;
+  if (const auto found = rpdo_rows_.find(id); found != rpdo_rows_.end()) {
+    ++rpdos_[found->second].frames;
     return;
   }
-  count_service(id);
+  if (!id.is_extended()) count_service(id);
 }
 
 void WireStatistics::count_service(CobId id) noexcept {
@@ -52,8 +54,7 @@ void WireStatistics::count_service(CobId id) noexcept {
 }
 
 void WireStatistics::on_sync(Time start) noexcept {
-  worst_bits_ = std::max(worst_bits_, cycle_bits_);
-  cycle_bits_ = 0;
+  const std::uint64_t bits = std::exchange(cycle_bits_, 0);
   if (sync_.count++ != 0) {
     const Time distance = start - last_sync_;
     sync_.shortest = std::min(sync_.shortest, distance);
@@ -61,6 +62,7 @@ void WireStatistics::on_sync(Time start) noexcept {
     if (2 * distance >= 3 * plan_.cycle.period) {
       ++sync_.gaps;
     } else {
+      worst_bits_ = std::max(worst_bits_, bits);
       const auto us = std::chrono::round<std::chrono::microseconds>(
           distance > plan_.cycle.period ? distance - plan_.cycle.period
                                         : plan_.cycle.period - distance);

@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
@@ -38,7 +38,7 @@ class WireStatistics final : public sim::BusObserver {
   const SyncOnWire& sync() const noexcept { return sync_; }
   const PdoOnWire& tpdo(std::size_t row) const noexcept { return tpdos_[row]; }
   const PdoOnWire& rpdo(std::size_t row) const noexcept { return rpdos_[row]; }
-  /// The fullest cycle, in bits.
+  /// The fullest of the cycles between two SYNCs, in bits; without SYNC 0.
   std::uint64_t worst_cycle_bits() const noexcept { return worst_bits_; }
   std::uint64_t sdo_frames() const noexcept { return sdo_frames_; }
   std::uint64_t emcy_frames() const noexcept { return emcy_frames_; }
@@ -52,7 +52,8 @@ class WireStatistics final : public sim::BusObserver {
   SyncOnWire sync_;
   std::vector<PdoOnWire> tpdos_;
   std::vector<PdoOnWire> rpdos_;
-  std::array<std::uint16_t, 2048> rpdo_route_{};
+  std::map<CobId, std::uint16_t> tpdo_rows_;
+  std::map<CobId, std::uint16_t> rpdo_rows_;
   Time last_sync_{};
   std::uint64_t cycle_bits_ = 0;
   std::uint64_t worst_bits_ = 0;

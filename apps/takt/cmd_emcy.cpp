@@ -31,6 +31,7 @@ struct Told {
   std::int16_t node = 0;
   std::string name;
   EmcyRecord record;
+  std::string words;
 };
 
 std::atomic<bool> interrupted = false;
@@ -54,7 +55,7 @@ nlohmann::json to_json(const Told& told) {
           {"node_id", told.node},
           {"node", told.name},
           {"code", record.code()},
-          {"text", std::string{emcy_text(record.code())}},
+          {"text", told.words},
           {"error_register", record.error_register()},
           {"error_register_text", error_register_text(record.error_register())},
           {"manufacturer", std::vector<int>{record.bytes.begin() + 3, record.bytes.end()}}};
@@ -62,12 +63,11 @@ nlohmann::json to_json(const Told& told) {
 
 void print(const Told& told) {
   const EmcyRecord& record = told.record;
-  std::printf("%s\n",
-              fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
-                          clock_text(record.utime), told.node, told.name, record.code(),
-                          emcy_text(record.code()), error_register_text(record.error_register()),
-                          bytes_text(std::span{record.bytes}.subspan(3)))
-                  .c_str());
+  std::printf("%s\n", fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
+                                  clock_text(record.utime), told.node, told.name, record.code(),
+                                  told.words, error_register_text(record.error_register()),
+                                  bytes_text(std::span{record.bytes}.subspan(3)))
+                          .c_str());
 }
 
 /// History of all nodes, or of one, in the order of time.
@@ -83,8 +83,11 @@ std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::i
     if (!reply) return std::unexpected{reply.error()};
     if (reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
     const std::vector<std::uint8_t> bytes{reply->data.begin(), reply->data.end()};
+    const auto own = unpack_texts(reply->text);
     for (const EmcyRecord& record : unpack_emcys(bytes)) {
-      all.push_back({node.node_id, node.name, record});
+      const auto found = own.find(record.code());
+      all.push_back({node.node_id, node.name, record,
+                     found == own.end() ? std::string{emcy_text(record.code())} : found->second});
     }
   }
   std::ranges::stable_sort(all, {}, [](const Told& told) { return told.record.utime; });

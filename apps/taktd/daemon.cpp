@@ -70,8 +70,9 @@ std::optional<Exit> Daemon::open() {
   bus_ = std::move(*bus);
   for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
   const Channels channels{network_.plan.name};
+  std::vector<std::string> heard = channels.heard();
   link_ = std::make_unique<LcmLink>(
-      std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), channels.heard(),
+      std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
       [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
   return std::nullopt;
 }

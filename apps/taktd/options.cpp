@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "eds_parser/table/lcm_url.hpp"
+
 namespace takt {
 namespace {
 
@@ -79,6 +81,9 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
       const auto time = parse_duration(run_for);
       if (!time) throw CLI::ValidationError("--for", "'" + run_for + "' is not a time like 10s");
       options.run_for = *time;
+    }
+    if (const auto url = parse_lcm_url(options.lcm_url); !options.lcm_url.empty() && !url) {
+      throw CLI::ValidationError("--lcm-url", url.error());
     }
   } catch (const CLI::ParseError& error) {
     return std::unexpected{app.exit(error) == 0 ? 0 : 2};

@@ -15,7 +15,7 @@ struct DaemonOptions {
   std::optional<RtMode> rt;        ///< else the network file's
   std::string lcm_url;
   std::string events_file;
-  Time run_for{};  ///< 0: until a signal
+  Time run_for{};         ///< 0: until a signal
   bool check = false;
   bool observe = false;
 };

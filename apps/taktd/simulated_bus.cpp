@@ -53,6 +53,7 @@ SendResult SimulatedBus::send(std::span<const Frame> frames) noexcept {
 
 PortNews SimulatedBus::news() const noexcept {
   PortNews news = port_.news();
+  news.since_1970 = realtime_offset();
   if (news.last_sync_echo != Time{}) news.last_sync_echo = on_the_clock(news.last_sync_echo);
   return news;
 }

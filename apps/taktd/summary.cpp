@@ -38,9 +38,9 @@ std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_
                         std::uint64_t warnings) {
   const BusStatus& bus = bridge.status().bus;
   const TimingHistograms& timing = master.timing();
-  std::string text =
-      fmt::format("{} cycles, {} missed, {} late, {} with a missing PDO\n", bus.beats,
-                  bus.cycles_missed, bus.cycles_late, bus.images_incomplete);
+  std::string text = fmt::format(
+      "{} cycles, {} missed, {} late, {} without outputs, {} with a missing PDO\n", bus.beats,
+      bus.cycles_missed, bus.cycles_late, bus.outputs_skipped, bus.images_incomplete);
   text += times_line("SYNC lateness", timing.sync_lateness);
   text += times_line("SYNC to image", timing.sync_to_publish);
   text += times_line("command age", timing.command_age);

@@ -1,50 +1,22 @@
 #include <string>
 
-#include "master/core/boot_remedy_objects.hpp"
+#include "master/core/boot_remedy_abort.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/core/report_text.hpp"
 #include "master/core/request.hpp"
-#include "master/wire/bytes.hpp"
-#include "master/wire/sdo_abort.hpp"
 
 namespace takt {
 namespace {
 
-bool is_mapping_entry(ObjectKey object) noexcept {
-  const bool mapping = (object.index >= 0x1600 && object.index <= 0x17FF) ||
-                       (object.index >= 0x1A00 && object.index <= 0x1BFF);
-  return mapping;
-}
-
-/// "TPDO2" of a communication or mapping object, "the PDO" of others.
-std::string pdo_name(ObjectKey object) {
-  const unsigned area = object.index & 0xFE00U;
-  const std::string number = std::to_string((object.index & 0x1FFU) + 1);
-  if (area == 0x1800 || area == 0x1A00) return "TPDO" + number;
-  if (area == 0x1400 || area == 0x1600) return "RPDO" + number;
-  return "the PDO";
-}
-
-/// The object that a mapping entry maps: "6077:00"; else the written object itself.
-std::string mapped_object(const BootStep& step) {
-  if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
-    return to_string(step.object);
-  }
-  const auto entry = load_le<std::uint32_t>(std::span{step.value});
-  return to_string(ObjectKey{static_cast<std::uint16_t>(entry >> 16),
-                             static_cast<std::uint8_t>(entry >> 8 & 0xFF)});
-}
-
 std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const std::string id = std::to_string(int{node.id.value()});
   if (failure.node_state == NmtState::unknown) {
-    const std::string bus = plan.interface.empty() ? "can0" : plan.interface;
     return "nothing at all was heard of node " + id +
            ": is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? "
            "Is "
            "its node id " +
            id + " and its bit rate " + std::to_string(plan.bitrate / 1000) +
-           " kbit/s? `takt scan --bus " + bus + "` lists who answers";
+           " kbit/s? `takt dump --bus " + interface_text(plan) + "` shows who talks on the bus";
   }
   if (failure.node_state == NmtState::stopped) {
     return "the node is in NMT state STOPPED, where it answers no SDO: let the boot reset it "
@@ -82,90 +54,6 @@ std::string against_identity(const NodePlan& node, const BootFailure& failure) {
   }
 }
 
-std::string against_refused_mapping(const BootStep& step, const BootFailure& failure) {
-  const std::string pdo = pdo_name(step.object);
-  const std::string object = mapped_object(step);
-  switch (failure.abort_code) {
-    case abort_code::not_mappable:
-    case abort_code::write_only:
-      return "the device does not let " + object + " be mapped into " + pdo +
-             ", whatever its EDS says: take " + object + " out of the mapping of " + pdo +
-             " in the network file, or map a related object";
-    case abort_code::mapping_too_long:
-      return "the device can't hold so much in " + pdo +
-             ": map fewer or shorter objects, or spread them over two PDOs";
-    case abort_code::no_object:
-    case abort_code::no_sub_index:
-      return step.object.sub == 0 || object == to_string(step.object)
-                 ? "the device has no " + to_string(step.object) +
-                       ": it has fewer PDOs or entries than its EDS says; use another PDO number"
-                 : "the device has no object " + object +
-                       ": its firmware is older than the EDS; take it out of the mapping of " + pdo;
-    case abort_code::read_only:
-      return "the mapping of " + pdo +
-             " is fixed in this device: remove its `mapping` from the network file, so that the "
-             "device's own mapping is used";
-    default:
-      return "the device refuses to change " + pdo +
-             " now: it may want to be reset first (`reset: communication`), or its mapping is "
-             "fixed; then remove its `mapping` from the network file";
-  }
-}
-
-std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
-  const std::string object = to_string(failure.object);
-  const std::string verb = failure.downloading ? "written" : "read";
-  if (failure.downloading && is_mapping_entry(step.object)) {
-    return against_refused_mapping(step, failure);
-  }
-  const bool of_state = failure.abort_code == abort_code::device_state ||
-                        failure.abort_code == abort_code::local_control ||
-                        failure.abort_code == abort_code::hardware_error;
-  std::string text = of_state ? std::string{} : against_refused_setting(node, failure);
-  if (text.empty()) text = against_rare_abort(failure);
-  if (!text.empty()) return text;
-  switch (failure.abort_code) {
-    case abort_code::no_object:
-    case abort_code::no_sub_index:
-      return "the device has no " + object + ", although " + node.description_file +
-             " may list it: compare the firmware with the EDS, or remove the entry from the "
-             "network file";
-    case abort_code::read_only:
-      return object + " can't be written: remove it from the network file";
-    case abort_code::write_only:
-      return failure.downloading
-                 ? "the device says that " + object +
-                       " can only be written, although it was "
-                       "written: look it up in the manual"
-                 : object +
-                       " can't be read: does the EDS say `wo`? Then it is written without "
-                       "comparing";
-    case abort_code::length_mismatch:
-    case abort_code::length_too_high:
-    case abort_code::length_too_low:
-      return "the device holds " + object +
-             " in another data type than the EDS says: give the data type in the network file";
-    case abort_code::invalid_value:
-    case abort_code::value_too_high:
-    case abort_code::value_too_low:
-    case abort_code::incompatible_parameters:
-      return "the device does not take this value for " + object +
-             ": look up its range in the manual and correct the network file";
-    case abort_code::cannot_store:
-    case abort_code::local_control:
-    case abort_code::device_state:
-      return object + " can't be " + verb +
-             " in the present state of the device: disable the drive, leave local control, or let "
-             "the boot reset it (`reset: communication`, or `reset: node`)";
-    case abort_code::hardware_error:
-      return "the device reports a hardware error: power it off and on; if that does not help, its "
-             "storage may be worn";
-    default:
-      return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
-             " in the manual of the device";
-  }
-}
-
 std::string against_mismatch(const NodePlan& node, const BootStep& step,
                              const BootFailure& failure) {
   if (failure.letter == 'C' || failure.letter == 'D' || failure.letter >= 'M') {
@@ -177,6 +65,32 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
   }
   return "the device holds another value in " + to_string(failure.object) +
          " than the network file expects: correct whichever is wrong";
+}
+
+/// The device has accepted a block download and then fell silent. CiA 301, 7.2.4.3.9.
+bool accepted_block(const BootFailure& failure) noexcept {
+  return failure.received_size != 0 && (failure.received[0] & 0xE3) == 0xA0;
+}
+
+constexpr std::uint16_t sync_length_emcy = 0x8240;
+
+/// A SYNC came before 0x1019 was written, and some stacks keep that error until their next reset.
+std::string against_counter() {
+  return "SYNC came with its counter before the device knew of it (EMCY 0x8240), and this error "
+         "keeps it out of OPERATIONAL; it may pass with the next try. Let the device keep 0x1019 "
+         "(`store_configuration: 1` of this node), or go without counter (`sync_overflow: 0`)";
+}
+
+/// Segments without end, or more of them than any object has that a boot looks at.
+std::string against_long_answer(const BootStep& step, const BootFailure& failure) {
+  const std::string object = to_string(failure.object);
+  if (!step.value.empty() && step.value.size() < request_bytes) {
+    return "the device sends more than " + std::to_string(request_bytes) + " bytes for " + object +
+           ", which has " + std::to_string(step.value.size()) +
+           ": its SDO server is faulty. Look for other firmware, or leave the object out";
+  }
+  return object + " is longer than " + std::to_string(request_bytes) +
+         " bytes: remove it from the network file";
 }
 
 std::string against_timeout(const BusPlan& plan, const NodePlan& node, const BootStep& step,
@@ -193,12 +107,14 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
              "this node, or `heartbeat_producer` where the device has 1017:00; some CAN "
              "controllers and gateways do not pass remote frames";
     case BootAction::await_operational:
+      if (failure.emcy == sync_length_emcy && plan.cycle.sync_overflow != 0)
+        return against_counter();
       return "the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its "
              "EMCY messages, 0x1001 and 0x1003), or a second master holds it back";
     default:
       break;
   }
-  if (failure.downloading && failure.moved != 0) {
+  if (failure.downloading && (failure.moved != 0 || accepted_block(failure))) {
     return "the device fell silent in the middle of a long value: did it lose power, restart, or "
            "does another master talk to it? Raise `sdo_timeout_ms` of this node where it only is "
            "slow. The write was not repeated, because it might act twice";
@@ -279,8 +195,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::timeout:
       return against_timeout(plan, node, step, failure);
     case SdoFault::too_long:
-      return to_string(failure.object) + " is longer than " + std::to_string(request_bytes) +
-             " bytes: remove it from the network file";
+      return against_long_answer(step, failure);
     case SdoFault::cancelled:
       return "the node restarts again and again while it is booted: weak supply, its watchdog, or "
              "another master that resets it";
@@ -288,6 +203,8 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::refused:
     case SdoFault::no_such_pdo:
     case SdoFault::not_exchanging:
+    case SdoFault::lss_failed:
+    case SdoFault::lss_refused:
       break;
   }
   return {};

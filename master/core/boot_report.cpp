@@ -38,6 +38,7 @@ std::string value_text(std::span<const std::uint8_t> bytes, std::size_t size) {
 
 std::string wanted_text(const BootStep& step) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(step.value.size());
   for (const std::byte byte : step.value) bytes.push_back(static_cast<std::uint8_t>(byte));
   std::string text = value_text(bytes, bytes.size());
   if (step.mask != 0xFFFF'FFFF && bytes.size() <= 4) text += " under the mask " + hex(step.mask, 8);
@@ -47,7 +48,7 @@ std::string wanted_text(const BootStep& step) {
 std::string sent_text(const NodePlan& node, const BootFailure& failure) {
   if (failure.sent_size == 0) return {};
   const auto bytes = std::span{failure.sent}.first(std::min<std::size_t>(failure.sent_size, 8));
-  return frame_text(sdo_request_cob_id(node.id), bytes) + "   " +
+  return frame_text(node.sdo.channel_of(node.id).request, bytes) + "   " +
          (failure.downloading ? "write " : "read ") + to_string(failure.object);
 }
 
@@ -89,7 +90,7 @@ std::string received_text(const NodePlan& node, const BootStep& step, const Boot
   if (failure.received_size == 0) return silence_text(step, failure);
   const auto bytes =
       std::span{failure.received}.first(std::min<std::size_t>(failure.received_size, 8));
-  const std::string text = frame_text(sdo_answer_cob_id(node.id), bytes);
+  const std::string text = frame_text(node.sdo.channel_of(node.id).answer, bytes);
   return failure.fault == SdoFault::timeout ? text + ", then " + silence_text(step, failure) : text;
 }
 
@@ -144,6 +145,8 @@ std::string meaning_text(const BootFailure& failure) {
     case SdoFault::refused:
     case SdoFault::no_such_pdo:
     case SdoFault::not_exchanging:
+    case SdoFault::lss_failed:
+    case SdoFault::lss_refused:
       return {};
   }
   return {};

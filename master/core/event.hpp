@@ -21,6 +21,8 @@ enum class SdoFault : std::uint8_t {
   refused,            ///< requests: the master only observes
   no_such_pdo,        ///< PDO requests: the network file has no such PDO of the node
   not_exchanging,     ///< PDO requests: the node is not operational
+  lss_failed,         ///< LSS requests: the last LssResult of the reply says why
+  lss_refused,        ///< LSS requests: nonsense, or a service that a running master does not offer
 };
 
 /// The one record of a failed boot: all that is needed to explain it. boot_report turns it into

@@ -158,6 +158,10 @@ std::string_view name(SdoFault fault) noexcept {
       return "no such PDO";
     case SdoFault::not_exchanging:
       return "node not operational";
+    case SdoFault::lss_failed:
+      return "LSS service failed";
+    case SdoFault::lss_refused:
+      return "LSS service refused";
   }
   return "unknown";
 }

@@ -8,18 +8,27 @@
 namespace takt {
 
 Network::Network(const BusPlan& plan, NetworkOptions options)
-    : plan_{plan}, observe_{options.observe}, nmt_gate_{plan.start_up.nmt_inhibit}, start_{plan} {
+    : plan_{plan},
+      observe_{options.observe},
+      lss_{plan, requests_, events_},
+      nmt_gate_{plan.start_up.nmt_inhibit},
+      start_{plan},
+      statuses_(plan.nodes.size()),
+      dictionary_{plan, statuses_},
+      server_{default_sdo_channel(plan.master_id), dictionary_} {
   index_.fill(no_session);
+  answers_.fill(no_session);
   sessions_.reserve(plan.nodes.size());
   for (const NodePlan& node : plan.nodes) {
     const auto position = static_cast<std::uint8_t>(sessions_.size());
     index_[node.id.value()] = position;
     stops_drives_ = stops_drives_ || node.on_loss == LossReaction::quick_stop;
     if (node.emcy_cob_id) emcy_ids_.emplace_back(*node.emcy_cob_id, position);
+    answers_[node.sdo.channel_of(node.id).answer.id() & 0x7FF] = position;
     const auto managed = node.boot && !observe_ ? Managed::yes : Managed::no;
     sessions_.emplace_back(node, managed, NodeSession::Shared{events_, requests_, nmt_gate_});
   }
-  statuses_.resize(sessions_.size());
+  streams_.resize(sessions_.size());
   deadlines_.resize(sessions_.size(), never);
 }
 
@@ -37,32 +46,42 @@ void Network::touched(std::size_t index, Time now) noexcept {
   if (sessions_[index].take_loss()) on_loss(index, now);
   statuses_[index] = sessions_[index].status();
   deadlines_[index] = sessions_[index].deadline();
+  if (sessions_[index].streams() == streams_[index]) return;
+  streams_[index] = !streams_[index];
+  streaming_ += streams_[index] ? 1U : static_cast<std::size_t>(-1);
 }
 
 void Network::start(Time now) noexcept {
   if (observe_) return;
   if (plan_.master_heartbeat > Time{}) heartbeat_at_ = now;
   start_.begin(now);
+  lss_.start(now);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     sessions_[i].start(now);
     touched(i, now);
   }
 }
 
-void Network::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
+void Network::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
   if (frame.rtr) return;
+  if (frame.id == lss::answer_cob_id) return lss_.on_frame(frame, now, out);
   if (NodeSession* const sender = emcy_sender(frame.id)) {
     sender->on_emcy(frame, now);
     return touched(static_cast<std::size_t>(sender - sessions_.data()), now);
   }
   if (frame.id.is_extended()) return;
+  if (const std::uint8_t asked = answers_[frame.id.id()]; asked != no_session) {
+    sessions_[asked].on_sdo_answer(frame, now);
+    return touched(asked, now);
+  }
+  if (frame.id == default_sdo_channel(plan_.master_id).request) {
+    if (!observe_) server_.on_frame(frame, now, out);
+    return;
+  }
   const std::uint32_t node = frame.id.id() & 0x7F;
   NodeSession* const peer = session(node);
   if (peer == nullptr) return meet_stranger(frame, now);
   switch (frame.id.id() & ~0x7FU) {
-    case 0x580:
-      peer->on_sdo_answer(frame, now);
-      break;
     case 0x700:
       if (const auto sign = decode_heartbeat(frame)) peer->on_heartbeat(*sign, now);
       break;
@@ -100,6 +119,8 @@ void Network::on_time(Time now, Outbox& out) noexcept {
   send_heartbeat(now, out);
   send_own_commands(now, out);
   send_commands(now, out);
+  if (!observe_) lss_.on_time(now, out, statuses_);
+  serve_own_dictionary(now, out);
   run_sessions(now, out);
   out.set_limit(limit);
 }
@@ -112,6 +133,14 @@ void Network::send_heartbeat(Time now, Outbox& out) noexcept {
   }
   heartbeat_at_ += plan_.master_heartbeat;
   if (heartbeat_at_ <= now) heartbeat_at_ = now + plan_.master_heartbeat;
+}
+
+void Network::serve_own_dictionary(Time now, Outbox& out) noexcept {
+  // A block goes out in one turn, as far as there is room.
+  while (server_.deadline() <= now && out.room() != 0) server_.on_time(now, out);
+  if (const auto order = server_.take_order()) {
+    requests_.accept({.kind = RequestKind::nmt, .node = order->node, .command = order->command});
+  }
 }
 
 void Network::run_sessions(Time now, Outbox& out) noexcept {
@@ -144,7 +173,8 @@ Time Network::first_deadline() const noexcept {
 
 Time Network::deadline() const noexcept {
   if (command_ != nullptr || requests_.has_waiting(0) || !broadcasts_.empty()) return at_once;
-  return std::min({heartbeat_at_, start_.deadline(), first_deadline()});
+  return std::min(
+      {heartbeat_at_, server_.deadline(), start_.deadline(), lss_.deadline(), first_deadline()});
 }
 
 bool Network::submit(const Request& request, Time now) noexcept {
@@ -154,11 +184,11 @@ bool Network::submit(const Request& request, Time now) noexcept {
     requests_.answer(*slot, observe_ ? SdoFault::refused : SdoFault::cancelled);
   } else if (request.kind == RequestKind::nmt) {
     if (request.node > 127) requests_.answer(*slot, SdoFault::no_such_node);
-  } else if (NodeSession* const peer = session(request.node); peer == nullptr) {
-    requests_.answer(*slot, SdoFault::no_such_node);
-  } else {
+  } else if (NodeSession* const peer = session(request.node); peer != nullptr) {
     peer->on_request(now);
     touched(index_[request.node], now);
+  } else if (request.kind != RequestKind::lss) {  // those wait in a lane of their own
+    requests_.answer(*slot, SdoFault::no_such_node);
   }
   return true;
 }
@@ -185,6 +215,7 @@ void Network::begin_stop(Time now) noexcept {
     NmtMessage dropped;
     broadcasts_.pop(dropped);
   }
+  lss_.stop(now);
   requests_.cancel_all();
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     sessions_[i].begin_stop();
@@ -192,8 +223,14 @@ void Network::begin_stop(Time now) noexcept {
   }
 }
 
+bool Network::idle() const noexcept {
+  return !stopping_ && events_.empty() && broadcasts_.empty() && command_ == nullptr &&
+         requests_.idle() && lss_.idle() && server_.idle() &&
+         std::ranges::all_of(sessions_, &NodeSession::idle);
+}
+
 bool Network::stopped() const noexcept {
-  return stopping_ && std::ranges::all_of(sessions_, &NodeSession::stopped);
+  return stopping_ && lss_.stopped() && std::ranges::all_of(sessions_, &NodeSession::stopped);
 }
 
 }  // namespace takt

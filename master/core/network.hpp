@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstddef>
@@ -11,12 +12,15 @@
 #include "master/core/event.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/core/fixed_queue.hpp"
+#include "master/core/lss_service.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/network_start.hpp"
 #include "master/core/node_session.hpp"
 #include "master/core/node_status.hpp"
+#include "master/core/own_dictionary.hpp"
 #include "master/core/request.hpp"
 #include "master/core/request_table.hpp"
+#include "master/core/sdo_server.hpp"
 
 namespace takt {
 
@@ -35,11 +39,11 @@ class Network {
 
   /// Begins to boot all nodes (not when observing).
   void start(Time now) noexcept;
-  /// Takes service frames of nodes (SDO answers, heartbeats, EMCY); others are ignored. O(1). What
-  /// it makes the master say leaves with on_time, within the budget; `out` is not used.
+  /// Takes service frames of nodes (SDO and LSS answers, heartbeats, EMCY); others are ignored.
+  /// O(1). What it makes the master say leaves with on_time, within the budget; `out` is not used.
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
-  /// Time-outs, new SDO requests, heartbeat of the master, NMT. Pushes at most `service_frames`
-  /// frames, fewer where `out` has less room.
+  /// Time-outs, new SDO requests, heartbeat of the master, NMT, LSS. Pushes at most
+  /// `service_frames` frames, fewer where `out` has less room.
   void on_time(Time now, Outbox& out) noexcept;
   /// When on_time is to be called; in the past while frames wait to be sent.
   Time deadline() const noexcept;
@@ -58,11 +62,31 @@ class Network {
   bool stops_drives() const noexcept { return stops_drives_; }
   /// Loss of a node demands that the drives of this node stop. LossReaction::quick_stop.
   bool demands_quick_stop(std::size_t node_index) const noexcept;
+  /// A block transfer is under way: frames come without a request for each.
+  bool streams() const noexcept { return streaming_ != 0; }
+
+  /// The SYNC of another device is gone: NMT stop to every node but that one. SyncLoss::stop.
+  void on_sync_loss() noexcept;
+  /// It is back: they are started again.
+  void on_sync_back() noexcept;
+
+  /// The bus thread did not run for so long: that is no silence of a node.
+  void on_absence(Time away) noexcept;
 
   /// NMT part of the ordered stop: pending requests are answered, nodes go to pre-operational.
   void begin_stop(Time now) noexcept;
   /// All frames of the stop have been handed out.
   bool stopped() const noexcept;
+  /// Nothing is under way: keep() has all that is known.
+  bool idle() const noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(requests_, lss_, nmt_gate_, start_, sessions_, deadlines_, strangers_, own_state_,
+          heartbeat_at_);
+    state.position(turn_, std::max<std::size_t>(sessions_.size(), 1));
+    for (std::size_t i = 0; i < sessions_.size(); ++i) statuses_[i] = sessions_[i].status();
+  }
 
  private:
   static constexpr std::uint8_t no_session = 0xFF;
@@ -82,6 +106,7 @@ class Network {
   void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
             std::uint8_t node = 0) noexcept;
   NodeSession* emcy_sender(CobId id) noexcept;
+  void serve_own_dictionary(Time now, Outbox& out) noexcept;
   void run_sessions(Time now, Outbox& out) noexcept;
   Time first_deadline() const noexcept;
   std::size_t following(std::size_t index) const noexcept;
@@ -92,16 +117,22 @@ class Network {
   bool stops_drives_ = false;  // some node's loss does
   EventQueue events_;
   RequestTable requests_;
+  LssService lss_;
   NmtGate nmt_gate_;
   NetworkStart start_;
   FixedQueue<NmtMessage, 4> broadcasts_;  // of the master itself
   std::vector<NodeSession> sessions_;     // order of plan.nodes
   std::vector<NodeStatus> statuses_;      // copies, one block for the reader
+  std::vector<bool> streams_;             // of the sessions
+  std::size_t streaming_ = 0;             // how many of them
   std::vector<Time> deadlines_;           // of the sessions, one block to search
   std::array<std::uint8_t, 128> index_;   // node id -> session
   std::vector<std::pair<CobId, std::uint8_t>>
-      emcy_ids_;                    // other than 0x080 + id, and their session
-  std::bitset<128> strangers_;      // ids that were told
+      emcy_ids_;                            // other than 0x080 + id, and their session
+  std::bitset<128> strangers_;              // ids that were told
+  std::array<std::uint8_t, 2048> answers_;  // COB-ID of an SDO answer -> session
+  OwnDictionary dictionary_;
+  SdoServer server_;
   std::size_t turn_ = 0;            // session that sends first, round robin
   RequestSlot* command_ = nullptr;  // NMT request that waits to be sent
   NmtState own_state_ = NmtState::bootup;

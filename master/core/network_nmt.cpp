@@ -62,6 +62,28 @@ bool Network::demands_quick_stop(std::size_t node_index) const noexcept {
   return false;
 }
 
+void Network::on_sync_loss() noexcept {
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    if (plan_.nodes[i].id == plan_.cycle.sync_producer) continue;
+    sessions_[i].pause();
+    deadlines_[i] = sessions_[i].deadline();
+  }
+}
+
+void Network::on_absence(Time away) noexcept {
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].excuse(away);
+    deadlines_[i] = sessions_[i].deadline();
+  }
+}
+
+void Network::on_sync_back() noexcept {
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].resume();
+    deadlines_[i] = sessions_[i].deadline();
+  }
+}
+
 /// The master is not addressed by its own broadcast: it follows by itself. CiA 302-2.
 void Network::command_master(NmtCommand command) noexcept {
   switch (command) {

@@ -25,6 +25,11 @@ class NetworkStart {
   /// Somebody waits for it, so it is worth telling.
   bool matters() const noexcept;
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(ready_, late_at_);
+  }
+
  private:
   const BusPlan* plan_;
   bool ready_ = false;

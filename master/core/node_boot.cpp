@@ -1,4 +1,5 @@
 #include <bit>
+#include <utility>
 
 #include "master/core/node_session.hpp"
 #include "master/wire/bytes.hpp"
@@ -13,6 +14,14 @@ constexpr Time default_reboot_delay = std::chrono::seconds{1};
 bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
   return a.step == b.step && a.fault == b.fault && a.abort_code == b.abort_code &&
          a.value == b.value && a.node_state == b.node_state;
+}
+
+constexpr std::uint16_t sync_length_emcy = 0x8240;
+
+/// A SYNC with counter came before the node had its 0x1019. Some stacks keep that error, and stay
+/// out of OPERATIONAL, until their next reset; by then they know of the counter.
+bool met_counter_too_early(const BootFailure& failure) noexcept {
+  return failure.action == BootAction::await_operational && failure.emcy == sync_length_emcy;
 }
 
 /// The first, second, fourth, eighth ...: a node that stays away must not fill the log.
@@ -53,7 +62,9 @@ void NodeSession::on_boot_done(Time now) noexcept {
   status_.boot_letter = runner_.keeps_running() ? 'L' : '\0';
   ++status_.boot_count;
   same_failures_ = 0;
+  counter_excused_ = false;
   tell_replaced(now);
+  tell_firmware(now);
   const bool untouched =
       runner_.keeps_running() || (state_at_boot_ == NmtState::operational && !runner_.reset_sent());
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(now - runner_.began());
@@ -91,6 +102,14 @@ void NodeSession::tell_replaced(Time now) noexcept {
   if (serial) serial_number_ = serial;
 }
 
+void NodeSession::tell_firmware(Time now) noexcept {
+  const auto is = runner_.firmware();
+  if (!is || !plan_->firmware) return;
+  Firmware assumed = plan_->firmware->assumed;
+  if (plan_->firmware->of_revision()) assumed.parts[2] = 0;  // a revision has two parts
+  if (*is != assumed) tell(EventKind::firmware_differs, now, is->packed());
+}
+
 void NodeSession::on_boot_failed(Time now) noexcept {
   runner_.stop();
   guard_.stop();
@@ -100,10 +119,14 @@ void NodeSession::on_boot_failed(Time now) noexcept {
   const bool silent = failure.action == BootAction::await_alive;
   retry_later(BootState::failed, silent ? BootRunner::From::bootup : BootRunner::From::beginning,
               now);
+  if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
+  if (met_counter_too_early(failure) && !std::exchange(counter_excused_, true)) {
+    retry_at_ = now;  // is no failure of the node yet
+    return;
+  }
   status_.boot_tried = true;
   status_.boot_letter = failure.letter;
   if (failure.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
-  if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
   same_failures_ = same_cause(failure, last_failure_) ? same_failures_ + 1 : 1;
   last_failure_ = failure;
   if (!worth_telling(same_failures_)) return;

@@ -28,9 +28,19 @@ class NodeGuard {
   /// Answers whose toggle bit repeated, in a row.
   std::uint32_t repeated() const noexcept { return repeated_; }
 
+  /// The master itself was away for so long: nobody is silent for that.
+  void excuse(Time away) noexcept {
+    if (silent_from_ != never) silent_from_ += away;
+  }
+
   /// Time of silence when the life time is over, told once; an answer arms it again.
   std::optional<Time> on_time(Time now) noexcept;
   Time deadline() const noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(next_request_, silent_from_, last_toggle_, repeated_);
+  }
 
  private:
   Time lost_at() const noexcept {

@@ -10,6 +10,7 @@ namespace takt {
 namespace {
 
 constexpr Time default_sdo_timeout = std::chrono::seconds{1};
+constexpr Time transfer_look = std::chrono::milliseconds{20};
 
 }  // namespace
 
@@ -17,7 +18,7 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
     : plan_{&plan},
       managed_{managed},
       shared_{shared},
-      client_{plan.id},
+      client_{plan.sdo.channel_of(plan.id), plan.sdo.block},
       runner_{plan.boot_plan},
       watch_{plan.heartbeat_timeout},
       guard_{plan.guard},
@@ -43,29 +44,64 @@ void NodeSession::advance(Time now) noexcept {
 
 void NodeSession::follow_request(Time now) noexcept {
   if (active_ != nullptr) {
+    follow_transfer(now);
     const auto result = client_.take_result();
     if (!result) return;
-    if (result->fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
-    shared_.requests.answer(
-        *active_, result->fault, result->abort_code,
-        active_->request.kind == RequestKind::sdo_upload && result->fault == SdoFault::none
-            ? result->size
-            : 0);
-    active_ = nullptr;
+    answer_request(*result);
   }
   const bool boot_is_due = waits_to_boot() && now >= retry_at_;
-  if (stopping_ || boot_is_due || !client_.idle()) return;
-  active_ = shared_.requests.next(plan_->id.value());
-  if (active_ == nullptr) return;
+  if (stopping_ || boot_is_due || !client_.idle() || !next_request()) return;
+  begin_request(now);
+}
+
+/// Tells how far a file is and whether it is still wanted.
+void NodeSession::follow_transfer(Time now) noexcept {
+  SdoTransfer* const transfer = active_->request.transfer;
+  if (transfer == nullptr) return;
+  transfer->done.store(static_cast<std::uint32_t>(client_.progress()), std::memory_order_relaxed);
+  if (transfer->cancel.load(std::memory_order_relaxed)) client_.cancel();
+  next_look_ = now + transfer_look;
+}
+
+void NodeSession::answer_request(const SdoResult& result) noexcept {
+  if (result.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
+  const bool upload = active_->request.kind == RequestKind::sdo_upload;
+  SdoTransfer* const transfer = active_->request.transfer;
+  if (transfer != nullptr) {
+    transfer->done.store(static_cast<std::uint32_t>(result.size), std::memory_order_relaxed);
+  }
+  const bool carries = upload && transfer == nullptr && result.fault == SdoFault::none;
+  shared_.requests.answer(*active_, result.fault, result.abort_code, carries ? result.size : 0);
+  active_ = nullptr;
+  next_look_ = never;
+}
+
+/// Those that were called off while they waited are answered at once.
+bool NodeSession::next_request() noexcept {
+  for (;;) {
+    active_ = shared_.requests.next(plan_->id.value());
+    if (active_ == nullptr) return false;
+    const SdoTransfer* const transfer = active_->request.transfer;
+    if (transfer == nullptr || !transfer->cancel.load(std::memory_order_relaxed)) return true;
+    shared_.requests.answer(*active_, SdoFault::cancelled);
+  }
+}
+
+void NodeSession::begin_request(Time now) noexcept {
   Request& request = active_->request;
   const Time own = plan_->sdo_timeout > Time{} ? plan_->sdo_timeout : default_sdo_timeout;
-  const Time timeout = request.timeout > Time{} ? request.timeout : own;
-  if (request.kind == RequestKind::sdo_upload) {
-    client_.upload(request.object, request.data, timeout);
-  } else {
-    const std::size_t size = std::min<std::size_t>(request.size, request.data.size());
-    client_.download(request.object, std::span{request.data}.first(size), timeout);
+  const Time timeout =
+      request.timeout > Time{} ? request.timeout : plan_->sdo.timeout_of(request.object, own);
+  SdoTransfer* const transfer = request.transfer;
+  const bool upload = request.kind == RequestKind::sdo_upload;
+  if (transfer != nullptr) {
+    next_look_ = now + transfer_look;
+    if (upload) return client_.upload(request.object, transfer->data, timeout, SdoMode::block);
+    return client_.download(request.object, transfer->data, timeout);
   }
+  if (upload) return client_.upload(request.object, request.data, timeout);
+  const std::size_t size = std::min<std::size_t>(request.size, request.data.size());
+  client_.download(request.object, std::span{request.data}.first(size), timeout);
 }
 
 void NodeSession::on_request(Time now) noexcept { advance(now); }
@@ -148,6 +184,22 @@ void NodeSession::halt() noexcept {
   if (managed_ == Managed::yes && !stopping_) own_command_ = NmtCommand::stop;
 }
 
+void NodeSession::pause() noexcept {
+  const bool runs = status_.boot == BootState::ready && wanted_ == NmtState::operational;
+  if (managed_ == Managed::no || stopping_ || halted_ || !runs) return;
+  paused_ = true;
+  own_command_ = NmtCommand::stop;
+}
+
+void NodeSession::resume() noexcept {
+  if (!std::exchange(paused_, false) || stopping_) return;
+  if (own_command_ == NmtCommand::stop) {
+    own_command_.reset();  // it was not sent yet
+  } else if (wanted_ == NmtState::stopped) {
+    own_command_ = NmtCommand::start;  // unless it was told something else since
+  }
+}
+
 void NodeSession::disarm() noexcept {
   watch_.disarm();
   guard_.node_was_reset();
@@ -160,10 +212,16 @@ void NodeSession::node_was_reset() noexcept {
   if (active_ == nullptr) return;
   shared_.requests.answer(*active_, SdoFault::cancelled);
   active_ = nullptr;
+  next_look_ = never;
 }
 
 void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
-  if (!watch_.on_emcy(emcy_of(plan_->id, frame), now, status_)) return;
+  Emcy emcy = emcy_of(plan_->id, frame);
+  if (frame.length == 1) {  // no code: what was told before stands
+    emcy.code = status_.last_emcy;
+    emcy.error_register = status_.error_register;
+  }
+  if (!watch_.on_emcy(emcy, now, status_)) return;
   Event event{.when = now,
               .kind = EventKind::emcy,
               .node = plan_->id.value(),
@@ -275,9 +333,15 @@ Time NodeSession::deadline() const noexcept {
   if (own_command_) return at_once;
   Time first = std::min(client_.deadline(), guard_.deadline());
   if (booting()) return std::min(first, runner_.deadline());
-  first = std::min(first, watch_.deadline());
+  first = std::min({first, watch_.deadline(), next_look_});
   if (waits_to_boot() && active_ == nullptr) first = std::min(first, retry_at_);
   return first;
+}
+
+void NodeSession::excuse(Time away) noexcept {
+  watch_.excuse(away);
+  guard_.excuse(away);
+  client_.excuse(away);
 }
 
 void NodeSession::begin_stop() noexcept {
@@ -290,6 +354,7 @@ void NodeSession::begin_stop() noexcept {
   client_.cancel();
   client_.take_result();
   active_ = nullptr;  // the network answers all requests
+  next_look_ = never;
   status_.boot = BootState::idle;
   retry_at_ = never;
 }

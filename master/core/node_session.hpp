@@ -25,6 +25,11 @@ class NmtGate {
   bool open(Time now) const noexcept { return now >= next_; }
   void sent(Time now) noexcept { next_ = now + inhibit_; }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(next_);
+  }
+
  private:
   Time inhibit_;
   Time next_{};
@@ -60,6 +65,8 @@ class NodeSession {
   /// False: it had nothing to send, or `out` has no room.
   bool on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
+  /// The master itself was away for so long: no time-out of an answer or a heartbeat counts it.
+  void excuse(Time away) noexcept;
 
   /// The network is started: nodes that come later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
@@ -70,21 +77,47 @@ class NodeSession {
   /// The same without the command: it went to all nodes.
   void await_command() noexcept;
 
+  /// NMT stop to a node that is operational, until resume() starts it again.
+  void pause() noexcept;
+  void resume() noexcept;
+
   /// Gives up what is running and leaves the node in pre-operational.
   void begin_stop() noexcept;
   bool stopped() const noexcept;
 
+  /// A block transfer is under way.
+  bool streams() const noexcept { return client_.streams(); }
   const NodeStatus& status() const noexcept { return status_; }
+  /// No boot, no transfer and no command is under way.
+  bool idle() const noexcept {
+    return !booting() && active_ == nullptr && !own_command_ && client_.idle() && !stopping_ &&
+           !loss_;
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(status_, client_, watch_, guard_, twins_);
+    state(retry_at_, retry_from_, wanted_, heartbeats_out_, state_at_boot_, emcys_at_boot_);
+    state(same_failures_, counter_excused_, serial_number_, progress_told_, bootups_);
+    state(bootups_since_, silent_, halted_, paused_, network_started_);
+    BootFailure& last = last_failure_;  // what the next one is compared with
+    state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
+  }
 
  private:
   void boot(BootRunner::From from, Time now) noexcept;
   void advance(Time now) noexcept;
   void follow_boot(Time now) noexcept;
   void follow_request(Time now) noexcept;
+  void follow_transfer(Time now) noexcept;
+  void answer_request(const SdoResult& result) noexcept;
+  bool next_request() noexcept;
+  void begin_request(Time now) noexcept;
   void on_boot_failed(Time now) noexcept;
   void on_boot_done(Time now) noexcept;
   void tell_progress(Time now) noexcept;
   void tell_replaced(Time now) noexcept;
+  void tell_firmware(Time now) noexcept;
   bool restless(Time now) noexcept;
   void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
   void on_bootup(Time now) noexcept;
@@ -115,6 +148,7 @@ class NodeSession {
   NodeWatch watch_;
   NodeGuard guard_;
   RequestSlot* active_ = nullptr;
+  Time next_look_ = never;  // at a transfer, whether it is still wanted
   Time retry_at_ = never;
   BootRunner::From retry_from_ = BootRunner::From::beginning;
   NmtState wanted_ = NmtState::unknown;  // by the newest NMT command
@@ -122,6 +156,7 @@ class NodeSession {
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
   std::uint32_t same_failures_ = 0;  // in a row
+  bool counter_excused_ = false;     // it was booted again for a SYNC that came too early
   BootFailure last_failure_;
   TwinWatch twins_;
   std::optional<std::uint32_t> serial_number_;  // of the device that was booted last
@@ -132,6 +167,7 @@ class NodeSession {
   bool silent_ = false;                    // heartbeat lost and not back
   bool stopping_ = false;
   bool halted_ = false;
+  bool paused_ = false;
   bool loss_ = false;
   bool network_started_ = false;
 };

@@ -22,6 +22,10 @@ class NodeWatch {
   Sign on_heartbeat(NmtState state, Time now, NodeStatus& status) noexcept;
   /// The node was told to reset, or silence is expected for another reason.
   void disarm() noexcept { deadline_ = never; }
+  /// The master itself was away for so long: nobody is silent for that.
+  void excuse(Time away) noexcept {
+    if (deadline_ != never) deadline_ += away;
+  }
   Time deadline() const noexcept { return deadline_; }
   /// Time of silence when the heartbeat is lost, told once; the next heartbeat arms it again.
   std::optional<Time> on_time(Time now, NodeStatus& status) noexcept;
@@ -32,6 +36,11 @@ class NodeWatch {
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;
   /// EMCYs that were not told since the last call.
   std::uint32_t take_untold_emcys() noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(deadline_, emcy_window_, emcys_in_window_, untold_emcys_);
+  }
 
  private:
   static constexpr std::uint32_t emcys_per_second = 10;

@@ -20,6 +20,11 @@ class PdoExchange {
   PdoOutputs& outputs() noexcept { return outputs_; }
   const WorkingImage& image() const noexcept { return image_; }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(image_, inputs_, outputs_);
+  }
+
  private:
   WorkingImage image_;
   PdoInputs inputs_;

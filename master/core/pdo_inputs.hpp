@@ -59,6 +59,12 @@ class PdoInputs {
   /// The row of a received frame, of an MPDO the one of its object; else no_row.
   std::uint16_t row_of(const Frame& frame) const noexcept;
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(rows_, marks_, receptions_, beat_, cycle_, sync_, sync_before_, last_arrival_, expected_,
+          outstanding_);
+  }
+
  private:
   static constexpr std::uint64_t not_due = ~0ULL;
   static constexpr std::uint8_t patience = 3;  ///< misses in a row after which nobody waits
@@ -87,6 +93,12 @@ class PdoInputs {
     std::uint32_t length_errors = 0;
     std::uint32_t too_long = 0;
     Time deadline{};
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(due, last_beat, expires, window, misses, reception, known, waited, stale, odd_length,
+            was_late, missing, late, length_errors, too_long);
+    }
   };
 
   std::uint16_t find_extended(CobId id) const noexcept;

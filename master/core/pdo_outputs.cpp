@@ -156,15 +156,44 @@ std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
     if (!row.ready || !row.open) continue;
     const PdoRow& pdo = plan_.pdos.rpdos[i];
     row.due = due(i, moment.now) || (together && row.pending && pdo.synchronous());
-    if (!row.due) continue;
-    Frame& frame = frames_[packed_count_];
-    frame.id = pdo.cob_id;
-    frame.length = pdo.length;
-    frame.rtr = false;
-    store(row.word, frame);
-    packed_[packed_count_++] = static_cast<std::uint16_t>(i);
+    if (row.due) add_frame(i);
   }
   ++turn_;
+  return {frames_.data(), packed_count_};
+}
+
+const Frame& PdoOutputs::add_frame(std::size_t position) noexcept {
+  const PdoRow& pdo = plan_.pdos.rpdos[position];
+  Frame& frame = frames_[packed_count_];
+  frame.id = pdo.cob_id;
+  frame.length = pdo.length;
+  frame.rtr = false;
+  store(rows_[position].word, frame);
+  packed_[packed_count_++] = static_cast<std::uint16_t>(position);
+  return frame;
+}
+
+std::span<const Frame> PdoOutputs::pack_less(
+    std::int64_t bits, std::int64_t (*bits_of)(const Frame&) noexcept) noexcept {
+  const auto wanted = [this](std::size_t position, bool synchronous) {
+    const Row& row = rows_[position];
+    return row.open && row.ready && row.due &&
+           plan_.pdos.rpdos[position].synchronous() == synchronous;
+  };
+  packed_count_ = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (wanted(i, true)) bits -= bits_of(add_frame(i));
+  }
+  if (bits < 0) packed_count_ = 0;
+  const std::size_t first = next_event_;
+  for (std::size_t k = 0; k < rows_.size() && bits >= 0; ++k) {
+    const std::size_t i = (first + k) % rows_.size();
+    if (!wanted(i, false)) continue;
+    bits -= bits_of(add_frame(i));
+    if (bits >= 0) continue;
+    --packed_count_;
+    next_event_ = i;
+  }
   return {frames_.data(), packed_count_};
 }
 

@@ -38,6 +38,11 @@ class PdoOutputs {
   /// The frames that are due, in the order of the table; valid until the next call. `set_points`
   /// holds one per output signal.
   std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// Not all that were packed fit: the synchronous ones, which belong together, and of the others
+  /// as many as have room in so many bits; those take turns. None where the synchronous ones alone
+  /// do not fit. Valid until the next pack().
+  std::span<const Frame> pack_less(std::int64_t bits,
+                                   std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
   /// The first `count` of the packed frames went out; the others are tried again.
   void sent(std::size_t count, Time now) noexcept;
 
@@ -45,8 +50,13 @@ class PdoOutputs {
   void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
                OutputMoment moment) noexcept;
 
-  /// Ordered stop: every commanded output takes its fallback and commands are no longer heard.
+  /// Ordered stop, or SYNC is lost: every commanded output takes its fallback and commands are no
+  /// longer heard.
   void fall_back() noexcept;
+  /// The end of fall_back(): each output keeps its fallback until its next command.
+  void hear_again() noexcept { stopping_ = false; }
+  /// It was commanded, and its fallback is in force.
+  bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
   /// Ordered stop: this value from now on, whatever is commanded.
   void force(SignalIndex signal, std::int64_t value) noexcept;
   /// The next command is heard again.
@@ -58,6 +68,12 @@ class PdoOutputs {
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
   RpdoStatus status(std::size_t row) const noexcept {
     return {.sent = rows_[row].sent, .ready = rows_[row].ready};
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(outputs_, rows_, begun_, turn_, stopping_);
+    state.position(next_event_, rows_.size());
   }
 
  private:
@@ -72,6 +88,11 @@ class PdoOutputs {
     bool commanded = false;   ///< and that value was commanded
     bool fallen = false;      ///< its fallback is in force
     bool forced = false;
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(expires, generation, limit, known, commanded, fallen, forced);
+    }
   };
   struct Row {
     std::uint64_t word = 0;  ///< as it was packed last
@@ -88,6 +109,11 @@ class PdoOutputs {
     SignalIndex first_risen = 0;
     std::uint16_t fallen = 0;  ///< signals that fell back in this pack
     std::uint16_t risen = 0;   ///< signals that left their fallback in this pack
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(word, last_sent, sent, open, ready, ever_sent, pending, due, held_told, partial);
+    }
   };
   struct Built {
     std::uint64_t word = 0;
@@ -125,6 +151,7 @@ class PdoOutputs {
   /// Builds all rows. True: one set of commands has changed several synchronous ones.
   bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   bool due(std::size_t row, Time now) const noexcept;
+  const Frame& add_frame(std::size_t row) noexcept;
   void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
   void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
             std::uint32_t detail = 0) noexcept;
@@ -142,7 +169,8 @@ class PdoOutputs {
   std::vector<Frame> frames_;
   std::vector<std::uint16_t> packed_;
   std::size_t packed_count_ = 0;
-  std::uint64_t turn_ = 0;  ///< packs so far: the raster of types 2..240, one for all rows
+  std::size_t next_event_ = 0;  ///< row whose turn it is where not all fit
+  std::uint64_t turn_ = 0;      ///< packs so far: the raster of types 2..240, one for all rows
   std::uint32_t fresh_commands_ = 0;
   bool stopping_ = false;
 };

@@ -35,7 +35,15 @@ class PdoRequests {
   /// `row` of PdoTable::tpdos.
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
   bool take(Reply& reply) noexcept;
+  /// No request is under way.
+  bool idle() const noexcept { return used_ == 0; }
   void cancel_all() noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(order_);
+    for (Poll& poll : polls_) state(poll.next, poll.last_beat);
+  }
 
  private:
   struct Poll {

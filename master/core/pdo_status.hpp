@@ -35,6 +35,11 @@ struct PdoMark {
   std::uint32_t cycle = 0;     ///< of the newest frame, lowest 32 bits
   std::uint8_t flags = 0;
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(received, cycle, flags);
+  }
+
   bool toggle() const noexcept { return (received & 1) != 0; }
   bool is(std::uint8_t flag) const noexcept { return (flags & flag) != 0; }
 };

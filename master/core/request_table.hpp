@@ -18,15 +18,17 @@ struct RequestSlot {
   std::uint32_t abort_code = 0;
 };
 
-/// The requests of applications: one lane a node for SDO and lane 0 for NMT, first come first
-/// served in each. Every accepted request is answered once.
+/// The requests of applications: one lane a node for SDO, lane 0 for NMT, one for LSS, first come
+/// first served in each. Every accepted request is answered once.
 class RequestTable {
  public:
   static constexpr std::size_t capacity = 32;
+  static constexpr std::uint8_t lss_lane = 128;
 
   RequestTable() : slots_(capacity) {}
 
   static std::uint8_t lane(const Request& request) noexcept {
+    if (request.kind == RequestKind::lss) return lss_lane;
     return request.kind == RequestKind::nmt ? std::uint8_t{0} : request.node;
   }
   /// Null: no room.
@@ -39,6 +41,13 @@ class RequestTable {
   /// Answers all that wait or are active.
   void cancel_all() noexcept;
   bool take(Reply& reply) noexcept;
+  /// Nobody waits, for his turn or to be answered.
+  bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(order_);
+  }
 
  private:
   const RequestSlot* oldest(RequestSlot::State state, int lane) const noexcept;

@@ -22,6 +22,11 @@ class TwinWatch {
   /// The device was reset: what was counted before means nothing.
   void restart() noexcept;
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(window_begin_, heartbeats_, full_windows_, asked_, answered_, block_, told_);
+  }
+
  private:
   std::optional<DuplicateSign> once(DuplicateSign sign, Time now) noexcept;
 

@@ -18,6 +18,11 @@ struct WorkingImage {
     return ((stale[signal / 64] >> (signal % 64)) & 1) != 0;
   }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(values, stale);
+  }
+
   std::vector<std::int64_t> values;
   std::vector<std::uint64_t> stale;  ///< bit n % 64 of word n / 64: signal n
 };

@@ -6,6 +6,7 @@
 
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
+#include "master/gateway/sync_message.hpp"
 #include "master/linux/clock.hpp"
 #include "master/wire/bytes.hpp"
 
@@ -24,6 +25,7 @@ Channels::Channels(const std::string& bus)
       layout{channel_name(bus, "LAYOUT")},
       command{channel_name(bus, "COMMAND")},
       status{channel_name(bus, "STATUS")},
+      sync{channel_name(bus, "SYNC")},
       pdos{channel_name(bus, "PDOS")},
       timing{channel_name(bus, "TIMING")},
       event{channel_name(bus, "EVENT")},
@@ -104,10 +106,14 @@ void Bridge::on_message(std::string_view channel, Bytes data) {
   if (channel == channels_.request) on_request(data);
 }
 
+void Bridge::take_command(const command_t& command) {
+  commands_.take(command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
+}
+
 void Bridge::on_command(Bytes data) {
   const auto command = decode<command_t>(data);
   if (!command) return tell_damaged(channels_.command, command.error());
-  commands_.take(*command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
+  take_command(*command);
 }
 
 void Bridge::on_request(Bytes data) {
@@ -117,18 +123,27 @@ void Bridge::on_request(Bytes data) {
   if (auto reply = requests_.take(*request)) answer(std::move(*reply));
 }
 
-/// Answered here: the bus thread keeps no history.
-void Bridge::answer_history(const request_t& request) {
+reply_t Bridge::reply_to(const request_t& request) const {
   reply_t reply{};
   reply.schema = message_schema;
   reply.session = options_.session;
   reply.id = request.id;
   reply.sender = request.sender;
+  return reply;
+}
+
+/// Answered here: the bus thread keeps no history.
+void Bridge::answer_history(const request_t& request) {
+  reply_t reply = reply_to(request);
   reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
   if (reply.good == 0) {
     reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
   } else {
-    const auto bytes = pack(emcy_log_.of(static_cast<std::uint8_t>(request.node_id)));
+    const auto& records = emcy_log_.of(static_cast<std::uint8_t>(request.node_id));
+    for (const NodePlan& node : master_.plan().nodes) {
+      if (node.id.value() == request.node_id) reply.text = pack_texts(records, node.emcy_texts);
+    }
+    const auto bytes = pack(records);
     reply.data.assign(bytes.begin(), bytes.end());
     reply.size = static_cast<std::int32_t>(bytes.size());
   }
@@ -185,7 +200,8 @@ void Bridge::tell(const Event& event) {
 /// An error code of 0 says that all errors are gone.
 void Bridge::remember(const Event& event) {
   const auto code = load_le<std::uint16_t>(std::span{event.bytes});
-  if (event.kind != EventKind::emcy || code == 0) return;
+  const bool coded = event.kind == EventKind::emcy && event.detail != 1;
+  if (!coded || code == 0) return;
   const auto& nodes = master_.plan().nodes;
   const auto found =
       std::ranges::find(nodes, event.node, [](const NodePlan& node) { return node.id.value(); });
@@ -234,6 +250,10 @@ void Bridge::publish_status() {
     part.utime = wall_microseconds(now);
     publish(channels_.status, part);
   }
+  sync_status_t sync = sync_message(master_.plan(), snapshot_.bus);
+  sync.utime = wall_microseconds(now);
+  sync.session = options_.session;
+  publish(channels_.sync, sync);
 }
 
 void Bridge::publish_pdos() {

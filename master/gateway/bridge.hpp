@@ -22,7 +22,7 @@ namespace takt {
 /// LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, status, pdos, timing, event, request, reply;
+  std::string image, layout, command, status, sync, pdos, timing, event, request, reply;
   /// Those that the daemon hears.
   std::vector<std::string> heard() const { return {command, request}; }
 };
@@ -64,8 +64,10 @@ class Bridge {
   void take_messages();
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
+  void take_command(const command_t& command);
   void on_request(Bytes data);
   void send(const Notice& notice);
+  reply_t reply_to(const request_t& request) const;
   void answer_history(const request_t& request);
   void tell_damaged(const std::string& channel, DecodeFault fault);
   void publish_layout();

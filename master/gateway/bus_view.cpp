@@ -53,6 +53,11 @@ void BusView::take(const pdo_status_t& pdos) {
   if (pdos.part + 1 == pdos.parts) pdos_ = std::exchange(pdo_parts_, std::nullopt);
 }
 
+void BusView::take(const sync_status_t& sync) {
+  new_session(sync.session);
+  sync_ = sync;
+}
+
 void BusView::take(const layout_t& layout) {
   new_session(layout.session);
   if (layout.hash == layout_hash_ && !signals_.empty()) return;
@@ -135,7 +140,8 @@ std::string BusViews::take(std::string_view channel, Bytes data) {
   };
   static constexpr Kind kinds[] = {{"STATUS", take_as<status_t>},   {"LAYOUT", take_as<layout_t>},
                                    {"IMAGE", take_as<image_t>},     {"TIMING", take_as<timing_t>},
-                                   {"PDOS", take_as<pdo_status_t>}, {"EVENT", take_as<event_t>}};
+                                   {"PDOS", take_as<pdo_status_t>}, {"EVENT", take_as<event_t>},
+                                   {"SYNC", take_as<sync_status_t>}};
   for (const Kind& kind : kinds) {
     const std::string_view bus = bus_of_channel(channel, kind.what);
     if (bus.empty()) continue;

@@ -20,6 +20,7 @@ class BusView {
   void take(const image_t& image);
   void take(const timing_t& timing) { timing_ = timing; }
   void take(const pdo_status_t& pdos);
+  void take(const sync_status_t& sync);
   void take(event_t event);
 
   /// All nodes of one status_t round; none before the first whole one.
@@ -27,6 +28,7 @@ class BusView {
   const std::optional<timing_t>& timing() const noexcept { return timing_; }
   /// All PDOs of one round; none before the first whole one.
   const std::optional<pdo_status_t>& pdos() const noexcept { return pdos_; }
+  const std::optional<sync_status_t>& sync() const noexcept { return sync_; }
   const std::deque<event_t>& events() const noexcept { return events_; }
 
   /// Signals of the layout once all parts are there, else empty.
@@ -49,6 +51,7 @@ class BusView {
   std::optional<status_t> status_;
   std::optional<status_t> status_parts_;  // growing
   std::optional<timing_t> timing_;
+  std::optional<sync_status_t> sync_;
   std::optional<pdo_status_t> pdos_;
   std::optional<pdo_status_t> pdo_parts_;  // growing
   std::deque<event_t> events_;

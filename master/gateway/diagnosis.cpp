@@ -57,8 +57,11 @@ diagnosis_t Diagnosis::fill(const StatusSnapshot& snapshot) {
   message.tx_queue_exceeded = not_sent && bus.port.last_error == ENOBUFS;
   message.send_error = not_sent && bus.port.last_error != ENOBUFS;
   message.sync_toggle = static_cast<std::int8_t>(bus.beats & 1);
+  message.cycles_missed = static_cast<std::int64_t>(bus.cycles_missed);
+  message.outputs_skipped = static_cast<std::int64_t>(bus.outputs_skipped);
+  message.images_incomplete = static_cast<std::int64_t>(bus.images_incomplete);
   message.cycles_failed =
-      static_cast<std::int64_t>(bus.cycles_missed + bus.outputs_skipped + bus.images_incomplete);
+      message.cycles_missed + message.outputs_skipped + message.images_incomplete;
   const std::uint64_t digest = digest_of(snapshot);
   message.changed = std::exchange(digest_, digest) != digest;
   return message;

@@ -1,6 +1,7 @@
 #include "master/gateway/emcy_log.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "master/wire/bytes.hpp"
 
@@ -12,7 +13,7 @@ constexpr std::size_t record_bytes = 16;
 }  // namespace
 
 void EmcyLog::take(const Event& event, std::int64_t utime) {
-  if (event.kind != EventKind::emcy) return;
+  if (event.kind != EventKind::emcy || event.detail == 1) return;
   std::vector<EmcyRecord>& records = records_[event.node];
   if (records.size() == depth) records.erase(records.begin());
   records.push_back({.utime = utime, .bytes = event.bytes});
@@ -43,6 +44,30 @@ std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes) {
     records.push_back(record);
   }
   return records;
+}
+
+std::string pack_texts(std::span<const EmcyRecord> records, std::span<const EmcyText> texts) {
+  std::string lines;
+  for (const EmcyText& text : texts) {
+    if (std::ranges::find(records, text.code, &EmcyRecord::code) == records.end()) continue;
+    lines += hex(text.code) + ' ' + text.text + '\n';
+  }
+  return lines;
+}
+
+std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines) {
+  constexpr std::size_t code_width = 7;  // "0x1000 "
+  std::map<std::uint16_t, std::string> texts;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+    std::uint16_t code = 0;
+    if (line.size() <= code_width || !line.starts_with("0x")) continue;
+    const char* const end = line.data() + code_width - 1;
+    const auto [at, error] = std::from_chars(line.data() + 2, end, code, 16);
+    if (error == std::errc{} && at == end) texts[code] = line.substr(code_width);
+  }
+  return texts;
 }
 
 }  // namespace takt

@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
 
 namespace takt {
@@ -27,7 +30,7 @@ class EmcyLog {
  public:
   static constexpr std::size_t depth = 32;  ///< records of one node
 
-  /// Events of other kinds are left alone.
+  /// Events of other kinds, and EMCYs of one byte, which have no code, are left alone.
   void take(const Event& event, std::int64_t utime);
   /// Oldest first.
   const std::vector<EmcyRecord>& of(std::uint8_t node) const;
@@ -39,5 +42,10 @@ class EmcyLog {
 /// As the reply to "emcy_history" carries them: 8 bytes time, 8 bytes frame each, little endian.
 std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records);
 std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes);
+
+/// What the device data says of these error codes, as the text of that reply carries it: a line
+/// `0x1000 words` each. Codes that it does not know are left out.
+std::string pack_texts(std::span<const EmcyRecord> records, std::span<const EmcyText> texts);
+std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines);
 
 }  // namespace takt

@@ -12,7 +12,10 @@
 #include <takt/reply_t.hpp>
 #include <takt/request_t.hpp>
 #include <takt/status_t.hpp>
+#include <takt/sync_status_t.hpp>
 #include <takt/timing_t.hpp>
+#include <takt/transfer_state_t.hpp>
+#include <takt/transfer_t.hpp>
 #include <vector>
 
 #include "master/gateway/message_shape.hpp"
@@ -31,6 +34,7 @@ using Bytes = std::span<const std::byte>;
 enum class DecodeFault : std::uint8_t {
   other_version,  ///< the fingerprint is another one: the publisher has other .lcm files
   malformed,      ///< sizes inside do not fit the message
+  out_of_range,   ///< a number that no raw value stands for
 };
 
 std::string_view text(DecodeFault fault) noexcept;
@@ -49,14 +53,20 @@ inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihb
 template <>
 inline constexpr std::string_view message_layout<pdo_status_t> = "lhhhlln(hhbibhllbibhllll)";
 template <>
+inline constexpr std::string_view message_layout<sync_status_t> = "lhlhshllllls";
+template <>
 inline constexpr std::string_view message_layout<reply_t> = "lhllsblsn(b)";
 template <>
 inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
 template <>
 inline constexpr std::string_view message_layout<status_t> =
-    "lhhhlssislllllllllllllfhhhlhhbbbbbblbn(hshhhhihiiiiilsn(i))";
+    "lhhhlssislllllllllllllfhhhlhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
 template <>
 inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
+template <>
+inline constexpr std::string_view message_layout<transfer_t> = "lhllsshihilln(b)";
+template <>
+inline constexpr std::string_view message_layout<transfer_state_t> = "lhllssllllsln(b)";
 
 /// Bytes from outside to a message; hostile bytes cost no more than their own size.
 template <class T>

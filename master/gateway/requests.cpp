@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "master/core/lss_command.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
 #include "master/wire/sdo_abort.hpp"
@@ -43,7 +44,7 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
       return "the device did not answer in time";
     case SdoFault::too_long:
       return "the value is longer than " + std::to_string(request_bytes) +
-             " bytes, the most that a request carries";
+             " bytes, the most that a request carries; read it as a file";
     case SdoFault::no_such_node:
       return "the network file has no such node";
     case SdoFault::refused:
@@ -56,8 +57,21 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
              "plan lists them";
     case SdoFault::not_exchanging:
       return "the node is not operational: PDOs are exchanged in OPERATIONAL only";
+    case SdoFault::lss_failed:
+      return "an LSS service failed";
+    case SdoFault::lss_refused:
+      return "the daemon takes 1 to 28 LSS services a request, and does not activate another bit "
+             "rate while it runs: stop it and use takt lss with --bus";
   }
   return {};
+}
+
+std::string lss_fault_text(const Reply& reply) {
+  if (reply.size < lss_result_bytes || reply.size > reply.data.size()) {
+    return fault_text(reply.fault, reply.abort_code);
+  }
+  return lss_failure_text(unpack_lss_result(
+      std::span{reply.data}.subspan(reply.size - lss_result_bytes).first<lss_result_bytes>()));
 }
 
 Requests::Requests(const BusPlan& plan, RequestsOptions options,
@@ -119,9 +133,23 @@ std::expected<Request, std::string> Requests::translate(const request_t& message
   if (message.service == "pdo_poll" || message.service == "pdo_exchange") {
     return translate_pdo(message);
   }
+  if (message.service == "lss") return translate_lss(message);
   return std::unexpected{"service '" + message.service.substr(0, 32) +
                          "' is not known; there are sdo_upload, sdo_download, pdo_poll, "
-                         "pdo_exchange and nmt"};
+                         "pdo_exchange, lss and nmt"};
+}
+
+std::expected<Request, std::string> Requests::translate_lss(const request_t& message) {
+  if (message.data.size() > request_bytes) {
+    return std::unexpected{fault_text(SdoFault::lss_refused, 0)};
+  }
+  Request request;
+  request.kind = RequestKind::lss;
+  request.timeout = std::chrono::milliseconds{std::clamp(message.timeout_ms, 0, 60'000)};
+  request.size = static_cast<std::uint16_t>(message.data.size());
+  std::ranges::transform(message.data, request.data.begin(),
+                         [](std::uint8_t byte) { return std::byte{byte}; });
+  return request;
 }
 
 /// `index` is the number of the PDO.
@@ -190,7 +218,8 @@ std::optional<reply_t> Requests::finish(const Reply& reply) {
   reply_t message = reply_to(found->second);
   message.good = reply.fault == SdoFault::none ? 1 : 0;
   message.abort_code = reply.abort_code;
-  message.text = fault_text(reply.fault, reply.abort_code);
+  message.text = reply.fault == SdoFault::lss_failed ? lss_fault_text(reply)
+                                                     : fault_text(reply.fault, reply.abort_code);
   const RequestKind kind = found->second.kind;
   if (kind != RequestKind::sdo_download && kind != RequestKind::nmt) {
     message.size = reply.size;

@@ -48,6 +48,7 @@ class Requests {
   std::expected<Request, std::string> translate_nmt(const request_t& message) const;
   std::expected<Request, std::string> translate_sdo(const request_t& message) const;
   std::expected<Request, std::string> translate_pdo(const request_t& message) const;
+  static std::expected<Request, std::string> translate_lss(const request_t& message);
   bool seen_before(const Asker& asker);
   reply_t reply_to(const Asker& asker) const;
 
@@ -58,6 +59,9 @@ class Requests {
   std::unordered_map<std::uint64_t, Asker> pending_;
   std::deque<Asker> recent_;
 };
+
+/// Why an LSS request failed, in words: of the last of its results.
+std::string lss_fault_text(const Reply& reply);
 
 /// Why an SDO transfer or a command failed, in words; empty where it did not.
 std::string fault_text(SdoFault fault, std::uint32_t abort_code);

@@ -11,6 +11,7 @@ using IdSet = std::bitset<2048>;
 // With exactly these masks the kernel keeps a filter in a table by identifier instead of in a list.
 constexpr canid_t exact_base = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
 constexpr canid_t exact_extended = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
+constexpr CobId lss_answers = CobId::base(0x7E4);
 constexpr can_filter any_extended{.can_id = CAN_EFF_FLAG, .can_mask = CAN_EFF_FLAG | CAN_RTR_FLAG};
 
 std::size_t count(const IdSet& wanted, std::size_t first, std::size_t size) {
@@ -67,14 +68,14 @@ std::vector<can_filter> filters_for(std::span<const CobId> ids, std::size_t limi
 }
 
 std::vector<can_filter> filters_for(const BusPlan& plan) {
-  std::vector<CobId> ids;
+  std::vector<CobId> ids{lss_answers};
   if (plan.cycle.sync) ids.push_back(plan.cycle.sync_cob_id);
+  ids.push_back(default_sdo_channel(plan.master_id).request);  // its own server
   for (const PdoRow& row : plan.pdos.tpdos) ids.push_back(row.cob_id);
   for (const NodePlan& node : plan.nodes) {
+    ids.push_back(node.sdo.channel_of(node.id).answer);
     ids.push_back(node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())));
-    for (const std::uint32_t function : {0x580U, 0x700U}) {
-      ids.push_back(CobId::base(function + node.id.value()));
-    }
+    ids.push_back(CobId::base(0x700U + node.id.value()));
   }
   // Signs of life of nodes that are not in the plan, as long as all filters stay exact.
   const std::size_t own = ids.size();

@@ -12,8 +12,8 @@ namespace takt {
 inline constexpr std::size_t max_kernel_filters = 512;
 
 /// What the bus thread has to hear of this bus: TPDOs, SDO answers, error control and EMCY of every
-/// node, heartbeats of nodes that are not in the plan, and SYNC (whose own echo gives its time on
-/// the wire). RTR frames never pass.
+/// node, LSS answers, heartbeats of nodes that are not in the plan, and SYNC (whose own echo gives
+/// its time on the wire). RTR frames never pass.
 std::vector<can_filter> filters_for(const BusPlan& plan);
 
 /// Filters that let all of `ids` pass. Exact ones (the kernel finds them by hash) where there are

@@ -26,7 +26,7 @@ IntruderWatch::IntruderWatch(const BusPlan& plan) : sync_id_{plan.cycle.sync_cob
     own_.push_back({.id = id, .kind = kind, .last = {}});
   };
   add_own(CobId::base(0x000), EventKind::foreign_nmt);
-  if (plan.cycle.sync) add_own(sync_id_, EventKind::foreign_sync);
+  if (plan.cycle.makes_sync()) add_own(sync_id_, EventKind::foreign_sync);
   add_own(CobId::base(0x700U + plan.master_id.value()), EventKind::duplicate_cob_id);
   for (const PdoRow& row : plan.pdos.rpdos) add_own(row.cob_id, EventKind::duplicate_cob_id);
 

@@ -19,7 +19,7 @@ std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& p
                                           SentFrames* sent) {
   const BusName name = BusName::parse(bus);
   UnixBusOptions unix_options{.path = name.name, .spin = spin, .sent = sent};
-  if (plan.cycle.sync) unix_options.sync_cob_id = plan.cycle.sync_cob_id;
+  if (plan.cycle.makes_sync()) unix_options.sync_cob_id = plan.cycle.sync_cob_id;
   switch (name.kind) {
     case BusName::Kind::can_interface:
       return wrap(SocketCanPort::open(name.name, plan, spin, sent));

@@ -130,7 +130,7 @@ void prefault_heap(std::size_t bytes) {
 std::string to_string(const RtReport& report) {
   std::string text;
   if (report.mode == RtMode::off) {
-    text = "real time off";
+    text = "off";
   } else {
     text = report.priority > 0 ? "SCHED_FIFO " + std::to_string(report.priority)
                                : std::string{"ordinary scheduling"};

@@ -169,7 +169,7 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const std::string& in
                                                            SentFrames* sent) {
   SocketCanOptions options{
       .interface = interface, .filters = filters_for(plan), .spin = spin, .sent = sent};
-  if (plan.cycle.sync) options.sync_cob_id = plan.cycle.sync_cob_id;
+  if (plan.cycle.makes_sync()) options.sync_cob_id = plan.cycle.sync_cob_id;
   return open(options);
 }
 
@@ -191,6 +191,7 @@ std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
     return 0;
   }
   const Time offset = realtime_offset();
+  state.news.since_1970 = offset;
   const Time now = monotonic_now();
   std::size_t taken = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i) {

@@ -162,6 +162,7 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
     return 0;
   }
   const auto count = static_cast<std::size_t>(got);
+  state.news.since_1970 = realtime_offset();
   if (state.echoes) state.echo(count);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < count; ++i) {

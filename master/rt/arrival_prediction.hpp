@@ -31,6 +31,11 @@ class ArrivalPrediction {
     predicted_ = std::min(window_, std::max(predicted_, arrival) + margin);
   }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(predicted_, latest_, seen_);
+  }
+
  private:
   static constexpr std::uint32_t learning = 16;  ///< cycles that wait for the whole window
   static constexpr std::int64_t slowness = 256;  ///< cycles that a late PDO is remembered

@@ -29,9 +29,25 @@ class BeatClock {
     cycle_ += static_cast<std::uint64_t>(missed);
     return static_cast<std::uint64_t>(missed);
   }
+  /// The beat is somebody else's: it came at `arrival`, and the next is expected a `period` later.
+  /// Returns the periods left out since the deadline.
+  std::uint64_t follow(Time arrival, Time period) noexcept {
+    const std::int64_t late = (arrival - deadline_ + period / 2) / period;
+    const auto missed = static_cast<std::uint64_t>(late > 0 ? late : 0);
+    deadline_ = arrival;
+    period_ = period;
+    cycle_ += missed;
+    return missed;
+  }
   void next() noexcept {
     deadline_ += period_;
     ++cycle_;
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state.period(period_);
+    state(deadline_, cycle_);
   }
 
  private:
@@ -48,6 +64,11 @@ class SyncCounter {
   bool used() const noexcept { return overflow_ >= 2; }
   std::uint8_t next() const noexcept { return next_; }
   void sent() noexcept { next_ = next_ >= overflow_ ? 1 : static_cast<std::uint8_t>(next_ + 1); }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(next_);
+  }
 
  private:
   std::uint8_t overflow_;

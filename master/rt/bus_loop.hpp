@@ -7,17 +7,22 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/core/fallback_writer.hpp"
+#include "master/core/kept_state.hpp"
 #include "master/core/network.hpp"
 #include "master/core/ordered_stop.hpp"
 #include "master/core/pdo_exchange.hpp"
 #include "master/core/pdo_requests.hpp"
+#include "master/core/time_producer.hpp"
 #include "master/rt/arrival_prediction.hpp"
 #include "master/rt/beat_clock.hpp"
 #include "master/rt/controller.hpp"
 #include "master/rt/exchange.hpp"
 #include "master/rt/port.hpp"
 #include "master/rt/port_watch.hpp"
+#include "master/rt/recorded_port.hpp"
 #include "master/rt/service_queue.hpp"
+#include "master/rt/sync_follower.hpp"
 #include "master/rt/sync_gate.hpp"
 #include "master/rt/sync_hold.hpp"
 #include "master/rt/wire_time.hpp"
@@ -28,6 +33,10 @@ struct BusLoopOptions {
   bool observe = false;              ///< listen only: nothing at all is sent
   Controller* controller = nullptr;  ///< called in each cycle; outlives the loop
 };
+
+/// What is recorded can be gone on with in the middle of a run.
+template <class P, class N>
+inline constexpr bool keeps_state = WitnessPort<P> && requires(const N machine) { machine.idle(); };
 
 /// The bus thread: one SYNC cycle after another. A complete cycle makes six system calls (sleep,
 /// SYNC, sleep, receive, sleep, outputs), one with a missing PDO eight; service frames add theirs.
@@ -43,6 +52,9 @@ class BusLoop {
 
   /// The first SYNC comes one period from now.
   void start() noexcept;
+  /// Instead of start(): goes on behind the publishing of the cycle in which another loop of this
+  /// plan has written its checkpoint, to the end of that cycle. False: it is of another plan.
+  bool resume(std::span<const std::uint64_t> checkpoint) noexcept;
   /// One whole cycle: returns after its outputs were sent.
   void cycle() noexcept;
   void request_stop() noexcept { exchange_.stop_requested.store(true, std::memory_order_relaxed); }
@@ -52,30 +64,66 @@ class BusLoop {
  private:
   static constexpr std::size_t batch = 256;              ///< frames taken by one receive
   static constexpr unsigned patience_with_services = 2;  ///< cycles without room for them
+  static constexpr std::size_t burst_frames = 6;         ///< handed over at once; queues are short
+  static constexpr std::size_t burst_ahead = 3;          ///< still in the queue when more follow
+  static constexpr Time long_cycle = std::chrono::milliseconds{50};
+  static constexpr Time round_distance = std::chrono::milliseconds{10};  ///< in a long cycle
+  static constexpr unsigned patience_with_stalls = 16;  ///< one after another, before a SYNC
+  static constexpr int longest_lapse = 2;  ///< periods without this thread that nobody need know of
   static constexpr Time status_interval = std::chrono::milliseconds{10};
 
+  void finish_cycle() noexcept;
+  bool idle() const noexcept;
+  void keep_state() noexcept;
+  template <class Archive>
+  void keep(Archive& state) noexcept;
   void follow_nodes() noexcept;
   void wait_for_beat() noexcept;
+  void wait_for_sync() noexcept;
+  void await_sync() noexcept;
+  void react_to_sync() noexcept;
+  void begin_beat() noexcept;
   void look_at_wire() noexcept;
-  void send_sync() noexcept;
+  bool send_sync() noexcept;
   void relieve_services() noexcept;
   void receive() noexcept;
   void drain() noexcept;
+  bool begins_cycle(const StampedFrame& stamped) noexcept;
+  void note_missed(std::uint64_t missed, Time now) noexcept;
+  bool outputs_rest() const noexcept;
   void learn(bool in_time) noexcept;
   void publish() noexcept;
   void run_controller(const ImageStamp& stamp) noexcept;
   void predict_next_publish() noexcept;
+  void excuse_absence() noexcept;
   void serve() noexcept;
-  bool send_services(std::size_t& budget) noexcept;
+  void serve_round() noexcept;
+  bool rest_until_next_round() noexcept;
+  enum class Handed : std::uint8_t {
+    nothing,   ///< there was none, or no room for it
+    requests,  ///< answers will come soon
+    burst,     ///< nobody answers, more may follow as the wire takes them
+  };
+  Handed send_services(std::size_t& budget, Time under_way) noexcept;
+  void send_time() noexcept;
   void take_requests() noexcept;
   bool submit(const Request& request) noexcept;
   void give_replies() noexcept;
   void stop_drives_after_loss() noexcept;
   void send_outputs() noexcept;
   void step_stop() noexcept;
+  void take_fallbacks() noexcept;
+  void write_fallbacks() noexcept;
+  SyncState sync_state() const noexcept;
   void give_events() noexcept;
   void write_status() noexcept;
   std::size_t send(std::span<const Frame> frames) noexcept;
+  // What comes from the front thread and goes there; past the port where it wants to see it.
+  const SetPointFrame& newest_set_points() noexcept;
+  bool next_request() noexcept;
+  bool asked_to_stop() noexcept;
+  bool give_reply() noexcept;
+  void give_event(Event& event) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
@@ -87,16 +135,21 @@ class BusLoop {
   PdoExchange pdos_;
   N network_;
   PdoRequests pdo_requests_;
+  TimeProducer time_;
   OrderedStop stop_;
+  FallbackWriter fallbacks_;
   PortWatch port_watch_;
   ServiceQueue services_;
   BeatClock clock_;
   SyncCounter counter_;
   SyncHold hold_;
   SyncGate gate_;
+  SyncFollower follower_;
   ArrivalPrediction prediction_;
   WireTime wire_;
   std::vector<StampedFrame> received_;
+  std::size_t left_from_ = 0;  ///< frames of `received_` behind a SYNC: of the next cycle
+  std::size_t left_end_ = 0;
   std::array<bool, 128> exchanging_{};
   std::vector<std::uint8_t> quick_stopped_;  ///< per axis of stop_: after the loss of a node
   bool hearing_ = false;                     ///< PDOs of some node are taken
@@ -106,13 +159,23 @@ class BusLoop {
   bool reply_waits_ = false;
   bool done_ = false;
   bool gate_open_ = true;   ///< frames may be sent in this cycle
+  bool followed_ = false;   ///< the followed SYNC began this cycle
+  bool sync_lost_ = false;  ///< and is lost; its reaction is in force
+  Time wire_free_{};        ///< the service frames handed over in this cycle have ended
   unsigned starved_ = 0;    ///< cycles in which service frames found no room
   std::uint64_t held_ = 0;  ///< cycles since it was open
   Time sync_sent_{};        ///< of this cycle
+  Time last_sync_{};        ///< of the cycle before
   Time sync_time_{};        ///< the same, by its echo where there is one
   Time last_status_{};
+  Time published_{};             ///< kept where checkpoints are
+  std::size_t state_words_ = 0;  ///< of a checkpoint
 };
 
 }  // namespace takt
 
+#include "master/rt/bus_loop_checkpoint.hpp"
+#include "master/rt/bus_loop_front.hpp"
 #include "master/rt/bus_loop_impl.hpp"
+#include "master/rt/bus_loop_services.hpp"
+#include "master/rt/bus_loop_sync.hpp"

@@ -14,20 +14,30 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       pdos_{plan, events_},
       network_{plan, {.observe = options.observe}},
       pdo_requests_{plan},
+      time_{plan.time},
       stop_{plan},
+      fallbacks_{plan},
       port_watch_{events_},
       clock_{plan.cycle.period},
       counter_{plan.cycle.sync_overflow},
       hold_{plan},
       gate_{plan.cycle.period},
+      follower_{plan.cycle, events_},
       prediction_{plan.cycle.sync ? plan.cycle.receive_window : Time{0}},
       wire_{plan.bitrate},
       received_(batch),
-      quick_stopped_(stop_.axes().size()) {}
+      quick_stopped_(stop_.axes().size()) {
+  if constexpr (keeps_state<P, N>) {
+    StateSize size;
+    keep(size);
+    state_words_ = size.count();
+  }
+}
 
 template <Port P, class N>
 void BusLoop<P, N>::start() noexcept {
   const Time now = port_.now();
+  last_sync_ = now;
   clock_.start(now + clock_.period());
   network_.start(now);
   predict_next_publish();
@@ -35,11 +45,18 @@ void BusLoop<P, N>::start() noexcept {
 
 template <Port P, class N>
 void BusLoop<P, N>::cycle() noexcept {
+  if constexpr (WitnessPort<P>) port_.begin_cycle(clock_.cycle());
   follow_nodes();
   wait_for_beat();
-  send_sync();
+  begin_beat();
   receive();
   publish();
+  keep_state();
+  finish_cycle();
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::finish_cycle() noexcept {
   serve();
   stop_drives_after_loss();
   send_outputs();
@@ -57,32 +74,19 @@ void BusLoop<P, N>::follow_nodes() noexcept {
     if (exchanging != exchanging_[i]) {
       exchanging_[i] = exchanging;
       if (exchanging) {
-        pdos_.outputs().open(i, exchange_.set_points.newest().points);
+        pdos_.outputs().open(i, newest_set_points().points);
       } else {
         pdos_.outputs().shut(i);
       }
     }
-    // Without a SYNC of our own no cycle can wait for answers to it.
-    const Reception heard = options_.observe ? Reception::listening : Reception::full;
+    // Without knowing of SYNC no cycle can wait for answers to it.
+    const bool beats = !options_.observe || follower_.used();
+    const Reception heard = beats ? Reception::full : Reception::listening;
     const bool listen = options_.observe || !plan_.nodes[i].boot;
     hearing_ = hearing_ || exchanging || listen;
     const Reception unheard = listen ? Reception::listening : Reception::off;
     pdos_.inputs().set_reception(i, exchanging ? heard : unheard, sync_sent_);
   }
-}
-
-template <Port P, class N>
-void BusLoop<P, N>::wait_for_beat() noexcept {
-  port_.sleep_precisely_until(clock_.deadline());
-  Time now = port_.now();
-  if (const std::uint64_t missed = clock_.skip_missed(now); missed != 0) {
-    status_.cycles_missed += missed;
-    tell(EventKind::cycles_missed, now, static_cast<std::int64_t>(missed));
-    port_.sleep_precisely_until(clock_.deadline());
-    now = port_.now();
-  }
-  sync_sent_ = now;
-  look_at_wire();
 }
 
 /// Frames that could not leave yet must not be followed by others.
@@ -98,36 +102,6 @@ void BusLoop<P, N>::look_at_wire() noexcept {
          static_cast<std::uint32_t>(MissedBecause::wire_blocked));
     held_ = 0;
   }
-}
-
-template <Port P, class N>
-void BusLoop<P, N>::send_sync() noexcept {
-  const Time late = sync_sent_ - clock_.deadline();
-  exchange_.timing.sync_lateness.record(late);
-  if (late > clock_.period() / 10) ++status_.cycles_late;
-  bool heard = true;
-  if (plan_.cycle.sync && !options_.observe && !hold_.open(network_.nodes())) {
-    heard = false;
-  } else if (plan_.cycle.sync && !options_.observe) {
-    const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
-                                       : sync_frame(plan_.cycle.sync_cob_id);
-    heard = send({&sync, 1}) == 1;
-    if (heard) {
-      counter_.sent();
-      gate_.sent(sync_sent_);
-    }
-  }
-  pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
-  status_.beats += heard;
-  if (starved_ >= patience_with_services) relieve_services();
-}
-
-/// Cycles so full that no dialogue fits before the outputs must not keep nodes from booting: one
-/// service frame goes out right behind SYNC. PDOs have priority over it on the wire.
-template <Port P, class N>
-void BusLoop<P, N>::relieve_services() noexcept {
-  services_.drop(send(services_.first(1)));
-  starved_ = 0;
 }
 
 template <Port P, class N>
@@ -152,19 +126,26 @@ void BusLoop<P, N>::receive() noexcept {
 
 template <Port P, class N>
 void BusLoop<P, N>::drain() noexcept {
-  for (;;) {
-    const std::size_t count = port_.receive(received_);
-    for (std::size_t i = 0; i < count; ++i) {
+  for (bool more = !follower_.arrived(); more;) {
+    const bool left = left_from_ != left_end_;
+    const std::size_t first = std::exchange(left_from_, left_end_);
+    const std::size_t end = left ? left_end_ : port_.receive(received_);
+    for (std::size_t i = left ? first : 0; i < end; ++i) {
       const StampedFrame& stamped = received_[i];
       status_.wire_bits += static_cast<std::uint64_t>(WireTime::mean_bits(stamped.frame));
       if (!pdos_.inputs().receive(stamped)) {
+        if (begins_cycle(stamped)) [[unlikely]] {
+          left_from_ = i + 1;
+          left_end_ = end;
+          return;
+        }
         network_.on_frame(stamped.frame, stamped.when, services_.inbox());
       } else if (pdo_requests_.waiting()) [[unlikely]] {
         pdo_requests_.on_frame(pdos_.inputs().row_of(stamped.frame), stamped);
       }
     }
-    status_.frames_received += count;
-    if (count < received_.size()) return;
+    if (!left) status_.frames_received += end;
+    more = left || end == received_.size();
   }
 }
 
@@ -188,6 +169,7 @@ void BusLoop<P, N>::publish() noexcept {
   sync_time_ = echoed ? news.last_sync_echo : sync_sent_;
   if (echoed) exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
   const Time now = port_.now();
+  if constexpr (keeps_state<P, N>) published_ = now;
   const std::uint32_t missing = pdos_.inputs().close(now);
   status_.images_incomplete += missing != 0;
   const ImageStamp stamp{.cycle = clock_.cycle(),
@@ -226,71 +208,6 @@ void BusLoop<P, N>::predict_next_publish() noexcept {
   exchange_.next_publish.store(next.count(), std::memory_order_relaxed);
 }
 
-/// Slack: machines and requests. Their frames and the answers to them end before the outputs.
-template <Port P, class N>
-void BusLoop<P, N>::serve() noexcept {
-  take_requests();
-  const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
-  std::size_t budget = plan_.cycle.service_frames;
-  services_.inbox().set_limit(budget);
-  pdo_requests_.on_time(exchanging_, status_.beats, port_.now(), services_.inbox());
-  for (;;) {
-    services_.inbox().set_limit(budget);
-    network_.on_time(port_.now(), services_.inbox());
-    if (options_.observe) services_.clear();
-    if (!send_services(budget) || budget == 0 || !port_.wait_frame(end)) break;
-    drain();
-  }
-  give_replies();
-  step_stop();
-}
-
-/// False: nothing was sent that will be answered soon.
-template <Port P, class N>
-bool BusLoop<P, N>::send_services(std::size_t& budget) noexcept {
-  if (services_.empty()) return false;
-  const Time end = clock_.deadline() + plan_.cycle.output_deadline;
-  const Time room = end - port_.now();
-  const auto fitting =
-      static_cast<std::size_t>(std::max<std::int64_t>(0, room / wire_.worst_dialogue()));
-  const std::span<const Frame> frames = services_.first(std::min(budget, fitting));
-  if (frames.empty()) {
-    ++starved_;
-    return false;
-  }
-  starved_ = 0;
-  const bool answered = std::ranges::any_of(
-      frames, [](const Frame& frame) { return (frame.id.id() & 0x780) == 0x600; });
-  const std::size_t count = send(frames);
-  services_.drop(count);
-  budget -= count;
-  return answered && count != 0;
-}
-
-template <Port P, class N>
-void BusLoop<P, N>::take_requests() noexcept {
-  if (reply_waits_ || !exchange_.requests.pop(request_)) return;
-  if (!options_.observe && submit(request_)) return;
-  reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
-  reply_waits_ = true;
-}
-
-template <Port P, class N>
-bool BusLoop<P, N>::submit(const Request& request) noexcept {
-  const Time now = port_.now();
-  return PdoRequests::takes(request.kind) ? pdo_requests_.submit(request, now)
-                                          : network_.submit(request, now);
-}
-
-template <Port P, class N>
-void BusLoop<P, N>::give_replies() noexcept {
-  for (;;) {
-    if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
-    reply_waits_ = exchange_.replies.full() || !exchange_.replies.push(reply_);
-    if (reply_waits_) return;
-  }
-}
-
 /// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
 template <Port P, class N>
 void BusLoop<P, N>::stop_drives_after_loss() noexcept {
@@ -314,20 +231,24 @@ void BusLoop<P, N>::stop_drives_after_loss() noexcept {
 
 template <Port P, class N>
 void BusLoop<P, N>::send_outputs() noexcept {
+  if (follower_.arrived()) return;  // it came early: these are outputs of the next cycle
   port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
-  if (options_.observe) return;
+  if (options_.observe || outputs_rest()) return;
   const Time now = port_.now();
-  const SetPointFrame& commands = exchange_.set_points.newest();
-  const std::span<const Frame> frames =
+  const SetPointFrame& commands = newest_set_points();
+  std::span<const Frame> frames =
       pdos_.outputs().pack(commands.points, {.cycle = clock_.cycle(), .now = now});
   if (pdos_.outputs().fresh_commands() != 0) {
     exchange_.timing.command_age.record(now - commands.when);
   }
   if (frames.empty()) return;
   // SYNC comes first: outputs that could not end before it wait for the next cycle.
-  const bool fits = now + wire_.worst(frames) <= clock_.deadline() + clock_.period();
-  pdos_.outputs().sent(fits ? send(frames) : 0, now);
-  status_.outputs_skipped += !fits;
+  const Time room = clock_.deadline() + clock_.period() - now;
+  if (wire_.worst(frames) > room) [[unlikely]] {
+    frames = pdos_.outputs().pack_less(wire_.bits_in(room), WireTime::worst_bits);
+    status_.outputs_skipped += frames.empty();
+  }
+  pdos_.outputs().sent(frames.empty() ? 0 : send(frames), now);
 }
 
 /// Begins and follows the ordered stop.
@@ -335,7 +256,7 @@ template <Port P, class N>
 void BusLoop<P, N>::step_stop() noexcept {
   const Time now = port_.now();
   if (stop_.stage() == StopStage::running) {
-    if (!exchange_.stop_requested.load(std::memory_order_relaxed)) return;
+    if (!asked_to_stop()) return;
     tell(EventKind::stopping, now);
     stop_.begin(now);
     pdos_.outputs().fall_back();
@@ -357,14 +278,8 @@ void BusLoop<P, N>::step_stop() noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::give_events() noexcept {
   Event event;
-  while (network_.take(event)) {
-    event.cycle = clock_.cycle();
-    exchange_.events.push(event);
-  }
-  while (events_.pop(event)) {
-    event.cycle = clock_.cycle();
-    exchange_.events.push(event);
-  }
+  while (network_.take(event)) give_event(event);
+  while (events_.pop(event)) give_event(event);
 }
 
 template <Port P, class N>
@@ -372,6 +287,8 @@ void BusLoop<P, N>::write_status() noexcept {
   status_.cycle = clock_.cycle();
   status_.stop = stop_.stage();
   status_.events_lost = events_.lost();
+  status_.sync = sync_state();
+  status_.sync_period = follower_.period();
   if (sync_sent_ - last_status_ < status_interval && !done_) return;
   last_status_ = sync_sent_;
   status_.when = sync_sent_;

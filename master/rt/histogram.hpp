@@ -13,7 +13,7 @@ namespace takt {
 struct HistogramSnapshot {
   static constexpr unsigned fine = 8;      ///< bins per octave
   static constexpr unsigned octaves = 27;  ///< 125 ns * 2^27 = 16.8 s
-  static constexpr std::size_t bins = fine * (octaves + 1);
+  static constexpr std::size_t bins = std::size_t{fine} * (octaves + 1);
 
   std::array<std::uint64_t, bins> counts{};
 

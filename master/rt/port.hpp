@@ -27,6 +27,12 @@ struct PortNews {
   int last_error = 0;     ///< errno of the newest trouble
   Time since_1970{};      ///< UTC minus the clock of the port; 0 = not known
   Time last_sync_echo{};  ///< when our newest SYNC was on the wire by its echo; 0 = no echo yet
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(interface_down, error_passive, bus_off, receive_overruns, error_frames, tx_error_counter,
+          rx_error_counter, last_error, since_1970, last_sync_echo);
+  }
 };
 
 /// The bus and the clock as the bus loop sees them: SocketCAN, a unix socket or the simulation.

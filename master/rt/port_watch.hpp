@@ -17,6 +17,11 @@ class PortWatch {
   /// `unsent` frames were refused with `error`; 0: all went out.
   void on_send(std::size_t unsent, int error, Time now) noexcept;
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(seen_, last_full_, full_told_);
+  }
+
  private:
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
   void on_interface(const PortNews& news, Time now) noexcept;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "master/core/machine.hpp"
+#include "master/rt/wire_time.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {
@@ -17,6 +18,22 @@ class ServiceQueue {
   bool empty() const noexcept { return outbox_.empty(); }
   std::size_t size() const noexcept { return outbox_.frames().size(); }
 
+  /// How many of the first `most` frames end within `room`, answers included.
+  std::size_t fitting(std::size_t most, Time room, const WireTime& wire) const noexcept {
+    Time needed{};
+    std::size_t count = 0;
+    for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
+      needed += answer == Answer::comes ? wire.worst_dialogue() : wire.worst_dialogue() / 2;
+      if (needed > room) break;
+      ++count;
+    }
+    return count;
+  }
+  /// Nobody answers any of the first `count` frames.
+  bool unanswered(std::size_t count) const noexcept {
+    return std::ranges::all_of(outbox_.answers().first(std::min(count, size())),
+                               [](Answer answer) { return answer == Answer::none; });
+  }
   std::span<const Frame> first(std::size_t count) const noexcept {
     return outbox_.frames().first(std::min(count, size()));
   }
@@ -24,15 +41,18 @@ class ServiceQueue {
   void drop(std::size_t count) noexcept {
     const std::size_t kept = size() - count;
     std::copy_n(outbox_.frames().begin() + static_cast<std::ptrdiff_t>(count), kept, rest_.begin());
+    std::copy_n(outbox_.answers().begin() + static_cast<std::ptrdiff_t>(count), kept,
+                answers_.begin());
     outbox_.clear();
     outbox_.set_limit(Outbox::capacity);
-    for (std::size_t i = 0; i < kept; ++i) outbox_.push(rest_[i]);
+    for (std::size_t i = 0; i < kept; ++i) outbox_.push(rest_[i], answers_[i]);
   }
   void clear() noexcept { outbox_.clear(); }
 
  private:
   Outbox outbox_;
   std::array<Frame, Outbox::capacity> rest_{};
+  std::array<Answer, Outbox::capacity> answers_{};
 };
 
 }  // namespace takt

@@ -13,6 +13,15 @@
 
 namespace takt {
 
+/// Who makes SYNC, and whether the cycle keeps to it.
+enum class SyncState : std::uint8_t {
+  none,     ///< there is none
+  made,     ///< by the master
+  awaited,  ///< of another device: none has come yet
+  locked,   ///< the cycle keeps to it
+  lost,
+};
+
 /// Counters of the bus thread, since the start. Trivially copyable: it crosses threads.
 struct BusStatus {
   Time when{};
@@ -28,6 +37,9 @@ struct BusStatus {
   std::uint64_t send_failures = 0;  ///< frames that the interface did not take
   std::uint64_t wire_bits = 0;      ///< of both, with mean stuffing: for the bus load
   std::uint64_t events_lost = 0;
+  SyncState sync = SyncState::none;
+  std::uint32_t sync_losses = 0;  ///< of a SYNC that another device makes
+  Time sync_period{};             ///< the same, as measured
   StopStage stop = StopStage::running;
   PortNews port;
 };

@@ -40,6 +40,11 @@ class SyncGate {
   /// A SYNC was handed over.
   void sent(Time now) noexcept { last_sent_ = now; }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(last_sent_, try_at_, pause_, holding_);
+  }
+
  private:
   static constexpr Time first_pause = std::chrono::milliseconds{100};
   static constexpr Time longest_pause = std::chrono::seconds{30};

@@ -33,6 +33,11 @@ class SyncHold {
     return open_;
   }
 
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(open_);
+  }
+
  private:
   /// The wait for the first heartbeat, else the start itself; none of them: the end of the plan.
   static std::size_t last_before_start(const BootPlan& plan) noexcept {

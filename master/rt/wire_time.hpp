@@ -30,6 +30,12 @@ class WireTime {
     for (const Frame& frame : frames) bits += worst_bits(frame);
     return bit_ * bits;
   }
+  Time mean(std::span<const Frame> frames) const noexcept {
+    std::int64_t bits = 0;
+    for (const Frame& frame : frames) bits += mean_bits(frame);
+    return bit_ * bits;
+  }
+  std::int64_t bits_in(Time time) const noexcept { return time / bit_; }
   /// One request of eight bytes and its answer.
   Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
 

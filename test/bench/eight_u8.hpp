@@ -7,6 +7,7 @@ struct EightOptions {
   unsigned nodes = 1;
   bool rpdos = true;
   Time period = std::chrono::milliseconds{4};
+  std::uint32_t bitrate = 1'000'000;
 };
 
 /// `nodes` devices with one TPDO and one RPDO of eight UNSIGNED8 each: the load of the peers'
@@ -14,6 +15,7 @@ struct EightOptions {
 inline BusPlan eight_u8(EightOptions options) {
   BusPlan plan;
   plan.name = "bench";
+  plan.bitrate = options.bitrate;
   plan.cycle.period = options.period;
   plan.cycle.receive_window = options.period * 6 / 10;
   plan.cycle.output_deadline = options.period * 8 / 10;

@@ -1,16 +1,19 @@
 // What one cycle of the bus loop costs, the port itself not counted.
 //
-//   loop_cost NODES [--receive-path]    one line: system calls and allocations per cycle
-//   valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady cycles, or
+//   loop_cost NODES [--receive-path] [--recorded]    one line: system calls and allocations per
+//   cycle valgrind --tool=callgrind --collect-atstart=no loop_cost ...    collects 100 steady
+//   cycles, or
 //       of them only the path from the return of receive() to the published image
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <valgrind/callgrind.h>
 
 #include "master/rt/bus_loop.hpp"
+#include "master/rt/recorded_port.hpp"
 #include "test/bench/eight_u8.hpp"
 #include "test/bench/memory_port.hpp"
 #include "test/proof/allocation_trap.hpp"
@@ -41,14 +44,21 @@ struct PauseCallgrind {
   }
 };
 
+using Memory = bench::MemoryPort<PauseCallgrind>;
+
+/// `P` is the port of memory, or one that records it.
+template <class P>
 class Bench {
  public:
   Bench(unsigned nodes, bool rpdos)
-      : plan_{bench::eight_u8(
-            {.nodes = nodes, .rpdos = rpdos, .period = std::chrono::milliseconds{200}})},
+      // A wire on which 120 nodes fit a cycle of one round of services.
+      : plan_{bench::eight_u8({.nodes = nodes,
+                               .rpdos = rpdos,
+                               .period = std::chrono::milliseconds{40},
+                               .bitrate = 10'000'000})},
         port{nodes},
         exchange_{std::make_unique<Exchange>(plan_)},
-        loop_{std::make_unique<Loop>(plan_, port, *exchange_)} {
+        loop_{std::make_unique<BusLoop<P>>(plan_, used(), *exchange_)} {
     loop_->start();
     run(20);  // heartbeats: every node is OPERATIONAL
     port.alive = true;
@@ -78,27 +88,32 @@ class Bench {
   }
 
  private:
-  using Loop = BusLoop<bench::MemoryPort<PauseCallgrind>>;
+  P& used() {
+    if constexpr (std::is_same_v<P, Memory>) {
+      return port;
+    } else {
+      return recorded_;
+    }
+  }
+
   BusPlan plan_;
+  Journal journal_{16 << 20};
 
  public:
-  bench::MemoryPort<PauseCallgrind> port;
+  Memory port;
   bool collect = false;
   bool count = false;
   std::uint64_t most_calls = 0;
 
  private:
+  RecordedPort<Memory> recorded_{port, &journal_};
   std::unique_ptr<Exchange> exchange_;
-  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<BusLoop<P>> loop_;
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const auto nodes = static_cast<unsigned>(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 8);
-  if (nodes < 1 || nodes > 127) return 2;
-  path_only = argc > 2 && std::string_view{argv[2]} == "--receive-path";
-  Bench bench{nodes, !path_only};
+template <class P>
+void measure(unsigned nodes) {
+  Bench<P> bench{nodes, !path_only};
   constexpr int cycles = 100;
 
   bench.collect = bench.count = true;
@@ -115,5 +130,18 @@ int main(int argc, char** argv) {
       "%u nodes: %.2f system calls a cycle, at most %llu with a missing PDO, %.2f allocations\n",
       nodes, calls, static_cast<unsigned long long>(bench.most_calls),
       static_cast<double>(proof::allocations()) / cycles);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto nodes = static_cast<unsigned>(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 8);
+  if (nodes < 1 || nodes > 127) return 2;
+  bool recorded = false;
+  for (const std::string_view argument : std::span{argv, static_cast<std::size_t>(argc)}) {
+    path_only |= argument == "--receive-path";
+    recorded |= argument == "--recorded";
+  }
+  recorded ? measure<RecordedPort<Memory>>(nodes) : measure<Memory>(nodes);
   return 0;
 }

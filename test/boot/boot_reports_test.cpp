@@ -72,7 +72,10 @@ std::vector<Case> cases() {
       {"mute at a mapping count", mapping, {on(mute_sdo, {0x1A00, 0})}},
       {"mute at a mapping entry", mapping, {on(mute_sdo, {0x1A00, 2})}},
       {"power fails in the middle of the boot", label, {fault(power_off, 100ms)}},
-      {"time-out in the middle of a segmented transfer", label, {fault(mute_sdo, 100ms)}},
+      {"time-out in the middle of a block transfer", label, {fault(mute_sdo, 100ms)}},
+      {"time-out in the middle of a segmented transfer",
+       label + ", sdo_block: never",
+       {fault(mute_sdo, 100ms)}},
       {"restarts again and again", label, {storm(25ms)}},
       // error control
       {"heartbeat missing", "", {fault(no_heartbeat)}},

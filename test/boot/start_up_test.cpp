@@ -310,8 +310,15 @@ TEST(Program, IsLoadedWhereTheVersionDiffersAndTellsItsProgress) {
   EXPECT_EQ(plant.node().boot, BootState::ready);
   EXPECT_EQ(plant.device(5).objects().number({0x1F56, 1}), 0x0001'0001);
   EXPECT_EQ(plant.device(5).objects().find({0x1F50, 1})->bytes.size(), 1000u);
-  EXPECT_GE(plant.count(EventKind::program_progress), 5);
+  EXPECT_EQ(plant.count(EventKind::program_progress), 2);  // one each block of 889 bytes
   EXPECT_NE(plant.text_of(EventKind::program_progress).find(" of 1000 bytes"), std::string::npos);
+}
+
+TEST(Program, TellsItsProgressByTenthsWhereItGoesBySegments) {
+  Plant plant{valve("software_version: 0x00010001, software_file: program.bin, sdo_block: never")};
+  plant.run(15s);
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+  EXPECT_GE(plant.count(EventKind::program_progress), 5);
 }
 
 TEST(Program, IsNotTouchedWhereTheVersionIsRight) {

@@ -1,6 +1,6 @@
 // The real bus loop on a real thread over a socket pair: 500 cycles with four nodes that answer,
-// one of which falls silent half-way. Its thread may not allocate, free or make any system call
-// but sleep, receive, send and poll.
+// one of which falls silent half-way, recorded for the black box. Its thread may not allocate, free
+// or make any system call but sleep, receive, send and poll.
 //
 //   loop_proof                 exits 0
 //   loop_proof --break WHAT    new, delete, malloc, yield, open: breaks the rule inside the cycle;
@@ -15,6 +15,7 @@
 
 #include "master/linux/unix_bus.hpp"
 #include "master/rt/bus_loop.hpp"
+#include "master/rt/recorded_port.hpp"
 #include "test/proof/allocation_trap.hpp"
 #include "test/proof/syscall_trap.hpp"
 #include "test/unit/rt/small_plan.hpp"
@@ -69,14 +70,21 @@ void run_devices(UnixBusPort& port, const std::atomic<bool>& done) {
   }
 }
 
+bool is_checkpoint(std::uint64_t word) {
+  return journal::mark_of(word) == Mark::checkpoint && journal::payload_of(word) < 4096;
+}
+
 int prove(std::string_view to_break) {
   BusPlan plan = test::axes({.nodes = nodes, .period = 4ms});
   for (NodePlan& node : plan.nodes) node.boot_plan.steps.clear();
   auto [master_port, device_port] = make_socket_pair_bus();
   const auto exchange = std::make_unique<Exchange>(plan);
   Breaker breaker{to_break};
-  const auto loop = std::make_unique<BusLoop<UnixBusPort>>(plan, master_port, *exchange,
-                                                           BusLoopOptions{.controller = &breaker});
+  Journal journal{256 << 10};  // begins anew now and then
+  journal.want();
+  RecordedPort<UnixBusPort> port{master_port, &journal};
+  const auto loop = std::make_unique<BusLoop<RecordedPort<UnixBusPort>>>(
+      plan, port, *exchange, BusLoopOptions{.controller = &breaker});
 
   std::atomic<bool> done{false};
   std::thread devices{[&, &port = device_port] { run_devices(port, done); }};
@@ -98,10 +106,12 @@ int prove(std::string_view to_break) {
               static_cast<unsigned long long>(status.bus.frames_received),
               static_cast<unsigned long long>(status.bus.frames_sent),
               static_cast<unsigned long long>(status.bus.images_incomplete));
+  const bool recorded = journal.wanted() != nullptr && !journal.wanted()->read().empty() &&
+                        std::ranges::any_of(journal.last().read(), is_checkpoint);
   // A loaded machine leaves out periods and outputs; the bus has to have lived all the same.
   const bool lively = status.bus.frames_received > cycles && status.bus.frames_sent > cycles / 2;
   std::fflush(stdout);
-  std::_Exit(lively ? 0 : 1);  // the bus thread sleeps on
+  std::_Exit(lively && recorded ? 0 : 1);  // the bus thread sleeps on
 }
 
 }  // namespace

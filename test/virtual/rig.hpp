@@ -17,7 +17,8 @@ inline DeviceTable loopback_device(NodeId node, const PdoRow& tpdo, const PdoRow
   using enum DataType;
   sim::SampleDevice device = sim::communicating(node);
   device.object(0x6040, 0, unsigned16, Access::rww, 0, true)
-      .object(0x607A, 0, integer32, Access::rww, 0, true);
+      .object(0x607A, 0, integer32, Access::rww, 0, true)
+      .text(0x2020, 0, "", Access::rw);  // a domain
   const std::vector<std::uint32_t> mapping{0x6040'0010, 0x607A'0020};
   device.pdo(0x1400, rpdo.cob_id.id(), rpdo.transmission, mapping);
   device.pdo(0x1800, tpdo.cob_id.id(), tpdo.transmission, mapping);

@@ -102,7 +102,7 @@ TEST_F(BootReport, OfAMuteNode) {
   received  nothing within 2 s
   status    B of CiA 302-2: no answer to the read of 0x1000
   heard     no boot-up message and no heartbeat
-  try       nothing at all was heard of node 5: is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? Is its node id 5 and its bit rate 1000 kbit/s? `takt scan --bus can0` lists who answers)");
+  try       nothing at all was heard of node 5: is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? Is its node id 5 and its bit rate 1000 kbit/s? `takt dump --bus can0` shows who talks on the bus)");
 }
 
 TEST_F(BootReport, OfANodeThatIsAliveButAnswersNoSdo) {
@@ -159,6 +159,24 @@ TEST_F(BootReport, OfANodeThatDoesNotStart) {
   try       the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its EMCY messages, 0x1001 and 0x1003), or a second master holds it back)");
 }
 
+TEST_F(BootReport, OfANodeThatTakesTheCounterOfSyncForAnError) {
+  plan.cycle.sync_overflow = 10;
+  prepare = [this](FakeNode& node) {
+    node.starts = false;
+    node.heartbeats(now, 50ms);
+    node.say(now + 60ms, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});
+    node.say(now + 400ms, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});  // and at the second try
+  };
+  Steps steps;
+  steps.nmt(NmtCommand::start)
+      .add(with({.action = BootAction::await_operational, .letter = 'L', .timeout = 300ms},
+                "OPERATIONAL"));
+  const std::string text = report(std::move(steps), 900ms);
+  EXPECT_NE(text.find("Let the device keep 0x1019 (`store_configuration: 1` of this node)"),
+            std::string::npos)
+      << text;
+}
+
 TEST_F(BootReport, OfAValueThatTheDeviceChangedByItself) {
   prepare = [](FakeNode& node) { node.objects[{0x1016, 1}] = bytes({0xC8, 0, 0x7F, 0}); };
   Steps steps;
@@ -202,6 +220,18 @@ TEST(Remedy, DiffersForEachAbortOfAMapping) {
   EXPECT_NE(text(0x06020000).find("no object 607A:00"), std::string::npos);
   EXPECT_NE(text(0x06010002).find("mapping of RPDO2 is fixed"), std::string::npos);
   EXPECT_NE(text(0x06090030).find("refuses to change RPDO2 now"), std::string::npos);
+}
+
+TEST(Remedy, OfAnAnswerThatDoesNotEndBlamesTheServerWhereTheLengthIsKnown) {
+  BusPlan plan{.name = "lift"};
+  plan.nodes.push_back({.name = "shoulder", .id = 5_node});
+  plan.nodes[0].boot_plan.steps = {expecting('C', {0x1000, 0}, bytes({0x92, 1, 2, 0}))};
+  BootFailure failure;
+  failure.fault = SdoFault::too_long;
+  failure.object = {0x1000, 0};
+  EXPECT_EQ(remedy(plan, plan.nodes[0], failure),
+            "the device sends more than 1024 bytes for 1000:00, which has 4: its SDO server is "
+            "faulty. Look for other firmware, or leave the object out");
 }
 
 TEST(LetterText, HasWordsForAToO) {
@@ -252,6 +282,14 @@ TEST(Describe, IsOneLineAnEvent) {
   EXPECT_EQ(describe(plan, emcy),
             "node 5 'shoulder': EMCY 0x7310: speed sensor (error register: generic, profile; bytes "
             "10 73 21 01 02 03 04 05)");
+  emcy.detail = 3;
+  EXPECT_EQ(describe(plan, emcy),
+            "node 5 'shoulder': EMCY 0x7310: speed sensor (error register: generic, profile; bytes "
+            "10 73 21, always 8)");
+  emcy.detail = 1;
+  emcy.bytes = {0x11};
+  EXPECT_EQ(describe(plan, emcy),
+            "node 5 'shoulder': EMCY of 1 byte, too short for an error code (bytes 11, always 8)");
 
   Event foreign;
   foreign.kind = EventKind::foreign_nmt;

@@ -212,6 +212,18 @@ TEST_F(NetworkTest, TellsAnEmcyWithItsBytes) {
   EXPECT_EQ(status().emcy_count, 1U);
 }
 
+TEST_F(NetworkTest, TakesAnEmcyOfOneByteForNoErrorCode) {
+  add_drive();
+  start();
+  hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
+  hear(make_frame(CobId::base(0x85), {0x11}));
+  ASSERT_EQ(count(EventKind::emcy), 2);
+  EXPECT_EQ(events.back().detail, 1U);
+  EXPECT_EQ(status().last_emcy, 0x7310) << "what was told before stands";
+  EXPECT_EQ(status().error_register, 0x21);
+  EXPECT_EQ(status().emcy_count, 2U);
+}
+
 TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {
   add_drive();
   start();
@@ -221,6 +233,25 @@ TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {
   now += 1s;
   hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21}));
   EXPECT_EQ(events.back().value, 990);
+}
+
+/// As some stacks do: EMCY 8240 for a SYNC that comes before 0x1019 is written, and then no start
+/// until the next reset.
+TEST_F(NetworkTest, BootsANodeOnceMoreThatMetTheCounterOfSyncTooEarly) {
+  NodePlan& drive = add_drive();
+  drive.mandatory = true;
+  drive.boot_plan.steps.push_back(
+      {.action = BootAction::await_operational, .letter = 'K', .timeout = 300ms});
+  device().starts = false;
+  start();
+  run(100ms);
+  device().say(now, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});
+  for (int i = 0; i < 1000 && device().resets < 2; ++i) run(1ms);
+  device().starts = true;
+  run(500ms);
+  EXPECT_EQ(device().resets, 2);
+  EXPECT_EQ(count(EventKind::boot_failed), 0);
+  EXPECT_EQ(count(EventKind::boot_done), 1);
 }
 
 TEST_F(NetworkTest, StopsInTheMiddleOfABoot) {

@@ -36,6 +36,14 @@ TEST(NodeGuard, FirstAnswerAfterABootUpHasToggleBitZero) {
   EXPECT_EQ(guard.repeated(), 1u);
 }
 
+TEST(NodeGuard, CountsNoSilenceWhileTheMasterWasAway) {
+  NodeGuard guard{guard_plan};
+  guard.start(10s);
+  guard.excuse(500ms);
+  EXPECT_FALSE(guard.on_time(10s + 800ms - 1ns));
+  EXPECT_EQ(guard.on_time(10s + 800ms), Time{300ms});
+}
+
 TEST(NodeGuard, TakesEitherToggleBitFromANodeThatWasNotReset) {
   NodeGuard guard{guard_plan};
   guard.start(10s);

@@ -29,6 +29,17 @@ TEST(NodeWatch, TellsSilenceOnce) {
   EXPECT_EQ(watch.deadline(), 100s + 150ms);
 }
 
+TEST(NodeWatch, CountsNoSilenceWhileTheMasterWasAway) {
+  NodeWatch watch{150ms};
+  NodeStatus status;
+  watch.excuse(300ms);
+  EXPECT_EQ(watch.deadline(), never);
+  watch.on_heartbeat(NmtState::operational, 1s, status);
+  watch.excuse(300ms);
+  EXPECT_FALSE(watch.on_time(1s + 450ms - 1ns, status));
+  EXPECT_TRUE(watch.on_time(1s + 450ms, status));
+}
+
 TEST(NodeWatch, TakesABootUpMessageAsNoHeartbeat) {
   NodeWatch watch{150ms};
   NodeStatus status;

@@ -90,7 +90,12 @@ TEST(Diagnosis, AddsUpTheCyclesThatFailed) {
   snapshot.bus.outputs_skipped = 20;
   snapshot.bus.images_incomplete = 300;
 
-  EXPECT_EQ(diagnosis.fill(snapshot).cycles_failed, 321);
+  const diagnosis_t message = diagnosis.fill(snapshot);
+
+  EXPECT_EQ(message.cycles_failed, 321);
+  EXPECT_EQ(message.cycles_missed, 1);
+  EXPECT_EQ(message.outputs_skipped, 20);
+  EXPECT_EQ(message.images_incomplete, 300);
 }
 
 TEST(Diagnosis, SaysWhenSomethingIsNew) {

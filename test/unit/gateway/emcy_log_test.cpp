@@ -33,5 +33,17 @@ TEST(EmcyLog, TravelsInSixteenBytesARecord) {
   EXPECT_TRUE(unpack_emcys(std::span{bytes}.first(15)).empty());
 }
 
+TEST(EmcyLog, CarriesTheDevicesOwnWordsForCodesThatCame) {
+  const std::vector<EmcyRecord> records{{1, {0x00, 0x10, 0x01}}, {2, {0x10, 0x23, 0x01}}};
+  const std::vector<EmcyText> texts{{0x1000, "error of the drive"}, {0x5000, "another"}};
+
+  const std::string lines = pack_texts(records, texts);
+
+  EXPECT_EQ(lines, "0x1000 error of the drive\n");
+  EXPECT_EQ(unpack_texts(lines),
+            (std::map<std::uint16_t, std::string>{{0x1000, "error of the drive"}}));
+  EXPECT_TRUE(unpack_texts("\n0x10\nxyz words\n0xZZZZ words\n").empty());
+}
+
 }  // namespace
 }  // namespace takt

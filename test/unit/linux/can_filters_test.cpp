@@ -37,8 +37,9 @@ TEST(CanFilters, LetPassExactlyWhatTheMasterHearsOfANode) {
     EXPECT_EQ(filter.can_mask, exact);
     ids.push_back(filter.can_id);
   }
-  std::vector<canid_t> expected{0x080, 0x085, 0x185, 0x585};
+  std::vector<canid_t> expected{0x080, 0x085, 0x185, 0x585, 0x67F};
   for (canid_t stranger = 0x701; stranger <= 0x77E; ++stranger) expected.push_back(stranger);
+  expected.push_back(0x7E4);  // LSS
   EXPECT_EQ(ids, expected) << "and the signs of life of others, but not of the master (127)";
 }
 
@@ -96,7 +97,8 @@ TEST(CanFilters, AFullBusFitsIntoTheKernelsLimitAndLosesNothing) {
 TEST(CanFilters, AFullBusStillKeepsOutTheOutputsOfTheMaster) {
   const auto filters = filters_for(plan_of(127));
 
-  for (canid_t id = 1; id <= 127; ++id) EXPECT_FALSE(passes(filters, 0x600 + id)) << id;
+  for (canid_t id = 1; id < 127; ++id) EXPECT_FALSE(passes(filters, 0x600 + id)) << id;
+  EXPECT_TRUE(passes(filters, 0x67F)) << "requests to the master's own SDO server";
 }
 
 TEST(CanFilters, PrefixesWidenOnlyAsFarAsTheLimitAsks) {

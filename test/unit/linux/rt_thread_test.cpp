@@ -19,7 +19,7 @@ TEST(RtThread, OffAsksForNothingAndIsComplete) {
   EXPECT_TRUE(ran);
   EXPECT_EQ(policy, SCHED_OTHER);
   EXPECT_TRUE(thread.report().complete());
-  EXPECT_TRUE(to_string(thread.report()).starts_with("real time off, kernel PREEMPT_RT: "));
+  EXPECT_TRUE(to_string(thread.report()).starts_with("off, kernel PREEMPT_RT: "));
 }
 
 TEST(RtThread, EnforceDoesNotRunTheBodyOnAProcessorThatIsNotThere) {

@@ -166,6 +166,28 @@ TEST(BusLoop, SendsServiceFramesInTheSlackWithinTheirBudget) {
   EXPECT_EQ(bus.port.sent_with(0x000).size(), 10U);
 }
 
+/// Ten requests that wait to be answered after 250 us each, two at once at most.
+std::size_t sent_in_one_cycle(bool booting) {
+  Loop bus;
+  bus.plan.cycle.service_frames = 2;
+  for (std::size_t node = 0; node < 2; ++node) bus.network->set_up(node, !booting);
+  bus.run(40);
+  bus.port.on_sent = [&](const Frame& frame) {
+    if (frame.id != CobId::base(0x601)) return;
+    bus.port.inbox.push_back({make_frame(CobId::base(0x581), {0x60}), bus.port.now() + 250us});
+  };
+  bus.network->to_send.assign(10, make_frame(CobId::base(0x601), {0x40}));
+  bus.port.sent.clear();
+  bus.run(1);
+  return bus.port.sent_with(0x601).size();
+}
+
+TEST(BusLoop, GivesAnAnswersPlaceToTheNextRequestWhileNobodyExchangesPdos) {
+  EXPECT_EQ(sent_in_one_cycle(false), 2U);
+  EXPECT_GT(sent_in_one_cycle(true), 6U);
+  EXPECT_LE(sent_in_one_cycle(true), 10U);
+}
+
 TEST(BusLoop, TakesTheAnswerToAnSdoInTheSlack) {
   Loop bus;
   bus.run(40);

@@ -54,6 +54,15 @@ TEST(BusLoop, AfterAStallOf50MsSendsNoBurst) {
   EXPECT_EQ(std::ranges::count(events, EventKind::pdo_missing), 0);
 }
 
+TEST(BusLoop, ExcusesTheNodesForTheTimeOfItsOwnAbsence) {
+  Loop bus;
+  bus.run(10);
+  EXPECT_TRUE(FakeNetwork::newest->absences.empty());
+  bus.port.stall = 400ms;
+  bus.run(10);
+  EXPECT_EQ(FakeNetwork::newest->absences, std::vector<Time>{400ms});
+}
+
 TEST(BusLoop, SendsALateSyncButKeepsHalfAPeriodToTheNext) {
   Loop bus;
   bus.run(5);
@@ -66,6 +75,21 @@ TEST(BusLoop, SendsALateSyncButKeepsHalfAPeriodToTheNext) {
   EXPECT_EQ(syncs[6].when - bus.start, 16ms);  // 14 ms was left out
   bus.run(6);
   EXPECT_EQ(bus.status().cycles_missed, 1U);
+}
+
+TEST(BusLoop, TwoStallsInARowMakeNoBurstOfSyncs) {
+  Loop bus;
+  bus.run(3);
+
+  bus.port.stall = 50ms;
+  bus.port.second_stall = 3900us;  // of a period of 2 ms: nearly two
+  bus.run(3);
+
+  const auto syncs = bus.port.sent_with(0x080);
+  ASSERT_EQ(syncs.size(), 6U);
+  for (std::size_t i = 1; i < syncs.size(); ++i) {
+    EXPECT_GE(syncs[i].when - syncs[i - 1].when, 1ms);
+  }
 }
 
 TEST(BusLoop, CommandOlderThanItsTimeToLiveFallsBack) {
@@ -107,6 +131,25 @@ TEST(BusLoop, LeavesOutOutputsThatCouldNotEndBeforeTheNextSync) {
   bus.run(10);
   EXPECT_EQ(bus.port.sent_with(0x201).size(), 10U);
   EXPECT_EQ(bus.status().outputs_skipped, 1U);
+}
+
+TEST(BusLoop, EventDrivenOutputsThatDoNotAllFitTakeTurns) {
+  BusPlan plan = test::axes({.nodes = 5, .fallback_cycles = 0});
+  for (std::size_t i = 2; i < 5; ++i) plan.pdos.rpdos[i].transmission = 255;
+  Loop bus{plan};
+  bus.run(1);
+  // Room for three frames of up to 115 us: the two synchronous ones and one other.
+  bus.plan.cycle.output_deadline = 1640us;
+  const auto sent = [&](unsigned node) { return bus.port.sent_with(0x200 + node).size(); };
+  bus.command_all(0x0F, 7, 100);
+  for (const unsigned node : {3U, 4U, 5U}) {
+    bus.run(1);
+    EXPECT_EQ(sent(node), 1U) << node;
+  }
+  EXPECT_EQ(sent(1), 3U);
+  EXPECT_EQ(sent(2), 3U);
+  EXPECT_EQ(sent(3) + sent(4) + sent(5), 3U);
+  EXPECT_EQ(bus.status().outputs_skipped, 0U);
 }
 
 TEST(BusLoop, TellsAFullSendBufferWithItsCauseOnceASecond) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "master/core/network.hpp"
@@ -26,8 +27,7 @@ class FakePort {
   void sleep_until(Time until) noexcept { note("sleep", until); }
   void sleep_precisely_until(Time until) noexcept {
     note("sleep", until);
-    now_ += stall;
-    stall = Time{};
+    now_ += std::exchange(stall, std::exchange(second_stall, Time{}));
   }
   bool wait_frame(Time until) noexcept {
     const auto next = std::ranges::min_element(inbox, {}, &StampedFrame::when);
@@ -75,7 +75,8 @@ class FakePort {
   std::vector<std::string> calls;
   std::function<void(const Frame&)> on_sent;
   PortNews news_now;
-  Time stall{};  ///< the next precise sleep comes back so much late
+  Time stall{};         ///< the next precise sleep comes back so much late
+  Time second_stall{};  ///< and the one after it
   std::size_t room = 1000;
   int error = 0;
 
@@ -102,6 +103,8 @@ class FakeNetwork {
     }
   }
   Time deadline() const noexcept { return never; }
+  void on_absence(Time away) noexcept { absences.push_back(away); }
+  bool streams() const noexcept { return false; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
     replies.push_back({.id = request.id, .data = {}});
@@ -124,6 +127,7 @@ class FakeNetwork {
   std::vector<Frame> heard;
   std::vector<Frame> to_send;
   std::vector<Reply> replies;
+  std::vector<Time> absences;
   bool refuse = false;
   bool stopping = false;
   static inline FakeNetwork* newest = nullptr;  ///< the one inside the newest loop

@@ -10,7 +10,4 @@ namespace takt {
 /// file that governs it. Empty for other objects.
 std::string against_refused_setting(const NodePlan& node, const BootFailure& failure);
 
-/// What to try against abort codes that are rarely seen. Empty for others.
-std::string against_rare_abort(const BootFailure& failure);
-
 }  // namespace takt

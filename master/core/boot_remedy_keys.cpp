@@ -1,10 +1,8 @@
-#include "master/core/boot_remedy_objects.hpp"
+#include "master/core/boot_remedy_keys.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
-
-#include "master/wire/sdo_abort.hpp"
 
 namespace takt {
 namespace {
@@ -83,44 +81,6 @@ std::string against_refused_setting(const NodePlan& node, const BootFailure& fai
          ": look up which values the device takes (`takt sdo read " +
          std::to_string(int{node.id.value()}) + " " + to_string(failure.object) +
          "` shows the present one), or " + std::string{found->without};
-}
-
-std::string against_rare_abort(const BootFailure& failure) {
-  const std::string object = to_string(failure.object);
-  switch (failure.abort_code) {
-    case abort_code::toggle_not_alternated:
-    case abort_code::command_unknown:
-      return "the device complains about the SDO protocol: a second SDO client may be talking to "
-             "it "
-             "at the same time (stop other masters and tools)";
-    case abort_code::out_of_memory:
-      return "the device has no memory for so long a value of " + object + ": make it shorter";
-    case abort_code::access_unsupported:
-      return "the device does not let " + object +
-             " be accessed in this way or now: look it up in the manual, or take it out of the "
-             "network file";
-    case abort_code::incompatible_device:
-      return object +
-             " does not fit what else is set in the device: set first what it depends on "
-             "(entries of `sdo` are written in their order)";
-    case 0x0609'0036:  // maximum below minimum
-      return "the limits of the device for " + object +
-             " contradict each other: write the limit objects first, or restore the defaults "
-             "(`restore_configuration: 1`)";
-    case abort_code::resource_unavailable:
-      return "the SDO server of the device is busy: does another master or tool use it?";
-    case abort_code::general_error:
-      return "the device gives no reason: look at its EMCY messages (`takt emcy`), at 0x1001 and "
-             "at "
-             "0x1003";
-    case 0x0800'0023:  // no object dictionary
-      return "the device has no object dictionary at the moment: reset it (`reset: node`), or load "
-             "its firmware anew";
-    case abort_code::no_data:
-      return object + " holds nothing yet: the device has to be set up first with its maker's tool";
-    default:
-      return {};
-  }
 }
 
 }  // namespace takt

@@ -1,0 +1,159 @@
+#include "master/core/boot_remedy_abort.hpp"
+
+#include "master/core/boot_remedy_keys.hpp"
+#include "master/core/report_text.hpp"
+#include "master/wire/bytes.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+namespace {
+
+bool is_mapping_entry(ObjectKey object) noexcept {
+  return (object.index >= 0x1600 && object.index <= 0x17FF) ||
+         (object.index >= 0x1A00 && object.index <= 0x1BFF);
+}
+
+/// "TPDO2" of a communication or mapping object, "the PDO" of others.
+std::string pdo_name(ObjectKey object) {
+  const unsigned area = object.index & 0xFE00U;
+  const std::string number = std::to_string((object.index & 0x1FFU) + 1);
+  if (area == 0x1800 || area == 0x1A00) return "TPDO" + number;
+  if (area == 0x1400 || area == 0x1600) return "RPDO" + number;
+  return "the PDO";
+}
+
+/// The object that a mapping entry maps: "6077:00"; else the written object itself.
+std::string mapped_object(const BootStep& step) {
+  if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
+    return to_string(step.object);
+  }
+  const auto entry = load_le<std::uint32_t>(std::span{step.value});
+  return to_string(ObjectKey{static_cast<std::uint16_t>(entry >> 16),
+                             static_cast<std::uint8_t>(entry >> 8 & 0xFF)});
+}
+
+std::string against_refused_mapping(const BootStep& step, const BootFailure& failure) {
+  const std::string pdo = pdo_name(step.object);
+  const std::string object = mapped_object(step);
+  switch (failure.abort_code) {
+    case abort_code::not_mappable:
+    case abort_code::write_only:
+      return "the device does not let " + object + " be mapped into " + pdo +
+             ", whatever its EDS says: take " + object + " out of the mapping of " + pdo +
+             " in the network file, or map a related object";
+    case abort_code::mapping_too_long:
+      return "the device can't hold so much in " + pdo +
+             ": map fewer or shorter objects, or spread them over two PDOs";
+    case abort_code::no_object:
+    case abort_code::no_sub_index:
+      return step.object.sub == 0 || object == to_string(step.object)
+                 ? "the device has no " + to_string(step.object) +
+                       ": it has fewer PDOs or entries than its EDS says; use another PDO number"
+                 : "the device has no object " + object +
+                       ": its firmware is older than the EDS; take it out of the mapping of " + pdo;
+    case abort_code::read_only:
+      return "the mapping of " + pdo +
+             " is fixed in this device: remove its `mapping` from the network file, so that the "
+             "device's own mapping is used";
+    default:
+      return "the device refuses to change " + pdo +
+             " now: it may want to be reset first (`reset: communication`), or its mapping is "
+             "fixed; then remove its `mapping` from the network file";
+  }
+}
+
+std::string against_rare_abort(const BootFailure& failure) {
+  const std::string object = to_string(failure.object);
+  switch (failure.abort_code) {
+    case abort_code::toggle_not_alternated:
+    case abort_code::command_unknown:
+      return "the device complains about the SDO protocol: a second SDO client may be talking to "
+             "it "
+             "at the same time (stop other masters and tools)";
+    case abort_code::out_of_memory:
+      return "the device has no memory for so long a value of " + object + ": make it shorter";
+    case abort_code::access_unsupported:
+      return "the device does not let " + object +
+             " be accessed in this way or now: look it up in the manual, or take it out of the "
+             "network file";
+    case abort_code::incompatible_device:
+      return object +
+             " does not fit what else is set in the device: set first what it depends on "
+             "(entries of `sdo` are written in their order)";
+    case 0x0609'0036:  // maximum below minimum
+      return "the limits of the device for " + object +
+             " contradict each other: write the limit objects first, or restore the defaults "
+             "(`restore_configuration: 1`)";
+    case abort_code::resource_unavailable:
+      return "the SDO server of the device is busy: does another master or tool use it?";
+    case abort_code::general_error:
+      return "the device gives no reason: look at its EMCY messages (`takt emcy`), at 0x1001 and "
+             "at "
+             "0x1003";
+    case 0x0800'0023:  // no object dictionary
+      return "the device has no object dictionary at the moment: reset it (`reset: node`), or load "
+             "its firmware anew";
+    case abort_code::no_data:
+      return object + " holds nothing yet: the device has to be set up first with its maker's tool";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  const std::string object = to_string(failure.object);
+  const std::string verb = failure.downloading ? "written" : "read";
+  if (failure.downloading && is_mapping_entry(step.object)) {
+    return against_refused_mapping(step, failure);
+  }
+  const bool of_state = failure.abort_code == abort_code::device_state ||
+                        failure.abort_code == abort_code::local_control ||
+                        failure.abort_code == abort_code::hardware_error;
+  std::string text = of_state ? std::string{} : against_refused_setting(node, failure);
+  if (text.empty()) text = against_rare_abort(failure);
+  if (!text.empty()) return text;
+  switch (failure.abort_code) {
+    case abort_code::no_object:
+    case abort_code::no_sub_index:
+      return "the device has no " + object + ", although " + node.description_file +
+             " may list it: compare the firmware with the EDS, or remove the entry from the "
+             "network file";
+    case abort_code::read_only:
+      return object + " can't be written: remove it from the network file";
+    case abort_code::write_only:
+      return failure.downloading
+                 ? "the device says that " + object +
+                       " can only be written, although it was "
+                       "written: look it up in the manual"
+                 : object +
+                       " can't be read: does the EDS say `wo`? Then it is written without "
+                       "comparing";
+    case abort_code::length_mismatch:
+    case abort_code::length_too_high:
+    case abort_code::length_too_low:
+      return "the device holds " + object +
+             " in another data type than the EDS says: give the data type in the network file";
+    case abort_code::invalid_value:
+    case abort_code::value_too_high:
+    case abort_code::value_too_low:
+    case abort_code::incompatible_parameters:
+      return "the device does not take this value for " + object +
+             ": look up its range in the manual and correct the network file";
+    case abort_code::cannot_store:
+    case abort_code::local_control:
+    case abort_code::device_state:
+      return object + " can't be " + verb +
+             " in the present state of the device: disable the drive, leave local control, or let "
+             "the boot reset it (`reset: communication`, or `reset: node`)";
+    case abort_code::hardware_error:
+      return "the device reports a hardware error: power it off and on; if that does not help, its "
+             "storage may be worn";
+    default:
+      return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
+             " in the manual of the device";
+  }
+}
+
+}  // namespace takt

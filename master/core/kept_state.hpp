@@ -1,0 +1,148 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Walks through what a machine knows, a word a value, so that another one made of the same plan
+/// can go on from there. Each machine names its values in `keep(state)`: only those that matter
+/// while nothing is under way, and none that follow from the plan. `Words` lends the words.
+template <class Words>
+class KeptState {
+ public:
+  template <class... T>
+  void operator()(T&... values) noexcept {
+    (one(values), ...);
+  }
+  /// A position below `end`; 0 where it is none.
+  template <std::unsigned_integral T>
+  void position(T& value, std::size_t end) noexcept {
+    one(value);
+    if (value >= end) value = 0;
+  }
+  /// A span of time that something is divided by, or that is added in each cycle.
+  void period(Time& value) noexcept {
+    one(value);
+    value = std::clamp(value, Time{1}, longest_period);
+  }
+
+ private:
+  static constexpr std::int64_t longest = std::int64_t{1} << 56;  // ns; sums stay in range
+  static constexpr Time longest_period{std::int64_t{1} << 42};    // 73 min, beyond 0x1006's longest
+  static constexpr std::int64_t largest = 1 << 30;                // of a small signed count
+
+  std::uint64_t word(std::uint64_t value) noexcept {
+    return static_cast<Words&>(*this).next(value);
+  }
+
+  void one(bool& value) noexcept { value = word(value ? 1 : 0) != 0; }
+  void one(std::int64_t& value) noexcept {
+    value = static_cast<std::int64_t>(word(static_cast<std::uint64_t>(value)));
+  }
+  void one(int& value) noexcept {
+    std::int64_t wide = value;
+    one(wide);
+    value = static_cast<int>(std::clamp(wide, -largest, largest));
+  }
+  template <std::unsigned_integral T>
+  void one(T& value) noexcept {
+    value = static_cast<T>(word(value));
+  }
+  template <class E>
+    requires std::is_enum_v<E>
+  void one(E& value) noexcept {
+    value = static_cast<E>(word(static_cast<std::uint64_t>(value)));
+  }
+  void one(char& value) noexcept {
+    value = static_cast<char>(word(static_cast<unsigned char>(value)));
+  }
+  void one(Time& value) noexcept {
+    std::int64_t count = value.count();
+    one(count);
+    value = Time{count};
+    if (value != never && value != Time::min()) {
+      value = Time{std::clamp(count, -longest, longest)};
+    }
+  }
+  void one(ObjectKey& value) noexcept { (*this)(value.index, value.sub); }
+  template <class T>
+  void one(std::optional<T>& value) noexcept {
+    bool there = value.has_value();
+    one(there);
+    T content = value.value_or(T{});
+    one(content);
+    value = there ? std::optional{content} : std::nullopt;
+  }
+  template <class T, std::size_t N>
+  void one(std::array<T, N>& values) noexcept {
+    for (T& value : values) one(value);
+  }
+  template <class T>
+  void one(std::vector<T>& values) noexcept {
+    for (T& value : values) one(value);
+  }
+  template <std::size_t N>
+  void one(std::bitset<N>& values) noexcept {
+    for (std::size_t i = 0; i < N; ++i) {
+      bool value = values[i];
+      one(value);
+      values[i] = value;
+    }
+  }
+  template <class T>
+    requires requires(T& machine, Words& state) { machine.keep(state); }
+  void one(T& machine) noexcept {
+    machine.keep(static_cast<Words&>(*this));
+  }
+};
+
+/// Counts the words that a machine's state takes.
+class StateSize : public KeptState<StateSize> {
+ public:
+  std::uint64_t next(std::uint64_t value) noexcept {
+    ++count_;
+    return value;
+  }
+  std::size_t count() const noexcept { return count_; }
+
+ private:
+  std::size_t count_ = 0;
+};
+
+/// Writes them where there is room for so many.
+class StateWriter : public KeptState<StateWriter> {
+ public:
+  explicit StateWriter(std::uint64_t* to) noexcept : to_{to} {}
+  std::uint64_t next(std::uint64_t value) noexcept { return *to_++ = value; }
+
+ private:
+  std::uint64_t* to_;
+};
+
+/// Puts them in place. Any words are safe; of too few the rest is as it was.
+class StateReader : public KeptState<StateReader> {
+ public:
+  explicit StateReader(std::span<const std::uint64_t> words) noexcept : words_{words} {}
+  std::uint64_t next(std::uint64_t value) noexcept {
+    if (words_.empty()) return value;
+    value = words_.front();
+    words_ = words_.subspan(1);
+    return value;
+  }
+
+ private:
+  std::span<const std::uint64_t> words_;
+};
+
+}  // namespace takt

@@ -1,0 +1,71 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/lss_runner.hpp"
+#include "master/core/machine.hpp"
+#include "master/core/node_status.hpp"
+#include "master/core/request_table.hpp"
+
+namespace takt {
+
+/// LSS of a running network: the requests of applications, and between them ids for nodes that the
+/// network file lets get one, as long as they show no sign of life. Bus thread only.
+class LssService {
+ public:
+  LssService(const BusPlan& plan, RequestTable& requests, EventQueue& events);
+
+  /// Begins to look for nodes without id.
+  void start(Time now) noexcept;
+  void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  void on_time(Time now, Outbox& out, std::span<const NodeStatus> nodes) noexcept;
+  Time deadline() const noexcept;
+  /// Gives up; the network answers its requests. No device stays in configuration state.
+  void stop(Time now) noexcept;
+  bool stopped() const noexcept { return stopping_ && !runner_.running(); }
+  /// Nobody is looked for, and no request is under way.
+  bool idle() const noexcept {
+    return !runner_.running() && searched_ == nullptr && request_ == nullptr && !stopping_;
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(runner_);
+    state.position(turn_, std::max<std::size_t>(candidates_.size(), 1));
+    for (Candidate& candidate : candidates_) state(candidate.next_look, candidate.told);
+  }
+
+ private:
+  static constexpr Time look_again = std::chrono::seconds{1};
+  static constexpr Time let_boot = std::chrono::seconds{5};
+  static constexpr std::uint8_t nobody = 0xFF;
+
+  struct Candidate {
+    std::uint8_t node = 0;  // index into plan.nodes
+    Time next_look = never;
+    std::uint32_t told = 0;  // last failure
+  };
+
+  void finish(Time now) noexcept;
+  void answer() noexcept;
+  void conclude(Candidate& candidate, Time now) noexcept;
+  bool begin_request() noexcept;
+  void begin_search(Time now, std::span<const NodeStatus> nodes) noexcept;
+
+  const BusPlan& plan_;
+  RequestTable& requests_;
+  EventQueue& events_;
+  LssRunner runner_;
+  std::vector<Candidate> candidates_;
+  std::size_t turn_ = 0;            // candidate that is looked for next
+  Candidate* searched_ = nullptr;   // who is looked for
+  RequestSlot* request_ = nullptr;  // whose services run
+  bool stopping_ = false;
+};
+
+}  // namespace takt

@@ -1,0 +1,48 @@
+#pragma once
+// Member functions of BusLoop: checkpoints of a recording, from which a replay can begin.
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+
+/// Nothing is under way, so that what keep() names is all that decides what comes.
+template <Port P, class N>
+bool BusLoop<P, N>::idle() const noexcept {
+  return stop_.stage() == StopStage::running && left_from_ == left_end_ && !reply_waits_ &&
+         services_.empty() && events_.empty() && pdo_requests_.idle() && !fallbacks_.waits() &&
+         network_.idle();
+}
+
+template <Port P, class N>
+template <class Archive>
+void BusLoop<P, N>::keep(Archive& state) noexcept {
+  state(pdos_, network_, pdo_requests_, time_, port_watch_, clock_, counter_, hold_, gate_);
+  state(follower_, prediction_, exchanging_, quick_stopped_, hearing_, gate_open_, followed_);
+  state(sync_lost_, wire_free_, starved_, held_, sync_sent_, last_sync_, sync_time_);
+  state(status_.beats);
+}
+
+/// In the slack, where there is time for it; now and then.
+template <Port P, class N>
+void BusLoop<P, N>::keep_state() noexcept {
+  if constexpr (keeps_state<P, N>) {
+    constexpr Time word_time = std::chrono::nanoseconds{10};
+    if (!port_.checkpoint_due() || !idle()) return;
+    const Time end = clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue();
+    if (published_ + static_cast<Time::rep>(state_words_) * word_time > end) return;
+    std::uint64_t* const room = port_.checkpoint(state_words_);
+    if (room == nullptr) return;
+    StateWriter writer{room};
+    keep(writer);
+  }
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::resume(std::span<const std::uint64_t> checkpoint) noexcept {
+  if (checkpoint.size() != state_words_) return false;
+  StateReader reader{checkpoint};
+  keep(reader);
+  finish_cycle();
+  return true;
+}
+
+}  // namespace takt

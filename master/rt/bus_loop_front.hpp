@@ -1,0 +1,53 @@
+#pragma once
+// Member functions of BusLoop: what comes from the front thread and goes there.
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+
+template <Port P, class N>
+const SetPointFrame& BusLoop<P, N>::newest_set_points() noexcept {
+  if constexpr (WitnessPort<P>) {
+    return port_.set_points(exchange_);
+  } else {
+    return exchange_.set_points.newest();
+  }
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::next_request() noexcept {
+  if constexpr (WitnessPort<P>) {
+    return port_.take_request(exchange_, request_);
+  } else {
+    return exchange_.requests.pop(request_);
+  }
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::asked_to_stop() noexcept {
+  if constexpr (WitnessPort<P>) {
+    return port_.stop_requested(exchange_);
+  } else {
+    return exchange_.stop_requested.load(std::memory_order_relaxed);
+  }
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::give_reply() noexcept {
+  if constexpr (WitnessPort<P>) {
+    return port_.give_reply(exchange_, reply_);
+  } else {
+    return !exchange_.replies.full() && exchange_.replies.push(reply_);
+  }
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::give_event(Event& event) noexcept {
+  event.cycle = clock_.cycle();
+  if constexpr (WitnessPort<P>) {
+    port_.tell(exchange_, event);
+  } else {
+    exchange_.events.push(event);
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,163 @@
+#pragma once
+// Member functions of BusLoop: the slack of a cycle, in which services and requests have their
+// turn.
+#include <algorithm>
+
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+
+/// Cycles so full that no dialogue fits before the outputs must not keep nodes from booting: one
+/// service frame goes out right behind SYNC. PDOs have priority over it on the wire.
+template <Port P, class N>
+void BusLoop<P, N>::relieve_services() noexcept {
+  services_.drop(send(services_.first(1)));
+  starved_ = 0;
+}
+
+/// While this thread stood still nobody listened: what came in has been read by now, what the
+/// socket could not hold is no silence of a device.
+template <Port P, class N>
+void BusLoop<P, N>::excuse_absence() noexcept {
+  const Time away = sync_sent_ - std::exchange(last_sync_, sync_sent_) - clock_.period();
+  if (away <= longest_lapse * clock_.period()) return;
+  if constexpr (requires { network_.on_absence(away); }) network_.on_absence(away);
+}
+
+/// Slack: machines and requests. A long cycle has many rounds, so that boots and heartbeats go on
+/// as in a short one.
+template <Port P, class N>
+void BusLoop<P, N>::serve() noexcept {
+  excuse_absence();
+  serve_round();
+  while (plan_.cycle.period >= long_cycle && rest_until_next_round()) {
+    give_events();
+    serve_round();
+  }
+  step_stop();
+}
+
+/// False: the outputs come next, or a followed SYNC has come early.
+template <Port P, class N>
+bool BusLoop<P, N>::rest_until_next_round() noexcept {
+  const Time next = port_.now() + round_distance;
+  if (next >= clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue())
+    return false;
+  port_.sleep_until(next);
+  drain();
+  return !follower_.arrived();
+}
+
+/// Service frames and the answers to them end before the outputs.
+template <Port P, class N>
+void BusLoop<P, N>::serve_round() noexcept {
+  take_requests();
+  write_fallbacks();
+  send_time();
+  const Time outputs = clock_.deadline() + plan_.cycle.output_deadline;
+  Time last_look = outputs - wire_.worst_dialogue();
+  if (plan_.cycle.period >= long_cycle) {
+    last_look = std::min(last_look, port_.now() + round_distance);
+  }
+  std::size_t budget = plan_.cycle.service_frames;
+  std::size_t open = 0;  // dialogues of this round without an answer so far
+  services_.inbox().set_limit(budget);
+  pdo_requests_.on_time(exchanging_, status_.beats, port_.now(), services_.inbox());
+  for (;;) {
+    const Time now = port_.now();
+    if (now - sync_sent_ > longest_lapse * clock_.period()) break;  // a stall, to be excused first
+    services_.inbox().set_limit(budget);
+    network_.on_time(now, services_.inbox());
+    if (options_.observe) services_.clear();
+    const std::size_t left = budget;
+    const Handed handed = send_services(budget, wire_.worst_dialogue() * open);
+    if (handed == Handed::requests && !hearing_) open += left - budget;
+    const bool awaited = handed != Handed::nothing || network_.streams() || open != 0;
+    if (!awaited || (budget == 0 && open == 0) || follower_.arrived()) break;
+    if (handed == Handed::burst) {
+      const Time dry = wire_free_ - wire_.worst_dialogue() / 2 * burst_ahead;
+      if (dry >= outputs) break;
+      port_.wait_frame(dry);
+    } else if (!port_.wait_frame(last_look)) {
+      break;
+    }
+    const std::uint64_t heard = status_.frames_received;
+    drain();
+    // Where nobody exchanges PDOs yet (all boot) an answer gives its place to the next request.
+    const std::size_t answered = std::min<std::size_t>(open, status_.frames_received - heard);
+    open -= answered;
+    budget += answered;
+  }
+  give_replies();
+}
+
+template <Port P, class N>
+auto BusLoop<P, N>::send_services(std::size_t& budget, Time under_way) noexcept -> Handed {
+  if (services_.empty()) return Handed::nothing;
+  const Time now = port_.now();
+  const Time outputs = clock_.deadline() + plan_.cycle.output_deadline;
+  wire_free_ = std::max(wire_free_, now);
+  std::size_t fitting = services_.fitting(budget, outputs - wire_free_ - under_way, wire_);
+  const bool burst = services_.unanswered(std::min(fitting, burst_frames));
+  if (burst) fitting = std::min(fitting, burst_frames);
+  const std::span<const Frame> frames = services_.first(fitting);
+  if (frames.empty()) {
+    starved_ += wire_free_ == now;
+    return Handed::nothing;
+  }
+  starved_ = 0;
+  const std::size_t count = send(frames);
+  if (burst) wire_free_ += wire_.mean(frames.first(count));
+  services_.drop(count);
+  budget -= count;
+  if (count == 0) return Handed::nothing;
+  return burst ? Handed::burst : Handed::requests;
+}
+
+/// TIME tells the moment at which it is sent: it never waits in a queue.
+template <Port P, class N>
+void BusLoop<P, N>::send_time() noexcept {
+  const Time now = port_.now();
+  if (now < time_.deadline() || options_.observe) return;
+  const auto frame = time_.frame(now, port_.news().since_1970);
+  if (!frame) return;
+  const std::span one{&*frame, 1};
+  const bool fits = now + wire_.worst(one) <= clock_.deadline() + plan_.cycle.output_deadline;
+  if (fits && send(one) == 1) time_.sent(now);
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::take_requests() noexcept {
+  if (reply_waits_ || !next_request()) return;
+  if (!options_.observe && submit(request_)) return;
+  reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
+  reply_waits_ = true;
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::write_fallbacks() noexcept {
+  while (fallbacks_.waits()) {
+    const bool there = exchanging_[fallbacks_.node_index()];
+    if (there && !network_.submit(fallbacks_.request(), port_.now())) return;
+    fallbacks_.submitted();
+  }
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::submit(const Request& request) noexcept {
+  const Time now = port_.now();
+  return PdoRequests::takes(request.kind) ? pdo_requests_.submit(request, now)
+                                          : network_.submit(request, now);
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::give_replies() noexcept {
+  for (;;) {
+    if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
+    if (FallbackWriter::owns(reply_)) continue;
+    reply_waits_ = !give_reply();
+    if (reply_waits_) return;
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,154 @@
+#pragma once
+// Member functions of BusLoop: the beginning of a cycle, by its own SYNC or by the one it follows.
+#include <algorithm>
+#include <chrono>
+
+#include "master/rt/bus_loop.hpp"
+#include "master/wire/sync.hpp"
+
+namespace takt {
+
+template <Port P, class N>
+void BusLoop<P, N>::wait_for_beat() noexcept {
+  if (follower_.used()) return wait_for_sync();
+  port_.sleep_precisely_until(clock_.deadline());
+  Time now = port_.now();
+  for (unsigned stalls = 0; stalls < patience_with_stalls; ++stalls) {
+    const std::uint64_t missed = clock_.skip_missed(now);
+    if (missed == 0) break;
+    note_missed(missed, now);
+    port_.sleep_precisely_until(clock_.deadline());
+    now = port_.now();
+  }
+  sync_sent_ = now;
+  const Time late = sync_sent_ - clock_.deadline();
+  exchange_.timing.sync_lateness.record(late);
+  if (late > clock_.period() / 10) ++status_.cycles_late;
+  look_at_wire();
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::note_missed(std::uint64_t missed, Time now) noexcept {
+  status_.cycles_missed += missed;
+  tell(EventKind::cycles_missed, now, static_cast<std::int64_t>(missed));
+}
+
+/// The frame of another device that begins the next cycle. What follows it waits for that.
+template <Port P, class N>
+bool BusLoop<P, N>::begins_cycle(const StampedFrame& stamped) noexcept {
+  if (!follower_.is_sync(stamped.frame)) return false;
+  follower_.on_sync(stamped);
+  return follower_.arrived();
+}
+
+/// Until SYNC is there, or a moment after its time.
+template <Port P, class N>
+void BusLoop<P, N>::await_sync() noexcept {
+  const Time until = follower_.end_of_wait(clock_.deadline());
+  bool more = follower_.arrived() || port_.wait_frame(until);
+  while (more) {
+    drain();
+    if (!follower_.arrived()) {
+      more = port_.now() < until && port_.wait_frame(until);
+    } else if (port_.now() - follower_.arrival() <= clock_.period() / 2) {
+      return;
+    } else {
+      follower_.take();  // too long ago to begin a cycle; a newer one may be behind it
+    }
+  }
+}
+
+/// A cycle begins with the arrival of SYNC. Where none comes it begins by our own clock, so that
+/// services go on and the loss is seen.
+template <Port P, class N>
+void BusLoop<P, N>::wait_for_sync() noexcept {
+  const bool was_locked = follower_.locked();
+  await_sync();
+  const Time expected = clock_.deadline();
+  followed_ = follower_.arrived();
+  std::uint64_t missed = 0;
+  Time began = never;
+  if (followed_) {
+    missed = clock_.follow(follower_.take(), follower_.period());
+    const Time off = std::chrono::abs(clock_.deadline() - expected);
+    if (was_locked && missed == 0) exchange_.timing.sync_lateness.record(off);
+    if (was_locked && off > clock_.period() / 10) ++status_.cycles_late;
+  } else {
+    const Time now = port_.now();
+    follower_.on_silence(now, network_.nodes());
+    missed = clock_.skip_missed(now - follower_.patience());
+    status_.cycles_missed += was_locked;
+    began = now;  // after a stall the deadline may lie before us, and a SYNC may come before it
+  }
+  if (missed != 0) note_missed(missed, port_.now());
+  sync_sent_ = std::min(clock_.deadline(), began);
+  react_to_sync();
+  look_at_wire();
+}
+
+/// What the network file says of a SYNC that stays away.
+template <Port P, class N>
+void BusLoop<P, N>::react_to_sync() noexcept {
+  if (follower_.lost() == sync_lost_) return;
+  sync_lost_ = follower_.lost();
+  status_.sync_losses += sync_lost_;
+  if (options_.observe || stop_.stage() != StopStage::running) return;
+  switch (plan_.cycle.on_sync_loss) {
+    case SyncLoss::hold:
+      return;  // outputs_rest()
+    case SyncLoss::fallback:
+      return take_fallbacks();
+    case SyncLoss::stop:
+      if constexpr (requires { network_.on_sync_loss(); }) {
+        sync_lost_ ? network_.on_sync_loss() : network_.on_sync_back();
+      }
+      return;
+  }
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::take_fallbacks() noexcept {
+  if (!sync_lost_) {
+    fallbacks_.stop();
+    return pdos_.outputs().hear_again();
+  }
+  pdos_.outputs().fall_back();
+  fallbacks_.begin(pdos_.outputs());
+}
+
+template <Port P, class N>
+SyncState BusLoop<P, N>::sync_state() const noexcept {
+  if (!follower_.used()) return plan_.cycle.sync ? SyncState::made : SyncState::none;
+  if (follower_.lost()) return SyncState::lost;
+  return follower_.waiting() ? SyncState::awaited : SyncState::locked;
+}
+
+template <Port P, class N>
+bool BusLoop<P, N>::outputs_rest() const noexcept {
+  return sync_lost_ && plan_.cycle.on_sync_loss == SyncLoss::hold &&
+         stop_.stage() == StopStage::running;
+}
+
+/// The beat itself: own SYNC goes out, the one that is followed is here.
+template <Port P, class N>
+void BusLoop<P, N>::begin_beat() noexcept {
+  const bool heard = follower_.used() ? followed_ : send_sync();
+  pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
+  status_.beats += heard;
+  if (starved_ >= patience_with_services) relieve_services();
+}
+
+/// False: there is a SYNC to be sent, and it was not.
+template <Port P, class N>
+bool BusLoop<P, N>::send_sync() noexcept {
+  if (!plan_.cycle.sync || options_.observe) return true;
+  if (!hold_.open(network_.nodes())) return false;
+  const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
+                                     : sync_frame(plan_.cycle.sync_cob_id);
+  if (send({&sync, 1}) != 1) return false;
+  counter_.sent();
+  gate_.sent(sync_sent_);
+  return true;
+}
+
+}  // namespace takt

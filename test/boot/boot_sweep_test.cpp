@@ -1,0 +1,110 @@
+#include <set>
+
+#include "test/boot/plant.hpp"
+
+// Every step of a boot goes wrong in every way: what is told names the object, the cause, a remedy.
+
+namespace takt {
+namespace {
+
+using namespace test;
+using enum sim::FaultKind;
+
+const std::string everything =
+    "tpdo: {1: {transmission: 10, event_timer: 50, mapping: [{index: 0x2010}, {index: 0x2012}]}}, "
+    "sdo: [{index: 0x2000, value: 5}], error_behavior: {1: 2}, store_configuration: 1, "
+    "configuration_date: auto, emcy_cob_id: 0x0C5, revision_number: 0x00010002";
+
+bool talks_by_sdo(BootAction action) {
+  switch (action) {
+    case BootAction::probe:
+    case BootAction::expect:
+    case BootAction::compare:
+    case BootAction::disable_pdo:
+    case BootAction::write:
+    case BootAction::enable_pdo:
+    case BootAction::verify:
+    case BootAction::write_if_differs:
+    case BootAction::write_if_changed:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Of the steps that must succeed.
+std::set<ObjectKey> objects_of(const LoadedNetwork& network) {
+  std::set<ObjectKey> objects;
+  for (const BootStep& step : network.plan.nodes[0].boot_plan.steps) {
+    if (talks_by_sdo(step.action) && !step.optional) objects.insert(step.object);
+  }
+  return objects;
+}
+
+std::string report(sim::FaultKind kind, ObjectKey object, std::uint32_t abort_code = 0) {
+  sim::Fault fault{.kind = kind, .node = 5_node};
+  fault.object = object;
+  fault.abort_code = abort_code;
+  Plant plant{valve(everything), {fault}};
+  plant.run(15s);
+  return plant.text_of(EventKind::boot_failed);
+}
+
+TEST(BootSweep, CoversMostOfWhatABootTouches) {
+  EXPECT_GE(objects_of(valve(everything)).size(), 15u);
+}
+
+TEST(BootSweep, ARefusalAtAnyStepIsToldWithObjectAbortAndRemedy) {
+  for (const ObjectKey object : objects_of(valve(everything))) {
+    const std::string text = report(refuse_object, object, 0x0800'0000);
+    EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
+    EXPECT_NE(text.find("abort 0800 0000: general error"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n  try       "), std::string::npos) << text;
+  }
+}
+
+TEST(BootSweep, SilenceAtAnyStepIsToldWithObjectAndRemedy) {
+  for (const ObjectKey object : objects_of(valve(everything))) {
+    const std::string text = report(mute_sdo, object);
+    EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
+    EXPECT_NE(text.find("\n  received  nothing"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n  try       "), std::string::npos) << text;
+  }
+}
+
+TEST(BootSweep, ARefusedWriteAtAnyStepIsToldUnlessNothingHasToBeWritten) {
+  int told = 0;
+  for (const ObjectKey object : objects_of(valve(everything))) {
+    const std::string text = report(refuse_write, object, 0x0800'0021);
+    if (text.empty()) continue;  // only read
+    ++told;
+    EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
+    EXPECT_NE(text.find("abort 0800 0021"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n  try       "), std::string::npos) << text;
+  }
+  EXPECT_GE(told, 8);
+}
+
+TEST(BootSweep, AResetAtAnyMomentOfTheBootEndsInAReadyNode) {
+  for (Time at = 40ms; at < 160ms; at += 1ms) {
+    Plant plant{valve(everything), {{.kind = reset, .node = 5_node, .at = at}}};
+
+    plant.run(5s);
+
+    EXPECT_EQ(plant.node().boot, BootState::ready) << at.count() / 1'000'000 << " ms";
+  }
+}
+
+TEST(BootSweep, APowerCutAtAnyMomentOfTheBootEndsInAReadyNode) {
+  for (Time at = 40ms; at < 160ms; at += 4ms) {
+    Plant plant{valve(everything),
+                {{.kind = power_off, .node = 5_node, .at = at, .until = at + 2s}}};
+
+    plant.run(12s);
+
+    EXPECT_EQ(plant.node().boot, BootState::ready) << at.count() / 1'000'000 << " ms";
+  }
+}
+
+}  // namespace
+}  // namespace takt
