@@ -8,14 +8,19 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/file_transfer.hpp"
+#include "apps/takt/interrupt.hpp"
 #include "apps/takt/sdo_direct.hpp"
 #include "apps/takt/sdo_value.hpp"
+#include "apps/takt/transfer_progress.hpp"
 #include "master/core/request.hpp"
 
 namespace takt {
 namespace {
 
 using Value = std::vector<std::byte>;
+
+constexpr std::size_t most_file_bytes = 16 << 20;
 
 struct SdoOptions {
   LiveOptions live;
@@ -26,6 +31,7 @@ struct SdoOptions {
   std::string value;
   std::string file;
   int timeout_ms = 1000;
+  std::size_t limit = most_file_bytes;
 };
 
 /// Where the transfers go: through the daemon, or directly onto the bus.
@@ -35,6 +41,11 @@ class SdoAccess {
 
   std::expected<Value, LiveError> upload(ObjectKey object);
   std::expected<void, LiveError> download(ObjectKey object, const Value& value);
+  /// The same for files, which may be long: in parts, by block transfer, with progress.
+  std::expected<Value, LiveError> upload_file(ObjectKey object, std::size_t limit,
+                                              const Progress& progress);
+  std::expected<void, LiveError> download_file(ObjectKey object, const Value& value,
+                                               const Progress& progress);
   int node() const noexcept { return node_; }
 
  private:
@@ -101,12 +112,24 @@ std::expected<void, LiveError> SdoAccess::download(ObjectKey object, const Value
   if (direct_) return direct_->download(object, value);
   if (value.size() > request_bytes) {
     return std::unexpected{LiveError{"the daemon takes at most " + std::to_string(request_bytes) +
-                                         " bytes; larger values with --bus and taktd stopped",
+                                         " bytes as one value; longer ones as a file",
                                      1}};
   }
   const auto reply = ask("sdo_download", object, value);
   if (!reply) return std::unexpected{reply.error()};
   return {};
+}
+
+std::expected<Value, LiveError> SdoAccess::upload_file(ObjectKey object, std::size_t limit,
+                                                       const Progress& progress) {
+  if (direct_) return direct_->upload(object, limit, progress);
+  return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.upload(limit);
+}
+
+std::expected<void, LiveError> SdoAccess::download_file(ObjectKey object, const Value& value,
+                                                        const Progress& progress) {
+  if (direct_) return direct_->download(object, value, progress);
+  return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.download(value);
 }
 
 int transfer_failed(const SdoOptions& options, ObjectKey object, const LiveError& error) {
@@ -165,8 +188,13 @@ int upload_file(const SdoOptions& options) {
   if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
   auto access = SdoAccess::open(options);
   if (!access) return complain(access.error().sentence, access.error().code);
-  const auto value = access->upload(*object);
+  const Interrupt interrupt;
+  TransferProgress progress;
+  const auto value =
+      access->upload_file(*object, options.limit,
+                          [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   if (!value) return transfer_failed(options, *object, value.error());
+  progress.finish(value->size());
   std::ofstream file{options.file, std::ios::binary};
   file.write(reinterpret_cast<const char*>(value->data()),
              static_cast<std::streamsize>(value->size()));
@@ -181,7 +209,16 @@ int download_file(const SdoOptions& options) {
   const std::string content{std::istreambuf_iterator<char>{file}, {}};
   if (!file.good() && content.empty()) return complain(options.file + ": can't be read", 2);
   const auto bytes = std::as_bytes(std::span{content});
-  return download_value(options, *object, {bytes.begin(), bytes.end()});
+  auto access = SdoAccess::open(options);
+  if (!access) return complain(access.error().sentence, access.error().code);
+  const Interrupt interrupt;
+  TransferProgress progress;
+  const auto done = access->download_file(
+      *object, {bytes.begin(), bytes.end()},
+      [&](std::size_t through, std::size_t total) { progress.show(through, total); });
+  if (!done) return transfer_failed(options, *object, done.error());
+  progress.finish(bytes.size());
+  return 0;
 }
 
 CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
@@ -206,6 +243,8 @@ void add_sdo(CLI::App& app, int& exit_code) {
   sdo->footer(
       "Examples:\n  takt sdo read 5 6041 u16\n  takt sdo read shoulder 1008\n"
       "  takt sdo write 5 6081 u32 1000\n  takt sdo upload 5 1021 drive.eds --bus can0\n"
+      "  takt sdo download 5 1F50:1 firmware.bin --timeout 10000\n"
+      "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
       "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
   auto options = std::make_shared<SdoOptions>();
   auto* reading = add_verb(*sdo, "read", "one value", options);
@@ -217,6 +256,12 @@ void add_sdo(CLI::App& app, int& exit_code) {
   writing->callback([options, &exit_code] { exit_code = write(*options); });
   auto* uploading = add_verb(*sdo, "upload", "from the device into a file", options);
   uploading->add_option("FILE", options->file)->required();
+  uploading
+      ->add_option("--limit", options->limit,
+                   "most bytes: a device that sends more is aborted; 64K, 2M (16M)")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::Range(std::size_t{1}, most_file_bytes))
+      ->type_name("BYTES");
   uploading->callback([options, &exit_code] { exit_code = upload_file(*options); });
   auto* downloading = add_verb(*sdo, "download", "from a file into the device", options);
   downloading->add_option("FILE", options->file)->required();

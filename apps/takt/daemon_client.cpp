@@ -75,7 +75,8 @@ void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<boo
 }
 
 std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
-  auto lcm = LcmClient::open(options.lcm_url, {any_bus("STATUS"), any_bus("REPLY")});
+  auto lcm = LcmClient::open(options.lcm_url,
+                             {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
   if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
   BusViews views;
   const auto found = [&] {

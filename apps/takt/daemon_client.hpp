@@ -17,6 +17,7 @@ namespace takt {
 struct LiveError {
   std::string sentence;
   int code = 3;
+  std::uint32_t abort_code = 0;  ///< of an SDO transfer; 0: none
 };
 
 /// A running daemon, found by its status messages.
@@ -32,6 +33,9 @@ class DaemonClient {
 
   /// Sends a request and waits for its answer. `limit` is beyond what the daemon itself waits.
   std::expected<reply_t, LiveError> ask(request_t request, Time limit);
+
+  /// For dialogues of more than one message.
+  LcmClient& lcm() noexcept { return lcm_; }
 
  private:
   DaemonClient(LcmClient lcm, status_t status) : lcm_{std::move(lcm)}, status_{std::move(status)} {}

@@ -2,62 +2,122 @@
 
 #include <algorithm>
 
+#include "apps/takt/interrupt.hpp"
+#include "master/core/request.hpp"
 #include "master/core/sdo_client.hpp"
 #include "master/gateway/requests.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
-#include "master/wire/sdo_codec.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::size_t largest_value = 16 << 20;
+constexpr Time longest_jam = std::chrono::seconds{2};  // nothing can be sent: nobody acknowledges
 
-/// Everything on the bus arrives here; only the answers of `node` are for the client.
-std::expected<std::size_t, LiveError> run(SdoClient& client, NodeId node, FrameChannel& channel,
-                                          const std::string& bus) {
-  const CobId answers = sdo_answer_cob_id(node);
-  Outbox out;
-  for (;;) {
-    if (const auto result = client.take_result()) {
-      if (result->fault == SdoFault::none) return result->size;
-      return std::unexpected{LiveError{fault_text(result->fault, result->abort_code), 1}};
+/// Drives a client to its result. Everything on the bus arrives here; only the answers of the node
+/// are for the client.
+class Drive {
+ public:
+  /// `limit`: most bytes of an uploaded file; 0: no file.
+  Drive(SdoClient& client, FrameChannel& channel, const std::string& bus, std::size_t limit = 0)
+      : client_{client}, channel_{channel}, bus_{bus}, limit_{limit} {}
+
+  std::expected<std::size_t, LiveError> run(std::size_t total, const Progress& progress) {
+    for (;;) {
+      if (Interrupt::asked()) client_.cancel();
+      if (progress) progress(client_.progress(), total);
+      if (!send()) return std::unexpected{LiveError{"a frame could not be sent on " + bus_, 3}};
+      if (const auto result = client_.take_result()) return told(*result);
+      receive();
     }
-    client.on_time(monotonic_now(), out);
-    if (channel.send(out.frames()).sent != out.frames().size()) {
-      return std::unexpected{LiveError{"a frame could not be sent on " + bus, 3}};
-    }
-    out.clear();
-    StampedFrame frame;
-    const Time pause = std::clamp<Time>(client.deadline() - monotonic_now(), Time{0},
-                                        std::chrono::milliseconds{100});
-    if (!channel.receive(frame, pause)) continue;
-    if (frame.frame.id == answers && !frame.frame.rtr)
-      client.on_frame(frame.frame, monotonic_now());
   }
-}
+
+ private:
+  std::expected<std::size_t, LiveError> told(const SdoResult& result) {
+    send();  // the abort, or the last confirmation
+    if (result.fault == SdoFault::none) return result.size;
+    if (Interrupt::asked()) {
+      return std::unexpected{LiveError{"interrupted; the transfer was aborted", 1}};
+    }
+    std::string why = fault_text(result.fault, result.abort_code);
+    if (result.fault == SdoFault::too_long && limit_ != 0) {
+      why = "the object is longer than the " + std::to_string(limit_) +
+            " bytes that were asked for (--limit)";
+    }
+    return std::unexpected{LiveError{std::move(why), 1, result.abort_code}};
+  }
+
+  /// A full transmit queue is waited for: a block is longer than what an interface holds.
+  bool send() {
+    client_.on_time(monotonic_now(), out_);
+    for (const Time limit = monotonic_now() + longest_jam; !out_.empty();) {
+      if (channel_.send(out_.frames()).sent == out_.frames().size()) break;
+      if (monotonic_now() > limit) return false;
+      StampedFrame frame;
+      if (channel_.receive(frame, std::chrono::milliseconds{1})) take(frame.frame);
+    }
+    out_.clear();
+    return true;
+  }
+
+  void receive() {
+    StampedFrame frame;
+    const Time pause = std::clamp<Time>(client_.deadline() - monotonic_now(), Time{0},
+                                        std::chrono::milliseconds{100});
+    if (channel_.receive(frame, pause)) take(frame.frame);
+  }
+
+  void take(const Frame& frame) {
+    if (frame.id == client_.channel().answer && !frame.rtr) {
+      client_.on_frame(frame, monotonic_now());
+    }
+  }
+
+  SdoClient& client_;
+  FrameChannel& channel_;
+  const std::string& bus_;
+  std::size_t limit_;
+  Outbox out_;
+};
 
 }  // namespace
 
 std::expected<std::vector<std::byte>, LiveError> SdoDirect::upload(ObjectKey object) {
-  auto channel = FrameChannel::open(bus_);
+  auto channel = FrameChannel::open(bus_, BusMember::guest);
   if (!channel) return std::unexpected{LiveError{channel.error().message, 3}};
-  std::vector<std::byte> buffer(largest_value);
+  std::vector<std::byte> buffer(request_bytes);
   SdoClient client{node_};
-  client.upload(object, buffer, timeout_);
-  const auto size = run(client, node_, *channel, bus_);
+  client.upload(object, buffer, timeout_, SdoMode::plain);
+  const auto size = Drive{client, *channel, bus_}.run(0, {});
+  if (!size) return std::unexpected{size.error()};
+  buffer.resize(*size);
+  return buffer;
+}
+
+/// A device that never stops sending segments is stopped at the end of the buffer.
+std::expected<std::vector<std::byte>, LiveError> SdoDirect::upload(ObjectKey object,
+                                                                   std::size_t limit,
+                                                                   const Progress& progress) {
+  auto channel = FrameChannel::open(bus_, BusMember::guest);
+  if (!channel) return std::unexpected{LiveError{channel.error().message, 3}};
+  std::vector<std::byte> buffer(limit);
+  SdoClient client{node_};
+  client.upload(object, buffer, timeout_, SdoMode::block);
+  Drive drive{client, *channel, bus_, limit};
+  const auto size = drive.run(0, progress);
   if (!size) return std::unexpected{size.error()};
   buffer.resize(*size);
   return buffer;
 }
 
 std::expected<void, LiveError> SdoDirect::download(ObjectKey object,
-                                                   std::span<const std::byte> value) {
-  auto channel = FrameChannel::open(bus_);
+                                                   std::span<const std::byte> value,
+                                                   Progress progress) {
+  auto channel = FrameChannel::open(bus_, BusMember::guest);
   if (!channel) return std::unexpected{LiveError{channel.error().message, 3}};
   SdoClient client{node_};
   client.download(object, value, timeout_);
-  const auto size = run(client, node_, *channel, bus_);
+  const auto size = Drive{client, *channel, bus_}.run(value.size(), progress);
   if (!size) return std::unexpected{size.error()};
   return {};
 }

@@ -30,7 +30,9 @@ Channels::Channels(const std::string& bus)
       timing{channel_name(bus, "TIMING")},
       event{channel_name(bus, "EVENT")},
       request{channel_name(bus, "REQUEST")},
-      reply{channel_name(bus, "REPLY")} {}
+      reply{channel_name(bus, "REPLY")},
+      transfer{channel_name(bus, "TRANSFER")},
+      transfer_state{channel_name(bus, "TRANSFER_STATE")} {}
 
 Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell)
     : master_{master},
@@ -51,6 +53,11 @@ Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, Noti
       requests_{master.plan(),
                 {.session = options_.session, .observe = options_.observe},
                 [this](const Request& request) { return master_.submit(request); }},
+      transfers_{master.plan(),
+                 {.session = options_.session, .observe = options_.observe},
+                 master.transfers(),
+                 {.submit = [this](const Request& request) { return master_.submit(request); },
+                  .state = [this](const transfer_state_t& state) { tell_transfer(state); }}},
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{realtime_offset()} {
@@ -68,6 +75,7 @@ bool Bridge::serve() {
   take_replies();
   take_events();
   const Time now = monotonic_now();
+  transfers_.on_time(now);
   if (now >= next_layout_) publish_layout();
   if (now >= next_status_) publish_status();
   if (now >= next_pdos_) publish_pdos();
@@ -104,6 +112,7 @@ void Bridge::take_messages() {
 void Bridge::on_message(std::string_view channel, Bytes data) {
   if (channel == channels_.command) on_command(data);
   if (channel == channels_.request) on_request(data);
+  if (channel == channels_.transfer) on_transfer(data);
 }
 
 void Bridge::take_command(const command_t& command) {
@@ -150,6 +159,17 @@ void Bridge::answer_history(const request_t& request) {
   answer(std::move(reply));
 }
 
+void Bridge::on_transfer(Bytes data) {
+  const auto transfer = decode<transfer_t>(data);
+  if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
+  transfers_.take(*transfer, monotonic_now());
+}
+
+void Bridge::tell_transfer(transfer_state_t state) {
+  state.utime = wall_microseconds(monotonic_now());
+  publish(channels_.transfer_state, state);
+}
+
 void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
   const Time now = monotonic_now();
   const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
@@ -167,6 +187,7 @@ void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
 void Bridge::take_replies() {
   Reply reply;
   while (master_.take(reply)) {
+    if (transfers_.finish(reply)) continue;
     if (auto message = requests_.finish(reply)) answer(std::move(*message));
   }
 }

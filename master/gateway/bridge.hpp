@@ -14,6 +14,7 @@
 #include "master/gateway/pdo_outages.hpp"
 #include "master/gateway/requests.hpp"
 #include "master/gateway/status_messages.hpp"
+#include "master/gateway/transfers.hpp"
 #include "master/gateway/transport.hpp"
 #include "master/master.hpp"
 
@@ -22,9 +23,10 @@ namespace takt {
 /// LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
-  std::string image, layout, command, status, sync, pdos, timing, event, request, reply;
+  std::string image, layout, command, status, sync, pdos, timing, event, request, reply, transfer,
+      transfer_state;
   /// Those that the daemon hears.
-  std::vector<std::string> heard() const { return {command, request}; }
+  std::vector<std::string> heard() const { return {command, request, transfer}; }
 };
 
 struct BridgeOptions {
@@ -69,12 +71,14 @@ class Bridge {
   void send(const Notice& notice);
   reply_t reply_to(const request_t& request) const;
   void answer_history(const request_t& request);
+  void on_transfer(Bytes data);
   void tell_damaged(const std::string& channel, DecodeFault fault);
   void publish_layout();
   void publish_status();
   void publish_pdos();
   void publish_timing();
   void answer(reply_t reply);
+  void tell_transfer(transfer_state_t state);
   std::int64_t wall_microseconds(Time monotonic) const noexcept;
   template <class T>
   void publish(const std::string& channel, const T& message) {
@@ -92,6 +96,7 @@ class Bridge {
   TimingMessages timing_messages_;
   Commands commands_;
   Requests requests_;
+  Transfers transfers_;
   PdoOutages outages_;
   NoticeLimit limit_;
   EmcyHistory emcys_;

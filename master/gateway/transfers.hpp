@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <span>
+#include <string>
+#include <takt/transfer_state_t.hpp>
+#include <takt/transfer_t.hpp>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/request.hpp"
+#include "master/gateway/requests.hpp"
+
+namespace takt {
+
+/// Files to and from domains: transfer_t in parts -> one long Request -> transfer_state_t. The
+/// buffers belong to the bus thread only while a request is under way. Front thread.
+class Transfers {
+ public:
+  static constexpr std::size_t part_bytes = 1024;       ///< in one message
+  static constexpr std::size_t most_bytes = 16U << 20;  ///< of one file
+  static constexpr std::size_t parts_at_once = 16;      ///< answers to one "more"
+
+  struct Sinks {
+    std::function<bool(const Request&)> submit;          ///< to the bus thread; false: no room
+    std::function<void(const transfer_state_t&)> state;  ///< to whoever asked
+  };
+  /// `buffers` outlive every request.
+  Transfers(const BusPlan& plan, RequestsOptions options, std::span<SdoTransfer> buffers,
+            Sinks sinks);
+
+  void take(const transfer_t& message, Time now);
+  /// False: the reply belongs to somebody else.
+  bool finish(const Reply& reply);
+  /// Progress of what runs; the end of what nobody wants any more.
+  void on_time(Time now);
+
+ private:
+  enum class Stage : std::uint8_t { free, filling, running, done, failed };
+  struct Job {
+    SdoTransfer* buffer = nullptr;
+    Stage stage = Stage::free;
+    bool submitted = false;
+    std::string sender{};
+    std::int64_t id = 0;
+    Request request;
+    std::size_t received = 0;
+    std::uint32_t abort_code = 0;
+    std::string text{};
+    Time heard{};  // of the sender
+    Time told{};
+  };
+
+  Job* find(const transfer_t& message);
+  std::expected<Request, std::string> translate(const transfer_t& message) const;
+  void begin(const transfer_t& message, Time now);
+  void fill(Job& job, const transfer_t& message);
+  void send_parts(Job& job, const transfer_t& message);
+  void submit(Job& job);
+  void forget(Job& job);
+  void cancel(Job& job, const std::string& why);
+  void refuse(const transfer_t& message, std::string why);
+  transfer_state_t state_of(const Job& job) const;
+
+  const BusPlan& plan_;
+  RequestsOptions options_;
+  Sinks sinks_;
+  std::vector<Job> jobs_;
+  std::uint64_t next_id_ = 1;
+};
+
+}  // namespace takt
