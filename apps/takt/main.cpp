@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   takt::add_status(app, exit_code);
   takt::add_top(app, exit_code);
   takt::add_emcy(app, exit_code);
+  takt::add_export(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
   takt::add_param(app, exit_code);

@@ -1,0 +1,88 @@
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "apps/takt/text_file.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/print/plan.hpp"
+#include "eds_parser/write/cpp_header.hpp"
+#include "eds_parser/write/dbc.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string file;
+  std::string folder;
+  bool whole_words = false;
+};
+
+/// What one export writes: file name and content.
+using Exported = std::vector<std::pair<std::string, std::string>>;
+using Export = Exported (*)(const LoadedNetwork& network, const Options& options);
+
+Exported as_dbc(const LoadedNetwork& network, const Options& options) {
+  return {{network.plan.name + ".dbc", to_dbc(network.plan, {.word_bits = !options.whole_words})}};
+}
+
+Exported as_header(const LoadedNetwork& network, const Options&) {
+  return {{network.plan.name + ".hpp", to_cpp_header(network.plan)}};
+}
+
+Exported as_json(const LoadedNetwork& network, const Options&) {
+  std::ostringstream text;
+  print_plan_json(text, network.plan,
+                  {.node = {}, .realtime = network.realtime, .lcm = network.lcm});
+  return {{network.plan.name + ".json", std::move(text).str()}};
+}
+
+int run(const Options& options, Export make) {
+  const LoadedNetwork network = load_network(options.file);
+  for (const Finding& finding : network.findings) {
+    if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
+  }
+  if (has_error(network.findings)) return 2;
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) return complain(options.folder + ": " + error.message(), 1);
+  for (const auto& [name, content] : make(network, options)) {
+    const auto path = fs::path{options.folder} / name;
+    const auto written = write_whole_file(path, content);
+    if (!written) return complain(written.error(), 1);
+    std::cout << path.string() << '\n';
+  }
+  return 0;
+}
+
+CLI::App* add(CLI::App& verb, const std::shared_ptr<Options>& options, int& exit_code,
+              const std::string& name, const std::string& what, Export make) {
+  auto* command = verb.add_subcommand(name, what);
+  command->add_option("NET", options->file, "network file")->required();
+  command->add_option("-o,--output", options->folder, "folder for the files")
+      ->type_name("DIR")
+      ->required();
+  command->callback([options, make, &exit_code] { exit_code = run(*options, make); });
+  return command;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("export", "the plan of a network for other tools");
+  verb->require_subcommand(1);
+  verb->footer(
+      "Prints the names of the files that it wrote.\n\n"
+      "Example:\n  takt export dbc lift.yaml -o out");
+  auto options = std::make_shared<Options>();
+  add(*verb, options, exit_code, "dbc", "frames of the bus for CAN tools", as_dbc)
+      ->add_flag("--whole-words", options->whole_words,
+                 "statusword and controlword as one value, not as their bits");
+  add(*verb, options, exit_code, "header", "positions in the image for C++", as_header);
+  add(*verb, options, exit_code, "json", "all of `takt plan --json`", as_json);
+}
+
+}  // namespace takt
