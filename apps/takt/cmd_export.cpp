@@ -9,6 +9,7 @@
 #include "eds_parser/print/plan.hpp"
 #include "eds_parser/write/cpp_header.hpp"
 #include "eds_parser/write/dbc.hpp"
+#include "eds_parser/write/lcm_text.hpp"
 
 namespace takt {
 namespace {
@@ -31,6 +32,15 @@ Exported as_dbc(const LoadedNetwork& network, const Options& options) {
 
 Exported as_header(const LoadedNetwork& network, const Options&) {
   return {{network.plan.name + ".hpp", to_cpp_header(network.plan)}};
+}
+
+Exported as_lcm(const LoadedNetwork& network, const Options&) {
+  Exported files;
+  for (const TypedMessage& message : typed_messages(network.plan)) {
+    files.emplace_back(message.package + '_' + message.name + ".lcm",
+                       to_lcm(message, network.plan));
+  }
+  return files;
 }
 
 Exported as_json(const LoadedNetwork& network, const Options&) {
@@ -82,6 +92,8 @@ void add_export(CLI::App& app, int& exit_code) {
       ->add_flag("--whole-words", options->whole_words,
                  "statusword and controlword as one value, not as their bits");
   add(*verb, options, exit_code, "header", "positions in the image for C++", as_header);
+  add(*verb, options, exit_code, "lcm", "a typed LCM message for each node's inputs and outputs",
+      as_lcm);
   add(*verb, options, exit_code, "json", "all of `takt plan --json`", as_json);
 }
 

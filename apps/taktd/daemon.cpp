@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <future>
+#include <iterator>
 #include <utility>
 
 #include "apps/taktd/bus_choice.hpp"
@@ -33,6 +34,7 @@ Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
       wait_{signals_.wait_mask()},
       reporter_{network_.plan} {
   if (options_.rt) network_.realtime.mode = *options_.rt;
+  if (options_.typed) network_.lcm.typed = *options_.typed;
 }
 
 Exit Daemon::run() {
@@ -71,6 +73,9 @@ std::optional<Exit> Daemon::open() {
   for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
   const Channels channels{network_.plan.name};
   std::vector<std::string> heard = channels.heard();
+  if (network_.lcm.typed) {
+    std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
+  }
   link_ = std::make_unique<LcmLink>(
       std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
       [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
@@ -109,7 +114,8 @@ std::optional<Exit> Daemon::start() {
                                      BridgeOptions{.session = session_,
                                                    .observe = options_.observe,
                                                    .interface = bus_name_,
-                                                   .realtime = to_string(realtime_)},
+                                                   .realtime = to_string(realtime_),
+                                                   .typed = network_.lcm.typed},
                                      [this](const Notice& notice) { on_notice(notice); });
   if (options_.run_for > Time{0}) end_ = monotonic_now() + options_.run_for;
   service_.ready("bus " + network_.plan.name + " on " + bus_name_);

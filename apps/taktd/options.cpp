@@ -61,6 +61,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   DaemonOptions options;
   std::string rt;
   std::string run_for;
+  int typed = 0;  // -1: --no-typed
   app.add_option("NET.yaml", options.network_file, "network file")->required();
   app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
   app.add_option("--rt", rt, "enforce: no start without real time; try: say what is missing; off")
@@ -72,11 +73,14 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
       ->type_name("TIME");
   app.add_option("--events", options.events_file, "append events as JSON, one a line")
       ->type_name("FILE");
+  app.add_flag("--typed,!--no-typed", typed,
+               "BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`, or not");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
   app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
   try {
     app.parse(argc, argv);
     if (!rt.empty()) options.rt = rt_modes.at(rt);
+    if (typed != 0) options.typed = typed > 0;
     if (!run_for.empty()) {
       const auto time = parse_duration(run_for);
       if (!time) throw CLI::ValidationError("--for", "'" + run_for + "' is not a time like 10s");

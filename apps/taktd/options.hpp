@@ -18,6 +18,7 @@ struct DaemonOptions {
   Time run_for{};         ///< 0: until a signal
   bool check = false;
   bool observe = false;
+  std::optional<bool> typed;  ///< else the network file's
 };
 
 /// The options, or the exit code when the command line asks for help or is wrong (told already).

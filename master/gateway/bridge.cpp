@@ -17,6 +17,7 @@ constexpr Time status_period = std::chrono::milliseconds{100};
 constexpr Time pdos_period = std::chrono::milliseconds{500};
 constexpr Time layout_period = std::chrono::seconds{1};
 constexpr Time timing_period = std::chrono::seconds{1};
+constexpr unsigned most_behind = 8;  // images: further ones of a jam go out without typed messages
 
 }  // namespace
 
@@ -61,6 +62,7 @@ Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, Noti
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{realtime_offset()} {
+  if (options_.typed) typed_.emplace(master.plan(), options_.session);
   master_.status(snapshot_);
 }
 
@@ -90,10 +92,14 @@ Time Bridge::next_message() const noexcept {
 bool Bridge::publish_images() {
   ImageView image;
   bool some = false;
+  unsigned behind = 0;
   while (master_.take(image)) {
     if (!some) wall_minus_monotonic_ = realtime_offset();
     for (const image_t& part : image_messages_.fill(image, wall_minus_monotonic_)) {
       publish(channels_.image, part);
+    }
+    if (typed_ && behind++ < most_behind) {
+      typed_->publish(image, wall_minus_monotonic_, transport_);
     }
     cycle_ = image.cycle;
     marks_.assign(image.pdos.begin(), image.pdos.end());
@@ -113,6 +119,14 @@ void Bridge::on_message(std::string_view channel, Bytes data) {
   if (channel == channels_.command) on_command(data);
   if (channel == channels_.request) on_request(data);
   if (channel == channels_.transfer) on_transfer(data);
+  if (typed_) on_typed(channel, data);
+}
+
+void Bridge::on_typed(std::string_view channel, Bytes data) {
+  const auto command = typed_->command(channel, data);
+  if (!command) return;
+  if (!*command) return tell_damaged(std::string{channel}, command->error());
+  take_command(**command);
 }
 
 void Bridge::take_command(const command_t& command) {

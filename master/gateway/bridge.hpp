@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "master/gateway/status_messages.hpp"
 #include "master/gateway/transfers.hpp"
 #include "master/gateway/transport.hpp"
+#include "master/gateway/typed_channels.hpp"
 #include "master/master.hpp"
 
 namespace takt {
@@ -34,6 +36,7 @@ struct BridgeOptions {
   bool observe = false;
   std::string interface;  ///< told in status_t
   std::string realtime;   ///< told in status_t
+  bool typed = true;      ///< a typed message of each node as well, see TypedChannels
 };
 
 /// The work of the front thread: images, states and events of a Master become messages, messages
@@ -66,6 +69,7 @@ class Bridge {
   void take_messages();
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
+  void on_typed(std::string_view channel, Bytes data);
   void take_command(const command_t& command);
   void on_request(Bytes data);
   void send(const Notice& notice);
@@ -91,6 +95,7 @@ class Bridge {
   NoticeSink tell_;
   Channels channels_;
   ImageMessages image_messages_;
+  std::optional<TypedChannels> typed_;
   std::vector<layout_t> layout_messages_;
   StatusMessages status_messages_;
   TimingMessages timing_messages_;

@@ -33,8 +33,8 @@ void ChannelPatterns::remove(std::string_view pattern) {
 }
 
 bool ChannelPatterns::match(std::string_view channel) const {
+  if (const auto known = known_.find(channel); known != known_.end()) return known->second;
   std::string key{channel};
-  if (const auto known = known_.find(key); known != known_.end()) return known->second;
   const bool matches = std::ranges::any_of(
       patterns_, [&](const Pattern& pattern) { return std::regex_match(key, pattern.expression); });
   if (known_.size() >= most_known) known_.clear();

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <regex>
 #include <string>
 #include <string_view>
@@ -21,12 +22,18 @@ class ChannelPatterns {
   bool match(std::string_view channel) const;
 
  private:
+  struct Hash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const noexcept {
+      return std::hash<std::string_view>{}(text);
+    }
+  };
   struct Pattern {
     std::string text;
     std::regex expression;
   };
   std::vector<Pattern> patterns_;
-  mutable std::unordered_map<std::string, bool> known_;
+  mutable std::unordered_map<std::string, bool, Hash, std::equal_to<>> known_;
 };
 
 }  // namespace takt

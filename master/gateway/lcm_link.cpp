@@ -110,6 +110,10 @@ bool LcmLink::publish(const std::string& channel, std::span<const std::byte> dat
   return by_main || by_fallback;
 }
 
+bool LcmLink::wanted(std::string_view channel) const {
+  return (main_ && main_->wanted(channel)) || (fallback_ && fallback_->wanted(channel));
+}
+
 void LcmLink::subscribe(const std::string& pattern) {
   patterns_.push_back(pattern);
   if (main_) main_->subscribe(pattern);

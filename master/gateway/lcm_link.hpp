@@ -27,6 +27,7 @@ class LcmLink final : public Transport {
   LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say);
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  bool wanted(std::string_view channel) const override;
   void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>& descriptors) const override;

@@ -1,5 +1,6 @@
 #include "master/gateway/tcpq_broker.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -30,6 +31,12 @@ std::string TcpqBroker::url() const { return "tcpq://127.0.0.1:" + std::to_strin
 bool TcpqBroker::publish(const std::string& channel, std::span<const std::byte> data) {
   relay({.type = tcpq::Type::publish, .channel = channel, .data = data});
   return true;
+}
+
+bool TcpqBroker::wanted(std::string_view channel) const {
+  return std::ranges::any_of(clients_, [&](const auto& client) {
+    return client->connection.opened() && client->patterns.match(channel);
+  });
 }
 
 void TcpqBroker::relay(const tcpq::Message& message) {

@@ -22,6 +22,7 @@ class TcpqBroker final : public Transport {
   static std::expected<std::unique_ptr<TcpqBroker>, int> listen(std::uint16_t port);
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  bool wanted(std::string_view channel) const override;
   void subscribe(const std::string& pattern) override { own_.add(pattern); }
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>& descriptors) const override;

@@ -21,6 +21,11 @@ class Transport {
 
   /// False: the message is lost.
   virtual bool publish(const std::string& channel, std::span<const std::byte> data) = 0;
+  /// Whether anybody hears this channel; true where that is not known.
+  virtual bool wanted(std::string_view channel) const {
+    static_cast<void>(channel);
+    return true;
+  }
   /// `pattern` is a regular expression over whole channel names.
   virtual void subscribe(const std::string& pattern) = 0;
   /// Does what has become possible, hands over what has arrived.

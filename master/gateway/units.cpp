@@ -9,6 +9,9 @@
 namespace takt {
 namespace {
 
+constexpr double two_to_63 = 9223372036854775808.0;
+constexpr double two_to_64 = 2 * two_to_63;
+
 bool is_pattern(DataType type) noexcept { return is_real(type) || type == DataType::unsigned64; }
 
 std::int64_t pattern_of(DataType type, double number) noexcept {
@@ -16,8 +19,7 @@ std::int64_t pattern_of(DataType type, double number) noexcept {
     return std::bit_cast<std::uint32_t>(static_cast<float>(number));
   }
   if (type == DataType::real64) return std::bit_cast<std::int64_t>(number);
-  constexpr double limit = 18446744073709551616.0;  // 2^64
-  if (number >= limit) return -1;
+  if (number >= two_to_64) return -1;
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(std::max(number, 0.0)));
 }
 
@@ -75,6 +77,23 @@ std::int64_t Units::to_raw(std::size_t signal, double si) const {
   if (rounded <= static_cast<double>(range.low)) return range.low;
   if (rounded >= static_cast<double>(range.high)) return range.high;
   return static_cast<std::int64_t>(rounded);
+}
+
+std::optional<std::int64_t> Units::raw_of(std::size_t signal, double si) const {
+  const ValueFormat& format = formats_[signal];
+  const double number = (si - format.offset) / format.scale;
+  if (is_real(format.type)) {
+    const double most = format.type == DataType::real32 ? std::numeric_limits<float>::max()
+                                                        : std::numeric_limits<double>::max();
+    if (!(std::abs(number) <= most)) return std::nullopt;
+    return pattern_of(format.type, number);
+  }
+  const double rounded = std::nearbyint(number);
+  const bool pattern = is_pattern(format.type);
+  const double low = pattern ? 0.0 : -two_to_63;
+  const double end = pattern ? two_to_64 : two_to_63;
+  if (!(rounded >= low && rounded < end)) return std::nullopt;
+  return pattern ? pattern_of(format.type, rounded) : static_cast<std::int64_t>(rounded);
 }
 
 }  // namespace takt

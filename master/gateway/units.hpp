@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,10 @@ class Units {
   /// One value, rounded to the nearest raw value and held inside what its bits can carry. NaN
   /// gives the raw value of 0 SI.
   std::int64_t to_raw(std::size_t signal, double si) const;
+
+  /// The same for a number from outside, not held inside anything: what the signal's bits can't
+  /// carry stays too large for them. None: infinite, or more than 64 bits.
+  std::optional<std::int64_t> raw_of(std::size_t signal, double si) const;
 
  private:
   std::vector<ValueFormat> formats_;

@@ -154,6 +154,18 @@ TEST(TcpqBroker, CarriesMessagesFromItsOwnerToClientsAndBack) {
   EXPECT_EQ(heard, (std::vector<std::string>{"UP:3", "DOWN_1:3"}));
 }
 
+TEST(TcpqBroker, KnowsWhatItsClientsWant) {
+  auto broker = TcpqBroker::listen(0).value();
+  EXPECT_FALSE(broker->wanted("DOWN_1"));
+  TcpqClient client{"127.0.0.1", broker->port()};
+  client.subscribe("DOWN_.");
+  const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
+
+  EXPECT_TRUE(
+      serve_until({broker.get(), &client}, ignore, [&] { return broker->wanted("DOWN_1"); }));
+  EXPECT_FALSE(broker->wanted("DOWN_10"));
+}
+
 TEST(TcpqBroker, RelaysBetweenClients) {
   auto broker = TcpqBroker::listen(0).value();
   TcpqClient one{"127.0.0.1", broker->port()};

@@ -1,0 +1,52 @@
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "master/gateway/bridge.hpp"
+#include "test/virtual/rig.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Remembers which channels were published on, in order.
+class SentChannels final : public Transport {
+ public:
+  bool publish(const std::string& channel, std::span<const std::byte>) override {
+    sent.push_back(channel);
+    return true;
+  }
+  void subscribe(const std::string&) override {}
+  void serve(const MessageHandler&) override {}
+  void watch(std::vector<pollfd>&) const override {}
+  bool good() const override { return true; }
+  std::string url() const override { return {}; }
+
+  std::vector<std::string> sent;
+};
+
+TEST(PublishingOrder, NothingOfACycleGoesOutBeforeItsImage) {
+  test::Rig rig{test::axes({.nodes = 3, .period = 4ms})};
+  ASSERT_TRUE(rig.boot());
+  SentChannels lcm;
+  BridgeOptions options;
+  options.session = 7;
+  Bridge bridge{*rig.master, lcm, options, [](const Notice&) {}};
+  bridge.serve();
+
+  for (int cycle = 0; cycle < 50; ++cycle) {
+    rig.master->cycle();
+    lcm.sent.clear();
+    ASSERT_TRUE(bridge.serve());
+
+    const auto typed = std::ranges::count_if(
+        lcm.sent, [](const std::string& channel) { return channel.ends_with("_STATE"); });
+    EXPECT_EQ(typed, 3);
+    EXPECT_EQ(lcm.sent.front(), bridge.channels().image);
+    EXPECT_EQ(std::ranges::count(lcm.sent, bridge.channels().image), 1);
+  }
+}
+
+}  // namespace
+}  // namespace takt
