@@ -11,9 +11,9 @@
 #include "apps/takt/file_transfer.hpp"
 #include "apps/takt/interrupt.hpp"
 #include "apps/takt/sdo_direct.hpp"
-#include "apps/takt/sdo_value.hpp"
 #include "apps/takt/transfer_progress.hpp"
 #include "master/core/request.hpp"
+#include "master/gateway/value_text.hpp"
 
 namespace takt {
 namespace {

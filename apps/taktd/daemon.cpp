@@ -64,6 +64,15 @@ std::optional<Exit> Daemon::open() {
     reporter_.say(Weight::error, url.error());
     return Exit::wrong_use;
   }
+  if (!options_.gateway.empty()) {
+    auto gateway = AsciiFront::open(options_.gateway, network_.plan);
+    if (!gateway) {
+      reporter_.say(Weight::error, gateway.error());
+      return Exit::wrong_use;
+    }
+    gateway_ = std::move(*gateway);
+    reporter_.say(Weight::note, "CiA 309-3 gateway on " + gateway_->where());
+  }
   auto bus = DaemonBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
   if (!bus) {
     reporter_.say(Weight::error, bus.error().message);
@@ -117,6 +126,7 @@ std::optional<Exit> Daemon::start() {
                                                    .realtime = to_string(realtime_),
                                                    .typed = network_.lcm.typed},
                                      [this](const Notice& notice) { on_notice(notice); });
+  if (gateway_) gateway_->attach(*master_, *bridge_);
   if (options_.run_for > Time{0}) end_ = monotonic_now() + options_.run_for;
   service_.ready("bus " + network_.plan.name + " on " + bus_name_);
   return std::nullopt;
@@ -127,11 +137,13 @@ void Daemon::loop() {
   while (!master_->finished()) {
     const bool image = bridge_->serve();
     if (image) hear_intruders();
+    if (gateway_) gateway_->serve();
     const Time now = monotonic_now();
     watch_conditions(now);
     if (StopSignal::count() > 1 || stop_takes_too_long(now)) return;
     descriptors.clear();
     link_->watch(descriptors);
+    if (gateway_) gateway_->watch(descriptors);
     wait_.wait(descriptors, master_->next_publish(), std::min(bridge_->next_message(), end_));
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/taktd/ascii_front.hpp"
 #include "apps/taktd/daemon_bus.hpp"
 #include "apps/taktd/front_wait.hpp"
 #include "apps/taktd/options.hpp"
@@ -64,6 +65,7 @@ class Daemon {
   std::unique_ptr<Master> master_;
   std::unique_ptr<LcmLink> link_;
   std::unique_ptr<Bridge> bridge_;
+  std::unique_ptr<AsciiFront> gateway_;
   Time end_ = never;         // of --for
   Time stop_limit_ = never;  // when patience with the ordered stop ends
   bool stopping_ = false;

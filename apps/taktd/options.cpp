@@ -22,6 +22,7 @@ Examples:
   taktd lift.yaml --bus sim --for 10s  simulated bus and devices, no hardware needed
   taktd lift.yaml --check              compile everything, touch no bus
   taktd lift.yaml --observe            listen only: send nothing at all
+  taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
 
 Live views: takt top, takt status. SIGTERM or SIGINT (Ctrl-C) stops in order: axes to rest, nodes to
 pre-operational, SYNC off. A second one stops at once.
@@ -73,6 +74,9 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
       ->type_name("TIME");
   app.add_option("--events", options.events_file, "append events as JSON, one a line")
       ->type_name("FILE");
+  app.add_option("--gateway", options.gateway,
+                 "text commands of CiA 309-3: unix:PATH, or tcp:PORT on loopback")
+      ->type_name("WHERE");
   app.add_flag("--typed,!--no-typed", typed,
                "BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`, or not");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");

@@ -15,6 +15,7 @@ struct DaemonOptions {
   std::optional<RtMode> rt;        ///< else the network file's
   std::string lcm_url;
   std::string events_file;
+  std::string gateway;    ///< CiA 309-3: unix:PATH, tcp:PORT; empty: none
   Time run_for{};         ///< 0: until a signal
   bool check = false;
   bool observe = false;

@@ -102,6 +102,7 @@ bool Bridge::publish_images() {
       typed_->publish(image, wall_minus_monotonic_, transport_);
     }
     cycle_ = image.cycle;
+    if (guest_ != nullptr) guest_->see(image);
     marks_.assign(image.pdos.begin(), image.pdos.end());
     ++images_;
     some = true;
@@ -137,6 +138,24 @@ void Bridge::on_command(Bytes data) {
   const auto command = decode<command_t>(data);
   if (!command) return tell_damaged(channels_.command, command.error());
   take_command(*command);
+}
+
+bool Bridge::command(const std::string& sender, std::span<const SignalIndex> signals,
+                     std::span<const std::int64_t> values) {
+  command_t command{};
+  command.schema = message_schema;
+  command.session = options_.session;
+  command.sender = sender;
+  command.cycle = static_cast<std::int64_t>(cycle_);
+  command.num_values = static_cast<std::int32_t>(signals.size());
+  for (const SignalIndex signal : signals) {
+    command.signals.push_back(static_cast<std::int16_t>(signal));
+  }
+  command.values.assign(values.begin(), values.end());
+  const bool taken =
+      commands_.take(command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
+  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(monotonic_now());
+  return taken;
 }
 
 void Bridge::on_request(Bytes data) {
@@ -202,6 +221,10 @@ void Bridge::take_replies() {
   Reply reply;
   while (master_.take(reply)) {
     if (transfers_.finish(reply)) continue;
+    if ((reply.id & FrontGuest::mark) != 0) {
+      if (guest_ != nullptr) guest_->take(reply);
+      continue;
+    }
     if (auto message = requests_.finish(reply)) answer(std::move(*message));
   }
 }
@@ -215,6 +238,7 @@ void Bridge::take_events() {
   Event event;
   while (master_.take(event)) {
     remember(event);
+    if (guest_ != nullptr) guest_->hear(event);
     emcy_log_.take(event, wall_microseconds(event.when));
     tell(event);
   }

@@ -8,6 +8,7 @@
 #include "master/gateway/commands.hpp"
 #include "master/gateway/emcy_history.hpp"
 #include "master/gateway/emcy_log.hpp"
+#include "master/gateway/front_guest.hpp"
 #include "master/gateway/image_messages.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
@@ -46,6 +47,13 @@ class Bridge {
   /// `tell` hears what LCM hears of events and of the gateway's own notices, after it has.
   Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell);
 
+  /// Somebody else who hears images, events and the answers to requests with FrontGuest::mark.
+  /// Outlives this.
+  void welcome(FrontGuest& guest) noexcept { guest_ = &guest; }
+  /// Commands outputs as a command_t would that was computed from the newest image. False: refused,
+  /// and told.
+  bool command(const std::string& sender, std::span<const SignalIndex> signals,
+               std::span<const std::int64_t> values);
   /// Everything that can be done now. True: there was an image.
   bool serve();
   /// When status_t, layout_t or timing_t are due next.
@@ -93,6 +101,7 @@ class Bridge {
   Transport& transport_;
   BridgeOptions options_;
   NoticeSink tell_;
+  FrontGuest* guest_ = nullptr;
   Channels channels_;
   ImageMessages image_messages_;
   std::optional<TypedChannels> typed_;

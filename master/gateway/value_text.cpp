@@ -1,4 +1,4 @@
-#include "apps/takt/sdo_value.hpp"
+#include "master/gateway/value_text.hpp"
 
 #include <algorithm>
 #include <bit>

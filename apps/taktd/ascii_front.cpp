@@ -1,0 +1,38 @@
+#include "apps/taktd/ascii_front.hpp"
+
+#include <utility>
+
+namespace takt {
+
+AsciiFront::AsciiFront(const BusPlan& plan)
+    : gateway_{
+          plan,
+          {.submit = [this](const Request& request) { return master_->submit(request); },
+           .write =
+               [this](const auto& signals, const auto& values) {
+                 return bridge_->command("gateway", signals, values);
+               },
+           .send = [this](int client, const std::string& line) { server_->send(client, line); }}} {}
+
+std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(const std::string& where,
+                                                                         const BusPlan& plan) {
+  std::unique_ptr<AsciiFront> front{new AsciiFront{plan}};
+  AsciiGateway& gateway = front->gateway_;
+  auto server = AsciiServer::listen(
+      where,
+      {.connected = [&gateway](int client) { gateway.connect(client); },
+       .line = [&gateway](int client, std::string_view line) { gateway.command(client, line); },
+       .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
+       .gone = [&gateway](int client) { gateway.disconnect(client); }});
+  if (!server) return std::unexpected{server.error()};
+  front->server_ = std::move(*server);
+  return front;
+}
+
+void AsciiFront::attach(Master& master, Bridge& bridge) {
+  master_ = &master;
+  bridge_ = &bridge;
+  bridge.welcome(gateway_);
+}
+
+}  // namespace takt

@@ -1,0 +1,185 @@
+#include "master/gateway/ascii_server.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <utility>
+
+#include "master/linux/unix_address.hpp"
+
+namespace takt {
+namespace {
+
+bool would_wait(int error) noexcept {
+  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
+}
+
+std::unexpected<std::string> failed(const std::string& where, int error) {
+  return std::unexpected{"--gateway " + where + ": " + std::strerror(error)};
+}
+
+/// A socket that a daemon which has died left behind is removed; one that somebody serves, or
+/// another file, is not.
+bool make_room(const sockaddr_un& address) noexcept {
+  struct stat status{};
+  if (::stat(address.sun_path, &status) != 0) return errno == ENOENT;
+  if (!S_ISSOCK(status.st_mode)) return false;
+  const FileDescriptor probe{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+  if (::connect(probe.get(), generic, sizeof address) == 0 || errno != ECONNREFUSED) return false;
+  return ::unlink(address.sun_path) == 0;
+}
+
+}  // namespace
+
+std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen(
+    const std::string& where, Handler handler) {
+  if (where.starts_with("unix:")) return listen_unix(where.substr(5), std::move(handler));
+  if (where.starts_with("tcp:")) return listen_tcp(where.substr(4), std::move(handler));
+  return std::unexpected{"--gateway '" + where + "' is not unix:PATH or tcp:PORT"};
+}
+
+std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_unix(
+    const std::string& path, Handler handler) {
+  const auto address = unix_address(path);
+  if (!address) {
+    return std::unexpected{"--gateway unix:" + path + ": a path has 1 to 107 characters"};
+  }
+  if (!make_room(*address)) return failed("unix:" + path, EADDRINUSE);
+  FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
+  if (!socket || ::bind(socket.get(), generic, sizeof *address) != 0 ||
+      ::chmod(path.c_str(), 0660) != 0 || ::listen(socket.get(), 8) != 0) {
+    return failed("unix:" + path, errno);
+  }
+  return std::unique_ptr<AsciiServer>{
+      new AsciiServer{std::move(socket), "unix:" + path, path, std::move(handler)}};
+}
+
+std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp(
+    const std::string& text, Handler handler) {
+  std::uint16_t port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    return std::unexpected{"--gateway tcp:" + text + ": a port is 0..65535"};
+  }
+  FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  if (!socket) return failed("tcp:" + text, errno);
+  const int on = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  if (::bind(socket.get(), generic, size) != 0 || ::listen(socket.get(), 8) != 0 ||
+      ::getsockname(socket.get(), generic, &size) != 0) {
+    return failed("tcp:" + text, errno);
+  }
+  const std::string where = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  return std::unique_ptr<AsciiServer>{
+      new AsciiServer{std::move(socket), where, {}, std::move(handler)}};
+}
+
+AsciiServer::~AsciiServer() {
+  if (!path_.empty()) ::unlink(path_.c_str());
+}
+
+void AsciiServer::accept_clients() {
+  for (;;) {
+    FileDescriptor socket{
+        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
+    if (!socket) return;
+    if (clients_.size() == most_clients) continue;
+    auto client = std::make_unique<Client>();
+    client->id = next_id_++;
+    client->socket = std::move(socket);
+    clients_.push_back(std::move(client));
+    handler_.connected(clients_.back()->id);
+  }
+}
+
+void AsciiServer::send(int id, std::string_view line) {
+  const auto found = std::ranges::find(clients_, id, [](const auto& client) { return client->id; });
+  if (found == clients_.end() || (*found)->closed) return;
+  Client& client = **found;
+  if (client.unsent.size() + line.size() + 2 > most_unsent) {
+    client.closed = true;
+    return;
+  }
+  client.unsent.append(line).append("\r\n");
+  flush(client);
+}
+
+void AsciiServer::flush(Client& client) {
+  while (!client.closed && !client.unsent.empty()) {
+    const ssize_t taken = ::send(client.socket.get(), client.unsent.data(), client.unsent.size(),
+                                 MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (taken < 0) {
+      client.closed = !would_wait(errno);
+      return;
+    }
+    client.unsent.erase(0, static_cast<std::size_t>(taken));
+  }
+}
+
+void AsciiServer::receive(Client& client) {
+  std::array<char, 4096> chunk;
+  for (int rounds = 0; rounds < 4 && !client.closed; ++rounds) {
+    const ssize_t size = ::recv(client.socket.get(), chunk.data(), chunk.size(), MSG_DONTWAIT);
+    if (size <= 0) {
+      client.closed = size == 0 || !would_wait(errno);
+      return;
+    }
+    client.unread.append(chunk.data(), static_cast<std::size_t>(size));
+    take_lines(client);
+  }
+}
+
+void AsciiServer::take_lines(Client& client) {
+  std::size_t from = 0;
+  for (std::size_t end = client.unread.find('\n'); end != std::string::npos;
+       end = client.unread.find('\n', from)) {
+    const std::string_view line = std::string_view{client.unread}.substr(from, end - from);
+    from = end + 1;
+    if (std::exchange(client.skips, false)) continue;
+    if (line.size() > longest_line) {
+      handler_.too_long(client.id);
+    } else {
+      handler_.line(client.id, line);
+    }
+  }
+  client.unread.erase(0, from);
+  if (client.unread.size() <= longest_line) return;
+  if (!std::exchange(client.skips, true)) handler_.too_long(client.id);
+  client.unread.clear();
+}
+
+void AsciiServer::serve() {
+  accept_clients();
+  for (const auto& client : clients_) {
+    flush(*client);
+    receive(*client);
+  }
+  for (const auto& client : clients_) {
+    if (client->closed) handler_.gone(client->id);
+  }
+  std::erase_if(clients_, [](const auto& client) { return client->closed; });
+}
+
+void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
+  descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  for (const auto& client : clients_) {
+    const int events = POLLIN | (client->unsent.empty() ? 0 : POLLOUT);
+    descriptors.push_back(
+        {.fd = client->socket.get(), .events = static_cast<short>(events), .revents = 0});
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,76 @@
+#pragma once
+#include <expected>
+#include <functional>
+#include <memory>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "master/linux/file_descriptor.hpp"
+
+namespace takt {
+
+/// Lines of text from and to clients of a UNIX socket, or of TCP on loopback. Everything is
+/// bounded: clients, the length of a line, what waits to be sent. No call waits. One thread.
+class AsciiServer {
+ public:
+  static constexpr std::size_t most_clients = 8;
+  static constexpr std::size_t longest_line = 4096;
+  static constexpr std::size_t most_unsent = 256 * 1024;  ///< a client that reads no more is left
+
+  struct Handler {
+    std::function<void(int client)> connected;
+    std::function<void(int client, std::string_view line)> line;
+    std::function<void(int client)> too_long;  ///< a line, which is dropped
+    std::function<void(int client)> gone;
+  };
+
+  /// `unix:PATH` or `tcp:PORT` (0: any free one). An error is a sentence.
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen(const std::string& where,
+                                                                         Handler handler);
+  ~AsciiServer();
+  AsciiServer(const AsciiServer&) = delete;
+  AsciiServer& operator=(const AsciiServer&) = delete;
+
+  /// Adds the end of the line. To a client that has gone: nothing.
+  void send(int client, std::string_view line);
+  /// Takes clients and lines, sends what can be sent.
+  void serve();
+  void watch(std::vector<pollfd>& descriptors) const;
+  /// As others write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
+  const std::string& where() const noexcept { return where_; }
+
+ private:
+  struct Client {
+    int id = 0;
+    FileDescriptor socket;
+    std::string unread;
+    std::string unsent;
+    bool skips = false;  // the rest of a line that was too long
+    bool closed = false;
+  };
+
+  AsciiServer(FileDescriptor listener, std::string where, std::string path, Handler handler)
+      : listener_{std::move(listener)},
+        where_{std::move(where)},
+        path_{std::move(path)},
+        handler_{std::move(handler)} {}
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_unix(
+      const std::string& path, Handler handler);
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_tcp(
+      const std::string& port, Handler handler);
+  void accept_clients();
+  void receive(Client& client);
+  void take_lines(Client& client);
+  static void flush(Client& client);
+
+  FileDescriptor listener_;
+  std::string where_;
+  std::string path_;  // to remove at the end
+  Handler handler_;
+  std::vector<std::unique_ptr<Client>> clients_;
+  int next_id_ = 1;
+};
+
+}  // namespace takt
