@@ -109,7 +109,8 @@ std::string to_string(const CandumpLine& line) {
   const Frame& frame = line.frame;
   std::string out = line.stamp.empty() ? "" : fmt::format("({})  ", line.stamp);
   out += line.interface;
-  out += frame.id.is_extended() ? fmt::format("  {:08X}", frame.id.id())
+  const std::uint32_t flag = line.error_frame ? error_flag : 0;
+  out += frame.id.is_extended() ? fmt::format("  {:08X}", frame.id.id() | flag)
                                 : fmt::format("  {:03X}", frame.id.id());
   out += fmt::format("   [{}] ", frame.length);
   if (frame.rtr) return out + " remote request";

@@ -12,7 +12,7 @@ struct CandumpLine {
   std::string stamp{};  ///< as written, without brackets; may be empty
   std::string interface{};
   Frame frame{};
-  bool error_frame = false;  ///< of the controller; `frame` has no meaning then
+  bool error_frame = false;  ///< of the controller: `frame.id` is its class, `frame` its bytes
 };
 
 /// None: not a line of candump, or a frame of CAN FD.

@@ -6,6 +6,6 @@
 namespace takt {
 
 /// An LSS frame of the master (0x7E5) or of a device (0x7E4) in words. CiA 305.
-std::string lss_text(const Frame& frame, bool of_master);
+std::string lss_text(const Frame& frame, bool from_master);
 
 }  // namespace takt

@@ -4,6 +4,8 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "master/wire/emcy_text.hpp"
+
 namespace takt {
 namespace {
 
@@ -14,7 +16,7 @@ struct Range {
   DataType type = DataType::unknown;  // of sub-index 0 of a variable
 };
 
-constexpr std::array<Range, 38> communication_objects{{
+constexpr std::array<Range, 64> communication_objects{{
     {0x1000, 0x1000, "device type", DataType::unsigned32},
     {0x1001, 0x1001, "error register", DataType::unsigned8},
     {0x1002, 0x1002, "manufacturer status register", DataType::unsigned32},
@@ -42,17 +44,43 @@ constexpr std::array<Range, 38> communication_objects{{
     {0x1022, 0x1022, "store format", DataType::unsigned16},
     {0x1028, 0x1028, "emergency consumer"},
     {0x1029, 0x1029, "error behavior"},
+    {0x102A, 0x102A, "NMT inhibit time", DataType::unsigned16},
     {0x1200, 0x127F, "SDO server parameter"},
     {0x1280, 0x12FF, "SDO client parameter"},
     {0x1400, 0x15FF, "RPDO communication parameter"},
     {0x1600, 0x17FF, "RPDO mapping parameter"},
     {0x1800, 0x19FF, "TPDO communication parameter"},
     {0x1A00, 0x1BFF, "TPDO mapping parameter"},
+    {0x1F20, 0x1F20, "store DCF"},
+    {0x1F21, 0x1F21, "store format of DCFs"},
     {0x1F22, 0x1F22, "concise DCF"},
+    {0x1F25, 0x1F25, "configure slave"},
+    {0x1F26, 0x1F26, "expected configuration date"},
+    {0x1F27, 0x1F27, "expected configuration time"},
     {0x1F50, 0x1F50, "program data"},
     {0x1F51, 0x1F51, "program control"},
+    {0x1F52, 0x1F52, "verify application software"},
+    {0x1F53, 0x1F53, "expected application software date"},
+    {0x1F54, 0x1F54, "expected application software time"},
+    {0x1F55, 0x1F55, "expected software identification"},
+    {0x1F56, 0x1F56, "application software identification"},
+    {0x1F57, 0x1F57, "flash status identification"},
     {0x1F80, 0x1F80, "NMT startup", DataType::unsigned32},
     {0x1F81, 0x1F81, "NMT slave assignment"},
+    {0x1F82, 0x1F82, "request NMT"},
+    {0x1F83, 0x1F83, "request node guarding"},
+    {0x1F84, 0x1F84, "expected device type"},
+    {0x1F85, 0x1F85, "expected vendor id"},
+    {0x1F86, 0x1F86, "expected product code"},
+    {0x1F87, 0x1F87, "expected revision number"},
+    {0x1F88, 0x1F88, "expected serial number"},
+    {0x1F89, 0x1F89, "boot time", DataType::unsigned32},
+    {0x1F8A, 0x1F8A, "restore configuration"},
+    {0x1F90, 0x1F90, "flying master timing"},
+    {0x1F91, 0x1F91, "self-starting nodes timing"},
+    {0x1F93, 0x1F93, "LSS configuration"},
+    {0x1FA0, 0x1FCF, "object scanner list"},
+    {0x1FD0, 0x1FFF, "object dispatching list"},
 }};
 
 const Range* range_of(std::uint16_t index) {
@@ -101,6 +129,27 @@ DataType FrameNames::type(unsigned node, ObjectKey key) const {
   }
   const Range* range = range_of(key.index);
   return range != nullptr && key.sub == 0 ? range->type : DataType::unknown;
+}
+
+std::string_view FrameNames::emcy(unsigned node, std::uint16_t code) const {
+  if (network_ != nullptr) {
+    for (const NodePlan& known : network_->plan.nodes) {
+      if (known.id.value() != node) continue;
+      const auto own = std::ranges::find(known.emcy_texts, code, &EmcyText::code);
+      if (own != known.emcy_texts.end()) return own->text;
+    }
+  }
+  return emcy_text(code);
+}
+
+std::optional<NodeId> FrameNames::emcy_sender(CobId id) const {
+  if (network_ != nullptr) {
+    for (const NodePlan& node : network_->plan.nodes) {
+      if (node.emcy_cob_id == id) return node.id;
+    }
+  }
+  if (id.is_extended() || (id.id() & ~0x7FU) != 0x080) return {};
+  return NodeId::from(id.id() & 0x7F);
 }
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,11 @@ class FrameNames {
   std::string object(unsigned node, ObjectKey key) const;
   /// Type of an object, unknown where nothing tells it.
   DataType type(unsigned node, ObjectKey key) const;
+
+  /// An EMCY code in the words of the node's device data, else of CiA 402 and CiA 301.
+  std::string_view emcy(unsigned node, std::uint16_t code) const;
+  /// Whose EMCY has this identifier.
+  std::optional<NodeId> emcy_sender(CobId id) const;
 
   const BusPlan* plan() const { return network_ == nullptr ? nullptr : &network_->plan; }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/frame_text/object_meaning.hpp"
 #include "apps/frame_text/value_text.hpp"
 #include "master/wire/sdo_abort.hpp"
 #include "master/wire/sdo_codec.hpp"
@@ -13,151 +14,152 @@ constexpr std::size_t most_kept = 4096;  // bytes of one value
 
 }  // namespace
 
-void SdoText::keep(Transfer& transfer, std::span<const std::uint8_t> bytes) {
-  if (transfer.value.size() + bytes.size() > most_kept) {
-    transfer.truncated = true;
+void SdoText::keep(std::span<const std::uint8_t> bytes) {
+  transfer_.length += bytes.size();
+  if (transfer_.length > most_kept) {
+    transfer_.truncated = true;
     return;
   }
-  transfer.value.insert(transfer.value.end(), bytes.begin(), bytes.end());
+  transfer_.value.insert(transfer_.value.end(), bytes.begin(), bytes.end());
 }
 
-std::string SdoText::object(unsigned node, const Transfer& transfer) const {
-  return names_->object(node, transfer.object);
+std::string SdoText::object() const { return names_->object(node_, transfer_.object); }
+
+/// `1591 (0x637)`, `1073742213 (0x40000185): 0x185, valid, no RTR`.
+std::string SdoText::value(ObjectKey key, std::span<const std::uint8_t> bytes) const {
+  std::string text = value_text(names_->type(node_, key), bytes);
+  const std::string meaning = object_meaning(*names_, node_, key, bytes);
+  return meaning.empty() ? text : text + ": " + meaning;
+}
+
+/// The toggle bit of a segment frame, which has to change from frame to frame of the same side.
+std::string_view SdoText::toggle_text(std::optional<bool>& last, const Frame& frame) {
+  const bool toggle = sdo_toggle(frame);
+  const bool wrong = toggle != !last.value_or(true);
+  last = toggle;
+  return wrong ? ", its toggle bit is wrong" : "";
 }
 
 /// The frame with the object and, expedited, with its value.
-std::string SdoText::initiate(unsigned node, Transfer& transfer, const Frame& frame,
-                              const char* verb) {
+std::string SdoText::initiate(const Frame& frame, const char* verb) {
   const SdoInitiate begin = decode_initiate(frame);
-  transfer = {.object = begin.object, .open = !begin.expedited, .value = {}};
+  transfer_ = {.object = begin.object, .open = !begin.expedited, .announced = begin.size};
   if (begin.expedited) {
-    return fmt::format("{} {} = {}", verb, object(node, transfer),
-                       value_text(names_->type(node, begin.object), begin.payload()));
+    return fmt::format("{} {} = {}", verb, object(), value(begin.object, begin.payload()));
   }
   const std::string size = begin.size ? fmt::format("{} bytes", *begin.size) : "of unknown size";
-  return fmt::format("{} {}, {} in segments", verb, object(node, transfer), size);
+  return fmt::format("{} {}, {} in segments", verb, object(), size);
 }
 
-std::string SdoText::segment(unsigned node, Transfer& transfer, const Frame& frame,
-                             const char* verb) {
+std::string SdoText::segment(const Frame& frame, std::string_view toggled, const char* verb) {
   const SdoSegment part = decode_segment(frame);
-  if (!transfer.open) return fmt::format("segment of {} bytes, beginning not seen", part.size);
-  keep(transfer, part.payload());
-  std::string text = fmt::format("segment of {}, {} bytes", object(node, transfer), part.size);
+  if (!transfer_.open) return fmt::format("segment of {} bytes, beginning not seen", part.size);
+  if (toggled.empty()) keep(part.payload());
+  const std::string text = fmt::format("segment of {}, {} bytes{}", object(), part.size, toggled);
   if (!part.last) return text;
-  transfer.open = false;
-  if (transfer.truncated) return text + ", the last";
-  return fmt::format("{} {} = {} (last segment)", verb, object(node, transfer),
-                     value_text(names_->type(node, transfer.object), transfer.value));
+  transfer_.open = false;
+  std::string length;
+  if (transfer_.announced && *transfer_.announced != transfer_.length) {
+    length =
+        fmt::format(", {} bytes where {} were announced", transfer_.length, *transfer_.announced);
+  }
+  if (transfer_.truncated) return text + ", the last" + length;
+  return fmt::format("{} {} = {} (last segment{}{})", verb, object(),
+                     value(transfer_.object, transfer_.value), toggled, length);
 }
 
-std::string SdoText::abort(unsigned node, Transfer& transfer, const Frame& frame) {
-  transfer = {.object = sdo_object(frame), .value = {}};
+std::string SdoText::abort(const Frame& frame) {
+  transfer_ = {.object = sdo_object(frame)};
   const std::uint32_t code = sdo_abort_code(frame);
-  return fmt::format("ABORT {}: {:04X} {:04X} {}", object(node, transfer), code >> 16,
-                     code & 0xFFFF, abort_text(code));
+  return fmt::format("ABORT {}: {:04X} {:04X} {}", object(), code >> 16, code & 0xFFFF,
+                     abort_text(code));
 }
 
-std::string SdoText::block_segment(unsigned node, Transfer& transfer, const Frame& frame) {
-  const unsigned number = frame.data[0] & 0x7F;
-  const bool last = (frame.data[0] & 0x80) != 0;
-  return fmt::format("block segment {} of {}{}", number, object(node, transfer),
-                     last ? ", the last" : "");
+/// A frame that begins a block transfer: the request of either.
+bool SdoText::begins_block(const Frame& frame) {
+  const SdoRequest command = sdo_request(frame);
+  const bool download = command == SdoRequest::block_download && is_block_initiate(frame);
+  const bool upload = command == SdoRequest::block_upload && is_block_accept(frame);
+  if (!download && !upload) return false;
+  block_.begin(sdo_object(frame),
+               upload ? BlockText::Direction::upload : BlockText::Direction::download);
+  return true;
 }
 
-std::string SdoText::block_request(unsigned node, Transfer& transfer, const Frame& frame) {
-  const unsigned command = frame.data[0] >> 5;
-  const unsigned sub_command = frame.data[0] & 3;
-  if (command == 6) {  // block download: 0 initiate, 1 end
-    if ((sub_command & 1) != 0) {
-      transfer.block = false;
-      return fmt::format("end of block download {}", object(node, transfer));
-    }
-    transfer = {.object = sdo_object(frame), .block = true, .value = {}};
-    return fmt::format("block download {}", object(node, transfer));
-  }
-  switch (sub_command) {  // block upload: 0 initiate, 1 end, 2 answer, 3 start
-    case 0:
-      transfer = {.object = sdo_object(frame), .block = true, .upload = true, .value = {}};
-      return fmt::format("block upload {}", object(node, transfer));
-    case 1:
-      transfer.block = false;
-      return fmt::format("end of block upload {}", object(node, transfer));
-    case 2:
-      return fmt::format("block upload: {} segments taken", frame.data[1]);
-    default:
-      return "block upload: go on";
-  }
+/// A frame of a running block transfer, sent by the side that has the data in `data_go`.
+std::string SdoText::block(BlockText::Direction data_go, const Frame& frame) {
+  const std::string name = names_->object(node_, block_.object());
+  const bool source = block_.uploads() == (data_go == BlockText::Direction::upload);
+  std::string text = source ? block_.from_source(frame, name) : block_.from_sink(frame, name);
+  if (block_.running() || !block_.has_value()) return text;
+  const std::vector<std::uint8_t> whole = block_.take_value();
+  return text + " = " + value(block_.object(), whole);
 }
 
-std::string SdoText::block_answer(unsigned node, Transfer& transfer, const Frame& frame) {
-  const unsigned sub_command = frame.data[0] & 3;
-  if (frame.data[0] >> 5 == 6) {  // block upload: 0 initiate, 1 end
-    const char* what = sub_command == 1 ? "all sent" : "accepted";
-    return fmt::format("block upload {} {}", object(node, transfer), what);
-  }
-  switch (sub_command) {  // block download: 0 initiate, 1 end, 2 answer
-    case 0:
-      return fmt::format("block download {} accepted, {} segments a block", object(node, transfer),
-                         frame.data[4]);
-    case 2:
-      return fmt::format("block download: {} segments taken", frame.data[1]);
-    default:
-      return fmt::format("block download {} done", object(node, transfer));
-  }
+/// A block transfer whose end was not seen.
+void SdoText::lose_block() noexcept {
+  if (!block_.running()) return;
+  block_.stop();
+  transfer_ = {};
 }
 
-std::string SdoText::request(unsigned node, const Frame& frame) {
-  Transfer& transfer = transfers_[node & 0x7F];
+std::string SdoText::request(const Frame& frame) {
   if (frame.length != 8) return fmt::format("of {} bytes (always 8)", frame.length);
   const SdoRequest command = sdo_request(frame);
-  if (transfer.block && !transfer.upload && command != SdoRequest::block_download &&
-      frame.data[0] != 0x80) {
-    return block_segment(node, transfer, frame);
-  }
+  const bool segments = block_.in_segments() && !block_.is_over(frame);
+  const bool part = block_.uploads()
+                        ? command == SdoRequest::block_upload && !is_block_accept(frame)
+                        : segments || is_block_end(frame);
+  const bool continues = block_.running() && part && frame.data[0] != 0x80;
+  if (continues || begins_block(frame)) return block(BlockText::Direction::download, frame);
+  lose_block();
   switch (command) {
     case SdoRequest::download_segment:
-      return segment(node, transfer, frame, "write");
+      return segment(frame, toggle_text(transfer_.asked_toggle, frame), "write");
     case SdoRequest::download_initiate:
-      return initiate(node, transfer, frame, "write");
+      return initiate(frame, "write");
     case SdoRequest::upload_initiate:
-      transfer = {.object = sdo_object(frame), .upload = true, .value = {}};
-      return fmt::format("read {}", object(node, transfer));
+      transfer_ = {.object = sdo_object(frame)};
+      return fmt::format("read {}", object());
     case SdoRequest::upload_segment:
-      return fmt::format("next segment of {}", object(node, transfer));
+      if (!transfer_.open) return "next segment, beginning not seen";
+      return fmt::format("next segment of {}{}", object(),
+                         toggle_text(transfer_.asked_toggle, frame));
     case SdoRequest::abort:
-      return abort(node, transfer, frame);
+      return abort(frame);
     case SdoRequest::block_upload:
     case SdoRequest::block_download:
-      return block_request(node, transfer, frame);
+      return "part of a block transfer, beginning not seen";
     case SdoRequest::reserved:
       break;
   }
   return "unknown command " + bytes_text(std::span{frame.data}.first(1));
 }
 
-std::string SdoText::answer(unsigned node, const Frame& frame) {
-  Transfer& transfer = transfers_[node & 0x7F];
+std::string SdoText::answer(const Frame& frame) {
   if (frame.length != 8) return fmt::format("of {} bytes (always 8)", frame.length);
   const SdoAnswer command = sdo_answer(frame);
-  if (transfer.block && transfer.upload && command != SdoAnswer::block_upload &&
-      frame.data[0] != 0x80) {
-    return block_segment(node, transfer, frame);
+  const bool part = block_.uploads() ? block_.in_segments() || command == SdoAnswer::block_upload
+                                     : command == SdoAnswer::block_download;
+  if (block_.running() && part && frame.data[0] != 0x80) {
+    return block(BlockText::Direction::upload, frame);
   }
+  lose_block();
   switch (command) {
     case SdoAnswer::upload_segment:
-      return segment(node, transfer, frame, "read");
+      return segment(frame, toggle_text(transfer_.answered_toggle, frame), "read");
     case SdoAnswer::download_segment:
-      return "segment taken";
+      if (!transfer_.asked_toggle) return "segment taken, beginning not seen";
+      return fmt::format("segment taken{}", toggle_text(transfer_.answered_toggle, frame));
     case SdoAnswer::upload_initiate:
-      return initiate(node, transfer, frame, "read");
+      return initiate(frame, "read");
     case SdoAnswer::download_initiate:
-      return fmt::format("written {}", names_->object(node, sdo_object(frame)));
+      return fmt::format("written {}", names_->object(node_, sdo_object(frame)));
     case SdoAnswer::abort:
-      return abort(node, transfer, frame);
+      return abort(frame);
     case SdoAnswer::block_download:
     case SdoAnswer::block_upload:
-      return block_answer(node, transfer, frame);
+      return "part of a block transfer, beginning not seen";
     case SdoAnswer::reserved:
       break;
   }

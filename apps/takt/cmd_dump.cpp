@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <fmt/format.h>
 #include <fstream>
@@ -8,9 +10,11 @@
 #include <unistd.h>
 
 #include "apps/frame_text/candump_line.hpp"
+#include "apps/frame_text/error_frame_text.hpp"
 #include "apps/frame_text/frame_text.hpp"
 #include "apps/frame_text/value_text.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
@@ -26,14 +30,35 @@ constexpr const char* example = R"(Examples:
   takt dump --bus can0                 what goes over the bus now
   takt dump lift.yaml --bus can0       with the names, values and units of the network file
   takt dump lift.yaml trace.log        a recording of `candump -L` or of `candump`
-  candump -L can0 | takt dump          the same from a pipe)";
+  candump -L can0 | takt dump          the same from a pipe
+  takt dump lift.yaml trace.log --node shoulder --only SDO,EMCY
+Services: NMT, SYNC, TIME, EMCY, TPDO, RPDO, SDO, BOOTUP, HEARTBEAT, GUARD, LSS, MASTER, GFC, ERROR
+and ? for what is none of them.)";
 
 struct Options {
   std::vector<std::string> files;
   std::string bus;
   std::uint64_t count = 0;  // 0: no limit
   bool json = false;
+  std::vector<std::string> only;  // services; empty: all
+  std::string node;               // id or name; empty: all
 };
+
+std::string in_capitals(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// Id of a node of the network, or of any; none: no such node.
+std::optional<unsigned> node_of(const std::string& text, const LoadedNetwork* network) {
+  if (const auto id = parse_node_id(text)) return id->value();
+  if (network == nullptr) return std::nullopt;
+  for (const NodePlan& node : network->plan.nodes) {
+    if (node.name == text) return node.id.value();
+  }
+  return std::nullopt;
+}
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -44,16 +69,21 @@ bool is_network(const std::string& file) {
 /// Prints frames until enough are printed.
 class Printer {
  public:
-  Printer(const Options& options, const LoadedNetwork* network)
+  /// `node`: 0 = all.
+  Printer(const Options& options, unsigned node, const LoadedNetwork* network)
       : options_{options},
+        node_{node},
         reader_{network == nullptr ? std::make_unique<FrameText>()
                                    : std::make_unique<FrameText>(*network)} {}
 
   /// False: that was the last one.
   bool print(const CandumpLine& line) {
     const FrameMeaning meaning =
-        line.error_frame ? FrameMeaning{.service = "ERROR", .text = "error frame of the controller"}
-                         : reader_->meaning(line.frame);
+        line.error_frame
+            ? FrameMeaning{.service = "ERROR",
+                           .text = error_frame_text(line.frame.id.id(), line.frame.payload())}
+            : reader_->meaning(line.frame);
+    if (!wanted(meaning)) return true;
     if (options_.json) {
       print_json(line, meaning);
     } else {
@@ -63,12 +93,20 @@ class Printer {
   }
 
  private:
+  /// Commands to all nodes are for each of them.
+  bool wanted(const FrameMeaning& meaning) const {
+    const bool to_all = meaning.service == "NMT" && meaning.node == 0;
+    if (node_ != 0 && meaning.node != node_ && !to_all) return false;
+    return options_.only.empty() ||
+           std::ranges::find(options_.only, meaning.service) != options_.only.end();
+  }
+
   static void print_json(const CandumpLine& line, const FrameMeaning& meaning) {
     nlohmann::ordered_json out;
     if (!line.stamp.empty()) out["time"] = line.stamp;
     out["bus"] = line.interface;
     out["id"] = line.frame.id.id();
-    out["extended"] = line.frame.id.is_extended();
+    out["extended"] = line.frame.id.is_extended() && !line.error_frame;
     out["rtr"] = line.frame.rtr;
     out["data"] =
         bytes_text(line.frame.rtr ? std::span<const std::uint8_t>{} : line.frame.payload());
@@ -79,6 +117,7 @@ class Printer {
   }
 
   const Options& options_;
+  unsigned node_;
   std::unique_ptr<FrameText> reader_;
   std::uint64_t printed_ = 0;
 };
@@ -116,8 +155,35 @@ std::string stamp_text(Time monotonic) {
   return fmt::format("{}.{:06}", micros / 1'000'000, micros % 1'000'000);
 }
 
+/// What the interface itself has to tell, on stderr.
+class InterfaceNews {
+ public:
+  explicit InterfaceNews(const std::string& bus) : bus_{bus} {}
+
+  void tell(const PortNews& now) {
+    if (now.interface_down != last_.interface_down) {
+      fmt::print(stderr, "takt dump: {} is {}\n", bus_, now.interface_down ? "down" : "up again");
+    }
+    if (now.bus_off != last_.bus_off || now.error_passive != last_.error_passive) {
+      const char* state = now.error_passive ? "error-passive" : "error-active";
+      fmt::print(stderr,
+                 "takt dump: the controller of {} is {}, error counters: transmit {}, receive {}\n",
+                 bus_, now.bus_off ? "BUS-OFF" : state, now.tx_error_counter, now.rx_error_counter);
+    }
+    if (now.receive_overruns != last_.receive_overruns) {
+      fmt::print(stderr, "takt dump: {} frames lost\n",
+                 now.receive_overruns - last_.receive_overruns);
+    }
+    last_ = now;
+  }
+
+ private:
+  const std::string& bus_;
+  PortNews last_;
+};
+
 int dump_bus(const std::string& bus, Printer& printer) {
-  auto channel = FrameChannel::open(bus);
+  auto channel = FrameChannel::open(bus, BusMember::guest);
   if (!channel) {
     fmt::print(stderr, "takt dump: {}\n", channel.error().message);
     return bus_trouble;
@@ -126,19 +192,10 @@ int dump_bus(const std::string& bus, Printer& printer) {
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
   StampedFrame got;
-  std::uint32_t lost = 0;
-  bool down = false;
+  InterfaceNews news{bus};
   while (interrupted == 0) {
     const bool received = channel->receive(got, std::chrono::milliseconds{100});
-    const PortNews news = channel->news();
-    if (news.interface_down != down) {
-      down = news.interface_down;
-      fmt::print(stderr, "takt dump: {} is {}\n", bus, down ? "down" : "up again");
-    }
-    if (news.receive_overruns != lost) {
-      fmt::print(stderr, "takt dump: {} frames lost\n", news.receive_overruns - lost);
-      lost = news.receive_overruns;
-    }
+    news.tell(channel->news());
     if (!received) {
       std::fflush(stdout);
       continue;
@@ -171,7 +228,15 @@ int run(const Options& options) {
     fmt::print(stderr, "takt dump: either --bus or a recording\n");
     return usage;
   }
-  Printer printer{options, network ? &*network : nullptr};
+  const LoadedNetwork* const names = network ? &*network : nullptr;
+  const auto node = options.node.empty() ? std::optional{0U} : node_of(options.node, names);
+  if (!node) {
+    fmt::print(
+        stderr, "takt dump: '{}' is no node id 1..127{}\n", options.node,
+        names == nullptr ? "; names are those of a network file" : " and no node of the file");
+    return usage;
+  }
+  Printer printer{options, *node, names};
   if (log) return dump_file(*log, printer);
   if (!options.bus.empty()) return dump_bus(options.bus, printer);
   if (isatty(STDIN_FILENO) == 0) return dump_file("-", printer);
@@ -192,6 +257,12 @@ void add_dump(CLI::App& app, int& exit_code) {
   dump->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
   dump->add_option("-n,--count", options->count, "end after so many frames");
   dump->add_flag("--json", options->json, "one JSON object a frame");
+  dump->add_option("--only", options->only, "these services: SDO,EMCY")
+      ->delimiter(',')
+      ->transform([](std::string text) { return in_capitals(std::move(text)); })
+      ->type_name("SERVICE,...");
+  dump->add_option("--node", options->node, "frames of this node, by id or name")
+      ->type_name("NODE");
   dump->footer(example);
   dump->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -1,71 +1,11 @@
 #include "apps/frame_text/frame_text.hpp"
 
-#include <gtest/gtest.h>
+#include "test/unit/frame_text/frame_text_fixture.hpp"
 
 namespace takt {
 namespace {
 
-LoadedNetwork network_with_shoulder() {
-  LoadedNetwork network;
-  NodePlan node{.name = "shoulder",
-                .id = 5_node,
-                .description_file = {},
-                .product_name = {},
-                .boot_plan = {}};
-  network.plan.nodes.push_back(std::move(node));
-  const auto signal = [&](const char* name, std::uint16_t index, DataType type, std::uint8_t bits) {
-    Signal out{.name = name,
-               .node = 5_node,
-               .object = {},
-               .unit = {},
-               .safe_value = {},
-               .seeded_from = {}};
-    out.object.index = index;
-    out.type = type;
-    out.bits = bits;
-    network.plan.layout.signals.push_back(out);
-  };
-  signal("statusword", 0x6041, DataType::unsigned16, 16);
-  signal("position_actual_value", 0x6064, DataType::integer32, 32);
-  signal("modes_of_operation_display", 0x6061, DataType::integer8, 8);
-  network.plan.layout.signals[1].scale = 0.001;
-  network.plan.layout.signals[1].unit = "rad";
-  network.plan.pdos.fields = {{.signal = 0, .bit_offset = 0, .bits = 16},
-                              {.signal = 1, .bit_offset = 16, .bits = 32, .sign_extend = true},
-                              {.signal = 2, .bit_offset = 48, .bits = 8, .sign_extend = true}};
-  network.plan.pdos.tpdos.push_back({.cob_id = CobId::base(0x185),
-                                     .node = 5_node,
-                                     .number = 1,
-                                     .length = 7,
-                                     .first_field = 0,
-                                     .field_count = 3});
-  DeviceTable device{.node = 5_node, .name = "shoulder", .objects = {}, .model = {}, .quirks = {}};
-  device.objects.push_back({.key = {0x6083, 0},
-                            .type = DataType::unsigned32,
-                            .value = {},
-                            .low_limit = {},
-                            .high_limit = {}});
-  network.devices.push_back(std::move(device));
-  return network;
-}
-
-class FrameTextTest : public testing::Test {
- protected:
-  std::string read(FrameText& reader, std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
-    const FrameMeaning meaning = reader.meaning(make_frame(CobId::base(id), bytes));
-    return std::string{meaning.service} + " " + meaning.text;
-  }
-  std::string plain(std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
-    return read(plain_, id, bytes);
-  }
-  std::string named(std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
-    return read(named_, id, bytes);
-  }
-
-  LoadedNetwork network_ = network_with_shoulder();
-  FrameText plain_;
-  FrameText named_{network_};
-};
+class FrameTextTest : public test::FrameTextFixture {};
 
 TEST_F(FrameTextTest, NmtCommandsNameTheirNode) {
   EXPECT_EQ(plain(0x000, {0x01, 0x00}), "NMT start all nodes");
@@ -82,7 +22,8 @@ TEST_F(FrameTextTest, SyncShowsItsCounter) {
 TEST_F(FrameTextTest, HeartbeatsNameTheState) {
   EXPECT_EQ(plain(0x705, {0x00}), "BOOTUP node 5");
   EXPECT_EQ(named(0x705, {0x05}), "HEARTBEAT shoulder operational");
-  EXPECT_EQ(plain(0x705, {0xFF}), "HEARTBEAT node 5 pre-operational (toggle)");
+  EXPECT_EQ(plain(0x705, {0xFF}),
+            "HEARTBEAT node 5 pre-operational, toggle 1 (guarding; its request was not recorded)");
   EXPECT_EQ(plain(0x705, {0x42}), "HEARTBEAT node 5 unknown state 0x42");
 }
 
@@ -94,89 +35,108 @@ TEST_F(FrameTextTest, AnEmcyIsToldInWords) {
   EXPECT_TRUE(text.ends_with("vendor 05 00 00 00 00")) << text;
 }
 
-TEST_F(FrameTextTest, AMappedPdoShowsNamesValuesAndUnits) {
-  EXPECT_EQ(named(0x185, {0x37, 0x06, 0x18, 0xFC, 0xFF, 0xFF, 0x08}),
-            "TPDO 1 shoulder  statusword=0x0637  position_actual_value=-1 rad  "
-            "modes_of_operation_display=8");
-}
-
-TEST_F(FrameTextTest, APdoThatIsTooShortSaysSo) {
-  EXPECT_EQ(named(0x185, {0x37, 0x06}), "TPDO 1 shoulder: 2 bytes, its mapping has 7");
-}
-
-TEST_F(FrameTextTest, WithoutANetworkPdosAreThoseOfThePredefinedSet) {
-  EXPECT_EQ(plain(0x185, {1}), "TPDO 1 node 5");
-  EXPECT_EQ(plain(0x206, {1}), "RPDO 1 node 6");
-  EXPECT_EQ(plain(0x4FF, {1}), "TPDO 4 node 127");
-  EXPECT_EQ(plain(0x57F, {1}), "RPDO 4 node 127");
-}
-
-TEST_F(FrameTextTest, AnExpeditedUploadShowsObjectAndValue) {
-  EXPECT_EQ(plain(0x605, {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}),
-            "SDO node 5 asked: read 1000:00 device type");
-  EXPECT_EQ(plain(0x585, {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00}),
-            "SDO node 5 answers: read 1000:00 device type = 131474 (0x20192)");
-}
-
-TEST_F(FrameTextTest, ADownloadIsShownWithTheTypeOfTheEds) {
-  EXPECT_EQ(named(0x605, {0x23, 0x83, 0x60, 0x00, 0x10, 0x27, 0x00, 0x00}),
-            "SDO shoulder asked: write 6083:00 = 10000 (0x2710)");
-  EXPECT_EQ(named(0x585, {0x60, 0x83, 0x60, 0x00, 0, 0, 0, 0}),
-            "SDO shoulder answers: written 6083:00");
-}
-
-TEST_F(FrameTextTest, AnAbortIsToldInWords) {
-  EXPECT_EQ(named(0x585, {0x80, 0x83, 0x60, 0x00, 0x30, 0x00, 0x09, 0x06}).substr(0, 46),
-            "SDO shoulder answers: ABORT 6083:00: 0609 0030");
-}
-
-TEST_F(FrameTextTest, SegmentsAreJoinedToTheirValue) {
-  EXPECT_EQ(plain(0x605, {0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0}),
-            "SDO node 5 asked: read 1008:00 manufacturer device name");
-  EXPECT_EQ(plain(0x585, {0x41, 0x08, 0x10, 0x00, 0x0A, 0, 0, 0}),
-            "SDO node 5 answers: read 1008:00 manufacturer device name, 10 bytes in segments");
-  EXPECT_EQ(plain(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0}),
-            "SDO node 5 asked: next segment of 1008:00 manufacturer device name");
-  EXPECT_EQ(plain(0x585, {0x00, 'S', 'e', 'r', 'v', 'o', ' ', 'd'}),
-            "SDO node 5 answers: segment of 1008:00 manufacturer device name, 7 bytes");
-  EXPECT_EQ(plain(0x585, {0x19, 'r', 'v', '1', 0, 0, 0, 0}),
-            "SDO node 5 answers: read 1008:00 manufacturer device name = \"Servo drv1\" (last "
-            "segment)");
-}
-
-TEST_F(FrameTextTest, ASegmentWithoutItsBeginningIsNotInvented) {
-  EXPECT_EQ(plain(0x585, {0x19, 'r', 'v', '1', 0, 0, 0, 0}),
-            "SDO node 5 answers: segment of 3 bytes, beginning not seen");
-}
-
-TEST_F(FrameTextTest, ABlockUploadKeepsItsSegmentsApart) {
-  plain(0x605, {0xA4, 0x08, 0x10, 0x00, 0x7F, 0, 0, 0});
-  plain(0x585, {0xC2, 0x08, 0x10, 0x00, 0x0A, 0, 0, 0});
-  plain(0x605, {0xA3, 0, 0, 0, 0, 0, 0, 0});
-
-  EXPECT_EQ(plain(0x585, {0x01, 'S', 'e', 'r', 'v', 'o', ' ', 'd'}),
-            "SDO node 5 answers: block segment 1 of 1008:00 manufacturer device name");
-  EXPECT_EQ(plain(0x585, {0x82, 'r', 'v', '1', 0, 0, 0, 0}),
-            "SDO node 5 answers: block segment 2 of 1008:00 manufacturer device name, the last");
-}
-
-TEST_F(FrameTextTest, AnSdoFrameOfAnotherLengthIsNotRead) {
-  EXPECT_EQ(plain(0x605, {0x40, 0x00}), "SDO node 5 asked: of 2 bytes (always 8)");
-}
-
-TEST_F(FrameTextTest, LssIsNamed) {
-  EXPECT_EQ(plain(0x7E5, {0x04, 0x01, 0, 0, 0, 0, 0, 0}), "LSS all to configuration");
-  EXPECT_EQ(plain(0x7E5, {0x40, 0x5A, 0x01, 0, 0, 0, 0, 0}), "LSS select vendor id 0x0000015A");
-  EXPECT_EQ(plain(0x7E5, {0x11, 0x05, 0, 0, 0, 0, 0, 0}), "LSS node id := 5");
-  EXPECT_EQ(plain(0x7E4, {0x11, 0x01, 0, 0, 0, 0, 0, 0}), "LSS node id: refused, error 1");
-  EXPECT_EQ(plain(0x7E4, {0x5A, 0x5A, 0x01, 0, 0, 0, 0, 0}), "LSS vendor id is 0x0000015A");
-  EXPECT_EQ(plain(0x7E5, {0x99, 0, 0, 0, 0, 0, 0, 0}), "LSS unknown command 0x99");
-}
-
 TEST_F(FrameTextTest, TimeIsShown) {
   // 12:00:00.000 is 43,200,000 ms = 0x02932E00; day 15000 = 0x3A98
   EXPECT_EQ(plain(0x100, {0x00, 0x2E, 0x93, 0x02, 0x98, 0x3A}),
-            "TIME day 15000 since 1984, 12:00:00.000");
+            "TIME 2025-01-25 12:00:00.000, day 15000 since 1984");
+  EXPECT_EQ(plain(0x100, {0xFF, 0x5B, 0x26, 0x05, 0x4D, 0x39}),
+            "TIME 2024-02-29 23:59:59.999, day 14669 since 1984");
+  EXPECT_EQ(plain(0x100, {0x00, 0x2E}), "TIME of 2 bytes (always 6)");
+}
+
+TEST_F(FrameTextTest, GuardingIsFollowedByItsToggleBit) {
+  Frame request = make_frame(CobId::base(0x705), {});
+  request.rtr = true;
+  const auto ask = [&] { return named_.meaning(request).text; };
+
+  EXPECT_EQ(ask(), "shoulder asked for its state");
+  EXPECT_EQ(named(0x705, {0x7F}), "GUARD shoulder answers: pre-operational, toggle 0");
+  ask();
+  EXPECT_EQ(named(0x705, {0xFF}), "GUARD shoulder answers: pre-operational, toggle 1");
+  ask();
+  EXPECT_EQ(named(0x705, {0x85}),
+            "GUARD shoulder answers: operational, toggle 1 as before: the toggle bit should have "
+            "changed");
+  ask();
+  EXPECT_EQ(ask(), "shoulder asked for its state again, its answer is missing");
+  EXPECT_EQ(named(0x705, {0x00}), "BOOTUP shoulder");
+  ask();
+  EXPECT_EQ(named(0x705, {0x85}),
+            "GUARD shoulder answers: operational, toggle 1 as before: the toggle bit should have "
+            "changed")
+      << "the first answer after a boot-up has toggle 0";
+}
+
+TEST_F(FrameTextTest, AHeartbeatOfAnotherLengthSaysSo) {
+  EXPECT_EQ(plain(0x705, {}), "HEARTBEAT node 5 of 0 bytes (always 1)");
+  EXPECT_EQ(plain(0x705, {0x05, 0x00}), "HEARTBEAT node 5 of 2 bytes (always 1)");
+}
+
+TEST_F(FrameTextTest, AShortEmcyIsNotReadAsACode) {
+  EXPECT_EQ(plain(0x085, {0x11}),
+            "EMCY node 5 of 1 byte (always 8), too short for an error code: 11");
+  EXPECT_EQ(plain(0x085, {0x30, 0x81}),
+            "EMCY node 5 8130 life guard or heartbeat error: the device misses a partner, error "
+            "register 00 (none) (2 bytes, always 8)");
+  EXPECT_EQ(plain(0x085, {}), "EMCY node 5 empty (the boot-up message of devices before CiA 301)");
+  EXPECT_EQ(plain(0x085, {0x11, 0x86, 0x21}),
+            "EMCY node 5 8611 following error, error register 21 (generic, profile) (3 bytes, "
+            "always 8)");
+}
+
+TEST_F(FrameTextTest, AnEmcyThatEndsAnErrorSaysWhetherOthersRemain) {
+  EXPECT_EQ(plain(0x085, {0, 0, 0, 0, 0, 0, 0, 0}),
+            "EMCY node 5 0000 error reset or no error, error register 00 (none)");
+  EXPECT_EQ(plain(0x085, {0, 0, 0x01, 0, 0, 0, 0, 0}),
+            "EMCY node 5 0000 an error is gone, others remain, error register 01 (generic)");
+}
+
+TEST_F(FrameTextTest, AnEmcyHasTheWordsOfItsDeviceData) {
+  network_.plan.nodes[0].emcy_texts.push_back({0x5441, "CANopen time-out (E.CAN)"});
+  network_.plan.nodes[0].emcy_cob_id = CobId::extended(0x12345);
+
+  const auto told =
+      named_.meaning(make_frame(CobId::extended(0x12345), {0x41, 0x54, 0x81, 0, 0, 0, 0, 0}));
+
+  EXPECT_EQ(told.service, "EMCY");
+  EXPECT_EQ(told.text,
+            "shoulder 5441 CANopen time-out (E.CAN), error register 81 (generic, manufacturer)");
+}
+
+TEST_F(FrameTextTest, SyncAndTimeMayHaveLongIdentifiers) {
+  network_.plan.cycle.sync_cob_id = CobId::extended(0x80);
+  network_.plan.time.cob_id = CobId::extended(0x100);
+
+  EXPECT_EQ(named_.meaning(make_frame(CobId::extended(0x80), {0x05})).service, "SYNC");
+  EXPECT_EQ(named_.meaning(make_frame(CobId::extended(0x80), {0x05})).text, "5");
+  EXPECT_EQ(named_.meaning(make_frame(CobId::extended(0x100), {0, 0, 0, 0, 1, 0})).text,
+            "1984-01-02 00:00:00.000, day 1 since 1984");
+  EXPECT_EQ(plain(0x080, {1, 2}), "SYNC 1 (2 bytes, at most 1)");
+}
+
+TEST_F(FrameTextTest, RequestsToAnNmtMasterAreTold) {
+  EXPECT_EQ(named(0x67F, {0x2F, 0x82, 0x1F, 0x05, 0x05, 0, 0, 0}),
+            "SDO master asked: write 1F82:05 request NMT = 5: start shoulder");
+  EXPECT_EQ(named(0x67F, {0x2F, 0x82, 0x1F, 0x80, 0x06, 0, 0, 0}),
+            "SDO master asked: write 1F82:80 request NMT = 6: reset all nodes");
+  EXPECT_EQ(plain(0x073, {}), "MASTER who is the active master?");
+  EXPECT_EQ(plain(0x071, {0x02, 0x7F}), "MASTER the active master answers: 02 7F");
+  EXPECT_EQ(plain(0x075, {}), "MASTER is there a master?");
+}
+
+TEST_F(FrameTextTest, RemoteRequestsAreNotReadAsData) {
+  const auto remote = [&](std::uint32_t id) {
+    Frame frame = make_frame(CobId::base(id), {});
+    frame.rtr = true;
+    const FrameMeaning told = named_.meaning(frame);
+    return std::string{told.service} + " " + told.text;
+  };
+
+  EXPECT_EQ(remote(0x185), "TPDO 1 shoulder asked for");
+  EXPECT_EQ(remote(0x286), "TPDO 2 node 6 asked for");
+  EXPECT_EQ(remote(0x605), "SDO shoulder remote request");
+  EXPECT_EQ(remote(0x085), "EMCY shoulder remote request");
+  EXPECT_EQ(remote(0x080), "SYNC remote request");
 }
 
 TEST_F(FrameTextTest, EveryIdentifierAndEveryFirstByteIsReadWithoutHarm) {

@@ -1,0 +1,29 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "apps/frame_text/meaning.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Heartbeats, boot-up messages, and guarding with its toggle bit, which is followed for each node.
+/// CiA 301, 7.2.8.3.
+class ErrorControlText {
+ public:
+  FrameMeaning meaning(unsigned node, const std::string& name, const Frame& frame);
+
+ private:
+  struct Guarding {
+    bool asked = false;            // a request without an answer so far
+    std::optional<bool> toggle{};  // of the newest answer; none: not known
+  };
+
+  FrameMeaning request(unsigned node, const std::string& name);
+  FrameMeaning answer(unsigned node, const std::string& name, std::uint8_t byte);
+
+  std::array<Guarding, 128> nodes_{};
+};
+
+}  // namespace takt
