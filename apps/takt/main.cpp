@@ -50,6 +50,8 @@ int main(int argc, char** argv) {
   takt::add_plan(app, exit_code);
   takt::add_sim(app, exit_code);
   takt::add_simulate(app, exit_code);
+  takt::add_record(app, exit_code);
+  takt::add_replay(app, exit_code);
   takt::add_status(app, exit_code);
   takt::add_top(app, exit_code);
   takt::add_emcy(app, exit_code);

@@ -15,7 +15,8 @@
 namespace takt {
 namespace {
 
-constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+constexpr Time patience = std::chrono::seconds{1};        // beyond the limit of the ordered stop
+constexpr Time last_recording = std::chrono::seconds{2};  // of a stop that is not in order
 constexpr std::size_t heap_bytes = 8 << 20;
 
 /// Not 0, and another one each time.
@@ -32,7 +33,8 @@ Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
       bus_name_{choose_bus(options_, network_)},
       session_{new_session()},
       wait_{signals_.wait_mask()},
-      reporter_{network_.plan} {
+      reporter_{network_.plan},
+      recorder_{[this](Weight weight, const std::string& text) { reporter_.say(weight, text); }} {
   if (options_.rt) network_.realtime.mode = *options_.rt;
   if (options_.typed) network_.lcm.typed = *options_.typed;
 }
@@ -45,10 +47,13 @@ Exit Daemon::run() {
     reporter_.say(Weight::error, StopSignal::count() > 1
                                      ? "stopped at once: the axes were not brought to rest in order"
                                      : "the ordered stop did not end in time");
+    recorder_.finish_running(why_.empty() ? "stopped at once" : why_ + "; it did not end in order",
+                             last_recording);
     std::_Exit(static_cast<int>(exit_ == Exit::good ? Exit::bus_trouble : exit_));
   }
   master_->join();
   bridge_->serve();
+  recorder_.finish(exit_ == Exit::good ? "" : why_);
   reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),
                                           reporter_.told(Weight::warning)));
   return exit_;
@@ -80,6 +85,7 @@ std::optional<Exit> Daemon::open() {
   }
   bus_ = std::move(*bus);
   for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
+  if (const auto trouble = open_black_box()) return trouble;
   const Channels channels{network_.plan.name};
   std::vector<std::string> heard = channels.heard();
   if (network_.lcm.typed) {
@@ -89,6 +95,22 @@ std::optional<Exit> Daemon::open() {
       std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
       [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
   return std::nullopt;
+}
+
+std::optional<Exit> Daemon::open_black_box() {
+  const RecordingOptions& wanted = network_.recording;
+  const std::string& folder = options_.black_box.empty() ? wanted.folder : options_.black_box;
+  if (folder.empty()) return std::nullopt;
+  RecordingHead head{.bus = network_.plan.name,
+                     .interface = network_.plan.interface,
+                     .network = options_.network_file,
+                     .fingerprint = plan_fingerprint(network_.plan),
+                     .observe = options_.observe};
+  const auto opened = recorder_.open({.folder = folder, .bytes = wanted.bytes, .keep = wanted.keep},
+                                     network_.plan, std::move(head));
+  if (opened) return std::nullopt;
+  reporter_.say(Weight::error, opened.error());
+  return Exit::wrong_use;
 }
 
 std::thread Daemon::start_bus_thread(std::function<void()> body) {
@@ -108,7 +130,7 @@ std::thread Daemon::start_bus_thread(std::function<void()> body) {
 std::optional<Exit> Daemon::start() {
   prefault_heap(heap_bytes);
   master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = options_.observe});
-  bus_->attach(*master_);
+  bus_->attach(*master_, recorder_.journal());
   master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
   reporter_.say(realtime_.complete() ? Weight::note : Weight::warning,
                 "real time: " + to_string(realtime_));
@@ -126,6 +148,7 @@ std::optional<Exit> Daemon::start() {
                                                    .realtime = to_string(realtime_),
                                                    .typed = network_.lcm.typed},
                                      [this](const Notice& notice) { on_notice(notice); });
+  recorder_.attach(*bridge_, session_);
   if (gateway_) gateway_->attach(*master_, *bridge_);
   if (options_.run_for > Time{0}) end_ = monotonic_now() + options_.run_for;
   service_.ready("bus " + network_.plan.name + " on " + bus_name_);
@@ -140,6 +163,7 @@ void Daemon::loop() {
     if (gateway_) gateway_->serve();
     const Time now = monotonic_now();
     watch_conditions(now);
+    recorder_.serve(now);
     if (StopSignal::count() > 1 || stop_takes_too_long(now)) return;
     descriptors.clear();
     link_->watch(descriptors);
@@ -182,6 +206,7 @@ void Daemon::watch_lateness() {
 /// booted again by its plan, and the others go on.
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
+  recorder_.on_fault(notice);
   if (notice.kind == name(EventKind::boot_done)) once_ready_.set(notice.node);
   if (notice.kind != name(EventKind::boot_failed) || once_ready_[notice.node]) return;
   for (const NodePlan& node : network_.plan.nodes) {
@@ -196,6 +221,7 @@ void Daemon::stop(Exit reason, const std::string& why) {
   if (stopping_) return;
   stopping_ = true;
   exit_ = reason;
+  why_ = why;
   stop_limit_ = monotonic_now() + network_.plan.stop_timeout + patience;
   reporter_.say(reason == Exit::good ? Weight::note : Weight::error, why + "; stopping in order");
   service_.stopping();

@@ -10,6 +10,7 @@
 #include "apps/taktd/daemon_bus.hpp"
 #include "apps/taktd/front_wait.hpp"
 #include "apps/taktd/options.hpp"
+#include "apps/taktd/recorder.hpp"
 #include "apps/taktd/reporter.hpp"
 #include "apps/taktd/service_notify.hpp"
 #include "apps/taktd/stop_signal.hpp"
@@ -41,6 +42,7 @@ class Daemon {
 
  private:
   std::optional<Exit> open();
+  std::optional<Exit> open_black_box();
   std::optional<Exit> start();
   void loop();
   void hear_intruders();
@@ -61,6 +63,7 @@ class Daemon {
   Reporter reporter_;
   std::bitset<256> once_ready_;  // nodes that have booted in this run
   RtReport realtime_;
+  Recorder recorder_;               // outlives master_
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;
   std::unique_ptr<LcmLink> link_;
@@ -70,6 +73,7 @@ class Daemon {
   Time stop_limit_ = never;  // when patience with the ordered stop ends
   bool stopping_ = false;
   Exit exit_ = Exit::good;
+  std::string why_;  // of exit_
 };
 
 }  // namespace takt

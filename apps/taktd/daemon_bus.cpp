@@ -40,9 +40,12 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
   return bus;
 }
 
-void DaemonBus::attach(Master& master) {
-  if (simulated_) return master.attach(*simulated_);
-  std::visit([&](auto& port) { master.attach(port); }, *port_);
+void DaemonBus::attach(Master& master, Journal* journal) {
+  const auto record = [&]<class P>(P& port) {
+    master.attach(recorded_.emplace<RecordedPort<P>>(port, journal));
+  };
+  if (simulated_) return record(*simulated_);
+  std::visit(record, *port_);
 }
 
 }  // namespace takt

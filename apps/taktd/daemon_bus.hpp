@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "apps/taktd/simulated_bus.hpp"
@@ -11,6 +12,7 @@
 #include "master/linux/diagnostic_socket.hpp"
 #include "master/linux/open_bus.hpp"
 #include "master/master.hpp"
+#include "master/rt/recorded_port.hpp"
 
 namespace takt {
 
@@ -22,7 +24,8 @@ class DaemonBus {
       const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices,
       Time spin);
 
-  void attach(Master& master);
+  /// `journal`: where the bus thread writes down what it hears, for the black box; may be null.
+  void attach(Master& master, Journal* journal);
   /// Hears foreign masters and double senders; null on a simulated bus or where it can't be had.
   DiagnosticSocket* diagnostics() noexcept { return diagnostics_ ? &*diagnostics_ : nullptr; }
   /// What will hurt while running, with the command that mends it.
@@ -39,6 +42,9 @@ class DaemonBus {
   std::optional<DiagnosticSocket> diagnostics_;
   std::vector<std::string> warnings_;
   std::unique_ptr<SimulatedBus> simulated_;
+  std::variant<std::monostate, RecordedPort<SocketCanPort>, RecordedPort<UnixBusPort>,
+               RecordedPort<SimulatedBus>>
+      recorded_;
 };
 
 }  // namespace takt

@@ -23,6 +23,7 @@ Examples:
   taktd lift.yaml --check              compile everything, touch no bus
   taktd lift.yaml --observe            listen only: send nothing at all
   taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
+  taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
 
 Live views: takt top, takt status. SIGTERM or SIGINT (Ctrl-C) stops in order: axes to rest, nodes to
 pre-operational, SYNC off. A second one stops at once.
@@ -77,6 +78,9 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   app.add_option("--gateway", options.gateway,
                  "text commands of CiA 309-3: unix:PATH, or tcp:PORT on loopback")
       ->type_name("WHERE");
+  app.add_option("--black-box", options.black_box,
+                 "record; write frames and decisions here after a fault or SIGUSR1")
+      ->type_name("DIR");
   app.add_flag("--typed,!--no-typed", typed,
                "BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`, or not");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");

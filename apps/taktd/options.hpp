@@ -16,6 +16,7 @@ struct DaemonOptions {
   std::string lcm_url;
   std::string events_file;
   std::string gateway;    ///< CiA 309-3: unix:PATH, tcp:PORT; empty: none
+  std::string black_box;  ///< folder for recordings; empty: none
   Time run_for{};         ///< 0: until a signal
   bool check = false;
   bool observe = false;

@@ -3,14 +3,17 @@
 
 namespace takt {
 
-/// SIGTERM and SIGINT as a counter. Blocked in all threads from here on, except while the front
-/// thread waits with wait_mask(), so none is ever lost between a look and a wait.
+/// SIGTERM and SIGINT as a counter, and SIGUSR1, which asks for a recording. Blocked in all threads
+/// from here on, except while the front thread waits with wait_mask(), so none is ever lost between
+/// a look and a wait.
 class StopSignal {
  public:
   StopSignal();
 
   /// How many have come.
   static int count() noexcept;
+  /// SIGUSR1 has come since the last call.
+  static bool take_recording_wish() noexcept;
   /// The mask for ppoll: stop signals get through.
   const sigset_t* wait_mask() const noexcept { return &wait_mask_; }
 

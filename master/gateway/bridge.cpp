@@ -162,6 +162,7 @@ void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
   if (!request) return tell_damaged(channels_.request, request.error());
   if (request->service == "emcy_history") return answer_history(*request);
+  if (request->service == "record" && record_) return record_(*request);
   if (auto reply = requests_.take(*request)) answer(std::move(*reply));
 }
 
@@ -172,6 +173,13 @@ reply_t Bridge::reply_to(const request_t& request) const {
   reply.id = request.id;
   reply.sender = request.sender;
   return reply;
+}
+
+void Bridge::answer(const request_t& request, bool good, const std::string& text) {
+  reply_t reply = reply_to(request);
+  reply.good = good ? 1 : 0;
+  reply.text = text;
+  answer(std::move(reply));
 }
 
 /// Answered here: the bus thread keeps no history.

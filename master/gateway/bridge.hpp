@@ -63,6 +63,12 @@ class Bridge {
   /// A notice of somebody else. Told to LCM and to `tell`, unless there are too many of its kind.
   void tell(Notice notice);
 
+  /// Who answers `record` requests, by answer(); without one they are refused.
+  using Record = std::function<void(const request_t& request)>;
+  void record_with(Record record) { record_ = std::move(record); }
+  /// Answers a request that the bus thread has no part in.
+  void answer(const request_t& request, bool good, const std::string& text);
+
   const StatusSnapshot& status() const noexcept { return snapshot_; }
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
@@ -102,6 +108,7 @@ class Bridge {
   BridgeOptions options_;
   NoticeSink tell_;
   FrontGuest* guest_ = nullptr;
+  Record record_;
   Channels channels_;
   ImageMessages image_messages_;
   std::optional<TypedChannels> typed_;

@@ -1,0 +1,208 @@
+#include "apps/black_box/black_box.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <set>
+
+#include "apps/black_box/recording_format.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time aftermath = 1s;
+constexpr Time distance = 10s;  // of two recordings
+constexpr Time silence = 5min;  // of one kind of fault
+
+/// Files may not be named with all that a bus may be.
+std::string file_name(const std::string& bus) {
+  std::string name = bus.substr(0, 64);
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_'; }, '_');
+  return name.empty() ? "bus" : name;
+}
+
+/// `lift-20260314T150926`.
+std::string time_name(const std::string& bus) {
+  return fmt::format("{}-{:%Y%m%dT%H%M%S}", bus, fmt::localtime(std::time(nullptr)));
+}
+
+bool is_recording_of(const std::string& name, const std::string& bus) {
+  const std::size_t digits = bus.size() + 1;
+  return name.starts_with(bus + '-') && name.size() > digits + 15 && name[digits + 8] == 'T' &&
+         std::isdigit(static_cast<unsigned char>(name[digits])) != 0;
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+std::expected<std::unique_ptr<BlackBox>, std::string> BlackBox::open(const BlackBoxOptions& options,
+                                                                     const BusPlan& plan,
+                                                                     RecordingHead head, Say say) {
+  const auto refused = [&](const std::string& why) {
+    return std::unexpected{"--black-box " + options.folder.string() + ": " + why};
+  };
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) return refused(error.message());
+  const auto probe = options.folder / ".takt";
+  if (std::FILE* const file = std::fopen(probe.c_str(), "wb")) {
+    std::fclose(file);
+    std::filesystem::remove(probe, error);
+  } else {
+    return refused(std::error_code{errno, std::generic_category()}.message());
+  }
+  return std::unique_ptr<BlackBox>{new BlackBox{options, plan, std::move(head), std::move(say)}};
+}
+
+BlackBox::BlackBox(const BlackBoxOptions& options, const BusPlan& plan, RecordingHead head, Say say)
+    : options_{options},
+      plan_{plan},
+      head_{std::move(head)},
+      say_{std::move(say)},
+      journal_{options.bytes} {}
+
+BlackBox::~BlackBox() {
+  if (writer_.joinable()) writer_.join();
+}
+
+void BlackBox::on_fault(const std::string& kind, std::uint8_t node, const std::string& text,
+                        Time now) {
+  const auto [fault, first] = faults_.try_emplace({kind, node}, now);
+  if (!first && now - fault->second < silence) return;
+  fault->second = now;
+  ask(first_line(text), now + aftermath);
+}
+
+void BlackBox::on_request(const std::string& reason, Time now) { ask(reason, now); }
+
+/// What is due already is not put off, but for the distance to the one before.
+void BlackBox::ask(const std::string& reason, Time at) {
+  if (last_ != Time{}) at = std::max(at, last_ + distance);
+  if (reason_.empty()) reason_ = reason;
+  due_ = std::min(due_, at);
+}
+
+void BlackBox::serve(Time now) {
+  if (writer_.joinable() && !writing_.load(std::memory_order_acquire)) {
+    end_writing();
+    journal_.give_back();
+  }
+  if (writer_.joinable()) return;
+  if (!wanted_ && now >= due_) {
+    journal_.want();
+    wanted_ = true;
+    due_ = never;
+    last_ = now;
+  }
+  if (!wanted_) return;
+  const Tape* const tape = journal_.wanted();
+  if (tape == nullptr) return;
+  wanted_ = false;
+  write(*tape);
+}
+
+void BlackBox::finish(const std::string& reason) {
+  if (writer_.joinable()) end_writing();
+  if (reason_.empty()) reason_ = reason;
+  if (reason_.empty()) return;
+  const Tape* const tape = wanted_ ? journal_.wanted() : nullptr;
+  write(tape != nullptr ? *tape : journal_.last());
+  end_writing();
+}
+
+/// The writer is through. It looks every millisecond.
+bool BlackBox::await_writer(Time until) const {
+  while (writing_.load(std::memory_order_acquire)) {
+    if (monotonic_now() > until) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+bool BlackBox::finish_running(const std::string& reason, Time limit) {
+  const Time until = monotonic_now() + limit;
+  if (writer_.joinable()) {
+    if (!await_writer(until)) return false;
+    end_writing();
+    journal_.give_back();
+  }
+  if (!wanted_) journal_.want();
+  const Tape* tape = journal_.wanted();
+  for (; tape == nullptr && monotonic_now() < until; tape = journal_.wanted()) {
+    std::this_thread::sleep_for(1ms);
+  }
+  if (tape == nullptr) return false;  // the bus thread begins no cycle any more
+  if (reason_.empty()) reason_ = reason;
+  write(*tape);
+  if (!await_writer(until)) return false;
+  end_writing();
+  return !failed_;
+}
+
+void BlackBox::write(const Tape& tape) {
+  forget_oldest();
+  head_.reason = std::exchange(reason_, {});
+  head_.follows = tape.whole() ? previous_ : "";
+  const std::filesystem::path stem = next_stem();
+  previous_ = stem.filename().string();
+  writing_.store(true);
+  writer_ = std::thread{[this, &tape, stem, head = head_] {
+    std::expected<void, std::string> result;
+    try {
+      result = write_recording(stem, plan_, head, tape.read());
+    } catch (const std::exception& error) {
+      result = std::unexpected{stem.string() + ": " + error.what()};
+    }
+    failed_ = !result;
+    written_ = result ? stem.string() + recording_format::log_ending : result.error();
+    writing_.store(false, std::memory_order_release);
+  }};
+}
+
+void BlackBox::end_writing() {
+  writer_.join();
+  if (failed_) previous_.clear();
+  if (failed_) return say_("black box: " + written_, {});
+  say_("black box: " + written_ + " (" + head_.reason + "); takt replay " + written_, written_);
+}
+
+std::filesystem::path BlackBox::next_stem() {
+  const std::string name = time_name(file_name(head_.bus));
+  std::filesystem::path stem = options_.folder / name;
+  std::error_code error;
+  for (int again = 2; std::filesystem::exists(stem.string() + recording_format::log_ending, error);
+       ++again) {
+    stem = options_.folder / fmt::format("{}-{}", name, again);
+  }
+  return stem;
+}
+
+/// Leaves room for one more.
+void BlackBox::forget_oldest() {
+  std::set<std::string> stems;
+  std::error_code error;
+  const std::string bus = file_name(head_.bus);
+  for (const auto& entry : std::filesystem::directory_iterator{options_.folder, error}) {
+    const std::string name = entry.path().filename().string();
+    if (is_recording_of(name, bus)) stems.insert(name.substr(0, name.find('.')));
+  }
+  while (stems.size() >= options_.keep) {
+    using namespace recording_format;
+    for (const char* const ending : {log_ending, journal_ending, events_ending}) {
+      std::filesystem::remove(options_.folder / (*stems.begin() + ending), error);
+    }
+    stems.erase(stems.begin());
+  }
+}
+
+}  // namespace takt

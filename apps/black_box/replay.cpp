@@ -1,0 +1,107 @@
+#include "apps/black_box/replay.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/black_box/difference_text.hpp"
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+namespace {
+
+class Replay {
+ public:
+  Replay(const BusPlan& plan, const LoadedRecording& recording,
+         const std::function<void(const Decision&)>& tell)
+      : plan_{plan},
+        recording_{recording},
+        tell_{tell},
+        port_{recording.parts, plan.layout.outputs()},
+        exchange_{std::make_unique<Exchange>(plan)},
+        loop_{plan, port_, *exchange_, {.observe = recording.head.observe}} {}
+
+  ReplayOutcome run() {
+    if (!begin()) return std::move(outcome_);
+    while (!port_.over() && !loop_.done() && !outcome_.difference) {
+      loop_.cycle();
+      end_cycle();
+    }
+    if (!outcome_.difference) look_at_end();
+    return std::move(outcome_);
+  }
+
+ private:
+  /// False: the recording begins in the middle of the run of another plan.
+  bool begin() {
+    if (recording_.checkpoint.empty()) {
+      loop_.start();
+      return true;
+    }
+    if (!loop_.resume(recording_.checkpoint)) {
+      outcome_.difference =
+          "it begins in the middle of a run, and the network file has other nodes or PDOs, or this "
+          "takt is of another version: what the master knew then can't be used";
+      return false;
+    }
+    end_cycle();
+    return true;
+  }
+
+  void end_cycle() {
+    ImageView image;
+    exchange_->images.take_newest(image);
+    compare_events();
+    ++outcome_.cycles;
+  }
+
+  /// What the port sees comes first in a cycle; the first event that differs then says what it
+  /// leads to.
+  void compare_events() {
+    std::string event_differs;
+    for (Event event; exchange_->events.pop(event);) {
+      const Decision decision = to_decision(plan_, event);
+      tell_(decision);
+      if (event_differs.empty()) event_differs = compare(decision);
+    }
+    if (port_.difference()) {
+      outcome_.difference = difference_text(*port_.difference(), recording_.logs);
+      if (!event_differs.empty()) *outcome_.difference += "\nit leads to " + event_differs;
+    } else if (!event_differs.empty()) {
+      outcome_.difference = event_differs;
+    }
+  }
+
+  /// Empty: it is as recorded.
+  std::string compare(const Decision& decision) {
+    if (outcome_.decisions == recording_.decisions.size()) return surplus_text(decision);
+    const Decision& recorded = recording_.decisions[outcome_.decisions];
+    if (decision != recorded) return decision_text(recorded, decision);
+    ++outcome_.decisions;
+    return {};
+  }
+
+  void look_at_end() {
+    if (outcome_.decisions < recording_.decisions.size()) {
+      outcome_.difference = lack_text(recording_.decisions[outcome_.decisions]);
+    } else if (!port_.over()) {
+      outcome_.difference = "the master has stopped, and the recording goes on";
+    }
+  }
+
+  const BusPlan& plan_;
+  const LoadedRecording& recording_;
+  const std::function<void(const Decision&)>& tell_;
+  ReplayPort port_;
+  std::unique_ptr<Exchange> exchange_;
+  BusLoop<ReplayPort> loop_;
+  ReplayOutcome outcome_;
+};
+
+}  // namespace
+
+ReplayOutcome replay(const BusPlan& plan, const LoadedRecording& recording,
+                     const std::function<void(const Decision&)>& tell) {
+  return std::make_unique<Replay>(plan, recording, tell)->run();
+}
+
+}  // namespace takt

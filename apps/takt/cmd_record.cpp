@@ -1,0 +1,39 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/daemon_client.hpp"
+
+namespace takt {
+namespace {
+
+/// Beyond the distance of two recordings and the writing of the files.
+constexpr std::chrono::seconds patience{30};
+
+int run(const LiveOptions& options) {
+  auto daemon = DaemonClient::find(options);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  request_t request{};
+  request.service = "record";
+  const auto reply = daemon->ask(std::move(request), patience);
+  if (!reply) return complain(reply.error().sentence, reply.error().code);
+  if (reply->good == 0) return complain(reply->text, 1);
+  std::puts(reply->text.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("record", "let the daemon write its last seconds to files");
+  verb->footer(
+      "The daemon records where it was started with --black-box, or where the network file has\n"
+      "`black_box:`. Prints the file, of the machine that taktd runs on.\n\n"
+      "Example:\n  takt replay $(takt record)");
+  auto options = std::make_shared<LiveOptions>();
+  add_live_options(*verb, *options);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,97 @@
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/black_box/replay.hpp"
+#include "apps/takt/commands.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+constexpr int good = 0;
+constexpr int differs = 1;
+constexpr int usage = 2;
+
+constexpr const char* help =
+    R"(FILE is any of the three files of a recording: NAME.log (frames, as `candump -L` writes them),
+NAME.events.json (decisions), NAME.journal (times). The frames are taken from NAME.log: change one
+in it and see where the master would have done something else.
+
+Exit codes: 0 the same decisions, 1 a difference (the first is named), 2 not a recording, or one
+that can't be replayed.
+
+Examples:
+  takt replay lift-20260314T150926.log
+  takt replay lift-20260314T150926.log --network lift.yaml --quiet)";
+
+struct Options {
+  std::string file;
+  std::string network;
+  bool quiet = false;
+};
+
+int fail(const std::string& sentence) {
+  fmt::print(stderr, "takt replay: {}\n", sentence);
+  return usage;
+}
+
+void print(const Decision& decision) {
+  fmt::print("{:>14.6f}  {}\n", 1e-9 * static_cast<double>(decision.time), decision.text);
+}
+
+/// As it was named when it was recorded, from here or beside the recording.
+std::string find_network(const Options& options, const RecordingHead& head) {
+  if (!options.network.empty()) return options.network;
+  std::error_code error;
+  if (std::filesystem::exists(head.network, error)) return head.network;
+  const auto beside = std::filesystem::path{options.file}.parent_path() /
+                      std::filesystem::path{head.network}.filename();
+  return std::filesystem::exists(beside, error) ? beside.string() : head.network;
+}
+
+int run(const Options& options) {
+  const auto recording = read_recording(options.file);
+  if (!recording) return fail(recording.error());
+  if (recording->fault) return fail(options.file + ": " + *recording->fault);
+  const std::string file = find_network(options, recording->head);
+  LoadedNetwork network = load_network(file);
+  for (const Finding& finding : network.findings) {
+    if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", to_string(finding));
+  }
+  if (has_error(network.findings)) {
+    if (!options.network.empty()) return usage;
+    return fail("the recording is of " + recording->head.network + "; name it with --network");
+  }
+  if (plan_fingerprint(network.plan) != recording->head.fingerprint) {
+    fmt::print(stderr,
+               "takt replay: {} or its EDS files are not as they were when this was recorded\n",
+               file);
+  }
+  network.plan.name = recording->head.bus;
+  network.plan.interface = recording->head.interface;
+  const ReplayOutcome outcome = replay(network.plan, *recording, [&](const Decision& decision) {
+    if (!options.quiet) print(decision);
+  });
+  fmt::print("{}: {} cycles replayed, {} of {} decisions as recorded\n", recording->head.reason,
+             outcome.cycles, outcome.decisions, recording->decisions.size());
+  if (!outcome.difference) return good;
+  fmt::print("first difference: {}\n", *outcome.difference);
+  return differs;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("replay", "a recording of the black box once more, decision by decision");
+  command->add_option("FILE", options->file, "recording of `taktd --black-box`")->required();
+  command->add_option("--network", options->network,
+                      "instead of the network file it was made with");
+  command->add_flag("--quiet", options->quiet, "only the result");
+  command->footer(help);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

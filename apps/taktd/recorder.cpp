@@ -1,0 +1,91 @@
+#include "apps/taktd/recorder.hpp"
+
+#include <utility>
+
+#include "apps/taktd/stop_signal.hpp"
+#include "master/core/boot_report.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t most_waiting = 16;
+
+}  // namespace
+
+std::expected<void, std::string> Recorder::open(const BlackBoxOptions& options, const BusPlan& plan,
+                                                RecordingHead head) {
+  auto box = BlackBox::open(
+      options, plan, std::move(head),
+      [this](const std::string& sentence, const std::string& file) { on_written(sentence, file); });
+  if (!box) return std::unexpected{std::move(box.error())};
+  box_ = std::move(*box);
+  return {};
+}
+
+void Recorder::attach(Bridge& bridge, std::int64_t session) {
+  bridge_ = &bridge;
+  session_ = session;
+  bridge.record_with([this](const request_t& request) { on_request(request); });
+}
+
+void Recorder::on_fault(const Notice& notice) {
+  const bool fallback = notice.kind == name(EventKind::fallback_begun);
+  if (!box_ || (notice.weight != Weight::error && !fallback)) return;
+  box_->on_fault(notice.kind, notice.node, notice.text, monotonic_now());
+}
+
+void Recorder::on_request(const request_t& request) {
+  const auto refuse = [&](const std::string& why) { bridge_->answer(request, false, why); };
+  if (request.session != 0 && request.session != session_) {
+    return refuse("the request is for another session of taktd");
+  }
+  if (!box_) {
+    return refuse(
+        "nothing is recorded: start taktd with --black-box DIR, or give the network file "
+        "`black_box: {folder: DIR}`");
+  }
+  if (waiting_.size() == most_waiting) return refuse("too many requests at once; ask again later");
+  waiting_.push_back(request);
+  box_->on_request("asked for by " + request.sender.substr(0, 64), monotonic_now());
+}
+
+void Recorder::serve(Time now) {
+  if (!box_) return;
+  if (StopSignal::take_recording_wish()) box_->on_request("asked for", now);
+  box_->serve(now);
+}
+
+void Recorder::finish(const std::string& reason) {
+  if (box_) box_->finish(reason);
+  answer_all(false, "taktd has ended");
+}
+
+void Recorder::finish_running(const std::string& reason, Time limit) {
+  if (box_ && !box_->finish_running(reason, limit)) {
+    say_(Weight::warning, "black box: no whole recording of the end could be written in time");
+  }
+  answer_all(false, "taktd has ended");
+}
+
+/// `file` is empty where it could not be written.
+void Recorder::on_written(const std::string& text, const std::string& file) {
+  const Weight weight = file.empty() ? Weight::warning : Weight::note;
+  if (bridge_ == nullptr) {
+    say_(weight, text);
+  } else {
+    bridge_->tell(Notice{.when = monotonic_now(),
+                         .kind = file.empty() ? "not_recorded" : "recorded",
+                         .weight = weight,
+                         .text = text});
+  }
+  answer_all(!file.empty(), file.empty() ? text : file);
+}
+
+void Recorder::answer_all(bool good, const std::string& text) {
+  for (const request_t& request : std::exchange(waiting_, {})) {
+    bridge_->answer(request, good, text);
+  }
+}
+
+}  // namespace takt

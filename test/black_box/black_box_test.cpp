@@ -1,0 +1,179 @@
+#include "apps/black_box/black_box.hpp"
+
+#include <atomic>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <set>
+#include <thread>
+
+#include "test/black_box/recorded_run.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Folder;
+
+/// A black box whose bus thread does nothing but begin cycles.
+class BlackBoxTest : public testing::Test {
+ protected:
+  BlackBoxTest() { plan.name = "lift"; }
+  void open(std::size_t keep = 20) {
+    auto opened = BlackBox::open({.folder = folder / "box", .bytes = 65536, .keep = keep}, plan,
+                                 {.bus = "lift"},
+                                 [this](const std::string& sentence, const std::string& file) {
+                                   (file.empty() ? failed : said).push_back(sentence);
+                                   newest = file;
+                                 });
+    ASSERT_TRUE(opened) << opened.error();
+    box = std::move(*opened);
+  }
+  /// A second of the front thread.
+  void pass(Time time) {
+    const Time end = now + time;
+    for (; now < end; now += 100ms) {
+      box->journal().begin_cycle(++cycle);
+      box->serve(now);
+    }
+  }
+  /// The writer is another thread.
+  void await_files() {
+    const std::size_t before = said.size() + failed.size();
+    while (said.size() + failed.size() == before) box->serve(now);
+  }
+  std::set<std::string> files() {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator{folder / "box"}) {
+      names.insert(entry.path().filename().string());
+    }
+    return names;
+  }
+  Folder folder{"box"};
+  BusPlan plan;
+  std::unique_ptr<BlackBox> box;
+  std::vector<std::string> said;
+  std::vector<std::string> failed;
+  std::string newest;
+  Time now = 100s;
+  std::uint64_t cycle = 0;
+};
+
+TEST_F(BlackBoxTest, WritesASecondAfterTheFault) {
+  open();
+  pass(1s);
+  box->on_fault("emcy", 5, "node 5 is hot\nand more", now);
+  pass(900ms);
+  EXPECT_TRUE(files().empty());
+  pass(300ms);
+  await_files();
+
+  EXPECT_EQ(files().size(), 3U);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("(node 5 is hot)"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("box/lift-"), std::string::npos) << said[0];
+}
+
+TEST_F(BlackBoxTest, WritesOneKindOfFaultOfANodeOnceInFiveMinutes) {
+  open();
+  for (int i = 0; i < 60; ++i) {
+    box->on_fault("emcy", 5, "node 5 is hot", now);
+    pass(1s);
+  }
+  EXPECT_LE(files().size(), 3U);
+  box->on_fault("emcy", 6, "node 6 is hot", now);
+  pass(1200ms);
+  box->finish("");
+  EXPECT_EQ(files().size(), 6U);
+}
+
+TEST_F(BlackBoxTest, KeepsTenSecondsBetweenTwoRecordings) {
+  open();
+  box->on_request("asked for", now);
+  pass(200ms);
+  await_files();
+  box->on_request("asked for", now);
+  pass(9s);
+  EXPECT_EQ(said.size(), 1U);
+  pass(1200ms);
+  await_files();
+  EXPECT_EQ(said.size(), 2U);
+}
+
+TEST_F(BlackBoxTest, RemovesTheOldestRecordingsOfItsBusOnly) {
+  open(2);
+  for (const std::string name : {"lift-20200101T000000", "lift-20200102T000000", "lift-notes",
+                                 "lift-a20200101T000000", "pump-20200101T000000"}) {
+    for (const std::string ending : {".log", ".journal", ".events.json"}) {
+      std::ofstream{folder / ("box/" + name + ending)} << "x";
+    }
+  }
+  box->on_request("asked for", now);
+  pass(200ms);
+  await_files();
+
+  const auto names = files();
+  EXPECT_EQ(names.size(), 15U);
+  EXPECT_FALSE(names.contains("lift-20200101T000000.log"));
+  EXPECT_TRUE(names.contains("lift-20200102T000000.log"));
+  EXPECT_TRUE(names.contains("lift-notes.log"));
+  EXPECT_TRUE(names.contains("lift-a20200101T000000.log"));
+  EXPECT_TRUE(names.contains("pump-20200101T000000.log"));
+}
+
+TEST_F(BlackBoxTest, WritesTheEndOfARunThatFailed) {
+  open();
+  pass(1s);
+  box->finish("");
+  EXPECT_TRUE(files().empty());
+  box->finish("node 1 is mandatory and did not boot");
+  EXPECT_EQ(files().size(), 3U);
+}
+
+TEST_F(BlackBoxTest, TellsWhoAskedAndWhichFileItIs) {
+  open();
+  box->on_request("asked for by takt-77", now);
+  pass(200ms);
+  await_files();
+
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("(asked for by takt-77)"), std::string::npos) << said[0];
+  EXPECT_TRUE(std::filesystem::exists(newest)) << newest;
+}
+
+TEST_F(BlackBoxTest, WritesWhileTheBusThreadRunsOnWhenNobodyWaitsForIt) {
+  open();
+  pass(1s);
+  std::atomic<bool> over = false;
+  std::thread bus{[&] {
+    for (std::uint64_t beat = cycle; !over;) box->journal().begin_cycle(++beat);
+  }};
+
+  const bool written = box->finish_running("stopped at once", 60s);
+  over = true;
+  bus.join();
+
+  EXPECT_TRUE(written);
+  EXPECT_EQ(files().size(), 3U);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("(stopped at once)"), std::string::npos) << said[0];
+}
+
+TEST_F(BlackBoxTest, DoesNotWaitForABusThreadThatBeginsNoCycleAnyMore) {
+  open();
+  pass(1s);
+
+  EXPECT_FALSE(box->finish_running("stopped at once", 10ms));
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(BlackBoxTest, SaysWhyAFolderCannotBeUsed) {
+  std::ofstream{folder / "file"} << "x";
+  const auto opened = BlackBox::open({.folder = folder / "file/below"}, plan, {},
+                                     [](const std::string&, const std::string&) {});
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().find("file/below: Not a directory"), std::string::npos)
+      << opened.error();
+}
+
+}  // namespace
+}  // namespace takt

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""black_box_test.py BIN: a node dies under taktd --black-box; what is written replays, and a changed log does not."""
+import json
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+NETWORK = f"""
+bus: {{name: box}}
+lcm: {{url: "tcpq://127.0.0.1:PORT", broker: true}}
+black_box: {{folder: box, keep: 10}}
+realtime: {{mode: off, spin_us: 0}}
+master: {{node_id: 127, sync_period: 20000}}
+nodes:
+  io:
+    node_id: 10
+    dcf: {ROOT}/share/eds/takt_io401.eds
+    heartbeat_producer: 100
+"""
+
+
+def await_true(what, condition):
+    until = time.monotonic() + 60
+    while not condition():
+        if time.monotonic() > until:
+            sys.exit(f"not in 60 s: {what}")
+        time.sleep(0.05)
+
+
+def replay(binaries, file, *more):
+    return subprocess.run([f"{binaries}/takt", "replay", file, *more], capture_output=True, text=True)
+
+
+def check(condition, what, result):
+    if not condition:
+        sys.exit(f"{what}: exit {result.returncode}\n{result.stdout}{result.stderr}")
+
+
+def record(binaries, folder, network, url):
+    bus, events, box = f"unix:{folder}/bus", folder / "events", folder / "box"
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    daemon = subprocess.Popen([f"{binaries}/taktd", network, "--bus", bus, "--events", events], **quiet)
+    await_true("bus", (folder / "bus").exists)  # of the daemon: it outlives the node
+    node = subprocess.Popen([f"{binaries}/takt", "sim", network, "--bus", bus], **quiet)
+    try:
+        await_true("boot", lambda: events.exists() and "boot_done" in events.read_text())
+        node.kill()
+        node.wait()
+        await_true("recording of the fault", lambda: list(box.glob("*.events.json")))
+        daemon.send_signal(signal.SIGUSR1)
+        await_true("recording on request", lambda: len(list(box.glob("*.events.json"))) == 2)
+        asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=60)
+        named = pathlib.Path(asked.stdout.strip())
+        check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
+        if '"recorded"' not in events.read_text():
+            sys.exit("recordings are no events")
+        # Both signals wait for it: it is to stop at once, and still writes what it has.
+        daemon.send_signal(signal.SIGSTOP)
+        daemon.send_signal(signal.SIGTERM)
+        daemon.send_signal(signal.SIGINT)
+        daemon.send_signal(signal.SIGCONT)
+        if daemon.wait(30) == 0 or len(list(box.glob("*.events.json"))) != 4:
+            sys.exit(f"two signals: exit {daemon.returncode}, {sorted(box.iterdir())}")
+    finally:
+        node.kill()
+        daemon.kill()
+    return sorted(box.glob("*.log"), key=lambda log: log.stat().st_mtime_ns)
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        network = folder / "net.yaml"
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            port = str(free.getsockname()[1])
+        network.write_text(NETWORK.replace("PORT", port))
+        recordings = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
+        first = recordings[0]
+        last = replay(binaries, recordings[-1], "--quiet")
+        check(last.returncode == 0 and "it did not end in order" in last.stdout, "the end replays", last)
+
+        good = replay(binaries, first)
+        check(good.returncode == 0 and "heartbeat" in good.stdout, "the same decisions", good)
+        events = json.loads(first.with_suffix(".events.json").read_text())
+        wanted = f"{len(events['events'])} of {len(events['events'])} decisions as recorded"
+        check(wanted in good.stdout, wanted, good)
+
+        dump = subprocess.run([f"{binaries}/takt", "dump", network, first], capture_output=True, text=True)
+        check(dump.returncode == 0 and dump.stdout.count("\n") == events["frames"], "takt dump reads the log", dump)
+
+        text = first.read_text()
+        vendor = " 58A#43181001CDAB0000"
+        check(vendor in text, "the log has the vendor id", good)
+        first.write_text(text.replace(vendor, " 58A#43181001CEAB0000"))
+        changed = replay(binaries, first, "--quiet")
+        check(changed.returncode == 1, "a changed log differs", changed)
+        check("first difference: cycle " in changed.stdout and "vendor id" in changed.stdout, "named", changed)
+
+        first.write_text(text[:1000])
+        cut = replay(binaries, first)
+        check(cut.returncode == 2 and ".log" in cut.stderr, "a log that was cut is refused", cut)
+        none = replay(binaries, folder / "none.log")
+        check(none.returncode == 2 and "none.events.json: cannot be read" in none.stderr, "no file", none)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
