@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
   takt::add_export(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
+  takt::add_lss(app, exit_code);
   takt::add_param(app, exit_code);
   if (!commands_known(app, argc, argv)) return 2;
   try {
