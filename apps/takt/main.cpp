@@ -56,6 +56,8 @@ int main(int argc, char** argv) {
   takt::add_top(app, exit_code);
   takt::add_emcy(app, exit_code);
   takt::add_export(app, exit_code);
+  takt::add_import(app, exit_code);
+  takt::add_learn(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
   takt::add_lss(app, exit_code);

@@ -1,0 +1,216 @@
+#include "apps/import/import_report.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "apps/import/key_table.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/network_file/yaml_tree.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t longest_value = 60;
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream in{path, std::ios::binary};
+  std::string text(YamlTree::max_text + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+/// On one line, cut where it is long.
+std::string value_text(const YamlNode& node) {
+  std::string text;
+  switch (node.kind) {
+    case YamlNode::Kind::null:
+      break;
+    case YamlNode::Kind::scalar:
+      for (const char c : node.text) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+      break;
+    case YamlNode::Kind::sequence:
+      for (const YamlNode* item : node.items) {
+        text += (text.empty() ? "" : ", ") + value_text(*item);
+        if (text.size() > longest_value) break;
+      }
+      text = '[' + text + ']';
+      break;
+    case YamlNode::Kind::map:
+      for (const YamlPair& pair : node.pairs) {
+        text += (text.empty() ? "" : ", ") + pair.key + ": " + value_text(*pair.value);
+        if (text.size() > longest_value) break;
+      }
+      text = '{' + text + '}';
+      break;
+  }
+  return text.size() > longest_value ? text.substr(0, longest_value - 3) + "..." : text;
+}
+
+/// A row of the report with the places that findings may name for it.
+struct Row {
+  ImportedKey key;
+  std::string_view word;  ///< the key itself, for the table of meanings
+  std::set<SourcePos> places;
+  bool leaf = true;
+};
+
+/// The rows of a file: one a key that has a value, one an entry of a list.
+class RowCollector {
+ public:
+  std::vector<Row> collect(const YamlNode& root) {
+    map(root, "");
+    return std::move(rows_);
+  }
+
+ private:
+  void map(const YamlNode& node, const std::string& path) {
+    for (const YamlPair& pair : node.pairs) {
+      if (path.empty() && pair.key.starts_with('.')) continue;  // for anchors only
+      value(*pair.value, pair, path.empty() ? pair.key : path + '.' + pair.key);
+    }
+  }
+
+  void value(const YamlNode& node, const YamlPair& pair, const std::string& path) {
+    if (!seen_.emplace(pair.key_pos, pair.key).second) return;  // by alias once more
+    if (node.kind == YamlNode::Kind::map) {
+      add(path, pair.key, "", pair.key_pos, {node.pos}, false);
+      map(node, path);
+    } else if (node.kind == YamlNode::Kind::sequence && is_list_of_maps(node)) {
+      add(path, pair.key, "", pair.key_pos, {node.pos}, false);
+      items(node, pair.key, path);
+    } else {
+      std::set<SourcePos> places;
+      places_of(node, places);
+      add(path, pair.key, value_text(node), pair.key_pos, std::move(places), true);
+    }
+  }
+
+  static bool is_list_of_maps(const YamlNode& node) {
+    return !node.items.empty() && std::ranges::all_of(node.items, [](const YamlNode* item) {
+      return item->kind == YamlNode::Kind::map;
+    });
+  }
+
+  void items(const YamlNode& list, std::string_view word, const std::string& path) {
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+      std::set<SourcePos> places;
+      places_of(*list.items[i], places);
+      add(path + '[' + std::to_string(i + 1) + ']', word, value_text(*list.items[i]),
+          list.items[i]->pos, std::move(places), true);
+    }
+  }
+
+  static void places_of(const YamlNode& node, std::set<SourcePos>& places) {
+    places.insert(node.pos);
+    for (const YamlPair& pair : node.pairs) {
+      places.insert(pair.key_pos);
+      places_of(*pair.value, places);
+    }
+    for (const YamlNode* item : node.items) places_of(*item, places);
+  }
+
+  void add(std::string path, std::string_view word, std::string value, SourcePos pos,
+           std::set<SourcePos> places, bool leaf) {
+    places.insert(pos);
+    Row& row = rows_.emplace_back();
+    row.key.path = std::move(path);
+    row.key.value = std::move(value);
+    row.key.pos = pos;
+    row.word = word;
+    row.places = std::move(places);
+    row.leaf = leaf;
+  }
+
+  std::vector<Row> rows_;
+  std::set<std::pair<SourcePos, std::string>> seen_;
+};
+
+KeyFate fate_of(const Finding& finding) {
+  if (finding.severity == Severity::error) return KeyFate::wrong;
+  if (finding.severity == Severity::warning) return KeyFate::suspicious;
+  const bool ignored = finding.rule == "unused-key" || finding.rule == "placeholder";
+  return ignored ? KeyFate::ignored : KeyFate::used;
+}
+
+/// The innermost row that a finding is about; nullptr: none.
+Row* row_at(std::vector<Row>& rows, SourcePos pos) {
+  const auto found = std::ranges::find_if(rows.rbegin(), rows.rend(),
+                                          [&](const Row& row) { return row.places.contains(pos); });
+  return found == rows.rend() ? nullptr : &*found;
+}
+
+void apply(Row& row, const Finding& finding) {
+  const KeyFate fate = fate_of(finding);
+  if (fate < row.key.fate) return;
+  const std::string_view reason =
+      fate == KeyFate::ignored ? why_ignored(row.word) : std::string_view{};
+  const std::string text = reason.empty() ? finding.message : std::string{reason};
+  const bool more = fate == row.key.fate && !row.key.why.empty() && row.key.why != text;
+  row.key.why = more ? row.key.why + "; " + text : text;
+  row.key.fate = fate;
+}
+
+/// A key whose parent is ignored is ignored with it.
+void ignore_children(std::vector<Row>& rows) {
+  for (const Row& parent : rows) {
+    if (parent.leaf || parent.key.fate != KeyFate::ignored) continue;
+    for (Row& row : rows) {
+      if (!row.key.path.starts_with(parent.key.path + '.')) continue;
+      if (row.key.fate != KeyFate::used) continue;
+      row.key.fate = KeyFate::ignored;
+      row.key.why = parent.key.why;
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view name(KeyFate fate) noexcept {
+  switch (fate) {
+    case KeyFate::used:
+      return "used";
+    case KeyFate::ignored:
+      return "ignored";
+    case KeyFate::suspicious:
+      return "suspicious";
+    case KeyFate::wrong:
+      return "wrong";
+  }
+  return "";
+}
+
+std::size_t ImportReport::count(KeyFate fate) const noexcept {
+  return static_cast<std::size_t>(std::ranges::count(keys, fate, &ImportedKey::fate));
+}
+
+ImportReport import_report(const std::filesystem::path& path) {
+  const LoadedNetwork network = load_network(path);
+  Findings syntax;
+  const YamlTree tree = YamlTree::parse(read_text(path), path.string(), syntax);
+  std::vector<Row> rows;
+  if (tree.root() != nullptr) rows = RowCollector{}.collect(*tree.root());
+
+  ImportReport report;
+  report.usable = !has_error(network.findings);
+  for (const Finding& finding : network.findings) {
+    Row* row = finding.file == path.string() && finding.pos != SourcePos{}
+                   ? row_at(rows, finding.pos)
+                   : nullptr;
+    if (row == nullptr) {
+      report.others.push_back(finding);
+    } else {
+      apply(*row, finding);
+    }
+  }
+  ignore_children(rows);
+  for (Row& row : rows) {
+    if (!row.leaf && row.key.why.empty()) continue;
+    if (row.key.why.empty()) row.key.why = key_meaning(row.word);
+    report.keys.push_back(std::move(row.key));
+  }
+  return report;
+}
+
+}  // namespace takt

@@ -1,0 +1,86 @@
+#include "apps/learn/learned_bus.hpp"
+
+#include <algorithm>
+
+namespace takt {
+namespace {
+
+/// The boot that configured most; of equals the newest. nullptr: there is none.
+const LearnedBoot* fullest(const std::vector<LearnedBoot>& boots) {
+  const LearnedBoot* best = nullptr;
+  for (const LearnedBoot& boot : boots) {
+    if (best == nullptr || boot.writes.size() >= best->writes.size()) best = &boot;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> LearnedValue::number() const noexcept {
+  if (last.empty() || last.size() > 8) return {};
+  std::uint64_t value = 0;
+  for (std::size_t i = last.size(); i-- > 0;) value = value << 8U | last[i];
+  return value;
+}
+
+std::vector<LearnedWrite> LearnedNode::configuration() const {
+  const LearnedBoot* best = fullest(boots);
+  if (best == nullptr) return {};
+  std::vector<LearnedWrite> all = best->writes;
+  for (const LearnedBoot& boot : boots) {
+    if (&boot == best) continue;
+    for (const LearnedWrite& write : boot.writes) {
+      const auto same = [&](const LearnedWrite& other) {
+        return other.transfer.object == write.transfer.object;
+      };
+      if (std::ranges::none_of(all, same)) all.push_back(write);
+    }
+  }
+  return all;
+}
+
+LearnedValues LearnedNode::values() const {
+  const LearnedBoot* best = fullest(boots);
+  if (best == nullptr) return {};
+  LearnedValues all = best->values;
+  for (auto boot = boots.rbegin(); boot != boots.rend(); ++boot) {
+    for (const auto& [key, value] : boot->values) all.try_emplace(key, value);
+  }
+  return all;
+}
+
+std::optional<std::uint8_t> LearnedBus::master() const {
+  std::vector<std::uint8_t> silent;  // heartbeats, but no SDO server and never told anything
+  for (const auto& [id, node] : nodes) {
+    const bool told = node.answers != 0 || node.addressed || node.guarded();
+    if (!told && node.heartbeats.count() != 0) silent.push_back(id);
+  }
+  const auto watched = [&](std::uint8_t id) {
+    return std::ranges::any_of(nodes, [&](const auto& entry) {
+      const LearnedValues values = entry.second.values();
+      return std::ranges::any_of(values, [&](const auto& object) {
+        const auto number = object.second.number();
+        return object.first.index == 0x1016 && object.first.sub != 0 && object.second.written &&
+               number && (*number >> 16U & 0x7FU) == id;
+      });
+    });
+  };
+  const auto found = std::ranges::find_if(silent, watched);
+  if (found != silent.end()) return *found;
+  const bool served =
+      std::ranges::any_of(nodes, [](const auto& entry) { return entry.second.answers != 0; });
+  if (served && silent.size() == 1) return silent.front();
+  if (std::ranges::find(silent, std::uint8_t{127}) != silent.end()) return std::uint8_t{127};
+  return {};
+}
+
+std::vector<const LearnedNode*> LearnedBus::devices() const {
+  const auto own = master();
+  std::vector<const LearnedNode*> list;
+  for (const auto& [id, node] : nodes) {
+    if (!own || id != *own) list.push_back(&node);
+  }
+  return list;
+}
+
+}  // namespace takt

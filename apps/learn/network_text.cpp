@@ -1,0 +1,295 @@
+#include "apps/learn/network_text.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+#include "apps/learn/learned_pdos.hpp"
+#include "apps/learn/made_eds.hpp"
+#include "apps/learn/node_text.hpp"
+#include "apps/learn/yaml_text.hpp"
+#include "eds_parser/eds.hpp"
+#include "eds_parser/pdo_description.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t makes_sync = 0x4000'0000;
+constexpr std::size_t most_unknown = 200;
+
+/// What the SDO writes and the frames say of SYNC.
+struct SyncFacts {
+  std::uint32_t cob_id = 0x80;
+  std::int64_t period_us = 0;  ///< 0: there is none
+  std::uint8_t overflow = 0;
+  std::optional<std::uint64_t> window_us;
+  std::optional<std::uint8_t> producer;
+};
+
+class NetworkText {
+ public:
+  NetworkText(const LearnedBus& bus, const DeviceFiles& files, const LearnOptions& options)
+      : bus_{bus}, files_{files}, options_{options}, devices_{bus.devices()} {
+    out_.findings = bus.findings;
+  }
+
+  LearnedNetwork run() {
+    find_master();
+    for (const LearnedNode* node : devices_) find_file(*node);
+    learn_sync();
+    header();
+    master_section();
+    out_.text += devices_.empty() ? "nodes: {}\n" : "nodes:\n";
+    for (const LearnedNode* node : devices_) {
+      const NodeToWrite what{.node = *node,
+                             .dictionary = matches_[node->id].dictionary.get(),
+                             .dcf = names_[node->id],
+                             .made = out_.made_files.contains(names_[node->id]),
+                             .master_id = master_id_,
+                             .master_heartbeat_ms = heartbeat_ms_,
+                             .sync_us = sync_.period_us,
+                             .inhibit_unit_us = inhibit_unit(*node)};
+      out_.text += node_text(what, bus_, out_.findings);
+    }
+    unknown_traffic();
+    return std::move(out_);
+  }
+
+ private:
+  void tell(Severity severity, std::string_view rule, std::uint32_t line, std::string message) {
+    out_.findings.push_back({bus_.file, {line, 0}, severity, rule, std::move(message)});
+  }
+
+  void find_master() {
+    const auto own = bus_.master();
+    master_id_ = own.value_or(127);
+    if (own) {
+      const auto period = bus_.nodes.at(*own).heartbeats.median();
+      heartbeat_ms_ = period ? as_configured(*period) / 1000 : 0;
+    } else {
+      tell(Severity::note, "no-master-id", 0,
+           "nothing in the recording says which node id the master has: 127 is taken");
+    }
+    if (devices_.empty()) {
+      tell(Severity::warning, "no-nodes", 0, "no device answers in this recording");
+    }
+  }
+
+  /// A file of the user's, else one that is made here.
+  void find_file(const LearnedNode& node) {
+    const LearnedValues values = node.values();
+    const SeenIdentity identity = identity_of(values);
+    DeviceFiles::Match& match = matches_[node.id] = files_.find(node.id, identity);
+    if (match.dictionary) {
+      std::error_code error;
+      const fs::path base = options_.folder.empty() ? fs::path{"."} : options_.folder;
+      const fs::path near = fs::proximate(match.path, base, error);
+      names_[node.id] = (error ? match.path : near).generic_string();
+      tell_match(node, identity, match);
+      return;
+    }
+    const std::string name = fmt::format("{}_node_{}.eds", options_.stem, node.id);
+    const std::string text = made_eds(node, fs::path{bus_.file}.filename().string(), name);
+    EdsFile made = read_eds(text, name, NodeId::from(node.id));
+    match.dictionary = std::make_shared<const ObjectDictionary>(std::move(made.dictionary));
+    names_[node.id] = name;
+    out_.made_files[name] = text;
+    tell(Severity::warning, "made-device-file", node.first_line,
+         fmt::format("node {}: no device file fits (vendor 0x{:08X}, product 0x{:08X}); {} is made "
+                     "of what the recording shows. With the vendor's: --eds {}=FILE or --eds-dir",
+                     node.id, identity.vendor_id, identity.product_code, name, node.id));
+  }
+
+  /// Of the device data that taktd will apply.
+  std::uint32_t inhibit_unit(const LearnedNode& node) const {
+    const SeenIdentity identity = identity_of(node.values());
+    NodeSpec spec;
+    spec.vendor_id = {identity.vendor_id, {}, identity.vendor_id != 0};
+    spec.product_code = {identity.product_code, {}, identity.product_code != 0};
+    Findings ignored;
+    NetworkReport report{bus_.file, ignored};
+    const DeviceData* data =
+        find_device_data(options_.device_data, spec, *matches_.at(node.id).dictionary, report);
+    return data == nullptr ? 100 : data->inhibit.unit_us;
+  }
+
+  void tell_match(const LearnedNode& node, const SeenIdentity& identity,
+                  const DeviceFiles::Match& match) {
+    if (match.rivals != 0) {
+      tell(Severity::note, "several-files", node.first_line,
+           fmt::format("node {}: {} other files fit as well as {}", node.id, match.rivals,
+                       match.path.string()));
+    }
+    if (match.other_revision) {
+      tell(Severity::note, "other-revision", node.first_line,
+           fmt::format("node {}: the device says revision 0x{:08X}, {} is of another", node.id,
+                       identity.revision_number, match.path.string()));
+    }
+  }
+
+  void learn_sync() {
+    std::map<std::uint64_t, std::size_t> overflows;
+    std::optional<std::uint64_t> period;
+    for (const LearnedNode* node : devices_) {
+      const LearnedValues values = node->values();
+      const auto at = [&](std::uint16_t index) -> std::optional<std::uint64_t> {
+        const auto found = values.find(ObjectKey{index, 0});
+        return found == values.end() || !found->second.written ? std::nullopt
+                                                               : found->second.number();
+      };
+      if (const auto id = at(0x1005)) {
+        if ((*id & 0x2000'0000U) == 0) sync_.cob_id = static_cast<std::uint32_t>(*id & 0x7FFU);
+        if ((*id & makes_sync) != 0) sync_.producer = node->id;
+      }
+      if (const auto us = at(0x1006); us && *us != 0) period = *us;
+      if (const auto window = at(0x1007)) sync_.window_us = window;
+      if (const auto overflow = at(0x1019)) ++overflows[*overflow];
+    }
+    const auto seen = bus_.sync.find(sync_.cob_id);
+    if (seen == bus_.sync.end()) return;
+    const auto measured = seen->second.frames.median();
+    sync_.period_us = measured ? as_configured(*measured) : 0;
+    const auto told = static_cast<std::int64_t>(period.value_or(0));
+    if (measured && std::abs(told - *measured) * 20 <= *measured) sync_.period_us = told;
+    const std::uint8_t highest = seen->second.highest_counter;
+    if (highest != 0) sync_.overflow = highest;
+    for (const auto& [overflow, count] : overflows) {
+      if (overflow >= highest && overflow <= 240)
+        sync_.overflow = static_cast<std::uint8_t>(overflow);
+    }
+  }
+
+  void header() {
+    out_.text = fmt::format("# Learned from {}: {} frames",
+                            yaml_word(fs::path{bus_.file}.filename().string()), bus_.frames);
+    if (bus_.seconds) out_.text += fmt::format(" in {:.3f} s", *bus_.seconds);
+    out_.text += fmt::format(
+        ".\n# What a recording can't show is left at its default: units, fallbacks, `mandatory`, "
+        "the "
+        "bit rate.\nbus: {{interface: {}, bitrate_kbit: {}}}\n\n",
+        yaml_word(bus_.interface.empty() ? "can0" : bus_.interface), options_.bitrate_kbit);
+  }
+
+  void master_section() {
+    std::string& text = out_.text;
+    text += fmt::format("master:\n  node_id: {}\n  heartbeat_producer: {}\n", master_id_,
+                        heartbeat_ms_);
+    if (sync_.period_us != 0) {
+      text += fmt::format("  sync_period: {}\n", sync_.period_us);
+      if (sync_.cob_id != 0x80) text += fmt::format("  sync_cob_id: 0x{:03X}\n", sync_.cob_id);
+      if (sync_.overflow != 0) text += fmt::format("  sync_overflow: {}\n", sync_.overflow);
+      if (sync_.window_us) text += fmt::format("  sync_window: {}\n", *sync_.window_us);
+      if (sync_.producer) text += fmt::format("  sync_source: {}\n", node_name(*sync_.producer));
+    }
+    if (const auto period = bus_.time.median()) {
+      text += fmt::format("  time_period: {}\n",
+                          std::max<std::int64_t>(1, as_configured(*period) / 1000));
+    }
+    const bool one_by_one =
+        std::ranges::any_of(devices_, [](const LearnedNode* node) { return node->started; });
+    if (bus_.started_all && !one_by_one) text += "  start_all_nodes: true\n";
+    text += '\n';
+  }
+
+  bool is_emcy(CobId id) const {
+    if (id.is_extended()) return false;
+    return std::ranges::any_of(devices_, [&](const LearnedNode* node) {
+      const LearnedValues values = node->values();
+      const auto own = values.find({0x1014, 0});
+      const std::uint64_t set =
+          own == values.end() ? 0x80U + node->id : own->second.number().value_or(0);
+      return id.id() == 0x80U + node->id || id.id() == (set & 0x7FFU);
+    });
+  }
+
+  std::set<CobId> claimed() const {
+    std::set<CobId> ids{CobId::base(sync_.cob_id)};
+    for (const LearnedNode* node : devices_) {
+      for (const LearnedPdo& pdo : learned_pdos(node->values())) {
+        if (pdo.identifier() && pdo.enabled()) ids.insert(*pdo.identifier());
+      }
+      for (const PdoDescription& pdo : describe_pdos(*matches_.at(node->id).dictionary)) {
+        if (!pdo.valid || !pdo.cob_id()) continue;
+        ids.insert(pdo.extended ? CobId::extended(*pdo.cob_id()) : CobId::base(*pdo.cob_id()));
+      }
+    }
+    return ids;
+  }
+
+  void unknown_traffic() {
+    const std::set<CobId> known = claimed();
+    std::size_t listed = 0;
+    for (const auto& [id, traffic] : bus_.traffic) {
+      if (known.contains(id) || is_emcy(id)) continue;
+      if (listed++ == 0) out_.text += "\n# Traffic that nothing above explains:\n";
+      if (listed <= most_unknown) one_unknown(id, traffic);
+    }
+    if (listed > most_unknown) {
+      out_.text += fmt::format("#   and {} more identifiers\n", listed - most_unknown);
+    }
+    if (listed != 0) {
+      tell(Severity::warning, "unknown-traffic", 0,
+           fmt::format("frames of {} identifiers are explained by nothing in the recording; the "
+                       "network file lists them",
+                       listed));
+    }
+    if (bus_.lss != 0) out_.text += fmt::format("# {} frames of LSS (0x7E5, 0x7E4).\n", bus_.lss);
+    if (bus_.more_traffic != 0) {
+      out_.text += fmt::format("# {} frames of still more identifiers.\n", bus_.more_traffic);
+    }
+    if (bus_.error_frames != 0) {
+      out_.text += fmt::format("# {} error frames.\n", bus_.error_frames);
+    }
+  }
+
+  /// Where it would belong by the predefined set helps to find what it is. CiA 301, 7.3.5.
+  static std::string guess(CobId id) {
+    if (id.is_extended() || id.id() < 0x181 || id.id() > 0x57F) return {};
+    const unsigned function = (id.id() >> 7U) - 3;
+    const unsigned node = id.id() & 0x7FU;
+    if (node == 0) return {};
+    return fmt::format(
+        " ({}PDO{} of node {} by the predefined set, its mapping is not in the "
+        "recording)",
+        function % 2 == 0 ? 'T' : 'R', function / 2 + 1, node);
+  }
+
+  void one_unknown(CobId id, const LearnedTraffic& traffic) {
+    std::string& text = out_.text;
+    text += fmt::format("#   {}{}: {} frames", to_string(id), guess(id), traffic.frames.count());
+    if (traffic.frames.count() != 0) {
+      text += traffic.shortest == traffic.longest
+                  ? fmt::format(" of {} bytes", traffic.longest)
+                  : fmt::format(" of {} to {} bytes", traffic.shortest, traffic.longest);
+    }
+    if (const auto period = traffic.frames.median()) {
+      text += fmt::format(", usually every {} us", *period);
+    }
+    if (traffic.requests.count() != 0) {
+      text += fmt::format(", {} remote requests", traffic.requests.count());
+    }
+    text += fmt::format(", first in line {}\n", traffic.first_line);
+  }
+
+  const LearnedBus& bus_;
+  const DeviceFiles& files_;
+  const LearnOptions& options_;
+  std::vector<const LearnedNode*> devices_;
+  std::uint8_t master_id_ = 127;
+  std::int64_t heartbeat_ms_ = 0;
+  SyncFacts sync_;
+  std::map<std::uint8_t, DeviceFiles::Match> matches_;
+  std::map<std::uint8_t, std::string> names_;
+  LearnedNetwork out_;
+};
+
+}  // namespace
+
+LearnedNetwork learned_network(const LearnedBus& bus, const DeviceFiles& files,
+                               const LearnOptions& options) {
+  return NetworkText{bus, files, options}.run();
+}
+
+}  // namespace takt

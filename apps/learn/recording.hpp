@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <istream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "apps/frame_text/candump_line.hpp"
+#include "apps/learn/learned_bus.hpp"
+
+namespace takt {
+
+/// Listens to a recorded bus frame by frame. Memory is bounded whatever the recording says.
+class Recording {
+ public:
+  /// `interface`: frames of others are left out; empty: that of the first frame.
+  Recording(std::string file, std::string interface);
+
+  void add(std::string_view text, std::uint32_t line);
+  LearnedBus take();
+
+ private:
+  void frame(const CandumpLine& line);
+  void nmt(const Frame& frame);
+  void reset(LearnedNode& node, bool whole_node);
+  void start(LearnedNode& node, bool by_name);
+  void error_control(std::uint8_t id, const Frame& frame);
+  void transfer(LearnedNode& node, const std::optional<SdoTransfer>& transfer);
+  void write(LearnedNode& node, const SdoTransfer& transfer);
+  void other(const Frame& frame);
+  LearnedNode& node(std::uint8_t id);
+  LearnedBoot& boot(LearnedNode& node);
+  void tell(Severity severity, std::string_view rule, std::uint32_t line, std::string message);
+
+  LearnedBus bus_;
+  std::uint32_t line_ = 0;
+  std::uint64_t strange_ = 0;
+  std::uint64_t foreign_ = 0;  // frames of other interfaces
+  std::string foreign_name_;
+  std::optional<std::int64_t> us_;
+  std::optional<std::int64_t> first_us_;
+};
+
+/// Reads a recording line by line; of longer lines than candump writes only the beginning.
+LearnedBus read_recording(std::istream& in, const std::string& name, const std::string& interface);
+
+}  // namespace takt

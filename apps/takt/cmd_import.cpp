@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/import/import_report.hpp"
+#include "apps/import/nodelist.hpp"
+#include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string out;
+  unsigned network = 1;
+  bool json = false;
+  bool brief = false;
+};
+
+/// CiA 306-3 leaves the name free, the ending is what all have.
+bool is_nodelist(const Options& options) {
+  const auto ending = std::filesystem::path{options.file}.extension().string();
+  return ending == ".cpj" || ending == ".CPJ";
+}
+
+void print_json(const Options& options, const ImportReport& report) {
+  nlohmann::ordered_json keys = nlohmann::ordered_json::array();
+  for (const ImportedKey& key : report.keys) {
+    keys.push_back({{"key", key.path},
+                    {"value", key.value},
+                    {"line", key.pos.line},
+                    {"column", key.pos.column},
+                    {"fate", name(key.fate)},
+                    {"why", key.why}});
+  }
+  nlohmann::ordered_json others = nlohmann::ordered_json::array();
+  for (const Finding& finding : report.others) {
+    others.push_back({{"file", finding.file},
+                      {"line", finding.pos.line},
+                      {"column", finding.pos.column},
+                      {"severity", name(finding.severity)},
+                      {"rule", finding.rule},
+                      {"message", finding.message}});
+  }
+  const nlohmann::ordered_json document{{"file", options.file},
+                                        {"usable", report.usable},
+                                        {"keys", std::move(keys)},
+                                        {"findings", std::move(others)}};
+  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_text(const Options& options, const ImportReport& report) {
+  fmt::print("{}: {} keys: {} used, {} ignored, {} suspicious, {} wrong\n", options.file,
+             report.keys.size(), report.count(KeyFate::used), report.count(KeyFate::ignored),
+             report.count(KeyFate::suspicious), report.count(KeyFate::wrong));
+  for (const ImportedKey& key : report.keys) {
+    if (options.brief && key.fate == KeyFate::used) continue;
+    const std::string what = key.value.empty() ? key.path : key.path + ": " + key.value;
+    const std::string place = fmt::format("{}:{}", key.pos.line, key.pos.column);
+    fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), what, key.why);
+  }
+  for (const Finding& finding : report.others) fmt::print("{}\n", to_string(finding));
+  if (is_nodelist(options)) {
+    fmt::print("{}\n", !report.usable ? "there is no network file for it: mend what is wrong."
+                       : options.out.empty()
+                           ? "`-o NET.yaml` writes the network file."
+                           : options.out + " is written; `takt plan` shows what it does.");
+    return;
+  }
+  fmt::print("{}\n", report.usable ? "taktd runs it as it is; `takt plan` shows what it does."
+                                   : "taktd does not run it: mend what is wrong.");
+}
+
+/// With the network file, where one is wanted; what is wrong with that is told, too.
+ImportReport import_project(const Options& options) {
+  const std::filesystem::path out{options.out};
+  auto imported = import_nodelist(
+      options.file, options.network,
+      options.out.empty() ? std::filesystem::path{options.file}.parent_path() : out.parent_path());
+  if (options.out.empty() || !imported.report.usable) return std::move(imported.report);
+  std::ofstream file{out};
+  file << imported.yaml;
+  file.close();
+  Findings findings;
+  if (file.good()) {
+    findings = load_network(out).findings;
+  } else {
+    findings.push_back({options.out, {}, Severity::error, "no-file", "can't be written"});
+  }
+  imported.report.usable = !has_error(findings);
+  std::ranges::move(findings, std::back_inserter(imported.report.others));
+  return std::move(imported.report);
+}
+
+int run(const Options& options) {
+  if (!is_nodelist(options) && !options.out.empty()) {
+    return complain("-o is for a nodelist.cpj: taktd runs a bus.yml as it is", 2);
+  }
+  const ImportReport report =
+      is_nodelist(options) ? import_project(options) : import_report(options.file);
+  if (options.json) {
+    print_json(options, report);
+  } else {
+    print_text(options, report);
+  }
+  return report.usable ? 0 : 1;
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("import", "what takt makes of a bus.yml, or of a nodelist.cpj");
+  command
+      ->add_option("FILE", options->file,
+                   "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
+      ->required();
+  command->add_option("-o,--output", options->out, "of a nodelist.cpj: network file to be written");
+  command->add_option("--network", options->network, "of a nodelist.cpj: 2 for [Topology2]")
+      ->check(CLI::Range(1U, 99U))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "one JSON document");
+  command->add_flag("--brief", options->brief, "leave out keys that are used as they are");
+  command->footer(
+      "A bus.yml has not to be converted: taktd and all commands read it as it is. A nodelist.cpj\n"
+      "with its DCFs becomes a network file (-o): nodes, names, device files, bit rate. Each key\n"
+      "is used, ignored (and why), suspicious (used, but hardly what was meant), or wrong (the\n"
+      "file can't run with it; exit code 1).\n\n"
+      "Examples:\n  takt import bus.yml --brief\n  takt import nodelist.cpj -o lift.yaml");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,132 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "apps/learn/network_text.hpp"
+#include "apps/learn/recording.hpp"
+#include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "apps/takt/text_file.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/network_file/read_devices.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string log;
+  std::string out;
+  std::vector<std::string> files;
+  std::vector<std::string> folders;
+  std::string interface;
+  std::uint32_t bitrate_kbit = 1000;
+  bool quiet = false;
+};
+
+/// `FILE`, or `5=FILE`.
+bool add_file(const std::string& argument, DeviceFiles& files, Findings& findings) {
+  unsigned id = 0;
+  const char* const end = argument.data() + argument.size();
+  const auto [equals, error] = std::from_chars(argument.data(), end, id);
+  const auto node = NodeId::from(id);
+  if (error == std::errc{} && equals != end && *equals == '=' && node) {
+    return files.assign(node->value(), std::string{equals + 1, end}, findings);
+  }
+  return files.add_file(argument, findings);
+}
+
+std::optional<LearnedBus> listen(const Options& options) {
+  if (options.log == "-") return read_recording(std::cin, "stdin", options.interface);
+  std::ifstream file{options.log, std::ios::binary};
+  std::error_code ignored;
+  if (!file || fs::is_directory(options.log, ignored)) return {};
+  return read_recording(file, options.log, options.interface);
+}
+
+void print(const Findings& findings, bool quiet) {
+  for (const Finding& finding : findings) {
+    if (quiet && finding.severity == Severity::note) continue;
+    std::cerr << to_string(finding) << '\n';
+  }
+}
+
+/// The proof of the pudding: what taktd would say to the file.
+int judge(const std::string& file) {
+  const LoadedNetwork network = load_network(file);
+  if (!has_error(network.findings)) return 0;
+  print(network.findings, true);
+  std::cerr << file << ": written, but to be mended before taktd takes it\n";
+  return 1;
+}
+
+int run(const Options& options) {
+  DeviceFiles files;
+  Findings findings;
+  bool good = true;
+  for (const std::string& folder : options.folders) files.add_folder(folder, findings);
+  for (const std::string& file : options.files) good = add_file(file, files, findings) && good;
+  print(findings, options.quiet);
+  if (!good || has_error(findings)) return 2;
+  const auto bus = listen(options);
+  if (!bus) return complain(options.log + ": can't be read", 2);
+  if (bus->frames == 0) return complain(options.log + ": holds no frame of candump", 1);
+
+  const bool to_stdout = options.out == "-";
+  const fs::path out{options.out};
+  LearnOptions how{.bitrate_kbit = options.bitrate_kbit,
+                   .device_data = load_device_data(device_folders(), findings)};
+  if (!to_stdout) {
+    how.folder = out.parent_path();
+    how.stem = out.stem().string();
+  }
+  const LearnedNetwork network = learned_network(*bus, files, how);
+  print(network.findings, options.quiet);
+  if (!to_stdout) {
+    for (const auto& [name, content] : network.made_files) {
+      const auto written = write_whole_file(how.folder / name, content);
+      if (!written) return complain(written.error(), 1);
+    }
+  }
+  const auto written = write_whole_file(options.out, network.text);
+  if (!written) return complain(written.error(), 1);
+  return to_stdout ? 0 : judge(options.out);
+}
+
+}  // namespace
+
+void add_learn(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("learn", "a network file from a recorded boot of another master");
+  command
+      ->add_option("LOG", options->log, "recording of candump (-L, or its ordinary output), or -")
+      ->required();
+  command->add_option("-o,--output", options->out, "the network file; - for stdout")
+      ->type_name("NET.yaml")
+      ->required();
+  command->add_option("--eds", options->files,
+                      "EDS or DCF of a device, found by its identity; 5=FILE: that of node 5");
+  command->add_option("--eds-dir", options->folders, "folder with such files, searched whole")
+      ->type_name("DIR");
+  command->add_option("--bus", options->interface, "only this interface of the recording");
+  command->add_option("--bitrate", options->bitrate_kbit, "kbit/s: a recording does not say it")
+      ->check(CLI::Range(10U, 1000U))
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "leave out notes");
+  command->footer(
+      "Record the start of the other master from before it resets the devices:\n"
+      "  candump -L can0 > boot.log\n"
+      "Nodes, SDO writes in their order, PDOs, SYNC, heartbeats and guarding become the file;\n"
+      "what it can't say stands there as comments. A device without EDS gets one of what the\n"
+      "recording shows, beside the network file. Exit code 1: the file needs mending, see "
+      "stderr.\n\n"
+      "Example:\n  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
+      "  takt plan machine.yaml");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

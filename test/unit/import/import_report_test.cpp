@@ -1,0 +1,235 @@
+#include "apps/import/import_report.hpp"
+
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "apps/import/nodelist.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Import : public testing::Test {
+ protected:
+  fs::path folder_ = fs::temp_directory_path() / ("takt_import_" + std::to_string(getpid()));
+  void SetUp() override {
+    fs::create_directories(folder_);
+    fs::copy_file(TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", folder_ / "drive.eds",
+                  fs::copy_options::overwrite_existing);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  ImportReport report(const std::string& text) {
+    std::ofstream{folder_ / "bus.yml"} << text;
+    return import_report(folder_ / "bus.yml");
+  }
+  static const ImportedKey& key(const ImportReport& report, const std::string& path) {
+    static const ImportedKey none{.path = "none", .value = {}, .pos = {}, .why = {}};
+    const auto found = std::ranges::find(report.keys, path, &ImportedKey::path);
+    return found == report.keys.end() ? none : *found;
+  }
+};
+
+TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
+  const auto bus = report(
+      "options: {dcf_path: \"@BUS_CONFIG_PATH@\"}\n"
+      "master: {node_id: 1, driver: x, sync_period: 10000}\n"
+      "defaults: {dcf: drive.eds, period: 10, diagnostics: {enable: true, period: 5}}\n"
+      "nodes:\n"
+      "  arm:\n"
+      "    node_id: 2\n"
+      "    tpdo: {1: {cob_id: auto, transmission: 1, mapping: [{index: 0x6041}, {index: "
+      "0x6064}]}}\n"
+      "    sdo: [{index: 0x6081, sub_index: 0, value: 1000}]\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "options.dcf_path").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.driver").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.sync_period").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "master.sync_period").why, "SYNC period, us");
+  EXPECT_EQ(key(bus, "master.sync_period").pos, (SourcePos{2, 33}));
+  EXPECT_EQ(key(bus, "defaults.period").fate, KeyFate::ignored);
+  EXPECT_THAT(key(bus, "defaults.period").why, HasSubstr("the cycle is `sync_period`"));
+  EXPECT_EQ(key(bus, "defaults.diagnostics.enable").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "nodes.arm.tpdo.1.cob_id").value, "auto");
+  EXPECT_EQ(key(bus, "nodes.arm.tpdo.1.mapping[2]").value, "{index: 0x6064}");
+  EXPECT_EQ(key(bus, "nodes.arm.sdo[1]").fate, KeyFate::used);
+  EXPECT_EQ(bus.count(KeyFate::suspicious) + bus.count(KeyFate::wrong), 0u);
+}
+
+TEST_F(Import, TellsAnInterpolationPeriodThatIsNotTheCycle) {
+  const auto bus = report(
+      "master: {sync_period: 10000}\n"
+      "arm:\n"
+      "  node_id: 2\n"
+      "  dcf: drive.eds\n"
+      "  sdo:\n"
+      "    - {index: 0x60C2, sub_index: 1, value: 50}\n"
+      "    - {index: 0x60C2, sub_index: 2, value: -3}\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("makes 50000 us, the SYNC period is 10000"));
+  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::used);
+}
+
+TEST_F(Import, PutsAnErrorToItsKey) {
+  const auto bus = report(
+      "master: {node_id: 1, baudrate: 1000000, sync_period: 10000}\n"
+      "arm: {node_id: 2, dcf: drive.eds, sync_perod: 5,\n"
+      "      tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6099}]}}}\n");
+
+  EXPECT_FALSE(bus.usable);
+  EXPECT_EQ(key(bus, "master.baudrate").fate, KeyFate::wrong);
+  EXPECT_THAT(key(bus, "master.baudrate").why, HasSubstr("write 1000"));
+  EXPECT_EQ(key(bus, "arm.sync_perod").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[1]").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").fate, KeyFate::wrong);
+}
+
+TEST_F(Import, AnAliasIsReportedOnce) {
+  const auto bus = report(
+      "master: {sync_period: 10000}\n"
+      ".axis: &axis {dcf: drive.eds, driver: x}\n"
+      "nodes: {a: {<<: *axis, node_id: 1}, b: {<<: *axis, node_id: 2}}\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(bus.count(KeyFate::ignored), 1u);
+  EXPECT_EQ(std::ranges::count(bus.keys, "x", &ImportedKey::value), 1);
+}
+
+TEST_F(Import, WhatBelongsToNoKeyIsAFinding) {
+  const auto bus = report("[]\n");
+
+  EXPECT_FALSE(bus.usable);
+  EXPECT_EQ(bus.keys.size(), 0u);
+  EXPECT_FALSE(bus.others.empty());
+  EXPECT_FALSE(import_report("/nonexistent/bus.yml").usable);
+  EXPECT_FALSE(report("a: [\n").usable);
+}
+
+TEST_F(Import, BusFilesOfTheWildAreReportedWhole) {
+  const char* folder = std::getenv("TAKT_BUS_YML");
+  const fs::path root =
+      folder != nullptr ? fs::path{folder} : fs::path{TAKT_SOURCE_DIR} / "../shared/bus_yml";
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator{root, error}) {
+    if (!fs::exists(entry.path() / "bus.yml")) continue;
+    const auto bus = import_report(entry.path() / "bus.yml");
+    EXPECT_GT(bus.count(KeyFate::used), 3u) << entry.path();
+    for (const ImportedKey& one : bus.keys) {
+      const bool told = one.fate == KeyFate::used || !one.why.empty();
+      EXPECT_TRUE(told) << entry.path() << one.path;
+    }
+    const bool has_its_eds = entry.path().filename() != "cia402_multichannel_system";
+    EXPECT_EQ(bus.usable, has_its_eds) << entry.path();
+  }
+}
+
+class Nodelist : public Import {
+ protected:
+  void SetUp() override {
+    Import::SetUp();
+    fs::create_directories(folder_ / "eds");
+    fs::create_directories(folder_ / "out");
+    const std::string eds = TAKT_SOURCE_DIR "/share/eds/plain301.eds";
+    for (const auto* name : {"io.dcf", "eds/pump.dcf", "master.dcf"}) {
+      fs::copy_file(eds, folder_ / name, fs::copy_options::overwrite_existing);
+    }
+    std::ofstream{folder_ / "io.dcf", std::ios::app}
+        << "\n[DeviceComissioning]\nNodeID=5\nBaudrate=250\n";
+    std::ofstream{folder_ / "master.dcf", std::ios::app}
+        << "\n[DeviceComissioning]\nNodeID=1\nCANopenManager=1\n";
+  }
+
+  ImportedNodelist import(const std::string& text, unsigned number = 1) {
+    std::ofstream{folder_ / "nodelist.cpj"} << text;
+    return import_nodelist(folder_ / "nodelist.cpj", number, folder_ / "out");
+  }
+
+  static constexpr const char* lift =
+      "[Topology]\nNetName=Lift 1\nNetRefd=drawing 7\nNodes=0x03\n"
+      "Node1Present=0x01\nNode1DCFName=master.dcf\n"
+      "Node5Present=0x01\nNode5Name=Door I/O\nNode5Refd=A5\nNode5DCFName=io.dcf\n"
+      "Node12Present=1\nNode12DCFName=pump.dcf\n"
+      "Node20Present=0x00\nNode20Name=spare\n"
+      "EDSBaseName=eds\nColour=red\n[Topology2]\nNetName=other\nNodes=0\n[Vendor]\nX=1\n";
+};
+
+TEST_F(Nodelist, BecomesANetworkFile) {
+  const auto imported = import(lift);
+
+  ASSERT_TRUE(imported.report.usable);
+  EXPECT_EQ(imported.yaml,
+            "# from nodelist.cpj, [Topology]\n"
+            "bus:\n  name: lift_1\n  bitrate_kbit: 250  # Baudrate of the DCFs\n"
+            "master:\n  node_id: 1\n"
+            "  # sync_period: 10000  # us; without it there is no SYNC\n"
+            "nodes:\n"
+            "  door_i_o:\n    node_id: 5\n    dcf: \"../io.dcf\"\n"
+            "  node12:\n    node_id: 12\n    dcf: \"../eds/pump.dcf\"\n");
+}
+
+TEST_F(Nodelist, IsANetworkThatLoads) {
+  const auto imported = import(lift);
+  std::ofstream{folder_ / "out/lift.yaml"} << imported.yaml;
+
+  const auto network = load_network(folder_ / "out/lift.yaml");
+
+  EXPECT_FALSE(has_error(network.findings));
+  EXPECT_EQ(network.plan.name, "lift_1");
+  ASSERT_EQ(network.plan.nodes.size(), 2U);
+  EXPECT_EQ(network.plan.nodes[1].name, "node12");
+}
+
+TEST_F(Nodelist, NamesEveryKeyAsUsedOrIgnored) {
+  const auto list = import(lift).report;
+
+  EXPECT_EQ(list.keys.size(), 15U);
+  EXPECT_EQ(key(list, "Topology.NetName").fate, KeyFate::used);
+  EXPECT_EQ(key(list, "Topology.NetRefd").fate, KeyFate::ignored);
+  EXPECT_EQ(key(list, "Topology.Node5Name").why, "name of the node, as `door_i_o`");
+  EXPECT_EQ(key(list, "Topology.Node5Name").pos, (SourcePos{8, 11}));
+  EXPECT_THAT(key(list, "Topology.Node1DCFName").why, HasSubstr("this is the master"));
+  EXPECT_EQ(key(list, "Topology.Node20Present").fate, KeyFate::ignored);
+  EXPECT_EQ(key(list, "Topology.EDSBaseName").fate, KeyFate::used);
+  EXPECT_EQ(key(list, "Topology.Colour").why, "not a key of CiA 306-3");
+  EXPECT_EQ(list.others.size(), 2U);  // [Topology2], [Vendor]
+}
+
+TEST_F(Nodelist, SaysWhatIsWrongAndWritesNothing) {
+  const std::string head = "[Topology]\nNodes=1\nNode5Present=1\n";
+  for (const auto& [text, rule] : std::vector<std::pair<std::string, std::string>>{
+           {"", "no-file"},
+           {"[Foo]\nA=1\n", "no-topology"},
+           {head, "missing-key"},
+           {head + "Node5DCFName=no.dcf\n", "no-file"},
+           {"[Topology]\nNodes=1\nNode128Present=1\n", "node-id-range"},
+           {"[Topology]\nNodes=0\n", "no-nodes"}}) {
+    const auto imported = import(text);
+
+    EXPECT_FALSE(imported.report.usable) << text;
+    EXPECT_TRUE(imported.yaml.empty());
+    EXPECT_NE(std::ranges::count(imported.report.others, rule, &Finding::rule), 0) << text;
+  }
+  EXPECT_FALSE(import(lift, 3).report.usable);
+}
+
+TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreTold) {
+  const auto imported = import(
+      "[TOPOLOGY]\nNodes=7\nNode5Present=1\nNode5Name=io\nNode5DCFName=io.dcf\n"
+      "Node6Present=1\nNode6Name=IO\nNode6DCFName=io.dcf\n");
+
+  EXPECT_TRUE(imported.report.usable);
+  EXPECT_EQ(key(imported.report, "TOPOLOGY.Nodes").fate, KeyFate::suspicious);
+  EXPECT_THAT(imported.yaml, HasSubstr("  io_6:\n    node_id: 6\n"));
+  EXPECT_THAT(key(imported.report, "TOPOLOGY.Node6DCFName").why, HasSubstr("its NodeID is 5"));
+}
+
+}  // namespace
+}  // namespace takt

@@ -1,0 +1,154 @@
+#include "apps/learn/sdo_observer.hpp"
+
+#include <gtest/gtest.h>
+#include <initializer_list>
+
+namespace takt {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Frame sent(std::initializer_list<std::uint8_t> bytes) {
+  return make_frame(CobId::base(0x605), bytes);
+}
+Frame answered(std::initializer_list<std::uint8_t> bytes) {
+  return make_frame(CobId::base(0x585), bytes);
+}
+
+TEST(SdoObserver, SeesAnExpeditedWriteWhenItIsConfirmed) {
+  SdoObserver sdo;
+
+  EXPECT_FALSE(sdo.request(sent({0x2B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0x00, 0x00})));
+  const auto done = sdo.answer(answered({0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->kind, SdoTransfer::Kind::write);
+  EXPECT_EQ(done->object, (ObjectKey{0x1017, 0}));
+  EXPECT_EQ(done->value, (Bytes{0xE8, 0x03}));
+  EXPECT_FALSE(done->abort_code);
+}
+
+TEST(SdoObserver, KeepsTheAbortCodeOfARefusedWrite) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0x23, 0x00, 0x1A, 0x01, 0x10, 0x00, 0x41, 0x60}));
+  const auto done = sdo.answer(answered({0x80, 0x00, 0x1A, 0x01, 0x00, 0x00, 0x01, 0x06}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->abort_code, 0x0601'0000U);
+}
+
+TEST(SdoObserver, PutsSegmentsTogether) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0}));
+  sdo.answer(answered({0x41, 0x08, 0x10, 0x00, 9, 0, 0, 0}));
+  sdo.request(sent({0x60, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(sdo.answer(answered({0x00, 'T', 'i', 'n', 'y', ' ', 'n', 'o'})));
+  sdo.request(sent({0x70, 0, 0, 0, 0, 0, 0, 0}));
+  const auto done = sdo.answer(answered({0x1B, 'd', 'e', 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ((std::string{done->value.begin(), done->value.end()}), "Tiny node");
+}
+
+TEST(SdoObserver, SeesASegmentedWriteWhenItsLastSegmentIsConfirmed) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0x21, 0x00, 0x20, 0x00, 5, 0, 0, 0}));
+  sdo.answer(answered({0x60, 0x00, 0x20, 0x00, 0, 0, 0, 0}));
+  EXPECT_FALSE(sdo.request(sent({0x05, 1, 2, 3, 4, 5, 0, 0})));
+  const auto done = sdo.answer(answered({0x20, 0, 0, 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->value, (Bytes{1, 2, 3, 4, 5}));
+}
+
+TEST(SdoObserver, SeesABlockDownload) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0xC2, 0x00, 0x20, 0x00, 10, 0, 0, 0}));
+  sdo.answer(answered({0xA0, 0x00, 0x20, 0x00, 127, 0, 0, 0}));
+  sdo.request(sent({0x01, 1, 2, 3, 4, 5, 6, 7}));
+  sdo.request(sent({0x82, 8, 9, 10, 0, 0, 0, 0}));
+  sdo.answer(answered({0xA2, 2, 127, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(sdo.request(sent({0xD1, 0, 0, 0, 0, 0, 0, 0})));
+  const auto done = sdo.answer(answered({0xA1, 0, 0, 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->kind, SdoTransfer::Kind::write);
+  EXPECT_EQ(done->value, (Bytes{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+}
+
+TEST(SdoObserver, SeesABlockUpload) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0xA0, 0x08, 0x10, 0x00, 127, 0, 0, 0}));
+  sdo.answer(answered({0xC2, 0x08, 0x10, 0x00, 3, 0, 0, 0}));
+  sdo.request(sent({0xA3, 0, 0, 0, 0, 0, 0, 0}));
+  sdo.answer(answered({0x81, 'a', 'b', 'c', 0, 0, 0, 0}));
+  sdo.request(sent({0xA2, 1, 127, 0, 0, 0, 0, 0}));
+  sdo.answer(answered({0xD1, 0, 0, 0, 0, 0, 0, 0}));
+  const auto done = sdo.request(sent({0xA1, 0, 0, 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->kind, SdoTransfer::Kind::read);
+  EXPECT_EQ(done->value, (Bytes{'a', 'b', 'c'}));
+}
+
+TEST(SdoObserver, TakesASegmentedAnswerToABlockUpload) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0xA0, 0x08, 0x10, 0x00, 127, 21, 0, 0}));
+  const auto done = sdo.answer(answered({0x4F, 0x08, 0x10, 0x00, 7, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->value, (Bytes{7}));
+}
+
+TEST(SdoObserver, CountsFramesWhoseBeginningIsMissing) {
+  SdoObserver sdo;
+
+  EXPECT_FALSE(sdo.answer(answered({0x1B, 'd', 'e', 0, 0, 0, 0, 0})));
+  EXPECT_FALSE(sdo.answer(answered({0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0})));
+  EXPECT_FALSE(sdo.request(sent({0x0D, 1, 0, 0, 0, 0, 0, 0})));
+  EXPECT_FALSE(sdo.answer(answered({0x80, 0, 0, 0, 0, 0, 0, 0})));
+
+  EXPECT_EQ(sdo.strays(), 4u);
+}
+
+TEST(SdoObserver, AnAnswerOfAnotherObjectEndsNothing) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0x40, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
+
+  EXPECT_FALSE(sdo.answer(answered({0x4B, 0x18, 0x10, 0x00, 0xE8, 0x03, 0, 0})));
+  EXPECT_TRUE(sdo.answer(answered({0x4B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0})));
+}
+
+TEST(SdoObserver, CountsTransfersThatASecondClientCutsOff) {
+  SdoObserver sdo;
+
+  sdo.request(sent({0x40, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
+  sdo.request(sent({0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}));
+
+  EXPECT_EQ(sdo.cut_off(), 1u);
+  EXPECT_TRUE(sdo.answer(answered({0x43, 0x18, 0x10, 0x01, 1, 0, 0, 0})));
+}
+
+TEST(SdoObserver, ALongValueIsNotKeptWhole) {
+  SdoObserver sdo;
+  sdo.request(sent({0x20, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
+  sdo.answer(answered({0x60, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
+
+  for (int i = 0; i < 20'000; ++i) sdo.request(sent({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  sdo.request(sent({0x01, 1, 2, 3, 4, 5, 6, 7}));
+  const auto done = sdo.answer(answered({0x20, 0, 0, 0, 0, 0, 0, 0}));
+
+  ASSERT_TRUE(done);
+  EXPECT_FALSE(done->whole);
+  EXPECT_LE(done->value.size(), SdoObserver::most_kept);
+}
+
+}  // namespace
+}  // namespace takt

@@ -1,0 +1,35 @@
+#include "apps/learn/sdo_value_text.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace takt {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+TEST(SdoValueText, WritesNumbersWithTheSignOfTheirType) {
+  EXPECT_EQ(sdo_value_text(Bytes{0xFF, 0xFF}, DataType::integer16), "-1");
+  EXPECT_EQ(sdo_value_text(Bytes{0xFF, 0xFF}, DataType::unsigned16), "65535");
+  EXPECT_EQ(sdo_value_text(Bytes{0x00, 0x00, 0x80}, DataType::integer24), "-8388608");
+  EXPECT_EQ(sdo_value_text(Bytes{0x05, 0, 0, 0}, DataType::unsigned8), "5");
+}
+
+TEST(SdoValueText, WritesRealsSoThatTheyStayReals) {
+  EXPECT_EQ(sdo_value_text(Bytes{0x00, 0x00, 0x40, 0x40}, DataType::real32), "3.0");
+  EXPECT_EQ(sdo_value_text(Bytes{0x00, 0x00, 0xC0, 0x7F}, DataType::real32), std::nullopt);
+}
+
+TEST(SdoValueText, QuotesText) {
+  EXPECT_EQ(sdo_value_text(Bytes{'a', '"', '\\'}, DataType::visible_string), R"("a\"\\")");
+}
+
+TEST(SdoValueText, SaysWhatANetworkFileCannotHold) {
+  EXPECT_EQ(sdo_value_text(Bytes{0x00, 0xFF}, DataType::octet_string), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes{'1', '2'}, DataType::visible_string), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes{}, DataType::unsigned8), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes(8, 0xFF), DataType::unsigned64), std::nullopt);
+}
+
+}  // namespace
+}  // namespace takt
