@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
   takt::add_export(app, exit_code);
   takt::add_import(app, exit_code);
   takt::add_learn(app, exit_code);
+  takt::add_scan(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
   takt::add_lss(app, exit_code);
