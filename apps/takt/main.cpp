@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
       "Each command has a --help of its own. Exit codes: 0 good, 1 the answer is no, 2 wrong use\n"
       "or network file, 3 bus trouble, 4 a mandatory node is missing, 5 real-time limit broken.");
   int exit_code = 0;
+  takt::add_audit(app, exit_code);
   takt::add_dump(app, exit_code);
   takt::add_eds(app, exit_code);
   takt::add_plan(app, exit_code);

@@ -1,0 +1,110 @@
+#include "apps/audit/audit.hpp"
+
+#include <algorithm>
+
+#include "apps/audit/supervision.hpp"
+
+namespace takt {
+namespace {
+
+class NodeAuditor {
+ public:
+  NodeAuditor(const BusPlan& plan, std::size_t index, const DeviceValues& values)
+      : plan_{plan}, index_{index}, node_{plan.nodes[index]}, values_{values} {}
+
+  NodeAudit run() {
+    out_.name = node_.name;
+    out_.id = node_.id.value();
+    out_.drive = node_.cia402;
+    Supervision supervision = supervision_of(plan_, index_, values_);
+    out_.notices = supervision.after;
+    out_.how = std::move(supervision.how);
+    if (!out_.notices && supervision.by_sync) out_.how = "SYNC stays away (1006)";
+    out_.besides = std::move(supervision.besides);
+    tell_state();
+    judge(out_.drive ? drive_reaction(values_) : output_reaction(plan_, index_, values_));
+    if (!node_.boot) out_.besides.emplace_back("takt does not configure it (boot: false)");
+    out_.besides.insert(out_.besides.end(), values_.notes().begin(), values_.notes().end());
+    return std::move(out_);
+  }
+
+ private:
+  void tell_state() {
+    const auto behaviour = values_.get({0x1029, 1});
+    const std::string source =
+        behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")" : " (no 1029: as if 0)";
+    constexpr const char* states[] = {"goes to PRE-OPERATIONAL", "STAYS OPERATIONAL",
+                                      "goes to STOPPED", "changes its state as its maker decided"};
+    out_.state = static_cast<ErrorState>(std::min<std::uint64_t>(behaviour.value_or(0), 3));
+    state_text_ = states[static_cast<std::size_t>(out_.state)] + source;
+    if (out_.notices) out_.then = state_text_;
+  }
+
+  void judge(Reaction reaction) {
+    if (reaction.verdict == Failsafe::harmless) {
+      out_.verdict = Failsafe::harmless;
+      out_.outputs = "it takes no outputs from the master";
+      out_.bus_off = state_text_;
+      return;
+    }
+    if (!out_.drive) keep_in_operational(reaction);
+    out_.bus_off = out_.notices ? "the same, at once" : state_text_ + "; " + reaction.text;
+    const bool notices = !out_.how.empty();
+    out_.verdict = notices ? reaction.verdict : Failsafe::goes_on;
+    out_.outputs = notices ? reaction.text : "KEEPS its last set-points for ever";
+    if (!notices) advise_supervision();
+    advise_values(reaction);
+  }
+
+  void advise_values(const Reaction& reaction) {
+    if (reaction.remedy.empty()) return;
+    std::string line = "sdo: [";
+    for (const std::string& entry : reaction.remedy) {
+      line += (line.ends_with('[') ? "" : ", ") + entry;
+    }
+    out_.remedy.push_back(line + "]   # beside what stands there");
+  }
+
+  /// CiA 401 ties error values to a failure; not every device sees one while it stays OPERATIONAL.
+  void keep_in_operational(Reaction& reaction) {
+    if (out_.state != ErrorState::operational) return;
+    if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::untold;
+    reaction.text += ", if it counts that as a failure: see the manual";
+    out_.remedy.emplace_back("error_behavior: {1: 0}   # leave OPERATIONAL");
+  }
+
+  void advise_supervision() {
+    SupervisionRemedy remedy = supervision_remedy(plan_, index_, values_);
+    out_.master_remedy = std::move(remedy.master);
+    out_.remedy.insert(out_.remedy.end(), remedy.node.begin(), remedy.node.end());
+    if (remedy.node.empty()) {
+      out_.besides.emplace_back(
+          "it can watch neither heartbeat nor guarding: only its power, or a hardware enable, "
+          "stops it");
+    }
+  }
+
+  const BusPlan& plan_;
+  std::size_t index_;
+  const NodePlan& node_;
+  const DeviceValues& values_;
+  NodeAudit out_;
+  std::string state_text_;
+};
+
+}  // namespace
+
+bool Audit::goes_on() const {
+  return std::ranges::find(nodes, Failsafe::goes_on, &NodeAudit::verdict) != nodes.end();
+}
+
+Audit audit(const BusPlan& plan, const std::vector<DeviceValues>& values) {
+  Audit result{
+      .bus = plan.name, .master_id = plan.master_id.value(), .heartbeat = plan.master_heartbeat};
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    result.nodes.push_back(NodeAuditor{plan, i, values[i]}.run());
+  }
+  return result;
+}
+
+}  // namespace takt
