@@ -53,7 +53,7 @@ say "taktd $network --bus sim   (the daemon: boots the devices, beats SYNC)"
   echo $! >"$tmp/pid"
   wait $! || rc=$?
   echo $rc >"$tmp/taktd"
-} 2>&1 | sed -u 's/^/  taktd | /' &
+} 2>&1 | tee "$tmp/log" | sed -u 's/^/  taktd | /' &
 log=$!
 while [ ! -s "$tmp/pid" ]; do sleep 0.05; done
 daemon=$(cat "$tmp/pid")
@@ -81,4 +81,8 @@ if [ "$moved" -eq 0 ] && [ "$stopped" -eq 0 ]; then
   exit 0
 fi
 say "NOT good: takt-move ended with $moved, taktd with $stopped (exit codes: README.md)."
+stood_still=$(sed -n 's/.*: \([0-9][0-9]*\) cycles missed: .*/\1/p' "$tmp/log" | sort -n | tail -n 1)
+if [ "${stood_still:-0}" -ge 100 ]; then
+  echo "This machine stood still for $stood_still cycles in a row: too long for any motion. Try again when it has less to do."
+fi
 exit 1

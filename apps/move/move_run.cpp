@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <utility>
 
 #include "apps/move/sine.hpp"
 #include "apps/move/synchronised_move.hpp"
@@ -25,7 +26,7 @@ constexpr std::chrono::milliseconds tick{2};
 constexpr double enable_seconds = 5.0;
 constexpr double disable_seconds = 2.0;
 /// How long a set-point lives when this program stalls, where the network file allows as much.
-constexpr std::chrono::milliseconds set_point_life{500};
+constexpr std::chrono::milliseconds set_point_life{1000};
 
 }  // namespace
 
@@ -152,7 +153,8 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
     const std::chrono::duration<double> passed = Clock::now() - last_tick;
     if (input != Input::fresh && holding_ == Hold::no) continue;  // the next image sets the pace
     last_tick = Clock::now();
-    const double step = input == Input::fresh ? real_step() : passed.count();
+    const double step =
+        input == Input::fresh ? real_step() : std::min(passed.count(), longest_step());
     axes_.set_positions(trajectory(pace.step(step, hold)));
     group_.send();
     if (input != Input::fresh) continue;
@@ -164,13 +166,17 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
   return true;
 }
 
-/// Seconds of bus time since the last image; a gap does not make the motion jump.
+/// Seconds. A gap, of the images or of this program itself, does not make the motion jump.
+double MoveRun::longest_step() const {
+  return std::chrono::duration<double>(group_.period()).count() * options_.stale_cycles;
+}
+
+/// Seconds of bus time since the last image.
 double MoveRun::real_step() {
   const std::int64_t cycle = group_.input().cycle();
-  const std::int64_t cycles =
-      std::clamp<std::int64_t>(cycle - last_cycle_, 0, options_.stale_cycles);
-  last_cycle_ = cycle;
-  return std::chrono::duration<double>(group_.period()).count() * static_cast<double>(cycles);
+  const auto cycles = static_cast<double>(cycle - std::exchange(last_cycle_, cycle));
+  const double seconds = std::chrono::duration<double>(group_.period()).count() * cycles;
+  return std::clamp(seconds, 0.0, longest_step());
 }
 
 Hold MoveRun::take_input(Input input) {
@@ -209,6 +215,15 @@ void MoveRun::disable() {
   }
 }
 
+std::string MoveRun::verdict(bool followed) const {
+  if (following_.samples() == 0) return "The axes never moved.";
+  if (!followed) {
+    return fmt::format("The axes did NOT follow (limit {:g}).", sizes_.following_limit);
+  }
+  return good_ ? "The axes followed."
+               : "The motion did not come to its end; as far as it went, the axes followed.";
+}
+
 int MoveRun::sum_up() const {
   fmt::print("\n{:<14}{:>16}{:>24}   unit\n", "axis", "position", "largest following error");
   bool followed = following_.samples() > 0;
@@ -219,9 +234,7 @@ int MoveRun::sum_up() const {
                unit_.empty() ? "counts" : unit_);
   }
   fmt::print("{} images compared, held {} times. {}\n", following_.samples(), holds_,
-             good_ && followed
-                 ? "The axes followed."
-                 : fmt::format("The axes did NOT follow (limit {:g}).", sizes_.following_limit));
+             verdict(followed));
   return good_ && followed ? exit_good : exit_not_followed;
 }
 

@@ -29,11 +29,13 @@ class MoveRun {
   bool move();
   bool follow(const char* what, double duration, const Trajectory& trajectory);
   Hold take_input(Input input);
+  double longest_step() const;
   double real_step();
   bool axes_lost();
   void disable();
   /// Serves images and sends commands until `done` or for this long; false: time is up.
   bool hold_until(const std::function<bool()>& done, double seconds);
+  std::string verdict(bool followed) const;
   int sum_up() const;
   Eigen::VectorXd target() const;
 

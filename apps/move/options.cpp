@@ -38,7 +38,8 @@ ParsedMove parse_move(int argc, char** argv) {
   app.footer(
       "Example:  takt-move lift --to 1.57,0.5 --sine --for 20s\n"
       "Lengths are in the axes' unit (rad, m; counts where none is configured).\n"
-      "Exit codes: 0 the axes followed, 1 they did not, 2 wrong use, 3 no daemon heard.");
+      "Exit codes: 0 the axes followed, 1 they did not, or not to the end, 2 wrong use, 3 no "
+      "daemon heard.");
   app.add_option("bus", options.bus, "name of the bus (default: the first that is heard)");
   app.add_option("--lcm-url", options.lcm_url, "as LCM_DEFAULT_URL");
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");

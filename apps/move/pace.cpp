@@ -1,15 +1,16 @@
 #include "apps/move/pace.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace takt {
 
 double Pace::step(double seconds, Hold hold) noexcept {
-  const double change = seconds / ramp_;
-  const double next =
-      hold == Hold::yes ? std::max(0.0, rate_ - change) : std::min(1.0, rate_ + change);
-  time_ += seconds * (rate_ + next) / 2.0;
-  rate_ = next;
+  const double end = hold == Hold::yes ? 0.0 : 1.0;
+  const double on_ramp = std::min(seconds, std::abs(end - rate_) * ramp_);
+  const double next = rate_ + std::copysign(on_ramp / ramp_, end - rate_);
+  time_ += on_ramp * (rate_ + next) / 2.0 + (seconds - on_ramp) * end;
+  rate_ = on_ramp < seconds ? end : std::clamp(next, 0.0, 1.0);
   return time_;
 }
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# demo_test.sh BIN - the demo of the README, in a network of its own without a route where that is possible.
+# demo_test.sh BIN - the demo of the README, in a network of its own without a route where that is possible. It is real
+# time: where the machine itself stood still, which the demo tells, it has another try, three in all.
 set -eu
 cd "$(dirname "$0")/../.."
 export TAKT_DEMO_BIN="$1" DEMO_SECONDS=5
@@ -7,4 +8,11 @@ alone=
 for way in "unshare -n" "unshare -rn"; do
   [ -z "$alone" ] && $way true 2>/dev/null && alone=$way
 done
-exec $alone sh share/demo.sh
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+for _ in 1 2 3; do
+  if $alone sh share/demo.sh >"$log" 2>&1; then cat "$log" && exit 0; fi
+  cat "$log"
+  grep -q "This machine stood still" "$log" || exit 1
+done
+exit 1

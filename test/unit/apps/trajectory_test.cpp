@@ -22,6 +22,14 @@ TEST(Pace, ComesToRestInItsRampAndStaysThere) {
   EXPECT_NEAR(pace.time(), 0.05, 1e-12);
 }
 
+TEST(Pace, OneLongStepComesAsFarAsManyShortOnes) {
+  Pace pace{0.2};
+  EXPECT_NEAR(pace.step(0.5, Hold::yes), 0.1, 1e-12);
+  EXPECT_TRUE(pace.standing());
+  EXPECT_NEAR(pace.step(0.5, Hold::no), 0.1 + 0.1 + 0.3, 1e-12);
+  EXPECT_EQ(pace.rate(), 1.0);
+}
+
 TEST(Pace, NeverRunsBackwardsNorFasterThanTheClock) {
   Pace pace{0.1};
   double last = 0.0;
