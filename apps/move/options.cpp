@@ -40,6 +40,7 @@ ParsedMove parse_move(int argc, char** argv) {
       "Lengths are in the axes' unit (rad, m; counts where none is configured).\n"
       "Exit codes: 0 the axes followed, 1 they did not, or not to the end, 2 wrong use, 3 no "
       "daemon heard.");
+  app.set_version_flag("--version", "takt-move " TAKT_VERSION);
   app.add_option("bus", options.bus, "name of the bus (default: the first that is heard)");
   app.add_option("--lcm-url", options.lcm_url, "as LCM_DEFAULT_URL");
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");

@@ -37,6 +37,7 @@ bool commands_known(const CLI::App& app, int argc, char** argv) {
 int main(int argc, char** argv) {
   CLI::App app{"takt - CANopen from the command line", "takt"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "takt " TAKT_VERSION);
   app.get_formatter()->column_width(34);
   app.footer(
       "Examples:\n  takt plan lift.yaml            what taktd will do with a network file\n"
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
   takt::add_import(app, exit_code);
   takt::add_learn(app, exit_code);
   takt::add_scan(app, exit_code);
+  takt::add_doctor(app, exit_code);
   takt::add_sdo(app, exit_code);
   takt::add_nmt(app, exit_code);
   takt::add_lss(app, exit_code);

@@ -59,6 +59,7 @@ std::optional<Time> parse_duration(const std::string& text) {
 std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   CLI::App app{description, "taktd"};
   app.footer(footer);
+  app.set_version_flag("--version", "taktd " TAKT_VERSION);
   app.get_formatter()->column_width(30);
   DaemonOptions options;
   std::string rt;
