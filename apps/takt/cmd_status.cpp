@@ -51,7 +51,22 @@ nlohmann::json to_json(const diagnosis_t& diagnosis) {
           {"send_error", diagnosis.send_error != 0},
           {"sync_toggle", diagnosis.sync_toggle != 0},
           {"cycles_failed", diagnosis.cycles_failed},
+          {"outputs_skipped", diagnosis.outputs_skipped},
+          {"images_incomplete", diagnosis.images_incomplete},
           {"changed", diagnosis.changed != 0}};
+}
+
+nlohmann::json to_json(const sync_status_t& sync) {
+  static constexpr const char* states[] = {"none", "made", "awaited", "locked", "lost"};
+  return {{"state", states[std::clamp<int>(sync.state, 0, 4)]},
+          {"source", sync.source},
+          {"node_id", sync.node_id},
+          {"period_ns", sync.period_ns},
+          {"declared_ns", sync.declared_ns},
+          {"timeout_ns", sync.timeout_ns},
+          {"syncs", sync.syncs},
+          {"losses", sync.losses},
+          {"text", sync.text}};
 }
 
 nlohmann::json to_json(const status_t& status) {
@@ -103,7 +118,7 @@ void print(const std::vector<const BusView*>& buses) {
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   const std::size_t width = terminal ? Screen::size().columns : 160;
   for (const BusView* const bus : buses) {
-    for (const Line& line : status_lines(*bus->status())) {
+    for (const Line& line : status_lines(*bus)) {
       std::printf("%s\n", line.render(width, terminal).c_str());
     }
     if (bus->pdos()) {
@@ -119,6 +134,7 @@ void print_json(const std::vector<const BusView*>& buses) {
   nlohmann::json all = nlohmann::json::array();
   for (const BusView* const bus : buses) {
     all.push_back(to_json(*bus->status()));
+    if (bus->sync()) all.back()["sync"] = to_json(*bus->sync());
     if (bus->pdos()) all.back()["pdos"] = pdos_json(*bus->pdos());
   }
   const nlohmann::json document{{"buses", std::move(all)}};
@@ -127,7 +143,7 @@ void print_json(const std::vector<const BusView*>& buses) {
 
 int run(const StatusOptions& all) {
   const LiveOptions& options = all.live;
-  std::vector<std::string> channels{any_bus("STATUS")};
+  std::vector<std::string> channels{any_bus("STATUS"), any_bus("SYNC")};
   if (all.pdos) channels.push_back(any_bus("PDOS"));
   auto lcm = LcmClient::open(options.lcm_url, channels);
   if (!lcm) return complain(lcm.error(), 3);

@@ -47,7 +47,7 @@ int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
   });
   const BusView* const bus = chosen(views, bus_name);
   if (bus == nullptr) return complain(no_daemon(lcm, bus_name).sentence, 3);
-  print(top_frame(*bus, {.rows = 0}));
+  print(top_frame(*bus, {.rows = 0}).lines);
   return 0;
 }
 
@@ -74,7 +74,9 @@ void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
     options.rows = Screen::size().rows;
     const BusView* const bus = chosen(views, bus_name);
     if (bus != nullptr) {
-      screen.show(top_frame(*bus, options));
+      const TopFrame frame = top_frame(*bus, options);
+      options.first_signal = frame.first_signal;
+      screen.show(frame.lines);
     } else {
       screen.show({Line{}.add("no daemon answers on " + lcm.where() + " (q quits)", Paint::dim)});
     }
@@ -84,7 +86,7 @@ void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
 int run(const TopArguments& arguments) {
   auto lcm = LcmClient::open(arguments.live.lcm_url,
                              {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
-                              any_bus("TIMING"), any_bus("EVENT")});
+                              any_bus("TIMING"), any_bus("EVENT"), any_bus("SYNC")});
   if (!lcm) return complain(lcm.error(), 3);
   BusViews views;
   const bool live = !arguments.once && ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0;

@@ -6,12 +6,17 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "apps/takt/timing_table.hpp"
 #include "master/core/node_status.hpp"
+#include "master/rt/status_board.hpp"
 
 namespace takt {
 namespace {
 
-constexpr std::size_t shown_events = 6;
+/// Lines of a terminal that are kept for messages.
+std::size_t message_lines(std::size_t rows) {
+  return rows == 0 ? 6 : std::clamp<std::size_t>(rows / 5, 2, 6);
+}
 
 Paint nmt_paint(int state) {
   if (state == static_cast<int>(NmtState::operational)) return Paint::good;
@@ -74,12 +79,27 @@ Line diagnosis_line(const diagnosis_t& diagnosis) {
       .add(fmt::format("   nodes not ok {}", diagnosis.nodes_not_ok),
            diagnosis.nodes_not_ok == 0 ? Paint::dim : Paint::bad)
       .add(fmt::format("  SYNCs {}", diagnosis.sync_count), Paint::dim)
-      .add(fmt::format("  cycles failed {}", diagnosis.cycles_failed),
-           count_paint(diagnosis.cycles_failed));
+      .add(fmt::format("  no outputs {}", diagnosis.outputs_skipped),
+           count_paint(diagnosis.outputs_skipped))
+      .add(fmt::format("  incomplete {}", diagnosis.images_incomplete),
+           count_paint(diagnosis.images_incomplete));
   if (diagnosis.warning_limit != 0) line.add("  WARNING LIMIT", Paint::bad);
   if (diagnosis.rx_queue_exceeded != 0) line.add("  RECEIVE QUEUE EXCEEDED", Paint::bad);
   if (diagnosis.tx_queue_exceeded != 0) line.add("  SEND QUEUE EXCEEDED", Paint::bad);
   if (diagnosis.send_error != 0) line.add("  SEND ERROR", Paint::bad);
+  return line;
+}
+
+/// Of a SYNC that another device makes.
+Line sync_line(const sync_status_t& sync) {
+  const bool locked = sync.state == static_cast<int>(SyncState::locked);
+  const bool lost = sync.state == static_cast<int>(SyncState::lost);
+  Line line;
+  line.add("SYNC ")
+      .add(sync.text, locked ? Paint::good
+                      : lost ? Paint::bad
+                             : Paint::warning)
+      .add(fmt::format("   lost {} times", sync.losses), count_paint(sync.losses));
   return line;
 }
 
@@ -109,17 +129,11 @@ const histogram_t* find(const timing_t& timing, std::string_view name) {
 }
 
 Line timing_line(const timing_t& timing) {
-  struct Shown {
-    const char* name;
-    const char* label;
-  };
   Line line;
-  for (const auto& [name, label] :
-       {Shown{"sync_lateness", "SYNC late by"}, Shown{"sync_to_publish", "image after"},
-        Shown{"command_age", "command age"}}) {
+  for (const char* const name : {"sync_lateness", "sync_to_publish", "command_age"}) {
     const histogram_t* const times = find(timing, name);
     if (times == nullptr) continue;
-    line.add(fmt::format("{} ", label), Paint::dim)
+    line.add(fmt::format("{} ", timing_label(name)), Paint::dim)
         .add(fmt::format("{:.0f} us", static_cast<double>(times->median)))
         .add(fmt::format(" (p99 {:.0f}, max {:.0f})   ", static_cast<double>(times->p99),
                          static_cast<double>(times->maximum)),
@@ -162,24 +176,29 @@ std::vector<std::size_t> by_node(const std::vector<signal_t>& signals) {
   return order;
 }
 
-void add_signals(std::vector<Line>& lines, const BusView& bus, const TopOptions& options,
-                 std::size_t room) {
+/// And a line that tells which of them these are. Returns the first that is shown.
+std::size_t add_signals(std::vector<Line>& lines, const BusView& bus, std::size_t wanted,
+                        std::size_t room) {
   if (bus.values().empty()) {
     lines.push_back(Line{}.add("waiting for the layout and an image ...", Paint::dim));
-    return;
+    lines.push_back(Line{});
+    return wanted;
   }
   Eigen::ArrayXd si{static_cast<Eigen::Index>(bus.values().size())};
   bus.units().to_si(bus.values(), si);
   const std::vector<std::size_t> order = by_node(bus.signals());
-  const std::size_t last_start = order.size() > room ? order.size() - room : 0;
-  const std::size_t first = std::min(options.first_signal, last_start);
-  for (std::size_t i = first; i < order.size() && i < first + room; ++i) {
+  const std::size_t shown = std::min(room, order.size());
+  const std::size_t first = std::min(wanted, order.size() - shown);
+  for (std::size_t i = first; i < first + shown; ++i) {
     lines.push_back(signal_line(bus, order[i], si[static_cast<Eigen::Index>(order[i])]));
   }
-  if (order.size() > room) {
-    lines.back().add(fmt::format("   [{} of {}, arrows scroll]", first + room, order.size()),
-                     Paint::dim);
+  Line which;
+  if (shown < order.size()) {
+    which.add(fmt::format("[{}-{} of {}, arrows scroll]", first + 1, first + shown, order.size()),
+              Paint::dim);
   }
+  lines.push_back(std::move(which));
+  return first;
 }
 
 Line event_line(const event_t& event) {
@@ -233,8 +252,10 @@ std::string boot_name(const node_status_t& node) {
   return "?";
 }
 
-std::vector<Line> status_lines(const status_t& status) {
+std::vector<Line> status_lines(const BusView& bus) {
+  const status_t& status = *bus.status();
   std::vector<Line> lines{bus_line(status), load_line(status), diagnosis_line(status.diagnosis)};
+  if (bus.sync() && bus.sync()->timeout_ns != 0) lines.push_back(sync_line(*bus.sync()));
   lines.push_back(
       Line{}.add(" NODE  NAME              STATE            BOOT             HEARTBEAT         "
                  "EMCY  NO PDO  HELD BY",
@@ -243,24 +264,26 @@ std::vector<Line> status_lines(const status_t& status) {
   return lines;
 }
 
-std::vector<Line> top_frame(const BusView& bus, const TopOptions& options) {
+TopFrame top_frame(const BusView& bus, const TopOptions& options) {
   if (!bus.status()) return {};
-  std::vector<Line> lines = status_lines(*bus.status());
+  TopFrame frame{.lines = status_lines(bus)};
+  std::vector<Line>& lines = frame.lines;
   if (bus.timing()) lines.insert(lines.begin() + 3, timing_line(*bus.timing()));
   lines.push_back(Line{}.add("real time: " + bus.status()->realtime, Paint::dim));
   if (bus.two_daemons()) {
     lines.push_back(Line{}.add("two daemons run a bus of this name", Paint::bad));
   }
   lines.push_back(Line{});
-  const std::size_t events = std::min(shown_events, bus.events().size());
-  const std::size_t used = lines.size() + events + 2;
-  const std::size_t room = options.rows > used + 3 ? options.rows - used : 3;
-  add_signals(lines, bus, options, options.rows == 0 ? bus.signals().size() : room);
-  lines.push_back(Line{});
-  for (std::size_t i = bus.events().size() - events; i < bus.events().size(); ++i) {
+  const std::size_t messages = message_lines(options.rows);
+  const std::size_t used = lines.size() + 1 + messages;
+  const std::size_t room = options.rows == 0 ? bus.signals().size()
+                                             : std::max<std::size_t>(options.rows, used + 3) - used;
+  frame.first_signal = add_signals(lines, bus, options.first_signal, room);
+  const std::size_t count = std::min(messages, bus.events().size());
+  for (std::size_t i = bus.events().size() - count; i < bus.events().size(); ++i) {
     lines.push_back(event_line(bus.events()[i]));
   }
-  return lines;
+  return frame;
 }
 
 }  // namespace takt

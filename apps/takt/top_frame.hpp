@@ -13,11 +13,16 @@ struct TopOptions {
   std::size_t first_signal = 0;
 };
 
-/// What `takt top` shows of one bus.
-std::vector<Line> top_frame(const BusView& bus, const TopOptions& options);
+struct TopFrame {
+  std::vector<Line> lines;
+  std::size_t first_signal = 0;  ///< that is shown: the wanted one or, near the end, an earlier one
+};
+
+/// What `takt top` shows of one bus. Messages have a place of their own, so the values stand still.
+TopFrame top_frame(const BusView& bus, const TopOptions& options);
 
 /// The line of a bus and the table of its nodes: shared with `takt status`.
-std::vector<Line> status_lines(const status_t& status);
+std::vector<Line> status_lines(const BusView& bus);
 
 std::string nmt_name(int state);                   ///< "operational"
 std::string boot_name(const node_status_t& node);  ///< "ready", "step 4 of 31"
