@@ -8,6 +8,7 @@ namespace takt {
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
 void add_audit(CLI::App& app, int& exit_code);
+void add_budget(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_dump(CLI::App& app, int& exit_code);
 void add_emcy(CLI::App& app, int& exit_code);

@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
   takt::add_top(app, exit_code);
   takt::add_timing(app, exit_code);
   takt::add_emcy(app, exit_code);
+  takt::add_budget(app, exit_code);
   takt::add_export(app, exit_code);
   takt::add_import(app, exit_code);
   takt::add_learn(app, exit_code);

@@ -13,6 +13,8 @@
 #include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_compiler.hpp"
+#include "eds_parser/network_file/apply_changes.hpp"
+#include "eds_parser/network_file/changed_network.hpp"
 #include "eds_parser/network_file/domain_files.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
@@ -60,13 +62,14 @@ class Loader {
  public:
   Loader(const fs::path& path, DeviceDataUse use) : path_{path}, use_{use} {}
 
-  LoadedNetwork run() {
+  LoadedNetwork run(const WhatIf& changes) {
     const auto text = read_text(path_);
     if (!text) {
       error({}, "no-file", why_unreadable(path_));
       return std::move(out_);
     }
     NetworkSpec spec = read_network(*text, path_.string(), out_.findings);
+    apply_changes(changes, spec, out_.findings);
     note_placeholder(spec);
     for (NodeSpec& node : spec.nodes) read_node_files(spec, node);
     std::vector<const ObjectDictionary*> dictionaries;
@@ -295,7 +298,11 @@ class Loader {
 }  // namespace
 
 LoadedNetwork load_network(const fs::path& path, DeviceDataUse device_data) {
-  return Loader{path, device_data}.run();
+  return Loader{path, device_data}.run({});
+}
+
+LoadedNetwork load_changed_network(const fs::path& path, const WhatIf& changes) {
+  return Loader{path, DeviceDataUse::applied}.run(changes);
 }
 
 }  // namespace takt

@@ -46,8 +46,30 @@ def wrong_use(tools):
     tools.says("takt names the commands it has", ["takt", "plam"], 2, "no command 'plam'", " plan ")
     tools.says("takt eds names the commands it has", ["takt", "eds", "chek"], 2, "no command 'chek'", " check")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
-    for command in ([], ["dump"], ["eds"], ["plan"], ["sim"], ["simulate"], ["status"], ["top"], ["sdo"], ["nmt"]):
+    for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
+                    ["top"], ["sdo"], ["nmt"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
+
+
+def dump_chooses(tools, folder):
+    log = folder / "trace.log"
+    log.write_text("(1.0) can0 601#4000100000000000\n(1.1) can0 581#4300100092010200\n(1.2) can0 000#0100\n"
+                   "(1.3) can0 602#4000100000000000\n(1.4) can0 082#3081110000000000\n(1.5) can0 20000040#0000000000000000\n")
+    lines = lambda *options: tools.run(["takt", "dump", DEMO, log, *options]).stdout.splitlines()
+    check("takt dump shows all six", len(lines()) == 6, str(lines()))
+    check("--only EMCY,ERROR shows two", len(lines("--only", "emcy,ERROR")) == 2, str(lines("--only", "emcy,ERROR")))
+    check("--node by name shows its frames and commands to all", len(lines("--node", "shoulder")) == 3, str(lines("--node", "shoulder")))
+    check("--node by id", len(lines("--node", "2", "--only", "SDO")) == 1, str(lines("--node", "2", "--only", "SDO")))
+    tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is no node id 1..127")
+
+
+def budget(tools):
+    tools.says("the demo fits its bus", ["takt", "budget", DEMO], 0, "TPDO2 elbow", "It fits")
+    tools.says("it does not fit a quarter of its bit rate", ["takt", "budget", DEMO, "--what-if", "bitrate=250"], 1,
+               "It does not fit", "TOO LATE", "1000 kbit/s instead of 250", "--what-if period=")
+    tools.says("a PDO of a node that there is not", ["takt", "budget", DEMO, "--what-if", "wrist.tpdo1=2"], 2, "wrist", "elbow")
+    tools.says("a PDO less", ["takt", "budget", DEMO, "--what-if", "io.tpdo2=off", "--timeline"], 0, "It fits", "receive window ends 1")
+    tools.says("a bit rate that there is not", ["takt", "budget", DEMO, "--what-if", "bitrate=300"], 2, "bitrate=300")
 
 
 def babble(path, stop):
@@ -87,6 +109,8 @@ def main(binaries):
     tools = Tools(binaries)
     with tempfile.TemporaryDirectory() as folder:
         wrong_use(tools)
+        dump_chooses(tools, pathlib.Path(folder))
+        budget(tools)
         sdo_without_daemon(tools, pathlib.Path(folder))
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0

@@ -1,0 +1,120 @@
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "apps/simulate/duration.hpp"
+#include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "eds_parser/network_file/changed_network.hpp"
+#include "eds_parser/print/budget.hpp"
+
+namespace takt {
+namespace {
+
+constexpr int wrong_use = 2;
+
+struct Options {
+  std::string file;
+  std::vector<std::string> what_if;
+  std::string device_time = "30us";
+  std::string errors;
+  std::string svg;
+  bool timeline = false;
+  bool json = false;
+};
+
+/// The budget says it, too: BusBudget::refused.
+bool is_too_full(const Finding& finding) { return finding.rule == "does-not-fit"; }
+
+bool write_svg(const std::string& path, const BusPlan& plan, const BusBudget& budget) {
+  std::ofstream file{path};
+  print_budget_svg(file, plan, budget);
+  file.close();
+  return file.good();
+}
+
+int report(const Options& options, const LoadedNetwork& network, const WhatIf& changes,
+           const BudgetOptions& how) {
+  const BusPlan& plan = network.plan;
+  const BusBudget budget = bus_budget(plan, how);
+  if (!options.svg.empty() && !write_svg(options.svg, plan, budget)) {
+    return complain("can't write " + options.svg, wrong_use);
+  }
+  const bool fits = budget.fits();
+  std::vector<Suggestion> suggestions;
+  if (!fits) {
+    suggestions = cheapest_changes(plan, changes, how, [&](const WhatIf& other) {
+      auto changed = load_changed_network(options.file, other);
+      return has_error(changed.findings) ? std::nullopt : std::optional{std::move(changed.plan)};
+    });
+  }
+  if (options.json) {
+    print_budget_json(std::cout, plan, budget, suggestions);
+  } else {
+    print_budget_text(std::cout, plan, budget);
+    if (!fits) print_suggestions(std::cout, suggestions);
+    if (options.timeline) print_budget_timeline(std::cout, plan, budget);
+  }
+  return fits ? 0 : 1;
+}
+
+int run(const Options& options) {
+  WhatIf changes;
+  for (const auto& text : options.what_if) {
+    if (add_change(text, changes)) continue;
+    return complain("--what-if " + text +
+                        ": not as period=1ms, bitrate=500, services=2, counter=60, arm.tpdo2=10 "
+                        "(transmission), arm.tpdo2=off, arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
+                        "arm.tpdo2.cob_id=0x1C0",
+                    wrong_use);
+  }
+  const auto device_time = parse_duration(options.device_time);
+  if (!device_time) {
+    return complain("--device-time " + options.device_time + ": not as 200us", wrong_use);
+  }
+  BudgetOptions how{.device_time = *device_time};
+  if (!options.errors.empty()) {
+    const auto interval = parse_duration(options.errors);
+    if (!interval || *interval == Time{0}) {
+      return complain("--errors " + options.errors + ": not as 10ms", wrong_use);
+    }
+    how.errors = {.burst = 1, .interval = *interval};
+  }
+  const auto network = load_changed_network(options.file, changes);
+  bool readable = true;
+  for (const Finding& finding : network.findings) {
+    if (finding.severity == Severity::note || is_too_full(finding)) continue;
+    std::cerr << to_string(finding) << '\n';
+    readable = readable && finding.severity != Severity::error;
+  }
+  return readable ? report(options, network, changes, how) : wrong_use;
+}
+
+}  // namespace
+
+void add_budget(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* verb = app.add_subcommand("budget", "whether the frames of a network fit its bus");
+  verb->add_option("NET", options->file, "network file")->required();
+  verb->add_option("--what-if", options->what_if,
+                   "with another period=1ms, bitrate=500, arm.tpdo2=10 ...")
+      ->delimiter(',');
+  verb->add_option("--device-time", options->device_time,
+                   "from SYNC until a device's TPDO is ready for the bus")
+      ->type_name("TIME")
+      ->capture_default_str();
+  verb->add_option("--errors", options->errors, "one error on the wire each so often")
+      ->type_name("TIME");
+  verb->add_flag("--timeline", options->timeline, "a picture of one cycle");
+  verb->add_option("--svg", options->svg, "the same picture as an SVG file")->type_name("FILE");
+  verb->add_flag("--json", options->json, "one JSON document");
+  verb->footer(
+      "Worst stuffing, worst order, every frame as often as it may come. Exit code 1 where a "
+      "frame\n"
+      "can be too late; then the cheapest changes with which it fits are told.\n\n"
+      "Examples:\n  takt budget lift.yaml --timeline\n"
+      "  takt budget lift.yaml --what-if period=1ms,bitrate=500");
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,174 @@
+#include "eds_parser/budget/budget.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/budget/cycle_bounds.hpp"
+#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/frame_time.hpp"
+
+namespace takt {
+namespace {
+
+using Bounds = std::vector<std::optional<Time>>;
+
+/// Frames that come whenever they may, and those of the cycle as they look to them.
+Bounds bounds_of_others(const BusTraffic& traffic, const Bounds& in_cycle, const BusPlan& plan,
+                        const BudgetOptions& options, Emcys emcys) {
+  const auto sync = std::ranges::find(traffic.frames, Traffic::sync, &TrafficFrame::kind);
+  std::optional<Time> sync_end{Time{0}};
+  Time sync_frame{};
+  if (sync != traffic.frames.end()) {
+    sync_end = in_cycle[static_cast<std::size_t>(sync - traffic.frames.begin())];
+    sync_frame = sync->frame;
+  }
+  // Behind a SYNC that comes at any time the TPDOs do, too.
+  if (!sync_end) return Bounds(traffic.frames.size());
+  std::vector<FrameStream> streams;
+  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
+    const auto& frame = traffic.frames[i];
+    Time jitter = frame.jitter;
+    const bool with_sync = frame.in_cycle && frame.from_master && !plan.cycle.makes_sync();
+    if (frame.kind == Traffic::sync || with_sync) jitter = *sync_end - sync_frame;
+    if (frame.in_cycle && frame.kind == Traffic::tpdo) jitter = *sync_end + options.device_time;
+    streams.push_back({.priority = i,
+                       .frame = frame.frame,
+                       .period = frame.period,
+                       .jitter = jitter,
+                       .burst = frame.burst,
+                       .counts = frame.kind != Traffic::emcy || emcys == Emcys::one_of_each});
+  }
+  return worst_responses(streams, wire_time(1, plan.bitrate), options.errors);
+}
+
+Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
+              Emcys emcys) {
+  Bounds all = cycle_bounds(traffic, plan, options, emcys);
+  const Bounds others = bounds_of_others(traffic, all, plan, options, emcys);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!traffic.frames[i].in_cycle) all[i] = others[i];
+  }
+  return all;
+}
+
+/// While no event-driven output changes. Those themselves end with the last that go out.
+Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options) {
+  const auto changes = [](const TrafficFrame& frame) {
+    return frame.in_cycle && frame.on_change && frame.kind == Traffic::rpdo;
+  };
+  BusTraffic steady = traffic;
+  std::erase_if(steady.frames, changes);
+  const Bounds found = bounds(steady, plan, options, Emcys::none);
+  Bounds all(traffic.frames.size());
+  std::optional<Time> last{plan.cycle.output_deadline};
+  for (std::size_t i = 0, k = 0; i < all.size(); ++i) {
+    if (changes(traffic.frames[i])) continue;
+    all[i] = found[k++];
+    const bool output = traffic.frames[i].in_cycle && traffic.frames[i].kind == Traffic::rpdo;
+    if (output) last = last && all[i] ? std::optional{std::max(*last, *all[i])} : std::nullopt;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (changes(traffic.frames[i])) all[i] = last;
+  }
+  return all;
+}
+
+/// The next SYNC is queued then at the earliest, in the time of the rows.
+Time next_sync(const BusPlan& plan, const std::optional<Time>& sync_end) {
+  if (plan.cycle.makes_sync()) return plan.cycle.period;
+  return plan.cycle.period - std::min(sync_end.value_or(Time{0}), plan.cycle.period);
+}
+
+void limit_input(BudgetRow& row, const CyclePlan& cycle) {
+  if (!row.frame.awaited) return;
+  row.limit = cycle.receive_window;
+  row.why = BudgetLimit::receive_window;
+  if (cycle.output_deadline < row.limit) {
+    row.limit = cycle.output_deadline;
+    row.why = BudgetLimit::output_deadline;
+  }
+}
+
+void set_limits(BudgetRow& row, const BusPlan& plan, Time next) {
+  if (!row.frame.in_cycle || row.frame.kind == Traffic::sync) {
+    row.limit = row.frame.limit.value_or(Time{0});
+    row.why = row.frame.why;
+    return;
+  }
+  row.cycle = next;
+  // They leave the same queue as SYNC, in order: it is late, by what the master tells as late.
+  if (row.frame.kind == Traffic::rpdo) row.tolerance = plan.cycle.period / 10;
+  if (row.frame.kind == Traffic::tpdo) limit_input(row, plan.cycle);
+  const Time window = plan.cycle.sync_window;
+  if (window > Time{0} && (row.why == BudgetLimit::none || window < row.limit)) {
+    row.limit = window;
+    row.why = BudgetLimit::sync_window;
+  }
+}
+
+bool asks_for(const TrafficFrame& request, const TrafficFrame& answer) noexcept {
+  if (answer.kind == Traffic::sdo) return request.kind == Traffic::sdo && request.from_master;
+  return request.remote_request && request.cob_id == answer.cob_id;
+}
+
+/// Who asked waits since the request.
+void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
+  for (auto& answer : frames) {
+    if (!answer.answers || !answer.limit) continue;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (!asks_for(frames[i], answer) || !worst[i]) continue;
+      answer.limit = std::max(*answer.limit - *worst[i], Time{0});
+    }
+  }
+}
+
+}  // namespace
+
+bool BusBudget::fits() const noexcept {
+  return !refused && std::ranges::all_of(rows, &BudgetRow::fits);
+}
+
+bool BusBudget::fits_in_burst() const noexcept {
+  return !refused && std::ranges::all_of(rows, &BudgetRow::fits_in_burst);
+}
+
+bool BusBudget::fits_but_for_changes() const noexcept {
+  return fits() && std::ranges::any_of(rows, &BudgetRow::is_late_by_changes_only);
+}
+
+Time BusBudget::sync_delay() const noexcept {
+  Time delay{};
+  for (const auto& row : rows) {
+    if (row.tolerance == Time{0} || !row.worst) continue;
+    delay = std::max(delay, *row.worst - row.cycle);
+  }
+  return delay;
+}
+
+BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options) {
+  BusTraffic traffic = bus_traffic(plan, options);
+  const Bounds quiet = bounds(traffic, plan, options, Emcys::none);
+  const Bounds burst = bounds(traffic, plan, options, Emcys::one_of_each);
+  const Bounds steady = steady_bounds(traffic, plan, options);
+  BusBudget budget{.load = bus_load(traffic, plan.bitrate),
+                   .rows = {},
+                   .service_dialogues = traffic.service_dialogues,
+                   .service_round = traffic.service_round,
+                   .assumptions = std::move(traffic.assumptions),
+                   .refused = !fits_period(plan)};
+  limit_answers(traffic.frames, quiet);
+  std::optional<Time> sync_end;
+  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
+    if (traffic.frames[i].kind == Traffic::sync) sync_end = quiet[i];
+  }
+  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
+    BudgetRow row{.frame = std::move(traffic.frames[i]),
+                  .worst = quiet[i],
+                  .worst_in_burst = burst[i],
+                  .worst_steady = steady[i]};
+    set_limits(row, plan, next_sync(plan, sync_end));
+    budget.rows.push_back(std::move(row));
+  }
+  return budget;
+}
+
+}  // namespace takt

@@ -1,0 +1,180 @@
+#include "eds_parser/budget/combinations.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "eds_parser/budget/plan_changes.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t most_suggestions = 3;
+constexpr unsigned most_tries = 400;
+constexpr std::size_t turns_by_level[] = {2, 4, 8, 16, 32};
+constexpr unsigned factors_by_level[] = {2, 4, 8, 16, 32, 64};
+constexpr unsigned percents_by_level[] = {115, 130, 150, 200, 300, 400, 800};
+
+/// One kind of change, from little to much of it.
+struct Ladder {
+  unsigned cost = 0;  ///< of having it at all
+  std::vector<Suggestion> levels{};
+};
+
+/// How much of each ladder: 0 is none.
+using Levels = std::array<std::size_t, 5>;
+
+class Combinations {
+ public:
+  Combinations(const BusPlan& plan, const WhatIf& base, const ChangeFits& fits)
+      : plan_{plan}, base_{base}, fits_{fits} {
+    ladders_ = {identifiers(), inhibit_times(), turns(), periods(), bitrates()};
+  }
+
+  std::vector<Suggestion> run() {
+    for (std::size_t a = 0; a < ladders_.size(); ++a) {
+      for (std::size_t b = a + 1; b < ladders_.size(); ++b) try_pair(a, b);
+    }
+    if (found_.empty()) try_all();
+    std::ranges::stable_sort(found_, {}, [this](const Levels& levels) { return cost(levels); });
+    std::vector<Suggestion> out;
+    for (const auto& levels : found_) {
+      if (out.size() < most_suggestions) out.push_back(told(levels));
+    }
+    return out;
+  }
+
+ private:
+  Ladder identifiers() const {
+    auto moved = lower_priorities(plan_);
+    if (moved.empty()) return {};
+    const std::string text = "lower priority than all synchronous PDOs for " + names_of(moved);
+    return {.cost = 1, .levels = {{.text = text, .changes = {.pdos = std::move(moved)}}}};
+  }
+
+  Ladder inhibit_times() const {
+    Ladder ladder{.cost = 1};
+    for (const unsigned factor : factors_by_level) {
+      auto longer = longer_inhibits(plan_, factor);
+      if (longer.empty()) break;
+      const std::string text =
+          "inhibit times of " + std::to_string(factor) + " times as long for " + names_of(longer);
+      ladder.levels.push_back({.text = text, .changes = {.pdos = std::move(longer)}});
+    }
+    return ladder;
+  }
+
+  Ladder turns() const {
+    Ladder ladder{.cost = 2};
+    for (const std::size_t count : turns_by_level) {
+      auto changes = by_turns(plan_, count);
+      if (changes.pdos.empty()) break;
+      const std::string text =
+          "every second SYNC, by turns (SYNC with counter), for " + names_of(changes.pdos);
+      ladder.levels.push_back({.text = text, .changes = std::move(changes)});
+    }
+    return ladder;
+  }
+
+  Ladder periods() const {
+    Ladder ladder{.cost = 2};
+    if (!plan_.cycle.sync) return ladder;
+    const auto now = static_cast<std::uint64_t>(plan_.cycle.period / std::chrono::microseconds{1});
+    for (const unsigned percent : percents_by_level) {
+      const auto us = round_period(static_cast<std::uint32_t>(now * percent / 100));
+      ladder.levels.push_back({.text = period_text(plan_, us), .changes = {.sync_period_us = us}});
+    }
+    return ladder;
+  }
+
+  Ladder bitrates() const {
+    Ladder ladder{.cost = 3};
+    for (const auto rate : known_bitrates) {
+      if (rate * 1000U <= plan_.bitrate) continue;
+      ladder.levels.push_back(
+          {.text = bitrate_text(plan_, rate), .changes = {.bitrate_kbit = rate}});
+    }
+    return ladder;
+  }
+
+  WhatIf changes_of(const Levels& levels) const {
+    WhatIf changes = base_;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (levels[i] != 0) merge(changes, ladders_[i].levels[levels[i] - 1].changes);
+    }
+    return changes;
+  }
+
+  bool fits(const Levels& levels) { return tries_++ < most_tries && fits_(changes_of(levels)); }
+
+  unsigned cost(const Levels& levels) const {
+    unsigned sum = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (levels[i] != 0) sum += ladders_[i].cost + static_cast<unsigned>(levels[i]);
+    }
+    return sum;
+  }
+
+  /// As little of that one as is enough, if more of it is never worse.
+  void lower(Levels& levels, std::size_t which, std::size_t least) {
+    std::size_t low = least;
+    while (low < levels[which]) {
+      Levels less = levels;
+      less[which] = low + (levels[which] - low) / 2;
+      if (fits(less)) {
+        levels = less;
+      } else {
+        low = less[which] + 1;
+      }
+    }
+  }
+
+  void try_pair(std::size_t a, std::size_t b) {
+    Levels most{};
+    most[a] = ladders_[a].levels.size();
+    most[b] = ladders_[b].levels.size();
+    if (most[a] == 0 || most[b] == 0 || !fits(most)) return;
+    std::optional<Levels> best;
+    for (std::size_t first = 1; first <= ladders_[a].levels.size(); ++first) {
+      Levels levels = most;
+      levels[a] = first;
+      if (first != most[a] && !fits(levels)) continue;
+      lower(levels, b, 1);
+      if (!best || cost(levels) < cost(*best)) best = levels;
+    }
+    if (best) found_.push_back(*best);
+  }
+
+  /// Of all there is, as little as possible, the dearest first.
+  void try_all() {
+    Levels levels{};
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = ladders_[i].levels.size();
+    if (!fits(levels)) return;
+    for (std::size_t i = levels.size(); i-- > 0;) lower(levels, i, 0);
+    found_.push_back(levels);
+  }
+
+  Suggestion told(const Levels& levels) const {
+    Suggestion all{.text = {}, .changes = changes_of(levels)};
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (levels[i] == 0) continue;
+      all.text += (all.text.empty() ? "" : "; and ") + ladders_[i].levels[levels[i] - 1].text;
+    }
+    return all;
+  }
+
+  const BusPlan& plan_;
+  const WhatIf& base_;
+  const ChangeFits& fits_;
+  std::array<Ladder, 5> ladders_;
+  std::vector<Levels> found_;
+  unsigned tries_ = 0;
+};
+
+}  // namespace
+
+std::vector<Suggestion> cheapest_combinations(const BusPlan& plan, const WhatIf& base,
+                                              const ChangeFits& fits) {
+  return Combinations{plan, base, fits}.run();
+}
+
+}  // namespace takt

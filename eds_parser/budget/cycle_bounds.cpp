@@ -1,0 +1,316 @@
+#include "eds_parser/budget/cycle_bounds.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/budget/cycle_frames.hpp"
+#include "eds_parser/frame_time.hpp"
+
+namespace takt {
+namespace {
+
+constexpr unsigned longest_data = 8;
+constexpr int most_rounds = 16;
+constexpr int longest_chain = 32;  // cycles
+
+class CycleAnalysis : CycleFrames {
+ public:
+  CycleAnalysis(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
+                Emcys emcys)
+      : CycleFrames{traffic, plan, options, emcys}, bounds_(frames_.size()) {}
+
+  std::vector<std::optional<Time>> run() {
+    if (is_overloaded()) return std::move(bounds_);
+    if (!find_sync_jitter() || !find_outputs())
+      return std::vector<std::optional<Time>>(frames_.size());
+    bound_sync();
+    bound_inputs();
+    return std::move(bounds_);
+  }
+
+ private:
+  /// Frames that come by themselves since then, up to a priority, delay one of the cycle. The bus
+  /// is busy with these and with what certainly goes before it all the time.
+  struct Busy {
+    std::size_t at = 0;  ///< what is before it in `frames_` goes first
+    Time since{};
+    Time work{};  ///< that certainly goes before it
+    Time own{};
+    std::optional<std::size_t> input{};  ///< of a TPDO: the SYNC that it follows
+    bool output = false;
+  };
+
+  std::optional<Time> end_of(const Busy& busy) const {
+    Time longest = busy.own;
+    for (std::size_t k = 0; k < busy.at; ++k) longest = std::max(longest, frames_[k].frame);
+    for (Time waited = busy.work;;) {
+      const Time next = busy.work + by_themselves(0, busy.at, waited) +
+                        behind_next_sync(busy, waited) +
+                        error_time(waited + busy.own, options_.errors, bit_, longest);
+      if (next <= waited) return busy.since + waited + busy.own;
+      if (next > (longest_chain + 3) * plan_.cycle.period) return std::nullopt;
+      waited = next;
+    }
+  }
+
+  /// What comes with the outputs and the next SYNC, and goes before a frame that is as late.
+  Time behind_next_sync(const Busy& busy, Time waited) const {
+    // Behind late outputs the master's own SYNC waits, too.
+    if (!busy.input && (!busy.output || plan_.cycle.makes_sync())) return Time{0};
+    const Time until = busy.since + waited + bit_ + sync_jitter_;
+    Time sum{};
+    if (busy.input && until > plan_.cycle.receive_window) sum += by_master(busy.at);
+    for (std::size_t cycle = 0;; ++cycle) {
+      const Time sync = static_cast<Time::rep>(cycle) * plan_.cycle.period;
+      if (sync - origin() > until) return sum;
+      if (cycle != 0)
+        sum += sync_frame() + inputs_before(busy.at, busy.input.value_or(any_cycle) + cycle);
+      if (busy.input && sync + plan_.cycle.output_deadline <= until) {
+        sum += outputs_before(busy.at, cycle);
+      }
+    }
+  }
+
+  /// What to make of it that outputs may end behind the next SYNC, which leaves the same queue.
+  enum class LateSync : std::uint8_t {
+    never,        ///< they do not
+    follows_up,   ///< a chain of them, each with the time that the devices take to answer
+    at_any_time,  ///< each for itself is as late as it may
+  };
+
+  static std::optional<Time> later(std::optional<Time> a, std::optional<Time> b) {
+    return a && b ? std::optional{std::max(*a, *b)} : std::nullopt;
+  }
+
+  /// The bus has been busy since the outputs so many cycles ago: with them, with SYNC, and with all
+  /// of the cycles between.
+  Busy busy_since_outputs(std::size_t at, int cycles) const {
+    const int inputs = cycles - (inputs_may_follow_outputs() ? 0 : 1);
+    Busy busy{.at = at,
+              .since = plan_.cycle.output_deadline - cycles * plan_.cycle.period + sync_jitter_,
+              .work = outputs_blocking_ + cycles * (outputs_work_ + sync_frame()) +
+                      inputs * inputs_work_};
+    if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
+    return busy;
+  }
+
+  /// The bus has been busy since SYNC so many cycles ago, and the devices have computed since.
+  Busy busy_since_sync(std::size_t at, int cycles) const {
+    Busy busy{.at = at, .since = -cycles * plan_.cycle.period};
+    busy.work = sync_blocking_ + sync_frame() + options_.device_time;
+    if (late_ == LateSync::at_any_time)
+      busy.work += std::max(sync_late() - sync_blocking_, Time{0});
+    if (cycles == 0) return busy;
+    busy.since += sync_jitter_;
+    busy.work += gap_blocking() + cycles * (sync_frame() + inputs_work_ + outputs_work_);
+    if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
+    return busy;
+  }
+
+  /// In each of the cycles the time that devices need, and what may begin in it, but for the last
+  /// beginning; and what goes before the lowest output, though not before `at`.
+  Time follow_up(const Busy& busy, int cycles) const {
+    const Time within = sync_late() - busy.since;
+    return cycles * options_.device_time + (cycles - 1) * gap_blocking() +
+           by_themselves(std::min(busy.at, lowest_output_), lowest_output_, within);
+  }
+
+  /// SYNC waits behind the outputs before it: they leave one queue.
+  Time sync_late() const noexcept {
+    if (!plan_.cycle.makes_sync()) return Time{0};
+    return std::max(outputs_end_ - plan_.cycle.period, Time{0});
+  }
+
+  bool inputs_may_follow_outputs() const noexcept {
+    return sync_late() + sync_blocking_ + sync_frame() + options_.device_time >
+           plan_.cycle.output_deadline;
+  }
+
+  /// What may begin while devices compute.
+  Time gap_blocking() const noexcept {
+    return options_.device_time > Time{0} ? outputs_blocking_ : Time{0};
+  }
+
+  /// Where the bus is busy for longer than a cycle, the worst need not be in the first one.
+  /// None: it may be busy for ever.
+  std::optional<std::vector<Busy>> busy_before(std::size_t at) const {
+    std::vector<Busy> all{busy_since_sync(at, 0)};
+    for (int cycles = 1; cycles <= longest_chain; ++cycles) {
+      const Busy outputs = busy_since_outputs(at, cycles);
+      const Busy sync = busy_since_sync(at, cycles);
+      all.push_back(outputs);
+      all.push_back(sync);
+      const auto end = later(end_of(outputs), end_of(sync));
+      if (end && *end <= sync_frame()) return all;
+    }
+    return std::nullopt;
+  }
+
+  /// The master's own frames leave one queue: outputs delay SYNC.
+  void bound_sync() {
+    if (!sync_) return;
+    const Time longest = frames_[*sync_].frame;
+    bounds_[*sync_] = later(end_of({.at = *sync_, .work = sync_blocking_, .own = longest}),
+                            end_of({.at = *sync_, .since = sync_late(), .own = longest}));
+  }
+
+  void bound_inputs() {
+    relieved_ = false;
+    bound_each_input();
+    // A cycle without room for a dialogue lets a request out right behind SYNC.
+    const auto last = last_input();
+    const Time dialogue = wire_time(2 * worst_frame_bits(longest_data), plan_.bitrate);
+    relieved_ = !last || *last + dialogue > plan_.cycle.output_deadline;
+    if (relieved_) bound_each_input();
+  }
+
+  void bound_each_input() {
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (!is_input(frames_[i])) continue;
+      std::optional<Time> worst{Time{0}};
+      for (std::size_t cycle = 0; cycle < turns() && worst; ++cycle) {
+        if (!has_turn(frames_[i], cycle)) continue;
+        const auto end = input_end(i, cycle);
+        worst = end ? std::optional{std::max(*worst, *end)} : std::nullopt;
+      }
+      bounds_[i] = worst;
+    }
+  }
+
+  /// TPDOs follow SYNC: each of higher priority goes before it once.
+  std::optional<Time> input_end(std::size_t at, std::size_t cycle) const {
+    const auto& own = frames_[at];
+    Time others = (own.burst - 1) * own.frame + begun_before_input(at, cycle);
+    for (std::size_t k = 0; k < at && !own.awaited; ++k) {
+      if (frames_[k].kind == Traffic::nmt) others += frames_[k].frame;
+    }
+    return end_of_input(at, cycle, others + inputs_before(at, cycle));
+  }
+
+  /// One frame of lower priority may have begun while the device computed; or the one that the
+  /// master sends right behind SYNC.
+  Time begun_before_input(std::size_t at, std::size_t cycle) const {
+    const bool by_master = relieved_ || !frames_[at].awaited;
+    Time begun{};
+    for (std::size_t k = 0; k < at && relieved_; ++k) {
+      if (frames_[k].kind == Traffic::nmt) begun = frames_[k].frame;
+    }
+    if (options_.device_time == Time{0}) return begun;
+    const Time lower = blocking(at, [&](const TrafficFrame& other) {
+      if (is_input(other)) return has_turn(other, cycle);
+      return comes_by_itself(other) || (other.kind == Traffic::sdo && by_master);
+    });
+    return std::max(begun, lower);
+  }
+
+  std::optional<Time> end_of_input(std::size_t at, std::size_t cycle, Time others) const {
+    const auto chains = busy_before(at);
+    if (!chains) return std::nullopt;
+    std::optional<Time> end{Time{0}};
+    for (auto busy : *chains) {
+      busy.work += others;
+      busy.own = frames_[at].frame;
+      busy.since -= origin();
+      busy.input = cycle;
+      end = later(end, end_of(busy));
+    }
+    return end;
+  }
+
+  std::optional<Time> last_input() const {
+    Time last{};
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (!is_input(frames_[i])) continue;
+      if (!bounds_[i]) return std::nullopt;
+      last = std::max(last, *bounds_[i]);
+    }
+    return last;
+  }
+
+  /// A SYNC that is waited for is not told from one that was queued later: those before and behind
+  /// it are so much nearer. False: there is no end to it.
+  bool find_sync_jitter() {
+    if (!sync_ || plan_.cycle.makes_sync()) return true;
+    const auto wait = end_of({.at = *sync_, .work = sync_blocking_});
+    sync_jitter_ = wait.value_or(Time{0});
+    return wait.has_value();
+  }
+
+  /// False: there is no end to it.
+  bool find_outputs() {
+    for (const auto late : {LateSync::never, LateSync::follows_up, LateSync::at_any_time}) {
+      late_ = late;
+      outputs_end_ = Time{0};
+      if (settle_outputs()) return true;
+    }
+    return false;
+  }
+
+  /// They may delay SYNC, and that those of the next cycle.
+  bool settle_outputs() {
+    for (int round = 0; round < most_rounds; ++round) {
+      const Time before = outputs_end_;
+      if (!bound_outputs()) return false;
+      if (late_ == LateSync::never && sync_late() > Time{0}) return false;
+      if (outputs_end_ == before) return true;
+    }
+    return false;
+  }
+
+  /// Outputs go out at the output deadline from one queue, in the order of their identifiers:
+  /// what has priority over the lowest of those before may come between.
+  bool bound_outputs() {
+    Time before{};
+    std::size_t lowest = 0;
+    for (const std::size_t i : queue_) {
+      lowest = std::max(lowest, i);
+      before += (frames_[i].burst - 1) * frames_[i].frame;
+      bounds_[i] = output_end(lowest, before, frames_[i].frame);
+      before += frames_[i].frame;
+      if (!bounds_[i]) return false;
+      outputs_end_ = std::max(outputs_end_, *bounds_[i]);
+    }
+    // Behind those of the cycle before they would wait for what has priority over the last.
+    return outputs_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
+  }
+
+  std::optional<Time> output_end(std::size_t lowest, Time before, Time own) const {
+    const auto may_begin = [this](const TrafficFrame& other) { return comes_by_itself(other); };
+    Time inputs = blocking(lowest, [&](const TrafficFrame& other) {
+      return comes_by_itself(other) || is_input(other);
+    });
+    for (std::size_t k = 0; k < lowest; ++k) {
+      if (is_input(frames_[k])) inputs += frames_[k].burst * frames_[k].frame;
+    }
+    const Time begun = inputs_may_follow_outputs() ? inputs : blocking(lowest, may_begin);
+    auto end = end_of({.at = lowest,
+                       .since = plan_.cycle.output_deadline,
+                       .work = before + begun,
+                       .own = own,
+                       .output = true});
+    const auto chains = busy_before(lowest);
+    if (!chains) return std::nullopt;
+    for (auto busy : *chains) {
+      busy.work += inputs + before;
+      busy.own = own;
+      busy.output = true;
+      busy.since -= origin();
+      end = later(end, end_of(busy));
+    }
+    return end;
+  }
+
+  std::vector<std::optional<Time>> bounds_;
+  Time sync_jitter_{};  ///< of the arrival of another device's SYNC
+  Time outputs_end_{};  ///< at the latest
+  LateSync late_ = LateSync::never;
+  bool relieved_ = false;
+};
+
+}  // namespace
+
+std::vector<std::optional<Time>> cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
+                                              const BudgetOptions& options, Emcys emcys) {
+  return CycleAnalysis{traffic, plan, options, emcys}.run();
+}
+
+}  // namespace takt

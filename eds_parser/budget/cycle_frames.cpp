@@ -1,0 +1,102 @@
+#include "eds_parser/budget/cycle_frames.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "eds_parser/frame_time.hpp"
+
+namespace takt {
+
+CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
+                         const BudgetOptions& options, Emcys emcys)
+    : frames_{traffic.frames},
+      plan_{plan},
+      options_{options},
+      emcys_{emcys},
+      bit_{wire_time(1, plan.bitrate)} {
+  count_turns();
+  find_ends_of_cycle();
+}
+
+void CycleFrames::find_ends_of_cycle() {
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (frames_[i].kind == Traffic::sync) sync_ = i;
+    if (is_output(frames_[i])) queue_.push_back(i);
+    if (is_input(frames_[i])) inputs_work_ += frames_[i].burst * frames_[i].frame;
+    if (is_output(frames_[i])) outputs_work_ += frames_[i].burst * frames_[i].frame;
+  }
+  std::ranges::stable_sort(queue_, {}, [this](std::size_t i) { return frames_[i].cob_id; });
+  for (const std::size_t i : queue_) lowest_output_ = std::max(lowest_output_, i);
+  const auto by_itself = [this](const TrafficFrame& other) { return comes_by_itself(other); };
+  if (sync_) sync_blocking_ = blocking(*sync_, by_itself);
+  outputs_blocking_ = blocking(lowest_output_, by_itself);
+}
+
+bool CycleFrames::is_overloaded() const noexcept {
+  const auto share = [](Time part, Time whole) {
+    return static_cast<double>(part.count()) / static_cast<double>(whole.count());
+  };
+  double sum = share(sync_frame() + inputs_work_ + outputs_work_, plan_.cycle.period);
+  for (std::size_t k = 0; k < lowest_output_; ++k) {
+    const auto& frame = frames_[k];
+    if (comes_by_itself(frame)) sum += share(frame.burst * frame.frame, frame.period);
+  }
+  return sum >= 1.0;
+}
+
+void CycleFrames::count_turns() {
+  std::size_t turns = 1;
+  for (const auto& frame : frames_) {
+    if (frame.turn) turns = std::lcm(turns, std::size_t{frame.every});
+    if (turns > most_turns) break;
+  }
+  turns_ = turns;
+}
+
+bool CycleFrames::has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept {
+  return turns_ > most_turns || cycle >= any_cycle || !frame.turn ||
+         cycle % frame.every == *frame.turn;
+}
+
+Time CycleFrames::by_themselves(std::size_t first, std::size_t end, Time within) const {
+  Time sum{};
+  for (std::size_t k = first; k < end; ++k) {
+    const auto& other = frames_[k];
+    if (!comes_by_itself(other)) continue;
+    const auto times =
+        ((within + bit_ + other.jitter).count() + other.period.count() - 1) / other.period.count();
+    sum += times * other.burst * other.frame;
+  }
+  return sum;
+}
+
+Time CycleFrames::by_master(std::size_t at) const {
+  Time sum{};
+  for (std::size_t k = 0; k < at; ++k) {
+    const auto& other = frames_[k];
+    if (other.from_master && !other.in_cycle) sum += other.burst * other.frame;
+  }
+  return sum;
+}
+
+Time CycleFrames::inputs_before(std::size_t at, std::size_t cycle) const {
+  Time sum{};
+  for (std::size_t k = 0; k < at; ++k) {
+    const auto& other = frames_[k];
+    if (is_input(other) && has_turn(other, cycle)) sum += other.burst * other.frame;
+  }
+  return sum;
+}
+
+Time CycleFrames::outputs_before(std::size_t at, std::size_t cycles_later) const {
+  Time outputs{};
+  if (cycles_later == 0) {
+    outputs = blocking(at, [this](const TrafficFrame& other) { return is_output(other); });
+  }
+  for (std::size_t k = 0; k < at; ++k) {
+    if (is_output(frames_[k])) outputs += frames_[k].burst * frames_[k].frame;
+  }
+  return outputs;
+}
+
+}  // namespace takt

@@ -1,0 +1,80 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "eds_parser/budget/cycle_bounds.hpp"
+#include "eds_parser/budget/traffic.hpp"
+
+namespace takt {
+
+/// The frames of a bus as they meet in a cycle: sums of those that may go before another, without
+/// a word of when.
+class CycleFrames {
+ protected:
+  static constexpr std::size_t most_turns = 240;  ///< SYNCs until the cycles repeat
+  static constexpr std::size_t any_cycle = 1'000'000;
+
+  CycleFrames(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
+              Emcys emcys);
+
+  bool is_input(const TrafficFrame& frame) const noexcept {
+    return frame.in_cycle && frame.kind == Traffic::tpdo;
+  }
+  bool is_output(const TrafficFrame& frame) const noexcept {
+    return frame.in_cycle && frame.kind == Traffic::rpdo;
+  }
+  bool comes_by_itself(const TrafficFrame& frame) const noexcept {
+    return frame.by_itself() && (frame.kind != Traffic::emcy || emcys_ == Emcys::one_of_each);
+  }
+
+  /// The longest frame of lower priority than `at` that may just have begun.
+  template <class MayBlock>
+  Time blocking(std::size_t at, MayBlock may_block) const {
+    Time longest{};
+    for (std::size_t k = at + 1; k < frames_.size(); ++k) {
+      if (may_block(frames_[k])) longest = std::max(longest, frames_[k].frame);
+    }
+    return longest;
+  }
+
+  /// The cycle, and what may go before its last frame, need the whole bus.
+  bool is_overloaded() const noexcept;
+  bool has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept;
+  Time by_themselves(std::size_t first, std::size_t end, Time within) const;
+  /// The master waits no longer for what is late: what else it has to send comes.
+  Time by_master(std::size_t at) const;
+  Time inputs_before(std::size_t at, std::size_t cycle) const;
+  /// What goes out with the outputs before a TPDO that is as late as they. In its own cycle one of
+  /// lower priority may have begun.
+  Time outputs_before(std::size_t at, std::size_t cycles_later) const;
+  Time sync_frame() const noexcept { return sync_ ? frames_[*sync_].frame : Time{0}; }
+  /// As from the arrival of a SYNC that the master follows.
+  Time origin() const noexcept { return plan_.cycle.makes_sync() ? Time{0} : sync_frame(); }
+
+  /// So many cycles are looked at.
+  std::size_t turns() const noexcept { return turns_ < most_turns ? turns_ : most_turns; }
+
+  const std::vector<TrafficFrame>& frames_;
+  const BusPlan& plan_;
+  const BudgetOptions& options_;
+  Emcys emcys_;
+  Time bit_;
+  std::optional<std::size_t> sync_;
+  std::vector<std::size_t> queue_;  ///< outputs, as they go out
+  std::size_t lowest_output_ = 0;
+  Time inputs_work_{};
+  Time outputs_work_{};
+  Time outputs_blocking_{};
+  Time sync_blocking_{};
+
+ private:
+  /// SYNC, the queue of the outputs, and what may have begun when they are ready.
+  void find_ends_of_cycle();
+  /// The cycles differ where the turns of TPDOs are certain.
+  void count_turns();
+
+  std::size_t turns_ = 1;
+};
+
+}  // namespace takt

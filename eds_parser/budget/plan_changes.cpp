@@ -1,0 +1,109 @@
+#include "eds_parser/budget/plan_changes.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t first_pdo_id = 0x181;
+constexpr std::uint32_t last_pdo_id = 0x57F;
+constexpr std::uint8_t every_second = 2;
+constexpr std::uint8_t even_counter = 240;
+constexpr Time inhibit_unit = std::chrono::microseconds{100};
+constexpr Time::rep longest_inhibit = 0xFFFF;
+
+PdoChange change_of(const BusPlan& plan, const PdoRow& row) {
+  return {.node = plan.nodes[row.node_index].name, .tpdo = true, .number = row.number};
+}
+
+/// 100, 200, 500 us or ms steps, as people write periods.
+std::uint32_t step_of(std::uint32_t period_us) {
+  return period_us < 5'000 ? 50 : period_us < 20'000 ? 200 : 1'000;
+}
+
+bool is_event_driven(const PdoRow& row) { return !row.synchronous() && !row.multiplexed(); }
+
+}  // namespace
+
+std::string names_of(const std::vector<PdoChange>& changes) {
+  std::string names;
+  for (const auto& change : changes) {
+    names += (names.empty() ? "" : ", ") + std::string{change.tpdo ? "TPDO" : "RPDO"} +
+             std::to_string(change.number) + ' ' + change.node;
+  }
+  return names;
+}
+
+std::vector<PdoChange> lower_priorities(const BusPlan& plan) {
+  if (!plan.cycle.sync) return {};
+  std::set<std::uint32_t> used;
+  std::uint32_t lowest = first_pdo_id;
+  for (const auto* rows : {&plan.pdos.tpdos, &plan.pdos.rpdos}) {
+    for (const auto& row : *rows) {
+      used.insert(row.cob_id.id());
+      const bool counts = row.synchronous() && !row.cob_id.is_extended();
+      if (counts) lowest = std::max(lowest, row.cob_id.id());
+    }
+  }
+  std::vector<PdoChange> moved;
+  std::uint32_t next = last_pdo_id;
+  for (const auto& row : plan.pdos.tpdos) {
+    if (row.synchronous() || row.cob_id.is_extended() || row.cob_id.id() > lowest) continue;
+    while (next > lowest && used.contains(next)) --next;
+    if (next <= lowest) return {};
+    auto change = change_of(plan, row);
+    change.cob_id = next--;
+    moved.push_back(std::move(change));
+  }
+  return moved;
+}
+
+WhatIf by_turns(const BusPlan& plan, std::size_t count) {
+  std::vector<const PdoRow*> rows;
+  for (const auto& row : plan.pdos.tpdos) {
+    if (row.transmission == 1 && !row.multiplexed()) rows.push_back(&row);
+  }
+  if (!plan.cycle.sync || rows.size() < count) return {};
+  std::ranges::sort(rows, std::ranges::greater{}, [](const PdoRow* row) { return row->cob_id; });
+  WhatIf changes;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto change = change_of(plan, *rows[i]);
+    change.transmission = every_second;
+    change.sync_start = static_cast<std::uint8_t>(1 + i % 2);
+    changes.pdos.push_back(std::move(change));
+  }
+  const bool counted = plan.cycle.sync_overflow >= 2 && plan.cycle.sync_overflow % 2 == 0;
+  if (!counted) changes.sync_overflow = even_counter;
+  return changes;
+}
+
+std::vector<PdoChange> longer_inhibits(const BusPlan& plan, unsigned factor) {
+  std::vector<PdoChange> longer;
+  for (const auto& row : plan.pdos.tpdos) {
+    if (!is_event_driven(row)) continue;
+    const Time now = row.inhibit > Time{0} ? row.inhibit : plan.cycle.period;
+    const auto units = (now * factor + inhibit_unit - Time{1}) / inhibit_unit;
+    auto change = change_of(plan, row);
+    change.inhibit_time = static_cast<std::uint16_t>(std::min(units, longest_inhibit));
+    longer.push_back(std::move(change));
+  }
+  return longer;
+}
+
+std::uint32_t round_period(std::uint32_t period_us) {
+  const auto step = step_of(period_us);
+  return (period_us + step - 1) / step * step;
+}
+
+std::string period_text(const BusPlan& plan, std::uint32_t period_us) {
+  const auto now = std::chrono::ceil<std::chrono::microseconds>(plan.cycle.period).count();
+  return "SYNC every " + std::to_string(period_us) + " us instead of " + std::to_string(now) +
+         " us";
+}
+
+std::string bitrate_text(const BusPlan& plan, std::uint16_t kbit) {
+  return std::to_string(kbit) + " kbit/s instead of " + std::to_string(plan.bitrate / 1000);
+}
+
+}  // namespace takt

@@ -1,0 +1,288 @@
+#include "eds_parser/budget/traffic.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "eds_parser/budget/load.hpp"
+#include "eds_parser/budget/service_traffic.hpp"
+#include "eds_parser/frame_time.hpp"
+
+namespace takt {
+namespace {
+
+constexpr unsigned longest_data = 8;
+constexpr Time nmt_interval = std::chrono::seconds{1};
+
+/// Bits in the order of arbitration: a base identifier goes before the extended ones that begin
+/// with it, data before a remote request. ISO 11898-1, 10.4.
+std::uint64_t rank(const TrafficFrame& frame) noexcept {
+  const std::uint64_t id = frame.cob_id.id();
+  const std::uint64_t remote = frame.remote_request ? 1 : 0;
+  if (!frame.cob_id.is_extended()) return id << 21 | remote << 20;
+  return (id >> 18) << 21 | 3ULL << 19 | (id & 0x3FFFF) << 1 | remote;
+}
+
+class TrafficCollector {
+ public:
+  TrafficCollector(const BusPlan& plan, const BudgetOptions& options)
+      : plan_{plan}, options_{options} {}
+
+  BusTraffic run() {
+    collect_master();
+    for (const auto& row : plan_.pdos.tpdos) add_tpdo(row);
+    for (const auto& row : plan_.pdos.rpdos) add_rpdo(row);
+    for (const auto& node : plan_.nodes) collect_node(node);
+    services_ = service_share(plan_, bus_load(out_, plan_.bitrate).worst);
+    collect_sdo();
+    std::ranges::stable_sort(out_.frames, {}, rank);
+    out_.service_dialogues = services_.dialogues;
+    out_.service_round = services_.round;
+    tell_assumptions();
+    return std::move(out_);
+  }
+
+ private:
+  TrafficFrame& add(TrafficFrame frame) {
+    frame.frame =
+        wire_time(worst_frame_bits(frame.bytes, frame.cob_id.is_extended()), plan_.bitrate);
+    return out_.frames.emplace_back(std::move(frame));
+  }
+
+  void collect_master() {
+    add({.name = "NMT",
+         .kind = Traffic::nmt,
+         .cob_id = CobId::base(0),
+         .from_master = true,
+         .bytes = 2,
+         .period = nmt_interval});
+    if (plan_.time.period > Time{0}) {
+      add({.name = "TIME",
+           .kind = Traffic::time,
+           .cob_id = plan_.time.cob_id,
+           .from_master = true,
+           .bytes = 6,
+           .period = plan_.time.period});
+    }
+    if (plan_.cycle.sync) {
+      add({.name = "SYNC",
+           .kind = Traffic::sync,
+           .cob_id = plan_.cycle.sync_cob_id,
+           .from_master = plan_.cycle.makes_sync(),
+           .in_cycle = true,
+           .bytes = static_cast<std::uint8_t>(plan_.cycle.sync_overflow != 0 ? 1 : 0),
+           .period = plan_.cycle.period,
+           .limit = plan_.cycle.period,
+           .why = BudgetLimit::own_period});
+    }
+    if (plan_.master_heartbeat > Time{0}) {
+      auto& frame = add({.name = "heartbeat master",
+                         .kind = Traffic::error_control,
+                         .cob_id = CobId::base(0x700U + plan_.master_id.value()),
+                         .from_master = true,
+                         .bytes = 1,
+                         .period = plan_.master_heartbeat});
+      limit_by_consumers(frame, plan_.master_id);
+    }
+  }
+
+  /// Of those who wait for the next frame so long, the one with the least patience counts.
+  static void limit_by_wait(TrafficFrame& frame, Time wait, std::string who) {
+    if (wait <= Time{0}) return;
+    const Time beyond_period = std::max(wait - frame.period, Time{0});
+    if (frame.limit && *frame.limit <= beyond_period) return;
+    frame.limit = beyond_period;
+    frame.why = BudgetLimit::patience;
+    frame.waits = std::move(who);
+  }
+
+  /// Devices that watch these heartbeats.
+  void limit_by_consumers(TrafficFrame& frame, NodeId producer) const {
+    for (const auto& node : plan_.nodes) {
+      for (const auto& watch : node.watches) {
+        if (watch.producer == producer)
+          limit_by_wait(frame, watch.longest, node.name + " (0x1016)");
+      }
+    }
+  }
+
+  std::string name_of(const PdoRow& pdo, std::string_view kind) const {
+    return std::string{kind} + std::to_string(pdo.number) + ' ' + plan_.nodes[pdo.node_index].name;
+  }
+
+  /// An MPDO is a row for each object; their frames share one identifier.
+  bool joins_frame_of_its_mpdo(const PdoRow& pdo, Traffic kind) {
+    if (!pdo.multiplexed()) return false;
+    const auto same = std::ranges::find_if(out_.frames, [&](const TrafficFrame& frame) {
+      return frame.kind == kind && frame.cob_id == pdo.cob_id;
+    });
+    if (same == out_.frames.end()) return false;
+    ++same->burst;
+    return true;
+  }
+
+  void add_tpdo(const PdoRow& pdo) {
+    if (joins_frame_of_its_mpdo(pdo, Traffic::tpdo)) return;
+    const bool in_cycle = plan_.cycle.sync && pdo.synchronous();
+    auto& frame = add({.name = name_of(pdo, "TPDO"),
+                       .kind = Traffic::tpdo,
+                       .cob_id = pdo.cob_id,
+                       .in_cycle = in_cycle,
+                       .awaited = in_cycle && pdo.cyclic(),
+                       .bytes = pdo.length});
+    set_rate(frame, pdo);
+    if (pdo.poll > Time{0} || pdo.poll_syncs != 0) add_poll(pdo);
+  }
+
+  void add_rpdo(const PdoRow& pdo) {
+    if (joins_frame_of_its_mpdo(pdo, Traffic::rpdo)) return;
+    auto& frame = add({.name = name_of(pdo, "RPDO"),
+                       .kind = Traffic::rpdo,
+                       .cob_id = pdo.cob_id,
+                       .from_master = true,
+                       .in_cycle = plan_.cycle.sync && !pdo.on_request,
+                       .bytes = pdo.length});
+    set_rate(frame, pdo);
+    // Its own types are all due at the same SYNC.
+    if (frame.every > 1) frame.turn.reset();
+  }
+
+  void add_poll(const PdoRow& pdo) {
+    add({.name = name_of(pdo, "request of TPDO"),
+         .kind = Traffic::remote,
+         .cob_id = pdo.cob_id,
+         .remote_request = true,
+         .from_master = true,
+         .period = pdo.poll > Time{0} ? pdo.poll : pdo.poll_syncs * plan_.cycle.period});
+  }
+
+  void set_rate(TrafficFrame& frame, const PdoRow& pdo) {
+    frame.period = plan_.cycle.period;
+    frame.on_change = !pdo.cyclic();
+    if (plan_.cycle.sync && pdo.cyclic()) {
+      frame.every = pdo.transmission;
+      frame.period = frame.every * plan_.cycle.period;
+      frame.turn = certain_turn(pdo);
+    } else if (plan_.cycle.sync && pdo.synchronous()) {
+      return;
+    } else if (pdo.inhibit > Time{0}) {
+      frame.period = frame.from_master ? std::max(pdo.inhibit, plan_.cycle.period) : pdo.inhibit;
+      if (!frame.from_master) limit_by_period(frame);
+    } else if (pdo.poll > Time{0} || pdo.poll_syncs != 0) {
+      frame.period = pdo.poll > Time{0} ? pdo.poll : pdo.poll_syncs * plan_.cycle.period;
+      limit_by_period(frame);
+    } else {
+      frame.period_assumed = !frame.from_master;
+    }
+  }
+
+  static void limit_by_period(TrafficFrame& frame) {
+    frame.limit = frame.period;
+    frame.why = BudgetLimit::own_period;
+  }
+
+  /// By the SYNC counter, if it turns over with the same phase each time.
+  std::optional<std::uint16_t> certain_turn(const PdoRow& pdo) const {
+    const unsigned overflow = plan_.cycle.sync_overflow;
+    if (pdo.sync_start == 0 || overflow < 2 || overflow % pdo.transmission != 0) return {};
+    return static_cast<std::uint16_t>(pdo.sync_start % pdo.transmission);
+  }
+
+  void collect_node(const NodePlan& node) {
+    add({.name = "EMCY " + node.name,
+         .kind = Traffic::emcy,
+         .cob_id = node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())),
+         .bytes = longest_data,
+         .period = options_.emcy_interval});
+    if (node.heartbeat_period > Time{0}) {
+      add_heartbeat(node);
+    } else if (node.guard.period > Time{0}) {
+      add_guarding(node);
+    }
+  }
+
+  void add_heartbeat(const NodePlan& node) {
+    auto& frame = add({.name = "heartbeat " + node.name,
+                       .kind = Traffic::error_control,
+                       .cob_id = CobId::base(0x700U + node.id.value()),
+                       .bytes = 1,
+                       .period = node.heartbeat_period});
+    limit_by_wait(frame, node.heartbeat_timeout, "the master");
+    limit_by_consumers(frame, node.id);
+  }
+
+  /// The device misses requests by its life guarding, the master answers.
+  void add_guarding(const NodePlan& node) {
+    const auto id = CobId::base(0x700U + node.id.value());
+    auto& request = add({.name = "guard request " + node.name,
+                         .kind = Traffic::remote,
+                         .cob_id = id,
+                         .remote_request = true,
+                         .from_master = true,
+                         .period = node.guard.period});
+    limit_by_wait(request, node.life_guarding, node.name + " (0x100D)");
+    auto& answer = add({.name = "guarding " + node.name,
+                        .kind = Traffic::error_control,
+                        .cob_id = id,
+                        .bytes = 1,
+                        .period = node.guard.period,
+                        .answers = true});
+    limit_by_wait(answer, node.guard.life_time(), "the master");
+  }
+
+  /// The identifiers of the first node stand for those of all.
+  void collect_sdo() {
+    if (plan_.nodes.empty()) return;
+    const unsigned first = plan_.nodes.front().id.value();
+    for (const bool request : {false, true}) {
+      add({.name = request ? "SDO requests" : "SDO answers",
+           .kind = Traffic::sdo,
+           .cob_id = CobId::base((request ? 0x600U : 0x580U) + first),
+           .from_master = request,
+           .bytes = longest_data,
+           .burst = services_.dialogues,
+           .period = services_.round,
+           .jitter = services_.round,
+           .answers = !request});
+      limit_by_timeouts(out_.frames.back());
+    }
+  }
+
+  void limit_by_timeouts(TrafficFrame& frame) const {
+    for (const auto& node : plan_.nodes) {
+      if (node.sdo_timeout <= Time{0} || (frame.limit && *frame.limit <= node.sdo_timeout))
+        continue;
+      frame.limit = node.sdo_timeout;
+      frame.why = BudgetLimit::patience;
+      frame.waits = "the master (sdo_timeout of " + node.name + ")";
+    }
+  }
+
+  void tell_assumptions() {
+    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(options_.device_time);
+    out_.assumptions.push_back("devices have their TPDOs ready " + std::to_string(us.count()) +
+                               " us after SYNC (--device-time)");
+    std::string free;
+    for (const auto& frame : out_.frames) {
+      if (frame.period_assumed) free += (free.empty() ? "" : ", ") + frame.name;
+    }
+    if (!free.empty()) {
+      out_.assumptions.push_back(
+          "no inhibit time, so counted once a cycle, though the device may send as often as values "
+          "change: " +
+          free);
+    }
+  }
+
+  const BusPlan& plan_;
+  const BudgetOptions& options_;
+  ServiceShare services_;
+  BusTraffic out_;
+};
+
+}  // namespace
+
+BusTraffic bus_traffic(const BusPlan& plan, const BudgetOptions& options) {
+  return TrafficCollector{plan, options}.run();
+}
+
+}  // namespace takt

@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <fmt/format.h>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/print/budget.hpp"
+
+namespace takt {
+namespace {
+
+double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
+
+/// "2000 us", "100 ms", "1 s".
+std::string span_text(Time time) {
+  using namespace std::chrono_literals;
+  if (time >= 1s && time % 1s == Time{0}) return fmt::format("{} s", time / 1s);
+  if (time >= 10ms && time % 1ms == Time{0}) return fmt::format("{} ms", time / 1ms);
+  return fmt::format("{:.0f} us", us(time));
+}
+
+std::string every(const BudgetRow& row) {
+  const auto& frame = row.frame;
+  std::string text = "SYNC";
+  if (!frame.in_cycle || frame.period_assumed) {
+    text = (frame.period_assumed ? "~" : "") + span_text(frame.period);
+  } else if (frame.every > 1) {
+    text = fmt::format("{} SYNCs", frame.every);
+  } else if (frame.on_change) {
+    text = "change";
+  }
+  return frame.burst > 1 ? fmt::format("{} x {}", frame.burst, text) : text;
+}
+
+std::string bound(const std::optional<Time>& worst) {
+  return worst ? fmt::format("{:.0f}", us(*worst)) : "none";
+}
+
+std::string to_limit(const BudgetRow& row) {
+  if (!row.worst || row.why == BudgetLimit::none || row.frame.kind == Traffic::sync) return "";
+  return fmt::format("{:.0f}", us(row.limit - *row.worst));
+}
+
+std::string limit(const BudgetRow& row) {
+  return row.why == BudgetLimit::none ? "" : fmt::format("{:.0f}", us(row.limit));
+}
+
+std::string to_cycle(const BudgetRow& row) {
+  if (!row.worst || row.cycle == Time{0}) return "";
+  return fmt::format("{:.0f}", us(row.cycle - *row.worst));
+}
+
+class BudgetText {
+ public:
+  BudgetText(std::ostream& out, const BusPlan& plan, const BusBudget& budget)
+      : out_{out}, plan_{plan}, budget_{budget} {
+    for (const auto& row : budget.rows) width_ = std::max(width_, row.frame.name.size());
+    width_ += 10;  // " (16 such)"
+  }
+
+  void run() {
+    head();
+    if (plan_.cycle.sync) cycle_frames();
+    other_frames();
+    verdict();
+  }
+
+ private:
+  void head() {
+    const auto& load = budget_.load;
+    out_ << fmt::format("bus {}: {} kbit/s, {} {}\n", plan_.name, plan_.bitrate / 1000,
+                        plan_.cycle.sync ? "SYNC every" : "no SYNC, a cycle of",
+                        span_text(plan_.cycle.period));
+    out_ << fmt::format(
+        "load: {:.1f} % typical, {:.1f} % with worst stuffing; SDO takes {:.1f} % more at most "
+        "({} dialogues in {})\n",
+        100 * load.typical, 100 * load.worst, 100 * load.services, budget_.service_dialogues,
+        span_text(budget_.service_round));
+    for (const auto& sentence : budget_.assumptions) out_ << "assumed: " << sentence << '\n';
+  }
+
+  /// In the order in which they are through.
+  void cycle_frames() {
+    const auto& cycle = plan_.cycle;
+    out_ << fmt::format(
+        "\nthe cycle, in us after SYNC: TPDOs are awaited until {:.0f}, outputs go out at {:.0f}\n",
+        us(std::min(cycle.receive_window, cycle.output_deadline)), us(cycle.output_deadline));
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11}\n", "COB-ID",
+                        "frame", width_, "bytes", "every", "on wire", "latest", "to window",
+                        "to SYNC", "with EMCYs");
+    std::vector<const BudgetRow*> rows;
+    for (const auto& row : budget_.rows) {
+      if (row.frame.in_cycle) rows.push_back(&row);
+    }
+    std::ranges::stable_sort(rows, {}, [](const BudgetRow* row) {
+      return std::pair{row->frame.kind == Traffic::rpdo, row->worst.value_or(Time::max())};
+    });
+    for (const auto* row : rows) {
+      out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11}{}\n",
+                          to_string(row->frame.cob_id), row->frame.name, width_, row->frame.bytes,
+                          every(*row), us(row->frame.frame), bound(row->worst), to_limit(*row),
+                          to_cycle(*row), bound(row->worst_in_burst), mark(*row));
+    }
+  }
+
+  /// Many alike are one line: that of the worst.
+  void other_frames() {
+    out_ << "\nother frames, in us from being queued to their end\n";
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11}\n", "COB-ID",
+                        "frame", width_, "bytes", "every", "on wire", "worst", "margin", "limit",
+                        "with EMCYs");
+    for (const auto& row : budget_.rows) {
+      if (row.frame.in_cycle) continue;
+      const std::size_t alike = count_alike(row);
+      if (alike < many) {
+        other_frame(row, row.frame.name);
+      } else if (&row == worst_alike(row)) {
+        other_frame(row, fmt::format("{} ({} such)", row.frame.name, alike));
+      }
+    }
+  }
+
+  void other_frame(const BudgetRow& row, const std::string& name) {
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11}{}\n",
+                        to_string(row.frame.cob_id), name, width_, row.frame.bytes, every(row),
+                        us(row.frame.frame), bound(row.worst), to_limit(row), limit(row),
+                        bound(row.worst_in_burst), mark(row));
+  }
+
+  static bool alike(const BudgetRow& a, const BudgetRow& b) {
+    const bool same = a.frame.kind == b.frame.kind && a.frame.from_master == b.frame.from_master &&
+                      a.frame.period == b.frame.period && a.frame.limit == b.frame.limit &&
+                      a.fits() == b.fits();
+    return same && (a.frame.kind == Traffic::emcy || a.frame.kind == Traffic::error_control ||
+                    a.frame.kind == Traffic::remote);
+  }
+  std::size_t count_alike(const BudgetRow& row) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        budget_.rows, [&](const BudgetRow& other) { return alike(row, other); }));
+  }
+  const BudgetRow* worst_alike(const BudgetRow& row) const {
+    const BudgetRow* worst = &row;
+    for (const auto& other : budget_.rows) {
+      if (alike(row, other) && other.worst_in_burst >= worst->worst_in_burst) worst = &other;
+    }
+    return worst;
+  }
+
+  /// ", or 96 us late".
+  std::string steady_delay() const {
+    Time delay{};
+    for (const auto& row : budget_.rows) {
+      if (row.tolerance == Time{0} || !row.worst_steady) continue;
+      delay = std::max(delay, *row.worst_steady - row.cycle);
+    }
+    return delay > Time{0} ? fmt::format(" or up to {:.0f} us late", us(delay)) : "";
+  }
+
+  static std::string_view mark(const BudgetRow& row) {
+    if (!row.fits()) return "  TOO LATE";
+    if (row.is_late_by_changes_only()) return "  late if all change";
+    return row.fits_in_burst() ? "" : "  late with EMCYs";
+  }
+
+  void verdict() {
+    out_ << '\n';
+    if (!budget_.fits()) {
+      out_ << "It does not fit:\n";
+      if (budget_.refused) refusal();
+      list([](const BudgetRow& row) { return row.fits(); }, &BudgetRow::worst);
+      return;
+    }
+    out_ << "It fits.\n";
+    if (budget_.fits_but_for_changes()) {
+      out_ << fmt::format(
+          "warning: in a cycle in which all event-driven outputs change, and all else comes at "
+          "once, SYNC is {:.0f} us\nlate behind them; without such changes it is in time{}\n",
+          us(budget_.sync_delay()), steady_delay());
+    } else if (budget_.sync_delay() > Time{0}) {
+      out_ << fmt::format(
+          "warning: behind the outputs SYNC can be {:.0f} us late, if all of that comes at once\n",
+          us(budget_.sync_delay()));
+    }
+    if (budget_.fits_in_burst()) return;
+    out_ << "warning: while every node sends an EMCY at once, these can be late:\n";
+    list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
+  }
+
+  void refusal() {
+    const TimeBudget wire = time_budget(plan_);
+    out_ << fmt::format(
+        "  SYNC and TPDOs ({:.0f} us), RPDOs ({:.0f} us) and the quiet before SYNC ({:.0f} us) "
+        "need "
+        "more than the period: taktd refuses the network\n",
+        us(wire.inputs_wire), us(wire.outputs_wire), us(plan_.cycle.quiet_before_sync));
+  }
+
+  template <class Fits>
+  void list(Fits fits, std::optional<Time> BudgetRow::* end) {
+    std::size_t left_out = 0;
+    std::size_t told = 0;
+    const bool overloaded = std::ranges::any_of(
+        budget_.rows, [&](const BudgetRow& row) { return row.frame.in_cycle && !(row.*end); });
+    if (overloaded) {
+      out_ << "  the frames of a cycle, with what may come between, need more than the whole bus\n";
+    }
+    for (const auto& row : budget_.rows) {
+      if (fits(row) || (overloaded && !(row.*end))) continue;
+      if (told++ < most_told) {
+        out_ << "  " << why_late(row, row.*end) << '\n';
+      } else {
+        ++left_out;
+      }
+    }
+    if (left_out != 0) out_ << "  and " << left_out << " more\n";
+  }
+
+  static std::string why_late(const BudgetRow& row, const std::optional<Time>& end) {
+    const auto& name = row.frame.name;
+    if (!end) return name + ": it and what goes before it need more than the whole bus";
+    if (row.why != BudgetLimit::none && *end > row.limit) {
+      const std::string whose = row.frame.waits.empty() ? "" : " by " + row.frame.waits;
+      return fmt::format("{}: {:.0f} us, {}{} ends at {:.0f} us", name, us(*end), name_of(row.why),
+                         whose, us(row.limit));
+    }
+    return fmt::format("{}: {:.0f} us, the next SYNC comes at {:.0f} us", name, us(*end),
+                       us(row.cycle));
+  }
+
+  static constexpr std::size_t most_told = 8;
+  static constexpr std::size_t many = 4;
+
+  std::ostream& out_;
+  const BusPlan& plan_;
+  const BusBudget& budget_;
+  std::size_t width_ = 16;
+};
+
+}  // namespace
+
+std::string_view name_of(BudgetLimit limit) noexcept {
+  switch (limit) {
+    case BudgetLimit::none:
+      return "";
+    case BudgetLimit::receive_window:
+      return "the receive window";
+    case BudgetLimit::output_deadline:
+      return "the time before the outputs";
+    case BudgetLimit::sync_window:
+      return "the SYNC window (0x1007)";
+    case BudgetLimit::own_period:
+      return "its own period";
+    case BudgetLimit::patience:
+      return "the wait for it";
+  }
+  return "";
+}
+
+void print_suggestions(std::ostream& out, std::span<const Suggestion> suggestions) {
+  if (suggestions.empty()) {
+    out << "\nNo other identifiers, inhibit times, rate of PDOs, period or bit rate makes it fit, "
+           "not even together.\n";
+    return;
+  }
+  out << "\nIt would fit, the cheapest change first:\n";
+  for (const auto& suggestion : suggestions) {
+    out << "  " << suggestion.text << "\n      --what-if " << to_string(suggestion.changes) << '\n';
+  }
+}
+
+void print_budget_text(std::ostream& out, const BusPlan& plan, const BusBudget& budget) {
+  BudgetText{out, plan, budget}.run();
+}
+
+}  // namespace takt

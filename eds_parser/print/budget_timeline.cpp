@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+#include <ostream>
+
+#include "eds_parser/print/budget.hpp"
+#include "eds_parser/print/budget_bars.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t columns = 72;
+constexpr double most_ticks = 8;
+
+double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
+
+class Timeline {
+ public:
+  Timeline(std::ostream& out, const CyclePicture& picture) : out_{out}, picture_{picture} {
+    for (const auto& bar : picture.bars) {
+      width_ = std::max(width_, bar.row->frame.name.size());
+    }
+  }
+
+  void run() {
+    out_ << fmt::format(
+        "\none cycle, a column is {:.0f} us: `.` it may wait, `#` on the wire at the latest; "
+        "`:` see below\n",
+        us(picture_.end) / columns);
+    print("us", axis(), "latest", "margin");
+    for (const auto& bar : picture_.bars) {
+      std::string line = limits();
+      fill(line, bar.ready, bar.begin, '.');
+      fill(line, bar.begin, bar.end, bar.row->fits() ? '#' : '!');
+      const auto left = bar.margin();
+      print(bar.row->frame.name, line, fmt::format("{:.0f}", us(bar.end)),
+            left ? fmt::format("{:.0f}", us(*left)) : "");
+    }
+    for (const auto& mark : picture_.marks) print_mark(mark);
+  }
+
+ private:
+  std::size_t column(Time at) const {
+    const auto part = static_cast<double>(at.count()) / static_cast<double>(picture_.end.count());
+    return std::min(columns, static_cast<std::size_t>(part * static_cast<double>(columns)));
+  }
+
+  static void put(std::string& line, std::size_t at, std::string_view text) {
+    if (line.size() < at + text.size()) line.resize(at + text.size(), ' ');
+    line.replace(at, text.size(), text);
+  }
+
+  /// At round times.
+  std::string axis() const {
+    const double end = us(picture_.end);
+    double step = 1;
+    for (unsigned i = 0; end / step > most_ticks; ++i) step *= i % 3 == 1 ? 2.5 : 2;
+    std::string line;
+    for (double at = 0; at <= end; at += step) {
+      const auto where = static_cast<std::size_t>(at / end * static_cast<double>(columns));
+      put(line, where, fmt::format("{:.0f}", at));
+    }
+    return line;
+  }
+
+  /// Left of its column where there is no room to the right.
+  void print_mark(const CycleMark& mark) {
+    const auto label = fmt::format("{} {:.0f}", mark.text, us(mark.at));
+    const std::size_t at = column(mark.at);
+    std::string line(at, ' ');
+    if (at > columns / 2 && at > label.size() + 1) {
+      put(line, at - label.size() - 1, label + " ^");
+    } else {
+      line += "^ " + label;
+    }
+    print("", line);
+  }
+
+  std::string limits() const {
+    std::string line(columns + 1, ' ');
+    for (const auto& mark : picture_.marks) line[column(mark.at)] = ':';
+    return line;
+  }
+
+  /// At least one column.
+  void fill(std::string& line, Time begin, Time end, char sign) const {
+    if (end <= begin) return;
+    const std::size_t first = column(begin);
+    const std::size_t last = std::max(column(end), first + 1);
+    for (std::size_t i = first; i < std::min(last, line.size()); ++i) line[i] = sign;
+  }
+
+  void print(std::string_view name, std::string_view line, std::string_view latest = "",
+             std::string_view margin = "") {
+    std::string text =
+        fmt::format("  {:<{}} {:<{}} {:>7} {:>7}", name, width_, line, columns + 1, latest, margin);
+    text.erase(text.find_last_not_of(' ') + 1);
+    out_ << text << '\n';
+  }
+
+  std::ostream& out_;
+  const CyclePicture& picture_;
+  std::size_t width_ = 4;
+};
+
+}  // namespace
+
+void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget) {
+  const auto picture = cycle_picture(plan, budget);
+  if (plan.cycle.sync && !picture.bars.empty()) Timeline{out, picture}.run();
+}
+
+}  // namespace takt

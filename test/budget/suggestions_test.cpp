@@ -1,0 +1,176 @@
+#include "eds_parser/budget/suggestions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "eds_parser/print/budget.hpp"
+#include "test/budget/changed_plan.hpp"
+#include "test/budget/random_bus.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::vector<Suggestion> suggestions_for(const BusPlan& plan) {
+  return cheapest_changes(plan, {}, {},
+                          [&](const WhatIf& changes) { return changed(plan, changes); });
+}
+
+TEST(Suggestions, ThePeriodIsTheShortestOnWhichItFits) {
+  const auto plan = hand_made_bus(4, 1ms);
+  ASSERT_FALSE(bus_budget(plan).fits());
+
+  const auto found = suggestions_for(plan);
+
+  // At 1750 us the window ends at 885 us, at 1800 us at 909 us; the last TPDO is in after 895 us.
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].text, "SYNC every 1800 us instead of 1000 us");
+  EXPECT_EQ(to_string(found[0].changes), "period=1800us");
+  EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
+}
+
+TEST(Suggestions, ABitRateIsTheLowestOnWhichItFits) {
+  auto plan = hand_made_bus(4, 4ms);
+  plan.bitrate = 250'000;
+  compile(plan);
+
+  const auto found = suggestions_for(plan);
+
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].text, "500 kbit/s instead of 250");
+}
+
+/// Of a device that sends four TPDOs each millisecond, beside those of two drives, at 1 Mbit/s.
+BusPlan with_a_talker(Time inhibit) {
+  auto plan = hand_made_bus(3, 2ms);
+  for (std::uint16_t number = 2; number <= 9; ++number) {
+    auto row = plan.pdos.tpdos[0];
+    row.number = number;
+    row.cob_id = CobId::base(0x300U + number);
+    row.transmission = 255;
+    row.inhibit = inhibit;
+    plan.pdos.tpdos.push_back(row);
+  }
+  compile(plan);
+  return plan;
+}
+
+TEST(Suggestions, WhereNoChangeAloneIsEnoughTwoAreTold) {
+  const auto plan = with_a_talker(1ms);  // 8 x 135 us each ms: no period is enough
+  ASSERT_FALSE(bus_budget(plan).fits());
+
+  const auto found = suggestions_for(plan);
+
+  ASSERT_FALSE(found.empty());
+  EXPECT_THAT(found[0].text, testing::StartsWith("inhibit times of "));
+  EXPECT_THAT(
+      found[0].text,
+      testing::HasSubstr("; and every second SYNC, by turns (SYNC with counter), for TPDO1 n3"));
+  EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
+}
+
+/// As typed on the command line.
+WhatIf read_back(const WhatIf& changes) {
+  WhatIf out;
+  std::istringstream in{to_string(changes)};
+  for (std::string change; std::getline(in, change, ',');) EXPECT_TRUE(add_change(change, out));
+  return out;
+}
+
+TEST(Suggestions, EachThatIsToldMakesItFitAsItIsTyped) {
+  unsigned told = 0;
+  unsigned combined = 0;
+  for (unsigned network = 0; network < 25; ++network) {
+    sim::Random random{network};
+    const BusPlan plan = random_bus(random, {.by_event = 0.3, .least_percent = 60});
+    if (bus_budget(plan).fits()) continue;
+
+    for (const auto& suggestion : suggestions_for(plan)) {
+      const auto other = changed(plan, read_back(suggestion.changes));
+      EXPECT_TRUE(bus_budget(*other).fits())
+          << "network " << network << ": " << to_string(suggestion.changes);
+      ++told;
+      combined += suggestion.text.find("; and ") != std::string::npos;
+    }
+  }
+  EXPECT_GT(told, 20U);
+  EXPECT_GT(combined, 0U);
+}
+
+TEST(Suggestions, ThatNothingHelpsIsFoundInBoundedTime) {
+  auto plan = hand_made_bus(2, 2ms);
+  plan.nodes[0].heartbeat_period = 50us;  // more than the whole bus at any rate
+  unsigned tries = 0;
+
+  const auto found = cheapest_changes(plan, {}, {}, [&](const WhatIf& changes) {
+    ++tries;
+    return changed(plan, changes);
+  });
+
+  EXPECT_TRUE(found.empty());
+  EXPECT_LT(tries, 500U);
+}
+
+TEST(WhatIf, IsWrittenAsItIsRead) {
+  const std::string text =
+      "period=1500us,bitrate=500,services=2,counter=60,arm.tpdo2=10,arm.tpdo2.start=3,"
+      "arm.tpdo2.inhibit=10ms,arm.tpdo2.cob_id=0x1C0,x.y.rpdo1=off";
+  WhatIf changes;
+  std::istringstream in{text};
+  for (std::string change; std::getline(in, change, ',');) {
+    EXPECT_TRUE(add_change(change, changes)) << change;
+  }
+
+  ASSERT_EQ(changes.pdos.size(), 2U);
+  EXPECT_EQ(changes.pdos[1].node, "x.y");
+  EXPECT_EQ(to_string(changes), text);
+}
+
+TEST(WhatIf, WhatItCanNotBeIsRefused) {
+  for (const auto* text :
+       {"", "period", "period=", "period=1", "period=0us", "period=61s", "bitrate=300", "=5",
+        "counter=241", "arm.tpdo=1", "arm.tpdo0=1", "arm.tpdo513=1", ".tpdo1=1", "arm.tpdo1=256",
+        "arm.tpdo1.what=1", "arm.tpdo1.inhibit=150us", "arm.tpdo1.inhibit=7s", "services=0"}) {
+    WhatIf changes;
+    EXPECT_FALSE(add_change(text, changes)) << text;
+  }
+}
+
+TEST(Pictures, TheTextShowsEachFrameWhereItIsAtTheLatest) {
+  const auto plan = hand_made_bus(1, 1440us);
+  std::ostringstream out;
+  print_budget_timeline(out, plan, bus_budget(plan));
+
+  // a column is 20 us: SYNC ends at 190, the TPDO at 490 us; the window at 733
+  EXPECT_THAT(out.str(), testing::HasSubstr("\n  us       0         200 "));
+  EXPECT_THAT(out.str(), testing::HasSubstr("\n  SYNC     ......###  "));
+  EXPECT_THAT(out.str(), testing::HasSubstr("\n  TPDO1 n1   ...............#######  "));
+  EXPECT_THAT(out.str(), testing::HasSubstr("     490     243\n"));
+}
+
+TEST(Pictures, WhatIsTooLateIsRedInTheSvgAndHasItsMargin) {
+  auto plan = hand_made_bus(1, 2ms);
+  plan.cycle.receive_window = 400us;
+  std::ostringstream out;
+  print_budget_svg(out, plan, bus_budget(plan));
+
+  EXPECT_THAT(out.str(), testing::HasSubstr("It does not fit."));
+  EXPECT_THAT(out.str(), testing::HasSubstr(">490</text>\n<text x="));
+  EXPECT_THAT(out.str(), testing::HasSubstr("fill=\"#c0392b\">-90</text>"));
+  EXPECT_THAT(out.str(), testing::HasSubstr(">receive window ends 400 us</text>"));
+}
+
+TEST(Pictures, NamesDoNotBreakTheSvg) {
+  auto plan = hand_made_bus(1, 2ms);
+  plan.nodes[0].name = "<a&b>";
+  std::ostringstream out;
+  print_budget_svg(out, plan, bus_budget(plan));
+
+  EXPECT_THAT(out.str(), testing::HasSubstr("TPDO1 &lt;a&amp;b&gt;</text>"));
+  EXPECT_THAT(out.str(), testing::EndsWith("</svg>\n"));
+}
+
+}  // namespace
+}  // namespace takt
