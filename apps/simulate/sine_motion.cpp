@@ -32,6 +32,7 @@ double amplitude_of(const Signal& position) {
 
 SineMotion::SineMotion(const BusPlan& plan) {
   find_axes(plan);
+  values_.reserve(plan.layout.outputs());
   for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
     const auto signal = static_cast<SignalIndex>(i);
     const bool used = std::ranges::any_of(axes_, [signal](const Axis& axis) {
@@ -61,22 +62,28 @@ void SineMotion::find_axes(const BusPlan& plan) {
 }
 
 void SineMotion::update(const ImageView& image, OutputWriter& outputs) noexcept {
-  for (const SignalIndex signal : others_) outputs.set(signal, 0);
+  for (const Value& value : next(image)) outputs.set(value.signal, value.value);
+}
+
+std::span<const SineMotion::Value> SineMotion::next(const ImageView& image) noexcept {
+  values_.clear();
+  for (const SignalIndex signal : others_) set(signal, 0);
   std::size_t moving = 0;
   for (Axis& axis : axes_) {
-    update(axis, image, outputs);
+    lead(axis, image);
     moving += axis.since.has_value();
   }
   most_moving_ = std::max(most_moving_, moving);
+  return values_;
 }
 
-void SineMotion::update(Axis& axis, const ImageView& image, OutputWriter& outputs) noexcept {
+void SineMotion::lead(Axis& axis, const ImageView& image) noexcept {
   const auto statusword = static_cast<std::uint16_t>(image.values[axis.statusword]);
-  outputs.set(axis.controlword, axis.sequence.step(statusword));
-  if (axis.mode) outputs.set(*axis.mode, cyclic_position);
+  set(axis.controlword, axis.sequence.step(statusword));
+  if (axis.mode) set(*axis.mode, cyclic_position);
   if (!axis.sequence.enabled()) {
     axis.since.reset();
-    outputs.set(axis.target, image.values[axis.actual]);
+    set(axis.target, image.values[axis.actual]);
     const bool fault = axis.sequence.in_fault();
     if (fault && !axis.fault) axis.sequence.reset_fault();
     axis.fault = fault;
@@ -90,7 +97,7 @@ void SineMotion::update(Axis& axis, const ImageView& image, OutputWriter& output
   const double t = std::chrono::duration<double>(image.sync_time - *axis.since).count();
   // begins and ends each period at rest
   const double way = axis.amplitude * (1 - std::cos(2 * std::numbers::pi * frequency * t)) / 2;
-  outputs.set(axis.target, std::llround(axis.centre + way));
+  set(axis.target, std::llround(axis.centre + way));
 }
 
 }  // namespace takt

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "apps/axis/drive_sequence.hpp"
@@ -13,8 +15,15 @@ namespace takt {
 /// All other outputs are zero.
 class SineMotion final : public Controller {
  public:
+  struct Value {
+    SignalIndex signal = 0;
+    std::int64_t value = 0;
+  };
+
   explicit SineMotion(const BusPlan& plan);
 
+  /// All set-points that answer this image; valid until the next call.
+  std::span<const Value> next(const ImageView& image) noexcept;
   void update(const ImageView& image, OutputWriter& outputs) noexcept override;
   std::size_t axes() const noexcept { return axes_.size(); }
   /// How many axes have been moving at the same time, at most.
@@ -35,10 +44,12 @@ class SineMotion final : public Controller {
   };
 
   void find_axes(const BusPlan& plan);
-  void update(Axis& axis, const ImageView& image, OutputWriter& outputs) noexcept;
+  void lead(Axis& axis, const ImageView& image) noexcept;
+  void set(SignalIndex signal, std::int64_t value) noexcept { values_.push_back({signal, value}); }
 
   std::vector<Axis> axes_;
   std::vector<SignalIndex> others_;
+  std::vector<Value> values_;  ///< room for all outputs
   std::size_t most_moving_ = 0;
 };
 

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   takt::add_simulate(app, exit_code);
   takt::add_record(app, exit_code);
   takt::add_replay(app, exit_code);
+  takt::add_soak(app, exit_code);
   takt::add_status(app, exit_code);
   takt::add_top(app, exit_code);
   takt::add_timing(app, exit_code);

@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "apps/soak/verdict.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Remembers what was commanded and holds it against what the master hands to the interface: a
+/// value goes out only while its command is within its time to live; SYNC beats evenly and counts
+/// without a gap.
+class OutputJudge {
+ public:
+  OutputJudge(const BusPlan& plan, Verdict& verdict);
+
+  /// `time_to_live` in cycles, not 0.
+  void commanded(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live, Time now);
+  void sent(std::span<const Frame> frames, Time now);
+
+ private:
+  struct Command {
+    std::uint64_t value = 0;
+    Time until{};  ///< its time to live, and what may be lost between front and bus thread
+  };
+  static constexpr std::size_t depth = 32;
+
+  void judge_sync(const Frame& frame, Time now);
+  void judge_pdo(const PdoRow& row, const Frame& frame, Time now);
+  bool lasting(const Signal& signal, std::uint64_t value) const noexcept;
+  bool fresh(std::size_t output, std::uint64_t value, Time now) const noexcept;
+
+  const BusPlan& plan_;
+  Verdict& verdict_;
+  std::vector<std::array<Command, depth>> commands_;
+  std::vector<std::uint64_t> count_;
+  Time last_sync_{};
+  std::uint8_t last_counter_ = 0;
+};
+
+}  // namespace takt

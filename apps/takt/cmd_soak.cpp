@@ -1,0 +1,153 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+
+#include "apps/simulate/duration.hpp"
+#include "apps/soak/soak_jobs.hpp"
+#include "apps/takt/commands.hpp"
+
+namespace takt {
+namespace {
+
+struct Arguments {
+  std::string network;
+  std::string seeds = "1..100";
+  std::string run_for = "20s";
+  double hours = 0;
+  SoakPlan plan;
+};
+
+/// Sums over all runs.
+struct Sum {
+  std::uint64_t runs = 0;
+  std::uint64_t bad = 0;
+  SoakOutcome total;
+};
+
+/// `17` or `1..200`.
+bool parse_seeds(const std::string& text, SoakPlan& plan) {
+  const char* const end = text.data() + text.size();
+  auto read = std::from_chars(text.data(), end, plan.first);
+  plan.last = plan.first;
+  if (read.ec == std::errc{} && std::string_view{read.ptr, end}.starts_with("..")) {
+    read = std::from_chars(read.ptr + 2, end, plan.last);
+  }
+  return read.ec == std::errc{} && read.ptr == end && plan.first >= 1 && plan.last >= plan.first;
+}
+
+void tell(const Arguments& arguments, const SoakReport& report) {
+  const SoakOutcome& outcome = report.outcome;
+  std::cout << "seed " << outcome.seed << ": ";
+  if (report.signal != 0) {
+    std::cout << "the process died: " << (report.signal > 0 ? ::strsignal(report.signal) : "exit");
+  } else {
+    const Violation& violation = *outcome.violation;
+    std::cout << "cycle " << violation.cycle << " ("
+              << 1e-9 * static_cast<double>(violation.when.count())
+              << " s): violated: " << violation.invariant << ": " << violation.what;
+  }
+  std::cout << "\n  again: takt soak " << arguments.network << " --seeds " << outcome.seed
+            << " --for " << arguments.run_for << " --verbose" << std::endl;
+}
+
+void add(Sum& sum, const SoakReport& report) {
+  const SoakOutcome& one = report.outcome;
+  SoakOutcome& total = sum.total;
+  ++sum.runs;
+  sum.bad += one.violation.has_value() || report.signal != 0;
+  total.simulated += one.simulated;
+  total.images += one.images;
+  total.frames += one.frames;
+  total.rubbish += one.rubbish;
+  total.faults += one.faults;
+  total.requests += one.requests;
+  total.boots += one.boots;
+  total.events += one.events;
+}
+
+int run(Arguments& arguments) {
+  const LoadedNetwork network = load_network(arguments.network);
+  for (const Finding& finding : network.findings) std::cerr << to_string(finding) << '\n';
+  if (has_error(network.findings)) return 2;
+  SoakPlan& plan = arguments.plan;
+  plan.run.duration = *parse_duration(arguments.run_for);
+  if (!parse_seeds(arguments.seeds, plan)) {
+    std::cerr << "takt soak: --seeds " << arguments.seeds << " is not like 17 or 1..200\n";
+    return 2;
+  }
+  if (arguments.hours > 0) {
+    const double one = std::chrono::duration<double, std::ratio<3600>>(plan.run.duration).count();
+    plan.last = plan.first + static_cast<std::uint64_t>(std::ceil(arguments.hours / one)) - 1;
+  }
+  Sum sum;
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  double next_word = 10;
+  run_jobs(network, plan, [&](const SoakReport& report) {
+    add(sum, report);
+    if (report.signal != 0 || report.outcome.violation) tell(arguments, report);
+    if (elapsed() < next_word) return;
+    next_word = elapsed() + 10;
+    std::cerr << sum.runs << " of " << plan.last - plan.first + 1 << " seeds\n";
+  });
+  const SoakOutcome& total = sum.total;
+  const double hours = std::chrono::duration<double, std::ratio<3600>>(total.simulated).count();
+  std::cout << sum.runs << " seeds, " << hours << " h of bus '" << network.plan.name
+            << "': " << total.images << " images, " << total.frames << " frames (" << total.rubbish
+            << " rubbish), " << total.faults << " faults, " << total.boots << " boots, "
+            << total.requests << " requests, " << total.events << " events; " << sum.bad
+            << (sum.bad == 1 ? " violation" : " violations") << std::endl;
+  std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
+  return sum.bad == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_soak(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  auto* command =
+      app.add_subcommand("soak", "random walks of faults in virtual time, and what must hold");
+  command->add_option("NET.yaml", arguments->network, "network file")->required();
+  command->add_option("--seeds,--seed", arguments->seeds, "one run for each: 17, 1..200")
+      ->capture_default_str();
+  command->add_option("--for", arguments->run_for, "faults last so long in each run")
+      ->check([](const std::string& text) {
+        return parse_duration(text) ? "" : "'" + text + "' is not a time like 20s or 1h";
+      })
+      ->capture_default_str();
+  command->add_option("--hours", arguments->hours, "as many seeds as make so many hours of bus")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--jobs", arguments->plan.jobs, "processes")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command->add_option("--candump", arguments->plan.run.candump, "all frames (for one seed)");
+  command->add_flag("--verbose", arguments->plan.run.verbose, "faults and events (for one seed)");
+  command->footer(
+      "Faults: lost, late, doubled and broken frames, babbling and rubbish, devices that go, "
+      "come,\n"
+      "reset within their boot, are exchanged, fall mute, EMCY and boot-up storms, bus-off, a "
+      "stalled\n"
+      "master, applications that fall silent, requests at any time. Must hold: no torn image, "
+      "cycle\n"
+      "numbers rise, no stale output, no burst of SYNCs, every node in a named state, every wait\n"
+      "ends, every request answered once, memory flat, all nodes come back, the stop ends in "
+      "time.\n"
+      "Exit code 1: something did not hold; each line names seed, cycle and what it was.\n\n"
+      "Example:\n  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
+      "  takt soak share/demo/two_axes.yaml --seed 17 --verbose");
+  command->callback([arguments, &exit_code] {
+    try {
+      exit_code = run(*arguments);
+    } catch (const std::exception& exception) {
+      std::cerr << "takt soak: " << exception.what() << '\n';
+      exit_code = 2;
+    }
+  });
+}
+
+}  // namespace takt
