@@ -73,7 +73,7 @@ def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         log, events = pathlib.Path(folder) / "bus.log", pathlib.Path(folder) / "events.jsonl"
         with open(log, "w") as out:
-            candump = subprocess.Popen(["candump", "-L", "vcan0"], stdout=out)
+            candump = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
         simulation = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", "vcan0"])
         time.sleep(0.5)
         taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--for", "12s", "--events", events])

@@ -17,6 +17,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 NODES = (5, 6)
 PERIOD = 0.010
+SYNC_WINDOW = 0.005  # s; taktd tells TPDOs that come later
+TPDOS, RPDOS = {0x185, 0x186}, {0x205, 0x206}
 SYNC, NMT = 0x080, 0x000
 failures = []
 
@@ -29,6 +31,8 @@ def check(good, what):
 
 def next_controlword(statusword):
     """The word that brings a CiA 402 drive one step nearer to Operation enabled."""
+    if statusword & 0x6F == 0x07:  # Quick stop active: the fallback, where this program was late
+        return 0x00
     if statusword & 0x4F == 0x40:
         return 0x06
     return 0x07 if statusword & 0x6F == 0x21 else 0x0F
@@ -121,17 +125,25 @@ def judge_cycles(frames):
     check(abs(median - PERIOD) < 0.0005, f"median SYNC period {median * 1e3:.3f} ms of {len(syncs)}")
     mean = (syncs[-1] - syncs[0]) / round((syncs[-1] - syncs[0]) / PERIOD)
     check(abs(mean - PERIOD) < 20e-6, f"SYNC does not drift: mean period {mean * 1e3:.4f} ms")
-    order, cycle = [], []
-    for _, identifier, _ in frames:
+    judge_order(frames)
+
+
+def judge_order(frames):
+    """Python's devices may answer late; what the master does is judged in cycles in which they did not."""
+    cycles, sync = [], None
+    for when, identifier, _ in frames:
         if identifier == SYNC:
-            order.append(cycle)
-            cycle = []
-        elif identifier in (0x185, 0x186, 0x205, 0x206):
-            cycle.append(identifier)
-    full = [c for c in order if len(c) == 4]
+            sync = when
+            cycles.append([])
+        elif identifier in TPDOS | RPDOS and cycles:
+            cycles[-1].append((when - sync, identifier))
+    full = [cycle for cycle in cycles if len(cycle) == 4]
+    punctual = [c for c in full if all(at < SYNC_WINDOW for at, identifier in c if identifier in TPDOS)]
     check(len(full) > 200, f"{len(full)} cycles with all four PDOs")
-    good = [c for c in full if set(c[:2]) == {0x185, 0x186} and set(c[2:]) == {0x205, 0x206}]
-    check(len(good) >= 0.98 * len(full), f"{len(good)} of them: TPDOs after SYNC, RPDOs before the next")
+    check(len(punctual) > 100, f"{len(punctual)} of them with punctual TPDOs")
+    order = [[identifier for _, identifier in cycle] for cycle in punctual]
+    good = [ids for ids in order if set(ids[:2]) == TPDOS and set(ids[2:]) == RPDOS]
+    check(len(good) >= 0.98 * len(punctual), f"{len(good)} of those: TPDOs after SYNC, RPDOs before the next")
 
 
 def judge_dissector(log, folder):
@@ -143,12 +155,20 @@ def judge_dissector(log, folder):
     check(len(lines) > 1000 and not strange, f"tshark reads {len(lines)} frames as CANopen, strange: {strange[:3]}")
 
 
+def judge_dump(binaries, log, frames):
+    dump = subprocess.run([pathlib.Path(binaries) / "takt", "dump", HERE / "python_axes.yaml", log], capture_output=True, text=True)
+    lines = dump.stdout.splitlines()
+    strange = [line for line in lines if "  ?  " in line or "unknown" in line]
+    check(dump.returncode == 0 and len(lines) == len(frames) and not strange, f"takt dump reads every frame: {strange[:3]}")
+    check(sum("EMCY" in line and "4210 device temperature too high" in line for line in lines) == len(NODES), "EMCYs too")
+
+
 def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         log, events = pathlib.Path(folder) / "bus.log", pathlib.Path(folder) / "events.jsonl"
         application = Application(folder)
         with open(log, "w") as out:
-            candump = subprocess.Popen(["candump", "-L", "vcan0"], stdout=out)
+            candump = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
         eds = ROOT / "share/eds/takt_drive402.eds"
         nodes = subprocess.Popen([sys.executable, HERE / "python_nodes.py", "vcan0", eds, *map(str, NODES)],
                                  stdout=subprocess.PIPE, text=True)
@@ -160,10 +180,14 @@ def main(binaries):
             process.terminate()
             process.wait()
         check(taktd.returncode == 0, f"taktd ended with exit code {taktd.returncode}")
-        kinds = [json.loads(line)["kind"] for line in events.read_text().splitlines()]
-        told = dict(collections.Counter(kinds))
+        lines = [json.loads(line) for line in events.read_text().splitlines()]
+        told = dict(collections.Counter(line["kind"] for line in lines))
         check(told.get("boot_done") == len(NODES), f"each node booted once: {told}")
+        emcys = [line["text"] for line in lines if line["kind"] == "emcy"]
+        hot = [text for text in emcys if "0x4210: device temperature too high" in text and "10 42 08 01 02 00 00 00" in text]
+        check(len(hot) == len(NODES) and len(emcys) == 2 * len(NODES), f"each node's EMCY and its end are told: {emcys}")
         frames = read_log(log)
+        judge_dump(binaries, log, frames)
         judge_boot(frames)
         judge_cycles(frames)
         judge_dissector(log, folder)

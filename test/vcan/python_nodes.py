@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """python_nodes.py INTERFACE EDS NODE...: CiA 402 axes on a CAN interface, made with python-canopen.
 
-SDO server, NMT slave and heartbeat are python-canopen's; only the PDOs, which it leaves to the
+SDO server, NMT slave, heartbeat and EMCY are python-canopen's; only the PDOs, which it leaves to the
 application, and a drive that reaches each set-point within one SYNC are written here.
 """
 import struct
@@ -22,6 +22,7 @@ class Axis:
         network.add_node(self.node)
         self.receivers = {}
         self.rpdo_frames = {}
+        self.was_warm = False
         network.subscribe(0x000, self.on_nmt)
         network.subscribe(0x080, self.on_sync)
         self.restart()
@@ -96,6 +97,10 @@ class Axis:
         elif controlword & 0x0F == 0x07 and self.statusword != SWITCH_ON_DISABLED:
             self.statusword = SWITCHED_ON
         elif controlword & 0x0F == 0x0F and self.statusword in (SWITCHED_ON, ENABLED):
+            if not self.was_warm:  # for a moment, when it is enabled first
+                self.was_warm = True
+                self.node.emcy.send(0x4210, 0x08, b"\x01\x02")
+                self.node.emcy.reset()
             self.statusword = ENABLED
             self.store(0x6064, 0, "<i", self.get(0x607A, 0, "<i"))
         self.store(0x6041, 0, "<H", self.statusword)

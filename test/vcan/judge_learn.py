@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""judge_learn.py BIN: `takt learn` of a bus that python-canopen has booted and configured on vcan0.
+
+`takt sim` plays two drives, candump records, python-canopen is the master. What is learned is what python-canopen
+was told to do, and taktd boots the same devices by the learned file. Runs inside with-vcan. Exit code 1: a check failed.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import canopen
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+NETWORK = ROOT / "test/vcan/simulated_axes.yaml"
+EDS = ROOT / "share/eds/takt_drive402.eds"
+NODES = (5, 6)
+failures = []
+
+
+def check(good, what):
+    print(("ok    " if good else "FAIL  ") + what, flush=True)
+    if not good:
+        failures.append(what)
+
+
+def map_pdo(pdo, objects, transmission):
+    pdo.clear()
+    for index in objects:
+        pdo.add_variable(index)
+    pdo.trans_type = transmission
+    pdo.enabled = True
+    pdo.save()
+
+
+def boot_with_python_canopen():
+    network = canopen.Network()
+    network.connect(channel="vcan0", interface="socketcan")
+    for node_id in NODES:
+        node = network.add_node(node_id, str(EDS))
+        node.nmt.state = "RESET"
+        node.nmt.wait_for_bootup(10)
+        for sub in (1, 2, 3):
+            node.sdo[0x1018][sub].raw
+        node.sdo[0x1000].raw
+        node.sdo[0x1017].raw = 250
+        node.tpdo.read()
+        node.rpdo.read()
+        map_pdo(node.tpdo[1], (0x6041, 0x606C), 1)
+        map_pdo(node.tpdo[2], (0x6064, 0x6061), 2)
+        map_pdo(node.rpdo[1], (0x6040, 0x60FF), 1)
+        node.sdo[0x6083].raw = 12345 + node_id
+        node.sdo[0x6060].raw = 9
+        node.nmt.state = "OPERATIONAL"
+    network.sync.start(0.02)
+    time.sleep(1.5)
+    network.sync.stop()
+    network.disconnect()
+
+
+def judge_plan(plan):
+    cycle = plan["cycle"]
+    check(abs(cycle["period_us"] - 20000) < 1, f"SYNC every {cycle['period_us']} us")
+    check([node["id"] for node in plan["nodes"]] == list(NODES), "both nodes were found")
+    for node in plan["nodes"]:
+        pdos = {(kind, pdo["number"]): (pdo["cob_id"], pdo["transmission_type"], [f["index"] for f in pdo["fields"]])
+                for kind in ("tpdos", "rpdos") for pdo in node[kind]}
+        wanted = {("tpdos", 1): (0x180 + node["id"], 1, [0x6041, 0x606C]),
+                  ("tpdos", 2): (0x280 + node["id"], 2, [0x6064, 0x6061]),
+                  ("rpdos", 1): (0x200 + node["id"], 1, [0x6040, 0x60FF])}
+        for name, pdo in wanted.items():
+            check(pdos.get(name) == pdo, f"node {node['id']} {name[0]} {name[1]}: {pdos.get(name)}")
+        writes = {step.get("index"): step.get("value") for step in node["boot_plan"] if step["action"].startswith("write")}
+        check(int(writes.get(0x6083, "0"), 16) == 12345 + node["id"], f"node {node['id']} 6083 = {writes.get(0x6083)}")
+        check(int(writes.get(0x6060, "0"), 16) == 9, f"node {node['id']} 6060 = {writes.get(0x6060)}")
+        check(int(writes.get(0x1017, "0"), 16) == 250, f"node {node['id']} 1017 = {writes.get(0x1017)}")
+
+
+def main(binaries):
+    programs = pathlib.Path(binaries)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        log, learned, events = folder / "boot.log", folder / "learned.yaml", folder / "events"
+        devices = subprocess.Popen([programs / "takt", "sim", NETWORK, "--bus", "vcan0"])
+        with log.open("w") as out:
+            record = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
+            time.sleep(1)
+            boot_with_python_canopen()
+            record.terminate()
+            record.wait()
+        done = subprocess.run([programs / "takt", "learn", log, "--eds-dir", EDS.parent, "-o", learned],
+                              capture_output=True, text=True, timeout=60)
+        check(done.returncode == 0, f"takt learn ends with {done.returncode} {done.stderr}")
+        plan = subprocess.run([programs / "takt", "plan", "--json", "--quiet", learned], capture_output=True, text=True)
+        judge_plan(json.loads(plan.stdout))
+        daemon = subprocess.run([programs / "taktd", learned, "--for", "8s", "--events", events,
+                                 "--lcm-url", "tcpq://127.0.0.1:7791"], capture_output=True, text=True, timeout=60)
+        done = [json.loads(line) for line in events.read_text().splitlines()] if events.exists() else []
+        ready = {event.get("node") for event in done if "boot_done" in json.dumps(event)}
+        check(len(ready) == len(NODES), f"taktd boots by the learned file: {ready} {daemon.stderr[-800:]}")
+        devices.terminate()
+        devices.wait()
+        if failures:
+            print(learned.read_text())
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
