@@ -1,13 +1,14 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
-#   TAKT_STAGES  only these of: format release asan tsan tidy (without: all but tidy, which takes ten minutes of its own)
+#   TAKT_STAGES  only these of: format release asan tsan fuzz tidy (without: all but tidy, which takes ten minutes of its own)
+#   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files (60)
 #   TAKT_PCH     OFF: build without precompiled headers, as by hand (ON)
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
 cd "$(dirname "$0")/.." || exit 1
 sh share/install_packages.sh build run test || exit 1
 
-stages=${TAKT_STAGES:-format release asan tsan}
+stages=${TAKT_STAGES:-format release asan tsan fuzz}
 jobs=${TAKT_JOBS:-$(nproc)}
 logs=build/test-logs
 # What another checkout on this machine has compiled need not be compiled again.
@@ -61,11 +62,29 @@ check_tidy() {
     run-clang-tidy-19 -quiet -p build/tidy -j "$jobs" '/(eds_parser|master|apps)/.*\.cpp$'
 }
 
-# build PRESET [TARGET...]
+# build PRESET COMPILER [TARGET...]
 build() {
   preset=$1
-  shift
-  cmake --preset "$preset" -DTAKT_TESTS=ON -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C "build/$preset" -j "$jobs" "$@"
+  compiler=$2
+  shift 2
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_PCH="${TAKT_PCH:-ON}" &&
+    ninja -C "build/$preset" -j "$jobs" "$@"
+}
+
+# What a run finds new is kept beside the build, so that the next one goes on from there.
+# fuzz_one NAME SECONDS OPTION...: test/fuzz/seeds/NAME and what earlier runs found go through NAME_fuzz.
+fuzz_one() {
+  of=$1
+  seconds=$2
+  shift 2
+  mkdir -p "build/fuzz/corpus/$of" &&
+    "build/fuzz/bin/${of}_fuzz" "build/fuzz/corpus/$of" "test/fuzz/seeds/$of" -max_total_time="$seconds" -timeout=20 \
+      -rss_limit_mb=1500 -artifact_prefix=build/fuzz/ -print_final_stats=1 "$@"
+}
+
+fuzz() {
+  cmake --preset fuzz && ninja -C build/fuzz -j "$jobs" eds_fuzz network_fuzz &&
+    fuzz_one eds "${TAKT_FUZZ:-60}" && fuzz_one network $((${TAKT_FUZZ:-60} / 2)) -dict=test/fuzz/network.dict
 }
 
 # run_tests PRESET [CTEST OPTION...]
@@ -79,9 +98,10 @@ for wanted in $stages; do
   case $wanted in
     format) stage format check_format ;;
     tidy) stage tidy check_tidy ;;
-    release) stage release-build build release && stage release-tests run_tests release ;;
-    asan) stage asan-build build asan takt_host_tests && stage asan-tests run_tests asan -L host ;;
-    tsan) stage tsan-build build tsan takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
+    release) stage release-build build release c++ && stage release-tests run_tests release ;;
+    asan) stage asan-build build asan clang++-19 takt_host_tests && stage asan-tests run_tests asan -L host ;;
+    fuzz) stage fuzz fuzz ;;
+    tsan) stage tsan-build build tsan c++ takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
     *) echo "no stage $wanted" >&2 && exit 2 ;;
   esac
 done

@@ -18,9 +18,13 @@ set(TAKT_PCH_OWNER takt_table)
 if(TAKT_PCH)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -DNDEBUG")
   add_compile_options(-pthread)  # LCM asks for it; it has to be the same everywhere
-  # GCC 12 takes a precompiled header for no system header and warns of what it sees wrongly inside std::string and
-  # std::optional (bug 105651).
-  add_compile_options(-Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC 12 takes a precompiled header for no system header and warns of what it sees wrongly inside std::string and
+    # std::optional (bug 105651).
+    add_compile_options(-Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
+  else()
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # or ccache takes every precompiled header for a new one
+  endif()
   if(CCACHE)  # caches sources behind a precompiled header only when told so
     set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
   endif()

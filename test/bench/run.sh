@@ -5,7 +5,7 @@
 set -eu
 source=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:-$source/build/bench}
-programs="pdo_benchmark loop_cost sync_lateness virtual_factor"
+programs="pdo_benchmark loop_cost sync_lateness virtual_factor eds_speed"
 
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTAKT_BENCHMARKS=ON >/dev/null
 # shellcheck disable=SC2086
@@ -64,3 +64,6 @@ done
 done
 factor=$("$bin/virtual_factor")
 row "virtual time, ${factor%%:*}" "${factor#*: }" "-"
+"$bin/eds_speed" | while IFS= read -r line; do
+  row "reading a ${line%%:*}" "${line#*: }" "4.6 MB/s"
+done
