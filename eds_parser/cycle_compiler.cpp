@@ -29,10 +29,13 @@ Time frame_time(std::uint32_t bitrate) {
 }
 
 /// Own frames end so long before SYNC: one longest frame that may be on the wire, and 2 % of the
-/// period (20..200 us) for the answer it solicits and for being late.
+/// period (20..200 us) for the answer it solicits and for being late. SYNC of another device may be
+/// early besides.
 Time quiet_time(const BusPlan& plan) {
-  const Time margin = std::clamp<Time>(plan.cycle.period / 50, shortest_margin, longest_margin);
-  return frame_time(plan.bitrate) + margin;
+  const CyclePlan& cycle = plan.cycle;
+  const Time margin = std::clamp<Time>(cycle.period / 50, shortest_margin, longest_margin);
+  const Time early = cycle.sync && cycle.sync_followed ? cycle.followed_tolerance() : Time{0};
+  return frame_time(plan.bitrate) + margin + early;
 }
 
 class CycleCompiler {

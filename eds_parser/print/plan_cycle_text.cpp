@@ -58,8 +58,8 @@ class CycleText {
       lines_.line("  Synchronous window (1007): {}.", us_text(c.sync_window));
     time_of_day();
     if (c.sync_followed) {
-      lines_.line("  The cycle keeps to that SYNC. After {} without it: {}.",
-                  us_text(c.sync_timeout), sync_loss_text());
+      lines_.line("  The cycle keeps to that SYNC, which may be {} early. After {} without it: {}.",
+                  us_text(c.followed_tolerance()), us_text(c.sync_timeout), sync_loss_text());
     }
   }
 

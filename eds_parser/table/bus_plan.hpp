@@ -128,6 +128,9 @@ struct CyclePlan {
   Time sync_window{};        ///< 0x1007 of the devices, 0 = none
   std::uint16_t service_frames = 4;  ///< SDO and NMT frames a cycle at most
 
+  /// Another device's SYNC may come so much early, and the same late, at each of its periods.
+  Time followed_tolerance() const noexcept { return period / 20; }
+
   bool makes_sync() const noexcept { return sync && !sync_followed; }
 };
 

@@ -29,12 +29,12 @@ class BeatClock {
     cycle_ += static_cast<std::uint64_t>(missed);
     return static_cast<std::uint64_t>(missed);
   }
-  /// The beat is somebody else's: it came at `arrival`, and the next is expected a `period` later.
+  /// The beat is somebody else's: it was at `beat`, and the next is expected a `period` later.
   /// Returns the periods left out since the deadline.
-  std::uint64_t follow(Time arrival, Time period) noexcept {
-    const std::int64_t late = (arrival - deadline_ + period / 2) / period;
+  std::uint64_t follow(Time beat, Time period) noexcept {
+    const std::int64_t late = (beat - deadline_ + period / 2) / period;
     const auto missed = static_cast<std::uint64_t>(late > 0 ? late : 0);
-    deadline_ = arrival;
+    deadline_ = beat;
     period_ = period;
     cycle_ += missed;
     return missed;

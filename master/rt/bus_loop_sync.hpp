@@ -64,13 +64,12 @@ template <Port P, class N>
 void BusLoop<P, N>::wait_for_sync() noexcept {
   const bool was_locked = follower_.locked();
   await_sync();
-  const Time expected = clock_.deadline();
   followed_ = follower_.arrived();
   std::uint64_t missed = 0;
-  Time began = never;
   if (followed_) {
-    missed = clock_.follow(follower_.take(), follower_.period());
-    const Time off = std::chrono::abs(clock_.deadline() - expected);
+    sync_sent_ = follower_.take();
+    const Time off = std::chrono::abs(sync_sent_ - clock_.deadline());
+    missed = clock_.follow(follower_.beat(), follower_.period());
     if (was_locked && missed == 0) exchange_.timing.sync_lateness.record(off);
     if (was_locked && off > clock_.period() / 10) ++status_.cycles_late;
   } else {
@@ -78,10 +77,10 @@ void BusLoop<P, N>::wait_for_sync() noexcept {
     follower_.on_silence(now, network_.nodes());
     missed = clock_.skip_missed(now - follower_.patience());
     status_.cycles_missed += was_locked;
-    began = now;  // after a stall the deadline may lie before us, and a SYNC may come before it
+    // After a stall the deadline may lie before us, and a SYNC may come before it.
+    sync_sent_ = std::min(clock_.deadline(), now);
   }
   if (missed != 0) note_missed(missed, port_.now());
-  sync_sent_ = std::min(clock_.deadline(), began);
   react_to_sync();
   look_at_wire();
 }

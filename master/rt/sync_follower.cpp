@@ -6,7 +6,6 @@
 namespace takt {
 namespace {
 
-constexpr int tolerance = 20;             // a share of the period: 5 % are no drift of a clock
 constexpr int smoothing = 16;             // intervals
 constexpr std::uint8_t odd_limit = 8;     // intervals in a row until the period is told
 constexpr std::uint8_t calm_after = 100;  // SYNCs until an early one is told again
@@ -19,6 +18,7 @@ SyncFollower::SyncFollower(const CyclePlan& plan, EventQueue& events) noexcept
     : used_{plan.sync && plan.sync_followed},
       id_{plan.sync_cob_id},
       declared_{plan.period},
+      tolerance_{plan.followed_tolerance()},
       timeout_{plan.sync_timeout},
       reaction_{plan.on_sync_loss},
       overflow_{plan.sync_overflow},
@@ -32,7 +32,7 @@ Time SyncFollower::patience() const noexcept {
 Time SyncFollower::end_of_wait(Time expected) const noexcept {
   const Time end = expected + patience();
   const Time lost_at = last_ ? *last_ + timeout_ : end;
-  return lost_at > end && lost_at - end <= declared_ / tolerance ? lost_at : end;
+  return lost_at > end && lost_at - end <= tolerance_ ? lost_at : end;
 }
 
 void SyncFollower::tell(EventKind kind, Time now, std::int64_t value,
@@ -45,6 +45,7 @@ void SyncFollower::on_sync(const StampedFrame& sync) noexcept {
   if (last_ && too_early(when - *last_, when)) return;
   check_counter(sync.frame, when);
   if (last_) measure(when - *last_, when);
+  place(when);
   if (state_ != State::locked) lock(when);
   last_ = when;
   arrival_ = when;
@@ -75,7 +76,7 @@ void SyncFollower::check_counter(const Frame& frame, Time when) noexcept {
 
 void SyncFollower::measure(Time interval, Time when) noexcept {
   const Time off = interval - declared_;
-  if (off <= declared_ / tolerance && off >= -declared_ / tolerance) {
+  if (std::chrono::abs(off) <= tolerance_) {
     period_ += (interval - period_) / smoothing;
     odd_ = 0;
     odd_told_ = false;
@@ -85,6 +86,16 @@ void SyncFollower::measure(Time interval, Time when) noexcept {
   if (odd_ < odd_limit) return;
   odd_ = 0;
   if (!std::exchange(odd_told_, true)) tell(EventKind::sync_period, when, interval.count());
+}
+
+/// One late SYNC waited somewhere and moves no beat: its producer goes on by its own clock, and the
+/// next is on time. A second one in a row is the beat.
+void SyncFollower::place(Time when) noexcept {
+  const std::int64_t periods = (when - beat_ + period_ / 2) / period_;
+  const Time due = beat_ + std::max<std::int64_t>(periods, 1) * period_;
+  const bool late = state_ == State::locked && when - due > tolerance_;
+  beat_ = late && !late_ ? due : when;
+  late_ = late;
 }
 
 void SyncFollower::lock(Time when) noexcept {

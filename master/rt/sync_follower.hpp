@@ -29,6 +29,8 @@ class SyncFollower {
   Time arrival() const noexcept { return *arrival_; }
   /// Its time, once.
   Time take() noexcept { return *std::exchange(arrival_, std::nullopt); }
+  /// When the newest was due: its arrival, unless that was an exception among punctual ones.
+  Time beat() const noexcept { return beat_; }
 
   /// A cycle begins without SYNC. While nodes boot the first one is not missed yet.
   void on_silence(Time now, std::span<const NodeStatus> nodes) noexcept;
@@ -47,8 +49,10 @@ class SyncFollower {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(state_, arrival_, last_, idle_since_, counter_, jumped_, early_, odd_, odd_told_);
-    if (used_) state.period(period_);
+    state(state_, arrival_, last_, idle_since_, counter_, jumped_, early_, late_, odd_, odd_told_);
+    if (!used_) return;
+    state(beat_);
+    state.period(period_);
   }
 
  private:
@@ -61,12 +65,14 @@ class SyncFollower {
   bool too_early(Time interval, Time when) noexcept;
   void check_counter(const Frame& frame, Time when) noexcept;
   void measure(Time interval, Time when) noexcept;
+  void place(Time when) noexcept;
   void lock(Time when) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail = 0) noexcept;
 
   bool used_;
   CobId id_;
   Time declared_;
+  Time tolerance_;
   Time timeout_;
   SyncLoss reaction_;
   std::uint8_t overflow_;
@@ -77,8 +83,10 @@ class SyncFollower {
   std::optional<Time> last_;
   std::optional<Time> idle_since_;  ///< no node boots any more, and no SYNC yet
   Time period_;
+  Time beat_{};
   std::uint8_t counter_ = 0;  ///< of the newest; 0: not known
   bool jumped_ = false;
+  bool late_ = false;       ///< the newest was
   std::uint8_t early_ = 0;  ///< good ones until the next early one is told
   std::uint8_t odd_ = 0;    ///< intervals in a row that are not the declared period
   bool odd_told_ = false;

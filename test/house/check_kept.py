@@ -40,7 +40,7 @@ NOT_KEPT = {
                   ANEW: "toggle_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
                         "block_download_ settled_ last_sent_ last_received_"},
     "SyncCounter": {PLAN: "overflow_"},
-    "SyncFollower": {PLAN: "id_ declared_ timeout_ reaction_ overflow_", SHARED: "events_"},
+    "SyncFollower": {PLAN: "id_ declared_ tolerance_ timeout_ reaction_ overflow_", SHARED: "events_"},
     "SyncGate": {PLAN: "tolerance_"},
     "SyncHold": {PLAN: "steps_"},
     "TimeProducer": {PLAN: "plan_"},

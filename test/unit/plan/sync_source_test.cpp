@@ -67,6 +67,14 @@ TEST(SyncSource, HasATimeOutOfOneAndAHalfPeriods) {
   EXPECT_FALSE(net.plan.cycle.sync_producer);
 }
 
+TEST(SyncSource, IsAllowedToBeEarlyByATwentiethOfThePeriod) {
+  const std::string nodes = "nodes: {arm: {node_id: 5, dcf: x}}\n";
+  const auto own = compile("master: {sync_period: 10000}\n" + nodes);
+  const auto foreign = compile("master: {sync_period: 10000, sync_source: external}\n" + nodes);
+  EXPECT_EQ(foreign.plan.cycle.output_deadline, own.plan.cycle.output_deadline - 500us);
+  EXPECT_EQ(foreign.plan.cycle.quiet_before_sync, own.plan.cycle.quiet_before_sync + 500us);
+}
+
 TEST(SyncSource, IsRefusedWhereItIsNoNodeOrHasNoPeriod) {
   const std::string nodes = "nodes: {arm: {node_id: 5, dcf: x}}\n";
   EXPECT_THAT(

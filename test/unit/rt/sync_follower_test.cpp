@@ -140,6 +140,51 @@ TEST_F(SyncFollowerTest, TellsAPeriodThatIsNotTheDeclaredOne) {
   EXPECT_EQ(follower->period(), 10ms);
 }
 
+TEST_F(SyncFollowerTest, KeepsTheBeatWhereOneSyncIsLate) {
+  use(followed());
+  for (int i = 0; i < 5; ++i) sync(100ms + i * 10ms);
+  EXPECT_TRUE(sync(153ms));
+  EXPECT_EQ(follower->beat(), 150ms);
+  EXPECT_TRUE(sync(160ms));
+  EXPECT_EQ(follower->beat(), 160ms);
+}
+
+TEST_F(SyncFollowerTest, KeepsTheBeatOverASyncThatIsMissing) {
+  use(followed());
+  for (int i = 0; i < 5; ++i) sync(100ms + i * 10ms);
+  sync(163ms);
+  EXPECT_EQ(follower->beat(), 160ms);
+}
+
+TEST_F(SyncFollowerTest, MovesTheBeatAsFarAsItsTolerance) {
+  use(followed());
+  sync(100ms);
+  sync(110'500us);
+  EXPECT_EQ(follower->beat(), 110'500us);
+  sync(118ms);
+  EXPECT_EQ(follower->beat(), 118ms) << "nothing is early for long";
+}
+
+TEST_F(SyncFollowerTest, TakesTheSecondLateSyncInARowForTheBeat) {
+  use(followed());
+  for (int i = 0; i < 5; ++i) sync(100ms + i * 10ms);
+  sync(153ms);
+  EXPECT_EQ(follower->beat(), 150ms);
+  sync(163ms);
+  EXPECT_EQ(follower->beat(), 163ms);
+  sync(173ms);
+  EXPECT_EQ(follower->beat(), 173ms);
+}
+
+TEST_F(SyncFollowerTest, TakesTheFirstSyncAfterALossForTheBeat) {
+  use(followed());
+  for (int i = 0; i < 5; ++i) sync(100ms + i * 10ms);
+  follower->on_silence(170ms, {});
+  ASSERT_TRUE(follower->lost());
+  sync(173ms);
+  EXPECT_EQ(follower->beat(), 173ms);
+}
+
 // The loop that keeps to it. Two axes at 2 ms; SYNC comes from outside.
 
 class FollowingLoop : public testing::Test {
@@ -176,6 +221,24 @@ TEST_F(FollowingLoop, SendsNoSyncAndOutputsAtTheirTimeAfterTheForeignOne) {
   EXPECT_EQ(outputs.back().when, last_sync + loop.plan.cycle.output_deadline);
   EXPECT_EQ(loop.status().cycles_missed, 0u);
   EXPECT_LE(loop.most_calls, 7u);
+}
+
+TEST_F(FollowingLoop, SendsOutputsBeforeTheNextSyncWhereOneIsLate) {
+  const auto when = [&](int i) { return first + i * 2ms + (i % 3 == 2 ? 500us : 0us); };
+  for (int i = 0; i < 30; ++i) {
+    sync(when(i));
+    loop.run(1);
+    if (i == 1) loop.command_all(0x0F, 5000);
+  }
+
+  std::vector<Time> outputs;
+  for (const auto& sent : loop.port.sent_with(0x201)) outputs.push_back(sent.when);
+  for (int i = 3; i < 30; ++i) {
+    const Time due = first + i * 2ms + loop.plan.cycle.output_deadline;
+    EXPECT_EQ(std::ranges::count(outputs, due), 1) << "SYNC " << i;
+  }
+  EXPECT_EQ(loop.status().cycles_missed, 0u);
+  EXPECT_EQ(loop.status().outputs_skipped, 0u);
 }
 
 TEST_F(FollowingLoop, LeavesFramesBehindSyncToTheCycleThatItBegins) {
