@@ -37,9 +37,21 @@ void AxisControl::set_layout(const ImageInput& input) {
 }
 
 double AxisControl::read(AxisSignals::Position signal, const ImageInput& input) const {
-  if (!signal) return 0.0;
-  const ValueFormat& format = units_.format(*signal);
-  return number_of(format.type, input.values()[*signal]) * format.scale + format.offset;
+  return signal ? to_si(*signal, input.values()[*signal]) : 0.0;
+}
+
+double AxisControl::to_si(std::size_t signal, std::int64_t raw) const {
+  const ValueFormat& format = units_.format(signal);
+  return number_of(format.type, raw) * format.scale + format.offset;
+}
+
+Eigen::VectorXd AxisControl::target_positions_in_counts() const {
+  Eigen::VectorXd shown{Eigen::VectorXd::Zero(size())};
+  for (Index i = 0; i < size(); ++i) {
+    const AxisSignals::Position signal = signals(i).target_position;
+    if (signal) shown(i) = to_si(*signal, units_.to_raw(*signal, target_positions_(i)));
+  }
+  return shown;
 }
 
 void AxisControl::on_image(const ImageInput& input) {

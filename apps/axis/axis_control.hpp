@@ -57,6 +57,8 @@ class AxisControl {
   const Eigen::VectorXd& velocities() const noexcept { return velocities_; }
   const Eigen::VectorXd& torques() const noexcept { return torques_; }
   const Eigen::VectorXd& target_positions() const noexcept { return target_positions_; }
+  /// Target positions as sent_positions() will show them: in whole counts of the drives.
+  Eigen::VectorXd target_positions_in_counts() const;
 
   void set_goal(DriveGoal goal);
   void set_goal(Index axis, DriveGoal goal) { axes_[at(axis)].drive.set_goal(goal); }
@@ -86,6 +88,7 @@ class AxisControl {
 
   static std::size_t at(Index axis) noexcept { return static_cast<std::size_t>(axis); }
   double read(AxisSignals::Position signal, const ImageInput& input) const;
+  double to_si(std::size_t signal, std::int64_t raw) const;
   void step(Axis& axis, const ImageInput& input);
   void rest(Index axis);
   void put(AxisSignals::Position signal, std::int64_t raw);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "apps/move/paced_motion.hpp"
 #include "apps/move/sine.hpp"
 #include "apps/move/synchronised_move.hpp"
 
@@ -20,6 +21,10 @@ constexpr int exit_no_daemon = 3;
 
 /// Seconds from full speed to standstill when the motion is held.
 constexpr double hold_ramp = 0.2;
+/// Set-points under way: one in the next SYNC, one in this machine's queues, one new.
+constexpr double longest_lead = 3;
+/// Seconds in which the bus takes no set-point although images come.
+constexpr double longest_refusal = 1.0;
 /// Longest wait for an image before the motion is looked at again.
 constexpr std::chrono::milliseconds tick{2};
 /// A drive may need so long for its brake and its DC link.
@@ -143,40 +148,46 @@ bool MoveRun::move() {
 }
 
 bool MoveRun::follow(const char* what, double duration, const Trajectory& trajectory) {
-  Pace pace{hold_ramp};
+  PacedMotion motion{axes_.target_positions_in_counts(), hold_ramp, longest_lead * period()};
   last_cycle_ = group_.input().cycle();
   auto last_tick = Clock::now();
-  while (pace.time() < duration && !(stop_ != 0 && pace.standing())) {
+  while (motion.time() < duration && !(stop_ != 0 && motion.standing())) {
     const Input input = group_.wait(tick);
     const Hold hold = take_input(input);
     if (restarted_ || axes_lost()) return false;
     const std::chrono::duration<double> passed = Clock::now() - last_tick;
-    if (input != Input::fresh && holding_ == Hold::no) continue;  // the next image sets the pace
+    const bool fresh = input == Input::fresh;
+    if (!fresh && holding_ == Hold::no) continue;  // the next image sets the pace
     last_tick = Clock::now();
-    const double step =
-        input == Input::fresh ? real_step() : std::min(passed.count(), longest_step());
-    axes_.set_positions(trajectory(pace.step(step, hold)));
+    if (fresh) motion.seen(axes_.sent_positions());
+    const double step = fresh ? real_step() : std::min(passed.count(), longest_step());
+    axes_.set_positions(trajectory(motion.step(step, hold)));
+    motion.sent(axes_.target_positions_in_counts());
     group_.send();
-    if (input != Input::fresh) continue;
-    following_.seen(group_.input().cycle(), axes_.positions());
-    following_.sent(group_.input().cycle(), axes_.sent_positions());
-    progress_.states(group_);
-    progress_.positions(axes_, following_, what);
+    if (motion.refused() > longest_refusal) return not_taken();
+    if (fresh) compare(what);
   }
   return true;
 }
 
-/// Seconds. A gap, of the images or of this program itself, does not make the motion jump.
-double MoveRun::longest_step() const {
-  return std::chrono::duration<double>(group_.period()).count() * options_.stale_cycles;
+void MoveRun::compare(const char* what) {
+  following_.seen(group_.input().cycle(), axes_.positions());
+  following_.sent(group_.input().cycle(), axes_.sent_positions());
+  progress_.states(group_);
+  progress_.positions(axes_, following_, what);
 }
+
+/// Of SYNC, seconds.
+double MoveRun::period() const { return std::chrono::duration<double>(group_.period()).count(); }
+
+/// Seconds. A gap, of the images or of this program itself, does not make the motion jump.
+double MoveRun::longest_step() const { return period() * options_.stale_cycles; }
 
 /// Seconds of bus time since the last image.
 double MoveRun::real_step() {
   const std::int64_t cycle = group_.input().cycle();
   const auto cycles = static_cast<double>(cycle - std::exchange(last_cycle_, cycle));
-  const double seconds = std::chrono::duration<double>(group_.period()).count() * cycles;
-  return std::clamp(seconds, 0.0, longest_step());
+  return std::clamp(period() * cycles, 0.0, longest_step());
 }
 
 Hold MoveRun::take_input(Input input) {
@@ -195,6 +206,14 @@ Hold MoveRun::take_input(Input input) {
   }
   holding_ = stale ? Hold::yes : Hold::no;
   return stale || stop_ != 0 ? Hold::yes : Hold::no;
+}
+
+bool MoveRun::not_taken() {
+  progress_.say(
+      fmt::format("images show for {:g} s that no set-point is sent: stopping (takt "
+                  "status shows who holds the axes)",
+                  longest_refusal));
+  return false;
 }
 
 bool MoveRun::axes_lost() {

@@ -29,9 +29,12 @@ class MoveRun {
   bool move();
   bool follow(const char* what, double duration, const Trajectory& trajectory);
   Hold take_input(Input input);
+  void compare(const char* what);
+  double period() const;
   double longest_step() const;
   double real_step();
   bool axes_lost();
+  bool not_taken();
   void disable();
   /// Serves images and sends commands until `done` or for this long; false: time is up.
   bool hold_until(const std::function<bool()>& done, double seconds);

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 
 namespace takt {
 
@@ -11,8 +12,10 @@ class Pace {
   /// `ramp`: seconds from full speed to standstill, above zero.
   explicit Pace(double ramp) noexcept : ramp_{ramp} {}
 
-  /// Advances by a step of real time; returns the time along the trajectory. Seconds.
-  double step(double seconds, Hold hold) noexcept;
+  /// Advances by a step of real time, above zero, not beyond `latest`, where it stops at once and
+  /// goes on in a ramp. Returns the time along the trajectory. Seconds.
+  double step(double seconds, Hold hold,
+              double latest = std::numeric_limits<double>::infinity()) noexcept;
   double time() const noexcept { return time_; }
   double rate() const noexcept { return rate_; }
   bool standing() const noexcept { return rate_ == 0.0; }

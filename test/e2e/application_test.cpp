@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <regex>
 #include <string>
+#include <thread>
 
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
@@ -82,6 +83,24 @@ TEST(StoppedApplication, ItsAxesQuickStopAfterTheTimeToLive) {
   EXPECT_GE(axis.syncs_at_rest(), 5);
   EXPECT_LE(axis.syncs_at_rest(), 60);
   EXPECT_TRUE(daemon.hear([&] { return daemon.events("fallback_begun") > 0; }));
+}
+
+/// Set-points that were computed meanwhile collapse into one: no drive could follow it.
+TEST(MovingApplication, DoesNotRunAwayFromADaemonThatStandsStill) {
+  const Folder folder;
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "6s"},
+               folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();
+
+  for (int i = 0; i < 8; ++i) {
+    daemon.stop_for(milliseconds{150});
+    std::this_thread::sleep_for(milliseconds{350});
+  }
+
+  EXPECT_EQ(move.wait(), 0) << move.output();
+  EXPECT_NE(move.output().find("The axes followed."), std::string::npos) << move.output();
 }
 
 }  // namespace

@@ -129,6 +129,17 @@ TEST_F(TwoAxes, AreRaisedAndLoweredByTheHandshakeInProfilePosition) {
   EXPECT_EQ(commanded(controlword_6), 0x003F);
 }
 
+TEST_F(TwoAxes, ShowsTargetsInTheCountsThatTheImageWillShow) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_positions(Eigen::Vector2d{0.12345678, -0.5});
+  const Eigen::VectorXd shown = axes_.target_positions_in_counts();
+  EXPECT_NE(shown, axes_.target_positions());
+
+  see({enabled, enabled, 0, 0, 0x0F, 0x0F, commanded(target_5), commanded(target_6)});
+  EXPECT_EQ(axes_.sent_positions(), shown);
+}
+
 TEST_F(TwoAxes, ShallBeDisabledAfterANewLayout) {
   axes_.set_goal(DriveGoal::enabled);
   see({enabled, enabled, 0, 0});

@@ -41,6 +41,31 @@ TEST(Pace, NeverRunsBackwardsNorFasterThanTheClock) {
   }
 }
 
+TEST(Pace, GoesNoFartherThanTheLatestTime) {
+  Pace pace{0.1};
+  EXPECT_NEAR(pace.step(0.010, Hold::no, 0.004), 0.004, 1e-12);
+  EXPECT_NEAR(pace.rate(), 0.4, 1e-12);
+  EXPECT_NEAR(pace.step(0.010, Hold::no, 0.004), 0.004, 1e-12);
+  EXPECT_TRUE(pace.standing());
+  EXPECT_NEAR(pace.step(0.010, Hold::no, 0.001), 0.004, 1e-12) << "it never runs backwards";
+}
+
+TEST(Pace, GoesOnInItsRampFromTheLatestTime) {
+  Pace pace{0.1};
+  pace.step(0.010, Hold::no, 0.0);
+  EXPECT_TRUE(pace.standing());
+  EXPECT_NEAR(pace.step(0.010, Hold::no, 1.0), 0.0005, 1e-12);
+  for (int i = 0; i < 10; ++i) pace.step(0.010, Hold::no, 1.0);
+  EXPECT_EQ(pace.rate(), 1.0);
+}
+
+TEST(Pace, TakesAStepOfNoTimeBehindTheLatest) {
+  Pace pace{0.1};
+  pace.step(0.010, Hold::no);
+  EXPECT_NEAR(pace.step(0.0, Hold::no, 0.005), 0.010, 1e-12);
+  EXPECT_TRUE(pace.standing());
+}
+
 TEST(Sine, StartsAndEndsAtRestAtItsCentre) {
   const Eigen::Vector2d centre{1.0, -1.0};
   const Sine sine{centre, {.amplitude = 0.5, .frequency = 0.5, .duration = 8.0}};
