@@ -98,7 +98,7 @@ struct DeviceData {
   std::string name;    ///< "Lenze 8400 HighLine"
   std::string manual;  ///< where its facts come from
   SourcePos pos;
-  std::uint32_t vendor = 0;
+  std::uint32_t vendor = 0;  ///< 0: only `device:` of a node chooses the entry
   NumberRange product;
   NumberRange revision;
   bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half

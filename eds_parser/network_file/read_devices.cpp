@@ -110,9 +110,12 @@ class DeviceReader {
     const YamlNode* node = outer.take("match");
     if (node == nullptr) {
       report_.error(root_.pos, "missing-key",
-                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}`");
+                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}`, "
+                    "or `match: none` where only `device:` of a node shall choose it");
       return;
     }
+    firmware_in_revision(outer);
+    if (node->kind == YamlNode::Kind::scalar && node->text == "none") return;
     constexpr IntegerRange any{0, 0xFFFF'FFFF};
     MapReader reader{*node, "`match`", report_};
     Sourced<std::uint32_t> vendor;
@@ -122,6 +125,9 @@ class DeviceReader {
     reader.finish();
     if (!vendor.given) report_.error(node->pos, "missing-key", "`match` lacks `vendor_id`");
     data_.vendor = *vendor;
+  }
+
+  void firmware_in_revision(MapReader& outer) {
     Sourced<bool> is_firmware;
     outer.boolean("revision_is_firmware", is_firmware);
     data_.revision_is_firmware = *is_firmware;

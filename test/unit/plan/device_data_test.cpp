@@ -59,8 +59,9 @@ TEST(DeviceData, HasAnEntryForEachFamily) {
   std::vector<std::string> ids;
   for (const DeviceData& entry : shipped()) ids.push_back(entry.id);
 
-  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_io", "elmo", "lenze8400",
-                                           "plain301", "technosoft"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_io", "delta_asda", "elmo",
+                                           "kostal_inveor", "lenze8400", "plain301", "schunk",
+                                           "technosoft", "toshiba_vfs15"}));
 }
 
 TEST(DeviceData, ReadsAnEntry) {
@@ -289,6 +290,43 @@ TEST(DeviceData, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
   EXPECT_EQ(plan.emcy_texts[0].code, 0xFF01);
   EXPECT_NE(std::ranges::find(plan.device_notes, "inhibit times of 30 ms by default"),
             plan.device_notes.end());
+}
+
+TEST(DeviceData, OfAnUnknownIdentityIsChosenByNameAlone) {
+  const std::string node = "fan: {node_id: 4, dcf: x, tpdo: {1: {transmission: 245}}";
+  const auto unnamed = compile_device_file(node + ", vendor_id: 0}\n", "takt_drive402.eds");
+  const auto named = compile_device_file(node + ", device: toshiba_vfs15}\n", "takt_drive402.eds");
+
+  EXPECT_EQ(unnamed.plan.nodes.at(0).device_data, "");
+  EXPECT_EQ(named.plan.nodes.at(0).device_data, "Toshiba VF-S15");
+  EXPECT_NE(named.said("device-data").find("types 241 to 251 have no function"), std::string::npos);
+}
+
+TEST(DeviceData, WarnsOfAResetThatASchunkModuleDoesNotTake) {
+  const std::string node = "arm: {node_id: 4, dcf: x, device: schunk, reset: ";
+  const auto communication = compile_device_file(node + "communication}\n", "takt_drive402.eds");
+  EXPECT_NE(communication.said("device-data").find("whole application"), std::string::npos);
+  EXPECT_EQ(compile_device_file(node + "node}\n", "takt_drive402.eds").said("device-data"), "");
+}
+
+TEST(DeviceData, KnowsFromWhichFirmwareAKostalInverterConsumesHeartbeats) {
+  const auto consumes = [](const std::string& firmware) {
+    const auto net = compile_device_file(
+        "pump: {node_id: 4, dcf: x, vendor_id: 0x337, firmware: \"" + firmware + "\"}\n",
+        "takt_drive402.eds");
+    EXPECT_EQ(net.plan.nodes.at(0).device_data, "Kostal INVEOR");
+    return std::ranges::any_of(net.devices.at(0).objects, [](const DeviceObject& object) {
+      return object.key.index == 0x1016;
+    });
+  };
+  EXPECT_TRUE(consumes("03.85"));
+  EXPECT_FALSE(consumes("03.84"));
+}
+
+TEST(DeviceData, SaysWhatADeltaDriveDoesWithoutSync) {
+  const auto net =
+      compile_device_file("axis: {node_id: 4, dcf: x, device: delta_asda}\n", "takt_drive402.eds");
+  EXPECT_NE(net.plan.nodes.at(0).on_sync_loss.find("alarm"), std::string::npos);
 }
 
 TEST(DeviceData, OfTheUserComesBeforeWhatWasShipped) {
