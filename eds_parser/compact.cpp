@@ -4,7 +4,7 @@
 #include <bitset>
 #include <string>
 
-#include "eds_parser/number.hpp"
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -67,15 +67,28 @@ void expand_compact_subs(Object& object, const SubObject& pattern, std::uint8_t 
   }
 }
 
+void merge_objects(std::vector<Object>& objects, std::vector<Object> made) {
+  std::ranges::sort(made, {}, &Object::index);
+  auto from = objects.size();
+  auto to = from + made.size();
+  objects.resize(to);
+  while (!made.empty()) {
+    if (from != 0 && objects[from - 1].index > made.back().index) {
+      objects[--to] = std::move(objects[--from]);
+    } else {
+      objects[--to] = std::move(made.back());
+      made.pop_back();
+    }
+  }
+}
+
 void apply_compact_list(Object& object, CompactList list, const IniEntries& entries,
                         ValueReader& values, Report& report) {
   std::bitset<256> applied;
   for (const auto& entry : entries) {
     if (same_word(entry.key, "nrofentries")) continue;
-    const auto number = parse_number(entry.key);
-    auto* sub = number && !number->relative() && number->magnitude <= 0xFF
-                    ? find_sub(object, static_cast<unsigned>(number->magnitude))
-                    : nullptr;
+    const auto number = entry_number(entry.key);
+    auto* sub = number ? find_sub(object, *number) : nullptr;
     if (sub == nullptr) {
       if (!report.wants("unknown-sub-object")) continue;
       report.warning(entry.key_pos(), "unknown-sub-object",

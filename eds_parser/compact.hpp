@@ -33,6 +33,10 @@ SubObject count_sub(const Object& object, std::uint8_t count);
 /// CiA 306, 4.6.3.4.2.
 void expand_compact_subs(Object& object, const SubObject& pattern, std::uint8_t count);
 
+/// Adds objects that are not among them yet to ascending ones: each moves once at most, those
+/// before the first made one not at all.
+void merge_objects(std::vector<Object>& objects, std::vector<Object> made);
+
 enum class CompactList : std::uint8_t { names, values, denotations };
 
 /// Applies [xxxxName], [xxxxValue] or [xxxxDenotation]: keys are sub-indices in decimal.

@@ -105,22 +105,6 @@ void add_missing(const ObjectDictionary& dictionary, bool is_tpdo, std::uint16_t
   }
 }
 
-/// Both are ascending then: each object moves once, those before the first made one not at all.
-void merge(std::vector<Object>& objects, std::vector<Object> made) {
-  std::ranges::sort(made, {}, &Object::index);
-  auto from = objects.size();
-  auto to = from + made.size();
-  objects.resize(to);
-  while (!made.empty()) {
-    if (from != 0 && objects[from - 1].index > made.back().index) {
-      objects[--to] = std::move(objects[--from]);
-    } else {
-      objects[--to] = std::move(made.back());
-      made.pop_back();
-    }
-  }
-}
-
 }  // namespace
 
 void expand_compact_pdos(ObjectDictionary& dictionary) {
@@ -128,7 +112,7 @@ void expand_compact_pdos(ObjectDictionary& dictionary) {
   std::vector<Object> made;
   add_missing(dictionary, false, dictionary.device.nr_rx_pdo, made);
   add_missing(dictionary, true, dictionary.device.nr_tx_pdo, made);
-  merge(dictionary.objects, std::move(made));
+  merge_objects(dictionary.objects, std::move(made));
 }
 
 }  // namespace takt

@@ -88,6 +88,7 @@ class EdsReader {
           section.pos, "section-name-form",
           "section " + quoted(section.name) + ": CiA 306 writes sub-indices without leading zero");
     }
+    if (name.blank || section.padded()) tell_blank_in_name(section, report_);
     switch (name.kind) {
       case SectionKind::object:
       case SectionKind::sub_object:
@@ -113,12 +114,7 @@ class EdsReader {
       case SectionKind::commissioning:
         return keep(outline_.commissioning, section);
       case SectionKind::unknown:
-        if (report_.wants("unknown-section")) {
-          report_.warning(
-              section.pos, "unknown-section",
-              "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
-        }
-        return;
+        return tell_unknown(section);
       case SectionKind::file_info:
         return keep(outline_.file_info, section);
       case SectionKind::comments:
@@ -137,7 +133,8 @@ class EdsReader {
       case SectionKind::connected_modules:
         return modules_.set_connected(section);
       case SectionKind::module:
-        return modules_.add(name, at);
+        if (!modules_.add(name, at, report_)) tell_unknown(section);
+        return;
     }
   }
 
@@ -153,11 +150,10 @@ class EdsReader {
                         std::to_string(first.pos.line) + ", counts");
   }
 
-  void tell_lonely_list(const IniSection& list) {
-    if (!report_.wants("object-section-missing")) return;
-    report_.warning(list.pos, "object-section-missing",
-                    "section " + quoted(list.name) +
-                        " belongs to an object that has no section; it was left out");
+  void tell_unknown(const IniSection& section) {
+    if (!report_.wants("unknown-section")) return;
+    report_.warning(section.pos, "unknown-section",
+                    "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
   }
 
   /// The name decides; where it does not tell, the section that only a DCF should have.
@@ -237,7 +233,7 @@ class EdsReader {
       std::size_t end = at + 1;
       while (end < all.size() && all[end].index() == all[at].index()) ++end;
       if (all[at].is_list()) {
-        tell_lonely_list(file_.sections[all[at].section]);
+        tell_lonely_list(file_.sections[all[at].section], report_);
       } else {
         auto& object = dictionary.objects.emplace_back(reader.read(all.subspan(at, end - at)));
         object.list = lists.list_of(object.index);

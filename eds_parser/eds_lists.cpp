@@ -1,7 +1,6 @@
 #include "eds_parser/eds_lists.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
@@ -11,7 +10,16 @@ namespace {
 
 constexpr std::uint32_t most_entries = 0xFFFF;
 
-/// `SupportedObjects`, also with blanks inside.
+std::optional<std::uint32_t> small_number(std::string_view text) noexcept {
+  const auto number = parse_number(text);
+  const bool good =
+      number && !number->negative && !number->relative() && number->magnitude <= most_entries;
+  if (!good) return std::nullopt;
+  return static_cast<std::uint32_t>(number->magnitude);
+}
+
+}  // namespace
+
 bool is_count_key(std::string_view key) noexcept {
   constexpr std::string_view wanted = "supportedobjects";
   std::size_t at = 0;
@@ -23,15 +31,6 @@ bool is_count_key(std::string_view key) noexcept {
   return at == wanted.size();
 }
 
-std::optional<std::uint32_t> small_number(std::string_view text) noexcept {
-  const auto number = parse_number(text);
-  const bool good =
-      number && !number->negative && !number->relative() && number->magnitude <= most_entries;
-  if (!good) return std::nullopt;
-  return static_cast<std::uint32_t>(number->magnitude);
-}
-
-/// Key of a list entry: always decimal.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept {
   if (key.empty() || key.find_first_not_of("0123456789") != std::string_view::npos) {
     return std::nullopt;
@@ -39,8 +38,6 @@ std::optional<std::uint32_t> entry_number(std::string_view key) noexcept {
   key.remove_prefix(std::min(key.find_first_not_of('0'), key.size() - 1));
   return small_number(key);
 }
-
-}  // namespace
 
 ObjectLists::ObjectLists(const IndexSet& described, Report& report)
     : described_{described}, report_{report}, membership_(65536, ObjectList::unlisted) {}

@@ -1,6 +1,8 @@
 #pragma once
 #include <bitset>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "eds_parser/ini.hpp"
@@ -10,6 +12,11 @@
 namespace takt {
 
 using IndexSet = std::bitset<65536>;
+
+/// `SupportedObjects`, also with blanks inside.
+bool is_count_key(std::string_view key) noexcept;
+/// Key of an entry of an object list or value list: always decimal, zeros in front do not matter.
+std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
 
 /// [MandatoryObjects], [OptionalObjects], [ManufacturerObjects] against the sections of the file.
 /// The sections are the truth; the lists only say where an object belongs. CiA 306, 4.6.3.1.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eds_parser/eds_limits.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/standard_types.hpp"
 #include "eds_parser/text.hpp"
@@ -15,7 +16,6 @@ bool is_structured(ObjectType type) noexcept {
 
 std::string section_text(const IniSection& section) { return '[' + to_utf8(section.name) + ']'; }
 
-/// Type with the given code, unknown where takt does not know it.
 std::optional<Access> access_of(std::string_view text) noexcept {
   struct Known {
     std::string_view text;
@@ -48,6 +48,14 @@ std::uint32_t role_of(const SectionName& name) noexcept {
 bool inverted(const Value& low, const Value& high) noexcept {
   if (low.index() != high.index() || std::holds_alternative<BoxedText>(low)) return false;
   return high < low;
+}
+
+/// A negative limit written without a sign.
+bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexcept {
+  const auto* number = limit ? std::get_if<std::int64_t>(&*limit) : nullptr;
+  if (number == nullptr || *number >= 0) return false;
+  const auto written = parse_number(text);
+  return written && !written->negative;
 }
 
 }  // namespace
@@ -323,13 +331,48 @@ void ObjectReader::read_values(SubObject& sub, const ObjectFields& fields, Objec
   if (fields.has(Keyword::denotation)) sub.denotation = to_utf8(fields.text(Keyword::denotation));
   sub.low_limit = read(Keyword::low_limit, "LowLimit", Severity::warning);
   sub.high_limit = read(Keyword::high_limit, "HighLimit", Severity::warning);
-  if (!sub.low_limit || !sub.high_limit || !inverted(*sub.low_limit, *sub.high_limit)) return;
-  report_.warning(fields.pos(Keyword::low_limit, section.pos), "limits-inverted",
-                  to_string(key) + ": LowLimit " + quoted(fields.text(Keyword::low_limit)) +
-                      " is above HighLimit " + quoted(fields.text(Keyword::high_limit)) + " in " +
-                      std::string{name(sub.type)} + "; both were left out");
-  sub.low_limit.reset();
-  sub.high_limit.reset();
+  judge_limits(sub, fields, key, section);
+}
+
+/// A limit that closes a range to values that the file means is none. CiA 306 does not say how a
+/// limit of a signed type is written: vendors write bit patterns, and numbers above the type.
+void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                                const IniSection& section) {
+  if (sub.low_limit && sub.high_limit && inverted(*sub.low_limit, *sub.high_limit)) {
+    report_.warning(fields.pos(Keyword::low_limit, section.pos), "limits-inverted",
+                    to_string(key) + ": LowLimit " + quoted(fields.text(Keyword::low_limit)) +
+                        " is above HighLimit " + quoted(fields.text(Keyword::high_limit)) + " in " +
+                        std::string{name(sub.type)} + "; both were left out");
+    sub.low_limit.reset();
+    sub.high_limit.reset();
+    return;
+  }
+  const auto drop = [&](std::optional<Value>& limit, Keyword keyword, std::string_view what) {
+    report_.warning(fields.pos(keyword, section.pos), "limit-above-type",
+                    to_string(key) + ": " + std::string{what} + ' ' + quoted(fields.text(keyword)) +
+                        " would be " + std::to_string(std::get<std::int64_t>(*limit)) + " in " +
+                        std::string{name(sub.type)} + "; it was left out");
+    limit.reset();
+  };
+  const bool low = is_pattern(sub.low_limit, fields.text(Keyword::low_limit));
+  const bool high = is_pattern(sub.high_limit, fields.text(Keyword::high_limit));
+  const bool one_value = low && high && sub.low_limit == sub.high_limit;
+  if (one_value && (!sub.default_value || sub.default_value == sub.low_limit)) return;
+  const bool holds_default = low && sub.default_value && !outside_limits(*sub.default_value, sub);
+  if (high && !holds_default &&
+      (!sub.low_limit || sub.low_limit == sub.high_limit ||
+       sub.high_limit == Value{std::int64_t{-1}} ||
+       !parse_number(fields.text(Keyword::high_limit))->hex)) {
+    drop(sub.high_limit, Keyword::high_limit, "HighLimit");
+  }
+  const auto& value = sub.default_value;
+  if (!value) return;
+  if (high && sub.high_limit && inverted(*value, *sub.high_limit)) {
+    drop(sub.high_limit, Keyword::high_limit, "HighLimit");
+  }
+  if (low && inverted(*sub.low_limit, *value)) {
+    drop(sub.low_limit, Keyword::low_limit, "LowLimit");
+  }
 }
 
 void ObjectReader::apply_lists(Object& object, const Parts& parts) {

@@ -71,6 +71,8 @@ class ObjectReader {
                      bool is_domain);
   void read_values(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                    const IniSection& section);
+  void judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
+                    const IniSection& section);
   void apply_lists(Object& object, const Parts& parts);
 
   const IniFile& file_;

@@ -46,9 +46,11 @@ bool has_prefix(std::string_view text, std::string_view lower) noexcept {
 }
 
 /// What follows the four digits of an index.
-SectionName classify_suffix(std::string_view suffix, std::uint16_t index) noexcept {
+SectionName classify_suffix(std::string_view written, std::uint16_t index) noexcept {
+  const auto suffix = trim(written);
   SectionName name{.kind = SectionKind::object, .index = index};
   if (suffix.empty()) return name;
+  name.blank = is_blank(written.front());
   if (has_prefix(suffix, "sub")) {
     const auto digits = trim(suffix.substr(3));
     std::uint32_t sub = 0;
@@ -57,6 +59,7 @@ SectionName classify_suffix(std::string_view suffix, std::uint16_t index) noexce
     if (!good) return {};
     name.kind = SectionKind::sub_object;
     name.sub = static_cast<std::uint8_t>(sub);
+    name.blank = name.blank || is_blank(suffix[3]);
     name.leading_zero = count > 1 && digits.front() == '0';
     return name;
   }
@@ -196,6 +199,20 @@ SectionName classify_section(std::string_view name) noexcept {
   if (is_tool(name)) return {.kind = SectionKind::tools};
   if (!name.empty() && fold(name.front()) == 'm') return classify_module(name);
   return {};
+}
+
+void tell_blank_in_name(const IniSection& section, Report& report) {
+  if (!report.wants("section-name-blank")) return;
+  report.warning(section.pos, "section-name-blank",
+                 "section " + quoted(section.name) +
+                     " has a blank in its name or around it; it was read, other tools lose it");
+}
+
+void tell_lonely_list(const IniSection& list, Report& report) {
+  if (!report.wants("object-section-missing")) return;
+  report.warning(list.pos, "object-section-missing",
+                 "section " + quoted(list.name) +
+                     " belongs to an object that has no section; it was left out");
 }
 
 Keyword classify_key(std::string_view key) noexcept {

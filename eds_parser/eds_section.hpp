@@ -44,9 +44,15 @@ struct SectionName {
   std::string_view module_part{};  ///< "Fixed6000sub1" of [M1Fixed6000sub1]
   bool prefixed = false;           ///< [0x2000]
   bool leading_zero = false;       ///< [2000sub01]
+  bool blank = false;              ///< [2000 sub1]
 };
 
 SectionName classify_section(std::string_view name) noexcept;
+
+/// Says that a name has a blank in it or around it.
+void tell_blank_in_name(const IniSection& section, Report& report);
+/// Says that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
+void tell_lonely_list(const IniSection& list, Report& report);
 
 /// Keys of an object's section. CiA 306, 4.6.3.2 and 5.3.3.
 enum class Keyword : std::uint8_t {

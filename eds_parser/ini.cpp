@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "eds_parser/table/ids.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -212,6 +213,33 @@ Encoding encoding_of(std::string_view text) noexcept {
   return Encoding::bytes;
 }
 
+/// Length of the UTF-8 character at `at`, 0 where there is none.
+std::size_t character_at(std::string_view text, std::size_t at) noexcept {
+  if (static_cast<unsigned char>(text[at]) < 0x80) return 1;
+  for (const std::size_t length : {2U, 3U, 4U}) {
+    if (at + length <= text.size() && is_utf8(text.substr(at, length))) return length;
+  }
+  return 0;
+}
+
+/// Each text that is not UTF-8 is read as Windows-1252, which is only likely: says so once.
+void tell_assumed_encoding(std::string_view text, Report& report) {
+  if (is_utf8(text)) return;
+  SourcePos pos{1, 1};
+  std::size_t start = 0;
+  std::size_t at = 0;
+  for (std::size_t length = 1; (length = character_at(text, at)) != 0; at += length) {
+    const bool pair = text[at] == '\r' && text.substr(at + 1).starts_with('\n');
+    if (pair || (text[at] != '\n' && text[at] != '\r')) continue;
+    ++pos.line;
+    start = at + 1;
+  }
+  pos.column = static_cast<std::uint32_t>(at - start) + 1;
+  report.note(pos, "encoding-assumed",
+              "byte " + hex(static_cast<unsigned char>(text[at]), 2) +
+                  " is not UTF-8; texts with such bytes were read as Windows-1252");
+}
+
 }  // namespace
 
 IniEntry IniSpot::entry_in(const char* text) const noexcept {
@@ -236,6 +264,7 @@ IniFile read_ini(std::string_view text, Report& report) {
     report.note({}, "byte-order-mark", "the file starts with a byte order mark; it was skipped");
     text.remove_prefix(3);
   }
+  tell_assumed_encoding(text, report);
   Reader{file, report}.read(text);
   return file;
 }

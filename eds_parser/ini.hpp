@@ -100,10 +100,13 @@ class IniEntries {
 };
 
 struct IniSection {
-  std::string_view name;
+  std::string_view name;  ///< in the text, between the brackets
   SourcePos pos;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+
+  /// Blanks around the name: [ 2000 ].
+  bool padded() const noexcept { return name.data()[-1] != '[' || name.data()[name.size()] != ']'; }
 };
 
 /// A file of sections, as EDS, DCF and CPJ are. Views point into the text given to read_ini, or

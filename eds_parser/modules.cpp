@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "eds_parser/compact.hpp"
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
 
@@ -23,6 +25,19 @@ unsigned small(std::string_view text, unsigned highest) noexcept {
   return good ? static_cast<unsigned>(std::min<std::uint64_t>(number->magnitude, highest)) : 0;
 }
 
+bool belongs_to_object(SectionKind kind) noexcept {
+  switch (kind) {
+    case SectionKind::object:
+    case SectionKind::sub_object:
+    case SectionKind::name_list:
+    case SectionKind::value_list:
+    case SectionKind::denotation_list:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Count read_count(std::string_view text) noexcept {
   const auto separator = text.find(';');
   Count count{.subs = small(text.substr(0, separator), 254)};
@@ -30,9 +45,8 @@ Count read_count(std::string_view text) noexcept {
   return count;
 }
 
-Object& object_of(ObjectDictionary& dictionary, std::uint16_t index, const SubObject& pattern) {
-  const auto at = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);
-  if (at != dictionary.objects.end() && at->index == index) return *at;
+/// An array without elements, for the extensions of modules.
+Object extended_object(std::uint16_t index, const SubObject& pattern) {
   Object object;
   object.index = index;
   object.name = pattern.name;
@@ -47,7 +61,7 @@ Object& object_of(ObjectDictionary& dictionary, std::uint16_t index, const SubOb
   first.pos = pattern.pos;
   first.default_pos = pattern.pos;
   object.subs.push_back(std::move(first));
-  return *dictionary.objects.insert(at, std::move(object));
+  return object;
 }
 
 void add_sub(Object& object, const SubObject& pattern, unsigned sub) {
@@ -65,20 +79,26 @@ void add_sub(Object& object, const SubObject& pattern, unsigned sub) {
 
 }  // namespace
 
-void ModuleSections::add(const SectionName& name, std::uint32_t section) {
+bool ModuleSections::add(const SectionName& name, std::uint32_t section, Report& report) {
   constexpr std::string_view fixed = "Fixed";
   constexpr std::string_view extension = "SubExt";
-  const bool is_fixed = fold(name.module_part.front()) == 'f';
-  const auto skip = is_fixed ? fixed.size() : extension.size();
-  if (fold(name.module_part.front()) != 'f' && fold(name.module_part.front()) != 's') return;
-  if (name.module_part.size() <= skip) return;
-  const auto object = classify_section(name.module_part.substr(skip));
-  const bool usable =
-      object.kind == SectionKind::object || (is_fixed && object.kind == SectionKind::sub_object);
-  if (!usable) return;  // the lists [MxFixedObjects], [MxSubExtends]: the sections are the truth
+  const char first = fold(name.module_part.front());
+  const bool is_fixed = first == 'f';
+  if (!is_fixed && first != 's') return true;  // [MxModuleInfo], [MxComments]
+  const auto rest = name.module_part.substr(is_fixed ? fixed.size() : extension.size());
+  // lists of what has sections: the sections are the truth
+  if (same_word(rest, is_fixed ? "objects" : "ends")) return true;
+  const auto object = classify_section(rest);
+  if (!(is_fixed ? belongs_to_object(object.kind) : object.kind == SectionKind::object)) {
+    return false;
+  }
+  if (object.blank && !file_.sections[section].padded()) {
+    tell_blank_in_name(file_.sections[section], report);
+  }
   sections_.push_back({.module = name.module,
                        .part = is_fixed ? Part::fixed : Part::extension,
                        .object = ObjectSection::of(object, section)});
+  return true;
 }
 
 void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, Report& report) {
@@ -87,23 +107,71 @@ void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, 
   std::ranges::stable_sort(sections_, {}, order);
   const auto repeated = std::ranges::unique(sections_, {}, order);
   sections_.erase(repeated.begin(), repeated.end());
+  if (!add_modules(dictionary, reader, report)) {
+    report.error(connected_->pos, "too-many-sub-objects",
+                 "the connected modules need too many sub-objects; the rest was left out");
+  }
+  for (const auto& fill : fills_) tell_overlap(fill, dictionary, report);
+  std::vector<Object> made;
+  made.reserve(made_.size());
+  for (auto& [index, object] : made_) made.push_back(std::move(object));
+  made_.clear();
+  merge_objects(dictionary.objects, std::move(made));
+}
+
+/// False: the budget is used up.
+bool ModuleSections::add_modules(ObjectDictionary& dictionary, ObjectReader& reader,
+                                 Report& report) {
   std::vector<bool> seen(65536);
   for (const auto type : connected_types(report)) {
-    if (!seen[type]) add_fixed(type, dictionary, reader);
+    if (!seen[type]) add_fixed(type, dictionary, reader, report);
     seen[type] = true;
     for (const auto& section : sections_of(type, Part::extension)) {
-      if (extend(section, dictionary, reader)) continue;
-      report.error(connected_->pos, "too-many-sub-objects",
-                   "the connected modules need too many sub-objects; the rest was left out");
-      return;
+      if (!extend(section, dictionary, reader, report)) return false;
     }
   }
+  return true;
+}
+
+/// The entries of [ConnectedModules] by number, which is the order of the modules on the device.
+std::vector<ModuleSections::Slot> ModuleSections::slots(Report& report) const {
+  std::vector<Slot> slots;
+  std::optional<IniEntry> count;
+  for (const auto& entry : file_.entries(*connected_)) {
+    if (same_word(entry.key, "nrofentries")) {
+      if (!count) count = entry;
+    } else if (const auto number = entry_number(entry.key)) {
+      slots.push_back({*number, entry});
+    } else if (report.wants("unknown-key")) {
+      report.warning(entry.key_pos(), "unknown-key",
+                     "key " + quoted(entry.key) +
+                         " of [ConnectedModules] is neither NrOfEntries nor a decimal number; it "
+                         "was left out");
+    }
+  }
+  if (count && small(count->value, 0xFFFF'FFFF) != slots.size()) {
+    report.warning(count->pos(), "module-count",
+                   "NrOfEntries is " + quoted(count->value) + ", but [ConnectedModules] has " +
+                       std::to_string(slots.size()) + " entries; all of them were read");
+  }
+  std::ranges::stable_sort(slots, {}, &Slot::number);
+  const auto same = [&report](const Slot& first, const Slot& second) {
+    if (first.number != second.number) return false;
+    if (report.wants("duplicate-key")) {
+      report.warning(second.entry.key_pos(), "duplicate-key",
+                     "module " + std::to_string(second.number) +
+                         " is connected again; the first entry counts");
+    }
+    return true;
+  };
+  slots.erase(std::unique(slots.begin(), slots.end(), same), slots.end());
+  return slots;
 }
 
 std::vector<std::uint16_t> ModuleSections::connected_types(Report& report) const {
   std::vector<std::uint16_t> types;
-  for (const auto& entry : file_.entries(*connected_)) {
-    if (same_word(entry.key, "nrofentries") || entry.value.empty()) continue;
+  for (const auto& [number, entry] : slots(report)) {
+    if (entry.value.empty()) continue;
     const auto type = static_cast<std::uint16_t>(small(entry.value, 0xFFFF));
     const bool known =
         !sections_of(type, Part::fixed).empty() || !sections_of(type, Part::extension).empty();
@@ -131,42 +199,58 @@ std::span<const ModuleSections::ModuleSection> ModuleSections::sections_of(std::
   return {found.begin(), found.end()};
 }
 
-void ModuleSections::add_fixed(std::uint16_t module, ObjectDictionary& dictionary,
-                               ObjectReader& reader) {
+void ModuleSections::add_fixed(std::uint16_t module, const ObjectDictionary& dictionary,
+                               ObjectReader& reader, Report& report) {
   const auto all = sections_of(module, Part::fixed);
   std::vector<ObjectSection> group;
   for (std::size_t at = 0; at < all.size(); ++at) {
     group.push_back(all[at].object);
     const auto index = all[at].object.index();
     if (at + 1 < all.size() && all[at + 1].object.index() == index) continue;
-    if (dictionary.find(index) == nullptr) {
+    if (group.front().is_list()) {
+      const bool lonely = dictionary.find(index) == nullptr && !made_.contains(index);
+      if (lonely) tell_lonely_list(file_.sections[group.front().section], report);
+    } else if (dictionary.find(index) == nullptr && !made_.contains(index)) {
       auto object = reader.read(group);
       object.list =
           index >= 0x2000 && index < 0x6000 ? ObjectList::manufacturer : ObjectList::optional;
-      const auto place = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);
-      dictionary.objects.insert(place, std::move(object));
+      made_.emplace(index, std::move(object));
     }
     group.clear();
   }
 }
 
+/// Of the file, of a module so far, or nullptr.
+Object* ModuleSections::find(std::uint16_t index, ObjectDictionary& dictionary) {
+  const auto at = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);
+  if (at != dictionary.objects.end() && at->index == index) return &*at;
+  const auto made = made_.find(index);
+  return made == made_.end() ? nullptr : &made->second;
+}
+
 /// False: the budget is used up.
 bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dictionary,
-                            ObjectReader& reader) {
+                            ObjectReader& reader, Report& report) {
   const auto& source = file_.sections[section.object.section];
   const auto extension = reader.read_extension(source, section.object.index());
   const auto count = read_count(extension.count);
   const unsigned last_sub = extension.last_sub == 0 ? 254 : extension.last_sub;
   if (!budget_.take(count.subs + 1U)) return false;
-  auto& fill = fill_of(section.object.index());
+  auto& fill = fill_of(section.object.index(), dictionary);
   const auto next_sub = [&] {
     fill.bits_used = 0;
     if (fill.sub == last_sub && extension.last_sub != 0) {
+      tell_overlap(fill, dictionary, report);
       fill.sub = 0;
-      ++fill.index;
+      fill.described = described_subs(++fill.index, dictionary);
     }
     if (fill.sub == 254) return;
-    add_sub(object_of(dictionary, fill.index, extension.pattern), extension.pattern, ++fill.sub);
+    auto* object = find(fill.index, dictionary);
+    if (object == nullptr) {
+      object =
+          &made_.emplace(fill.index, extended_object(fill.index, extension.pattern)).first->second;
+    }
+    add_sub(*object, extension.pattern, ++fill.sub);
   };
   for (unsigned i = 0; i < count.subs; ++i) next_sub();
   if (count.bits == 0) return true;
@@ -176,10 +260,33 @@ bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dict
   return true;
 }
 
-ModuleSections::Fill& ModuleSections::fill_of(std::uint16_t index) {
+ModuleSections::Fill& ModuleSections::fill_of(std::uint16_t index, ObjectDictionary& dictionary) {
   const auto at = std::ranges::lower_bound(fills_, index, {}, &Fill::first_index);
   if (at != fills_.end() && at->first_index == index) return *at;
-  return *fills_.insert(at, Fill{.first_index = index, .index = index});
+  return *fills_.insert(
+      at,
+      Fill{.first_index = index, .index = index, .described = described_subs(index, dictionary)});
+}
+
+/// Highest sub-index that an object has before modules extend it.
+unsigned ModuleSections::described_subs(std::uint16_t index, ObjectDictionary& dictionary) {
+  unsigned highest = 0;
+  const auto* object = find(index, dictionary);
+  if (object == nullptr) return 0;
+  for (const auto& sub : object->subs) {
+    if (sub.sub != 0xFF) highest = sub.sub;
+  }
+  return highest;
+}
+
+/// A DCF may hold the sub-objects of its modules as sections: they are the same. Where they are
+/// not as many, some of the file and of the modules were meant to be others.
+void ModuleSections::tell_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report) {
+  if (fill.described == 0 || fill.sub == 0 || fill.described == fill.sub) return;
+  report.warning(find(fill.index, dictionary)->pos, "module-sub-objects",
+                 "object " + hex(fill.index) + " is described up to sub-index " +
+                     std::to_string(fill.described) + ", the connected modules bring " +
+                     std::to_string(fill.sub) + "; those of the same number were taken for one");
 }
 
 }  // namespace takt

@@ -51,9 +51,12 @@ Parsed read_unusual(std::string_view text) noexcept {
     if (number) return number;
   }
   ParsedNumber number;
-  // a name in hex digits (`DEAD`) is none; `1E3` could be 1000 or 0x1E3
+  // a name in hex digits (`DEAD`) is none; `1E3` could be 1000 or 0x1E3, `0b101` 5 or 0xB101
   const bool has_digit = text.find_first_of("0123456789") != std::string_view::npos;
-  const bool clear = has_digit && !(all_of(text, "0123456789eE") && parse_real(text));
+  const bool real = all_of(text, "0123456789eE") && parse_real(text);
+  const bool binary =
+      text.size() > 2 && text[0] == '0' && fold(text[1]) == 'b' && all_of(text.substr(2), "01");
+  const bool clear = has_digit && !real && !binary;
   if (clear && read_digits(text, 16, number.magnitude) == Digits::good) {
     number.hex = true;
     number.quirks = bit(NumberQuirk::hex_without_prefix);

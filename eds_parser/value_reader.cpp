@@ -111,7 +111,8 @@ std::string_view describe(NumberFault fault) noexcept {
   return "is not a number";
 }
 
-/// Adds node_ids x node; false where the node id is needed and unknown.
+/// Adds node_ids x node; false where the node id is needed and unknown, or the sum needs more than
+/// 64 bits.
 bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept {
   if (!number.relative()) return true;
   if (!node) return false;
@@ -179,7 +180,11 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
     return std::nullopt;
   }
   if (number->quirks != 0) tell_quirks(number->quirks, text, place);
-  if (!resolve(*number, node_)) return std::nullopt;
+  if (number->relative() && !node_) return std::nullopt;
+  if (!resolve(*number, node_)) {
+    exceeds(text, type, place);
+    return std::nullopt;
+  }
   const unsigned bits = bit_width(type);
   auto fitted = is_signed(type) ? fit_signed(*number, bits) : fit_unsigned(*number, bits);
   if (!fitted.value) exceeds(text, type, place);

@@ -22,7 +22,12 @@ struct CobIdEntry {
 
   bool on() const noexcept { return (constant & off_flag) == 0; }
   bool extended() const noexcept { return (constant & extended_flag) != 0; }
+  bool is_rpdo() const noexcept { return (key.index & 0xFE00) == 0x1400; }
+  bool is_sdo_client() const noexcept { return (key.index & 0xFF80) == 0x1280; }
   std::uint32_t id() const noexcept { return constant & (extended() ? 0x1FFF'FFFF : 0x7FF); }
+  std::uint32_t id_of(std::optional<NodeId> node) const noexcept {
+    return id() + (relative && node ? node->value() : 0U);
+  }
 };
 
 struct Range {
@@ -57,20 +62,43 @@ std::optional<CobIdEntry> entry_of(const ObjectDictionary& dictionary, ObjectKey
 
 std::string start(const CobIdEntry& entry) { return section_name(entry.key) + ": COB-ID "; }
 
-/// Where the node id is added but unknown, the first and the last node are looked at.
+/// A client reaches the default channels of other devices by restricted COB-IDs.
+bool is_default_channel(const CobIdEntry& entry, std::uint32_t id) noexcept {
+  const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
+  return entry.is_sdo_client() && id > base && id <= base + 127;
+}
+
+/// Why an entry cannot have this COB-ID; empty: it can.
+std::string objection(const CobIdEntry& entry, std::uint32_t id) {
+  if (id > 0x7FF) return "needs more than 11 bits";
+  const auto* range = restriction_of(id);
+  if (range == nullptr || is_default_channel(entry, id)) return "";
+  return "is restricted (" + std::string{range->use} + ")";
+}
+
+/// Where the node id is added but unknown, each that the device might have is looked at: an error
+/// is what the first of them may not use.
 void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Report& report) {
-  const std::uint32_t first = node ? node->value() : 1;
-  const std::uint32_t last = node ? node->value() : 127;
-  const auto lowest = entry.id() + (entry.relative ? first : 0);
-  const auto highest = entry.id() + (entry.relative ? last : 0);
-  const auto* range = restriction_of(lowest);
-  if (range == nullptr) range = restriction_of(highest);
-  const bool too_high = highest > 0x7FF;
-  if (entry.extended() || (range == nullptr && !too_high)) return;
-  report.error(entry.pos, "cob-id-restricted",
-               start(entry) + hex(lowest, 3) + (highest != lowest ? ".." + hex(highest, 3) : "") +
-                   (range == nullptr ? " needs more than 11 bits"
-                                     : " is restricted (" + std::string{range->use} + ")"));
+  if (entry.extended()) return;
+  if (node || !entry.relative) {
+    const auto id = entry.id_of(node);
+    const auto why = objection(entry, id);
+    if (why.empty()) return;
+    return report.error(entry.pos, "cob-id-restricted", start(entry) + hex(id, 3) + ' ' + why);
+  }
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  for (std::uint32_t any = 1; any <= 127; ++any) {
+    if (objection(entry, entry.id() + any).empty()) continue;
+    if (first == 0) first = any;
+    last = any;
+  }
+  if (first == 0) return;
+  const auto text = start(entry) + "$NODEID+" + hex(entry.id(), 3) + ' ' +
+                    objection(entry, entry.id() + first) + " for nodes of " +
+                    std::to_string(first) + ".." + std::to_string(last);
+  if (first == 1) return report.error(entry.pos, "cob-id-restricted", text);
+  report.warning(entry.pos, "cob-id-restricted", text);
 }
 
 void check_bits(const CobIdEntry& entry, Report& report) {
@@ -88,17 +116,62 @@ void check_absolute(const CobIdEntry& entry, bool is_dcf, Report& report) {
                   " is the same for every node id; $NODEID+... would let two devices share a bus");
 }
 
-void check_twice(std::vector<CobIdEntry> entries, Report& report) {
-  const auto order = [](const CobIdEntry& entry) {
-    return std::tuple{entry.relative, entry.extended(), entry.id()};
+/// CiA 301 does not forbid two RPDOs of one COB-ID: the device takes both from one frame. Two SDO
+/// clients may ask one server in turn.
+bool may_share(const CobIdEntry& entry, const CobIdEntry& other) noexcept {
+  return (entry.is_rpdo() && other.is_rpdo()) || (entry.is_sdo_client() && other.is_sdo_client());
+}
+
+void check_twice(std::vector<CobIdEntry> entries, std::optional<NodeId> node, Report& report) {
+  const auto order = [node](const CobIdEntry& entry) {
+    return std::tuple{entry.relative && !node, entry.extended(), entry.id_of(node)};
   };
   std::ranges::stable_sort(entries, {}, order);
   for (std::size_t at = 1; at < entries.size(); ++at) {
-    if (order(entries[at]) != order(entries[at - 1])) continue;
-    report.error(entries[at].pos, "cob-id-twice",
-                 start(entries[at]) + (entries[at].relative ? "$NODEID+" : "") +
-                     hex(entries[at].id(), 3) + " is used by " + section_name(entries[at - 1].key) +
-                     " too");
+    const auto& entry = entries[at];
+    const auto& other = entries[at - 1];
+    if (order(entry) != order(other)) continue;
+    const auto text = start(entry) + (entry.relative && !node ? "$NODEID+" : "") +
+                      hex(entry.id_of(node), 3) + " is used by " + section_name(other.key) + " too";
+    if (may_share(entry, other)) {
+      report.warning(entry.pos, "cob-id-twice", text);
+    } else {
+      report.error(entry.pos, "cob-id-twice", text);
+    }
+  }
+}
+
+/// The default channel of a server follows from its node id. CiA 301, 7.2.4.3 and 7.5.2.33.
+void check_default_channel(const ObjectDictionary& dictionary, const CobIdEntry& entry,
+                           Report& report) {
+  const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
+  const auto& node = dictionary.node_id;
+  const std::uint32_t first = entry.relative ? base : base + (node ? node->value() : 1U);
+  const std::uint32_t last = entry.relative || node ? first : base + 127;
+  if (entry.constant >= first && entry.constant <= last) return;
+  report.warning(entry.pos, "sdo-default-channel",
+                 start(entry) + (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 3) +
+                     " is not that of the default SDO channel, $NODEID+" + hex(base, 3));
+}
+
+/// Servers 0x1200..0x127F, clients 0x1280..0x12FF.
+void check_sdo_channels(const ObjectDictionary& dictionary, std::vector<CobIdEntry>& active,
+                        Report& report) {
+  auto object = std::ranges::lower_bound(dictionary.objects, 0x1200, {}, &Object::index);
+  for (; object != dictionary.objects.end() && object->index < 0x1300; ++object) {
+    for (const auto sub : std::to_array<std::uint8_t>({1, 2})) {
+      const auto entry = entry_of(dictionary, {object->index, sub});
+      if (!entry) continue;
+      if (object->index == 0x1200) {
+        check_default_channel(dictionary, *entry, report);
+        continue;
+      }
+      if (!entry->on() || entry->id() == 0) continue;
+      check_restricted(*entry, dictionary.node_id, report);
+      check_bits(*entry, report);
+      if (!entry->is_sdo_client()) check_absolute(*entry, dictionary.is_dcf, report);
+      active.push_back(*entry);
+    }
   }
 }
 
@@ -124,7 +197,8 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     if (index == 0x1014) check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }
-  check_twice(std::move(active), report);
+  check_sdo_channels(dictionary, active, report);
+  check_twice(std::move(active), dictionary.node_id, report);
 }
 
 }  // namespace takt

@@ -19,8 +19,7 @@ SourcePos pos_of(const ObjectDictionary& dictionary, ObjectKey key) {
 void check_transmission(const ObjectDictionary& dictionary, const PdoDescription& pdo,
                         Report& report) {
   const ObjectKey key{pdo.communication_index(), 2};
-  if (!pdo.transmission_type) return;
-  const unsigned type = *pdo.transmission_type;
+  const unsigned type = pdo.transmission_type.value_or(0);
   const unsigned first_event = pdo.is_tpdo ? 252 : 254;
   if (type > 240 && type < first_event) {
     report.error(pos_of(dictionary, key), "pdo-transmission-type",
@@ -38,6 +37,37 @@ void check_transmission(const ObjectDictionary& dictionary, const PdoDescription
     report.note(pos_of(dictionary, inhibit), "pdo-inhibit-of-rpdo",
                 section_name(inhibit) + ": the inhibit time of an RPDO has no effect");
   }
+}
+
+/// Inhibit time and event timer of a TPDO. CiA 301, 7.5.2.37.
+void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
+  if (!pdo.is_tpdo || pdo.event_timer_ms == 0) return;
+  const ObjectKey inhibit{pdo.communication_index(), 3};
+  const ObjectKey timer{pdo.communication_index(), 5};
+  const unsigned type = pdo.transmission_type.value_or(0);
+  if (type >= 1 && type <= 240) {
+    report.note(pos_of(dictionary, timer), "pdo-event-timer-unused",
+                section_name(timer) + ": the event timer has no effect beside transmission type " +
+                    std::to_string(type) + ", which follows the SYNC");
+  } else if (pdo.inhibit_time_us > pdo.event_timer_ms * 1000U) {
+    report.warning(pos_of(dictionary, inhibit), "pdo-inhibit-too-long",
+                   section_name(inhibit) + ": the inhibit time of " +
+                       std::to_string(pdo.inhibit_time_us / 100) + " x 100 us is longer than " +
+                       "the event timer of " + std::to_string(pdo.event_timer_ms) +
+                       " ms, which cannot be kept");
+  }
+}
+
+/// The types that are only sent on remote request. CiA 301, 7.5.2.37.
+void check_remote(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
+  const unsigned type = pdo.transmission_type.value_or(0);
+  const bool on_request = pdo.is_tpdo && (type == 252 || type == 253);
+  if (!on_request || !pdo.valid || pdo.rtr_allowed) return;
+  const ObjectKey key{pdo.communication_index(), 2};
+  report.warning(pos_of(dictionary, key), "pdo-rtr",
+                 section_name(key) + ": transmission type " + std::to_string(type) +
+                     " sends on remote request only, which bit 30 of " +
+                     section_name({key.index, 1}) + " does not allow; the PDO is never sent");
 }
 
 void check_partners(const ObjectDictionary& dictionary, Report& report) {
@@ -70,6 +100,8 @@ void check_pdos(const ObjectDictionary& dictionary, Report& report) {
   const auto pdos = describe_pdos(dictionary);
   for (const auto& pdo : pdos) {
     check_transmission(dictionary, pdo, report);
+    check_times(dictionary, pdo, report);
+    check_remote(dictionary, pdo, report);
     check_mapping(dictionary, pdo, report);
   }
   check_partners(dictionary, report);

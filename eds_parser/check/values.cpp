@@ -1,4 +1,5 @@
 #include "eds_parser/check/rules.hpp"
+#include "eds_parser/eds_limits.hpp"
 #include "eds_parser/integer_of.hpp"
 #include "eds_parser/standard_types.hpp"
 #include "eds_parser/text.hpp"
@@ -6,22 +7,13 @@
 namespace takt {
 namespace {
 
-/// Below the low or above the high limit.
-bool outside(const Value& value, const SubObject& sub) noexcept {
-  const auto comparable = [&value](const std::optional<Value>& limit) {
-    return limit && limit->index() == value.index() && !std::holds_alternative<BoxedText>(value);
-  };
-  if (comparable(sub.low_limit) && value < *sub.low_limit) return true;
-  return comparable(sub.high_limit) && value > *sub.high_limit;
-}
-
 void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
-  if (sub.default_value && outside(*sub.default_value, sub)) {
+  if (sub.default_value && outside_limits(*sub.default_value, sub)) {
     report.warning(sub.default_pos, "default-outside-limits",
                    section_name(key) + ": DefaultValue " + quoted(sub.default_text) +
                        " is outside LowLimit and HighLimit; it is kept");
   }
-  if (sub.parameter_value && outside(*sub.parameter_value, sub)) {
+  if (sub.parameter_value && outside_limits(*sub.parameter_value, sub)) {
     report.error(sub.parameter_pos, "value-outside-limits",
                  section_name(key) + ": ParameterValue " + quoted(sub.parameter_text) +
                      " is outside LowLimit and HighLimit; the device would refuse it");
@@ -87,7 +79,7 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
   if (!dictionary.is_dcf && parameter_values != 0) {
     report.note(first_parameter_value, "parameter-value-in-eds",
                 "an EDS has no ParameterValue, only a DCF; " + std::to_string(parameter_values) +
-                    " were read as configured values");
+                    " were read as values; takt writes them at boot if the file is named .dcf");
   }
   if (dictionary.is_dcf && !dictionary.commissioning.node_id) {
     report.warning({}, "dcf-without-node-id",

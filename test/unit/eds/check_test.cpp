@@ -130,11 +130,41 @@ TEST(Check, KnowsTheRestrictedCobIds) {
   EXPECT_TRUE(restricted("$NODEID+0x580"));
 }
 
-TEST(Check, LooksAtTheFirstAndLastNodeWhereTheNodeIdIsUnknown) {
-  const auto text = pdo(true, "$NODEID+0x540", "1", "0x60410010");
+TEST(Check, LooksAtEachNodeWhereTheNodeIdIsUnknown) {
+  const auto finding = [](std::string_view cob_id, std::optional<NodeId> node) {
+    const auto findings = check(read(pdo(true, cob_id, "1", "0x60410010"), node).dictionary);
+    const auto* found = find(findings, "cob-id-restricted");
+    return found == nullptr ? "" : std::string{name(found->severity)} + ": " + found->message;
+  };
 
-  EXPECT_TRUE(has(check(read(text, std::nullopt).dictionary), "cob-id-restricted"));
-  EXPECT_FALSE(has(check(read(text, 5_node).dictionary), "cob-id-restricted"));
+  EXPECT_EQ(
+      finding("$NODEID+0x680", std::nullopt),
+      "warning: 1800sub1: COB-ID $NODEID+0x680 is restricted (reserved) for nodes of 96..127");
+  EXPECT_EQ(finding("$NODEID+0x680", 95_node), "");
+  EXPECT_EQ(finding("$NODEID+0x680", 96_node),
+            "error: 1800sub1: COB-ID 0x6E0 is restricted (reserved)");
+  EXPECT_EQ(finding("$NODEID+0x580", std::nullopt),
+            "error: 1800sub1: COB-ID $NODEID+0x580 is restricted (SDO responses) for nodes of "
+            "1..127");
+}
+
+TEST(Check, ComparesCobIdsOfAKnownNodeAsTheyAre) {
+  const auto device = pdo(true, "$NODEID+0x180", "1", "0x60410010") + entry("1801sub0", "5", "1") +
+                      entry("1801sub1", "7", "0x185");
+
+  EXPECT_TRUE(has(check(read(device, 5_node).dictionary), "cob-id-twice"));
+  EXPECT_FALSE(has(check(read(device, 6_node).dictionary), "cob-id-twice"));
+  EXPECT_FALSE(has(check(read(device, std::nullopt).dictionary), "cob-id-twice"));
+}
+
+TEST(Check, TwoRpdosMayShareACobId) {
+  const auto findings =
+      check(read(pdo(false, "$NODEID+0x200", "1", "0x60400010") + entry("1401sub0", "5", "1") +
+                 entry("1401sub1", "7", "$NODEID+0x200"))
+                .dictionary);
+
+  ASSERT_TRUE(has(findings, "cob-id-twice"));
+  EXPECT_EQ(find(findings, "cob-id-twice")->severity, Severity::warning);
 }
 
 TEST(Check, FindsTwoUsersOfOneCobId) {

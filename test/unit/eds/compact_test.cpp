@@ -56,6 +56,17 @@ TEST(Compact, TakesTheFirstOfARepeatedListEntry) {
   EXPECT_EQ(find(file.findings, "duplicate-key")->pos, (SourcePos{line_of(16), 1}));
 }
 
+TEST(Compact, TakesDecimalSubsOnly) {
+  const auto file = read(std::string{gain} + "011=55\n0x3=66\n-4=77\n$NODEID=88\n");
+
+  EXPECT_EQ(integer(file, {0x3100, 11}), 55);
+  EXPECT_EQ(integer(file, {0x3100, 9}), 7);
+  EXPECT_EQ(integer(file, {0x3100, 3}), 7);
+  EXPECT_EQ(integer(file, {0x3100, 4}), 7);
+  EXPECT_EQ(integer(file, {0x3100, 5}), 7);
+  EXPECT_EQ(std::ranges::count(file.findings, "unknown-sub-object", &Finding::rule), 3);
+}
+
 TEST(Compact, MakesNoObjectOfAListAlone) {
   const auto file = read("[2000Value]\nNrOfEntries=1\n1=5\n");
 

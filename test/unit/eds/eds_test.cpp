@@ -110,6 +110,14 @@ TEST(Eds, TakesNoFormulaForABitPattern) {
   EXPECT_TRUE(has(file.findings, "value-unreadable"));
 }
 
+TEST(Eds, TellsOfAFormulaThatNeedsMoreThan64Bits) {
+  const auto text = var("0x001B", "$NODEID+0xFFFFFFFFFFFFFFFF");
+
+  EXPECT_FALSE(read(text).dictionary.find(ObjectKey{0x2000, 0})->value());
+  EXPECT_TRUE(has(read(text).findings, "value-exceeds-type"));
+  EXPECT_FALSE(has(read(text, std::nullopt).findings, "value-exceeds-type"));
+}
+
 TEST(Eds, DropsLimitsThatAreInverted) {
   const auto file = read(var("2", "1") + "LowLimit=0x00\nHighLimit=0xFF\n");
 
@@ -118,6 +126,38 @@ TEST(Eds, DropsLimitsThatAreInverted) {
   EXPECT_FALSE(sub->high_limit);
   EXPECT_TRUE(has(file.findings, "limits-inverted"));
   EXPECT_FALSE(has_error(file.findings));
+}
+
+/// The limits of a VAR of the type: "low..high", `-` for none.
+std::string limits(const std::string& type, const std::string& value, const std::string& keys) {
+  const auto file = read(var(type, value) + keys);
+  const auto* sub = file.dictionary.find(ObjectKey{0x2000, 0});
+  const auto text = [](const std::optional<Value>& limit) {
+    return limit ? std::to_string(*as_integer(*limit)) : std::string{"-"};
+  };
+  const bool told = has(file.findings, "limit-above-type");
+  return text(sub->low_limit) + ".." + text(sub->high_limit) + (told ? " told" : "");
+}
+
+TEST(Eds, DropsALimitAboveItsSignedType) {
+  EXPECT_EQ(limits("3", "0x5A", "LowLimit=-32768\nHighLimit=32768\n"), "-32768..- told");
+  EXPECT_EQ(limits("3", "", "LowLimit=-32767\nHighLimit=32768\n"), "-..-");  // inverted
+  EXPECT_EQ(limits("2", "", "HighLimit=0xFF\n"), "-..- told");
+  EXPECT_EQ(limits("4", "", "LowLimit=0x80000000\nHighLimit=0xFFFFFFFF\n"), "-2147483648..- told");
+  EXPECT_EQ(limits("4", "", "LowLimit=-100\nHighLimit=4294967206\n"), "-100..- told");
+}
+
+TEST(Eds, DropsABitPatternAsLimitWhereTheDefaultLiesBehindIt) {
+  EXPECT_EQ(limits("4", "0", "LowLimit=0x80000000\nHighLimit=0xFFFFFF00\n"), "-2147483648..- told");
+  EXPECT_EQ(limits("3", "-5", "LowLimit=0xFFFE\nHighLimit=5\n"), "-..5 told");
+}
+
+TEST(Eds, KeepsLimitsThatAreBitPatterns) {
+  EXPECT_EQ(limits("4", "0", "LowLimit=0x80000000\nHighLimit=0x7FFFFFFF\n"),
+            "-2147483648..2147483647");
+  EXPECT_EQ(limits("3", "-5", "LowLimit=0x8000\nHighLimit=0xFFFE\n"), "-32768..-2");
+  EXPECT_EQ(limits("3", "7", "LowLimit=-1\nHighLimit=5\n"), "-1..5");
+  EXPECT_EQ(limits("2", "0xFD", "LowLimit=0xFD\nHighLimit=0xFD\n"), "-3..-3");  // one value
 }
 
 TEST(Eds, TakesTheFirstOfARepeatedKeyOrSection) {

@@ -71,6 +71,28 @@ TEST(Ini, TellsOfLinesItCannotUse) {
   EXPECT_EQ(read.entries(0).size(), 1U);
 }
 
+TEST(Ini, SaysOnceWhereTheEncodingIsAssumed) {
+  const auto assumed = [](std::string_view text) {
+    Read read{text};
+    Findings said;
+    for (const auto& finding : read.report.take()) {
+      if (finding.rule == "encoding-assumed") said.push_back(finding);
+    }
+    return said;
+  };
+
+  const auto findings = assumed("[a]\r\nx=\xC3\xA4\r y=\xE2\x82\xAC\xE4\xF6\nz=\xFC\n");
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].pos, (SourcePos{3, 7}));
+  EXPECT_EQ(findings[0].severity, Severity::note);
+  EXPECT_EQ(findings[0].message,
+            "byte 0xE4 is not UTF-8; texts with such bytes were read as Windows-1252");
+  EXPECT_EQ(assumed("\xEF\xBB\xBF\xE4").at(0).pos, (SourcePos{1, 1}));
+  EXPECT_EQ(assumed("\n\r\nx=\xC3").at(0).pos, (SourcePos{3, 3}));
+  EXPECT_TRUE(assumed("[a]\nx=\xC3\xA4\xF0\x9F\x98\x80\n").empty());
+  EXPECT_TRUE(assumed(std::string{"\xFF\xFE[\0a\0]\0\n\0x\0=\0\xE4\0", 16}).empty());
+}
+
 TEST(Ini, ReadsUtf16AndSkipsTheMark) {
   const std::string little{"\xFF\xFE[\0a\0]\0\n\0x\0=\0\xE4\0", 16};
   const std::string big{"\xFE\xFF\0[\0a\0]\0\n\0x\0=\0\xE4", 16};

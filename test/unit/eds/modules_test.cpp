@@ -58,6 +58,43 @@ TEST(Modules, FixedObjectsComeOnceHoweverManyModulesThereAre) {
   EXPECT_EQ(integer(file, {0x2100, 1}), 7);
 }
 
+TEST(Modules, FixedObjectsHaveTheListsOfShortNotation) {
+  const std::string fixed =
+      "[M1Fixed2100]\nParameterName=gain\nObjectType=8\nDataType=6\nAccessType=rw\n"
+      "DefaultValue=7\nCompactSubObj=3\n"
+      "[M1Fixed2100Name]\nNrOfEntries=1\n2=Proportional\n"
+      "[M1Fixed2100Value]\nNrOfEntries=1\n3=0x20\n"
+      "[M1Fixed2100Denotation]\nNrOfEntries=1\n1=first\n";
+  const auto file = read(fixed + connected(1));
+
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2100, 2})->name, "Proportional");
+  EXPECT_EQ(integer(file, {0x2100, 2}), 7);
+  EXPECT_EQ(integer(file, {0x2100, 3}), 32);
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2100, 1})->denotation, "first");
+}
+
+TEST(Modules, SectionsOfNoUseAreTold) {
+  const auto lonely = read("[M1Fixed2100Name]\n1=x\n" + extension("1") + connected(1));
+  const auto lists = read(extension("1") + "[M1SubExt6000Name]\n1=x\n" + connected(1));
+  const auto odd = read(extension("1") + "[M1FixedThings]\n1=x\n");
+
+  ASSERT_TRUE(test::has(lonely.findings, "object-section-missing"));
+  EXPECT_EQ(test::find(lonely.findings, "object-section-missing")->pos.line, test::line_of(1));
+  EXPECT_EQ(lonely.dictionary.find(std::uint16_t{0x2100}), nullptr);
+  EXPECT_TRUE(test::has(lists.findings, "unknown-section"));
+  EXPECT_TRUE(test::has(odd.findings, "unknown-section"));
+}
+
+TEST(Modules, ABlankBeforeSubIsTold) {
+  const auto file = read(
+      "[M1Fixed2100]\nParameterName=r\nObjectType=9\nSubNumber=1\n"
+      "[M1Fixed2100 sub1]\nParameterName=v\nDataType=6\nAccessType=rw\nDefaultValue=7\n" +
+      connected(1));
+
+  EXPECT_EQ(integer(file, {0x2100, 1}), 7);
+  EXPECT_TRUE(test::has(file.findings, "section-name-blank"));
+}
+
 TEST(Modules, NothingIsPluggedInWithoutConnectedModules) {
   const auto file = read(extension("4"));
 
@@ -65,10 +102,67 @@ TEST(Modules, NothingIsPluggedInWithoutConnectedModules) {
   EXPECT_FALSE(test::has(file.findings, "unknown-section"));
 }
 
+TEST(Modules, StandInTheOrderOfTheirNumbers) {
+  const auto module = [](const char* number, const char* name) {
+    return "[M" + std::string{number} + "SubExt6000]\nParameterName=" + name +
+           "\nDataType=5\nAccessType=ro\nCount=1\n";
+  };
+  const auto modules = module("1", "Input") + module("2", "Output");
+  const auto file = read(modules + "[ConnectedModules]\nNrOfEntries=3\n10=1\n2=1\n1=2\n");
+
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x6000, 1})->name, "Output1");
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x6000, 2})->name, "Input2");
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x6000, 3})->name, "Input3");
+  EXPECT_FALSE(test::has(file.findings, "module-count"));
+}
+
+TEST(Modules, EntriesThatDoNotFitTheirListAreTold) {
+  const auto more = read(extension("1") + "[ConnectedModules]\nNrOfEntries=1\n1=1\n2=1\n");
+  const auto twice = read(extension("1") + "[ConnectedModules]\nNrOfEntries=2\n1=1\n1=1\n");
+  const auto other = read(extension("1") + "[ConnectedModules]\nNr Of Entries=1\n1=1\n");
+
+  ASSERT_TRUE(test::has(more.findings, "module-count"));
+  EXPECT_EQ(test::find(more.findings, "module-count")->pos.column, 13U);
+  EXPECT_EQ(integer(more, {0x6000, 0}), 2);
+  EXPECT_TRUE(test::has(twice.findings, "duplicate-key"));
+  EXPECT_EQ(integer(twice, {0x6000, 0}), 1);
+  EXPECT_TRUE(test::has(other.findings, "unknown-key"));
+  EXPECT_EQ(integer(other, {0x6000, 0}), 1);
+}
+
 TEST(Modules, AnUnknownModuleIsTold) {
   const auto file = read(extension("4") + "[ConnectedModules]\n1=7\n");
 
   EXPECT_TRUE(test::has(file.findings, "unknown-module"));
+}
+
+TEST(Modules, SubObjectsThatTheFileDescribesTooAreTold) {
+  std::string described = "[6000]\nParameterName=r\nObjectType=8\nSubNumber=3\n";
+  for (const char* sub : {"0", "1", "2"}) {
+    described += "[6000sub" + std::string{sub} + "]\nParameterName=s\nDataType=5\nAccessType=ro\n";
+  }
+  const auto fewer = read(described + extension("2") + connected(2));
+  const auto same = read(described + extension("2") + connected(1));
+
+  EXPECT_EQ(fewer.dictionary.find(std::uint16_t{0x6000})->subs.size(), 5U);
+  EXPECT_TRUE(test::has(fewer.findings, "module-sub-objects"));
+  EXPECT_FALSE(test::has(same.findings, "module-sub-objects"));
+}
+
+TEST(Modules, FixedObjectsStandAmongThoseOfTheFileInOrder) {
+  std::string text = connected(1);
+  for (unsigned index = 0x5000; index < 0x9000; ++index) {
+    text += "[M1Fixed" + hex(index).substr(2) + "]\nParameterName=m\nDataType=5\nAccessType=rw\n";
+  }
+  text +=
+      "[5010]\nParameterName=own\nDataType=6\nAccessType=rw\n[A000]\nParameterName=last\n"
+      "DataType=6\nAccessType=rw\n";
+  const auto file = read(text);
+
+  EXPECT_EQ(file.dictionary.objects.size(), 3U + 0x4000 + 1);
+  EXPECT_TRUE(std::ranges::is_sorted(file.dictionary.objects, {}, &Object::index));
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x5010})->name, "own");
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0xA000})->name, "last");
 }
 
 TEST(Modules, HostileListsAreBounded) {

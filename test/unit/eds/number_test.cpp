@@ -53,12 +53,13 @@ TEST(Number, SaysWhatWasUnusual) {
   EXPECT_TRUE(parse_number("5.0")->has(NumberQuirk::fraction));
   EXPECT_EQ(at_node_5("1F"), 0x1F);
   EXPECT_TRUE(parse_number("1F")->has(NumberQuirk::hex_without_prefix));
+  EXPECT_EQ(at_node_5("0B12"), 0xB12);  // no binary number
   EXPECT_TRUE(parse_number("250 ; 25ms")->has(NumberQuirk::comment));
 }
 
 TEST(Number, RefusesWhatHasNoSingleReading) {
   for (const auto* text : {"-", "+", "abc", "DEAD", "3.14", "0x", "0xG", "1-2", "$NODEID-1", "1e3",
-                           "$NODEID+", "+$", "1,5", "0x12 0x34"}) {
+                           "$NODEID+", "+$", "1,5", "0x12 0x34", "0b101", "0B1", "0b101u"}) {
     EXPECT_FALSE(parse_number(text)) << text;
   }
   EXPECT_EQ(parse_number("").error(), NumberFault::empty);

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "test/unit/eds/eds_text.hpp"
+
+namespace takt {
+namespace {
+
+using test::find;
+using test::has;
+using test::line_of;
+using test::read;
+
+std::string channel(const std::string& index, const std::string& first, const std::string& second) {
+  const auto sub = [&index](const char* number, const std::string& value) {
+    return "[" + index + "sub" + number +
+           "]\nParameterName=x\nDataType=7\nAccessType=rw\nDefaultValue=" + value + "\n";
+  };
+  return sub("1", first) + sub("2", second);
+}
+
+Findings judged(const std::string& objects, std::optional<NodeId> node = std::nullopt) {
+  return check(read(objects, node).dictionary);
+}
+
+TEST(CheckSdo, TheDefaultChannelFollowsFromTheNodeId) {
+  const auto told = [](const std::string& first, const std::string& second,
+                       std::optional<NodeId> node) {
+    const auto findings = judged(channel("1200", first, second), node);
+    EXPECT_FALSE(has(findings, "cob-id-restricted"));
+    return std::ranges::count(findings, "sdo-default-channel", &Finding::rule);
+  };
+
+  EXPECT_EQ(told("$NODEID+0x600", "$NODEID+0x580", {}), 0);
+  EXPECT_EQ(told("$NODEID+0x600", "$NODEID+0x580", 5_node), 0);
+  EXPECT_EQ(told("0x605", "0x585", 5_node), 0);
+  EXPECT_EQ(told("0x605", "0x585", {}), 0);
+  EXPECT_EQ(told("", "", {}), 0);
+  EXPECT_EQ(told("0x606", "0x586", 5_node), 2);
+  EXPECT_EQ(told("$NODEID+0x580", "$NODEID+0x600", {}), 2);
+  EXPECT_EQ(told("0x600", "0x580", {}), 2);
+  EXPECT_EQ(told("0x80000000", "0x80000000", {}), 2);
+  const auto findings = judged(channel("1200", "$NODEID+0x580", "$NODEID+0x580"));
+  ASSERT_TRUE(has(findings, "sdo-default-channel"));
+  EXPECT_EQ(find(findings, "sdo-default-channel")->severity, Severity::warning);
+  EXPECT_EQ(find(findings, "sdo-default-channel")->pos, (SourcePos{line_of(5), 14}));
+  EXPECT_EQ(find(findings, "sdo-default-channel")->message,
+            "1200sub1: COB-ID $NODEID+0x580 is not that of the default SDO channel, "
+            "$NODEID+0x600");
+}
+
+TEST(CheckSdo, AFurtherServerNeedsCobIdsOfItsOwn) {
+  const auto restricted = judged(channel("1201", "$NODEID+0x600", "$NODEID+0x680"));
+
+  ASSERT_TRUE(has(restricted, "cob-id-restricted"));
+  EXPECT_EQ(find(restricted, "cob-id-restricted")->pos, (SourcePos{line_of(5), 14}));
+  EXPECT_TRUE(has(judged(channel("127F", "0x605", "0x6C5")), "cob-id-restricted"));
+  for (const auto& off : {channel("1201", "0x80000000", "0x80000605"), channel("1201", "0", "0"),
+                          channel("1201", "", ""), channel("1201", "0x640", "0x5C0")}) {
+    EXPECT_EQ(has(judged(off), "cob-id-restricted"), off.contains("0x640")) << off;
+  }
+}
+
+TEST(CheckSdo, ACobIdOfAPdoIsTaken) {
+  const auto pdo = channel("1800", "$NODEID+0x180", "");
+
+  EXPECT_TRUE(has(judged(pdo + channel("1201", "$NODEID+0x180", "")), "cob-id-twice"));
+  EXPECT_TRUE(has(judged(pdo + channel("1280", "$NODEID+0x180", "")), "cob-id-twice"));
+  EXPECT_FALSE(has(judged(pdo + channel("1201", "$NODEID+0x80000180", "")), "cob-id-twice"));
+  EXPECT_TRUE(has(judged(channel("1201", "0x680", "0x680")), "cob-id-twice"));
+}
+
+TEST(CheckSdo, AClientReachesTheDefaultChannelsOfOthers) {
+  EXPECT_FALSE(has(judged(channel("1280", "0x601", "0x581")), "cob-id-restricted"));
+  EXPECT_TRUE(has(judged(channel("1280", "0x581", "0x601")), "cob-id-restricted"));
+  EXPECT_TRUE(has(judged(channel("12FF", "0x701", "0x581")), "cob-id-restricted"));
+  const auto two = judged(channel("1280", "0x601", "0x581") + channel("1281", "0x601", "0x581"));
+  ASSERT_TRUE(has(two, "cob-id-twice"));
+  EXPECT_EQ(find(two, "cob-id-twice")->severity, Severity::warning);
+}
+
+}  // namespace
+}  // namespace takt

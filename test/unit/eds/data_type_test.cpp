@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include "test/unit/eds/eds_text.hpp"
+
+namespace takt {
+namespace {
+
+using test::has;
+using test::read;
+using test::var;
+
+std::optional<Value> value_of(std::string_view type, std::string_view text) {
+  return read(var(type, text)).dictionary.find(ObjectKey{0x2000, 0})->value();
+}
+
+bool exceeds(std::string_view type, std::string_view text) {
+  const auto file = read(var(type, text));
+  return has(file.findings, "value-exceeds-type") &&
+         !file.dictionary.find(ObjectKey{0x2000, 0})->value();
+}
+
+struct Integer {
+  const char* type;
+  const char* lowest;
+  const char* below;
+  const char* highest;
+  const char* pattern;  ///< of -1
+  const char* above;    ///< the pattern
+};
+
+TEST(DataType, SignedIntegersHaveTheirRangeAndTheirBitPattern) {
+  for (const auto& type : {
+           Integer{"0x0002", "-128", "-129", "127", "0xFF", "0x100"},
+           Integer{"0x0003", "-32768", "-32769", "32767", "0xFFFF", "0x10000"},
+           Integer{"0x0010", "-8388608", "-8388609", "8388607", "0xFFFFFF", "0x1000000"},
+           Integer{"0x0004", "-2147483648", "-2147483649", "2147483647", "0xFFFFFFFF",
+                   "0x100000000"},
+           Integer{"0x0012", "-549755813888", "-549755813889", "549755813887", "0xFFFFFFFFFF",
+                   "0x10000000000"},
+           Integer{"0x0013", "-140737488355328", "-140737488355329", "140737488355327",
+                   "0xFFFFFFFFFFFF", "0x1000000000000"},
+           Integer{"0x0014", "-36028797018963968", "-36028797018963969", "36028797018963967",
+                   "0xFFFFFFFFFFFFFF", "0x100000000000000"},
+           Integer{"0x0015", "-9223372036854775808", "-9223372036854775809", "9223372036854775807",
+                   "0xFFFFFFFFFFFFFFFF", "0x10000000000000000"},
+       }) {
+    SCOPED_TRACE(type.type);
+    EXPECT_EQ(value_of(type.type, type.lowest), Value{std::int64_t{std::stoll(type.lowest)}});
+    EXPECT_EQ(value_of(type.type, type.highest), Value{std::int64_t{std::stoll(type.highest)}});
+    EXPECT_EQ(value_of(type.type, type.pattern), Value{std::int64_t{-1}});
+    EXPECT_TRUE(has(read(var(type.type, type.pattern)).findings, "bit-pattern"));
+    EXPECT_TRUE(exceeds(type.type, type.below));
+    EXPECT_FALSE(value_of(type.type, type.above));
+  }
+}
+
+struct Unsigned {
+  const char* type;
+  const char* highest;
+  std::uint64_t value;
+  const char* above;
+};
+
+TEST(DataType, UnsignedIntegersHaveTheirRange) {
+  for (const auto& type : {
+           Unsigned{"0x0005", "255", 0xFF, "256"},
+           Unsigned{"0x0006", "65535", 0xFFFF, "65536"},
+           Unsigned{"0x0016", "16777215", 0xFF'FFFF, "16777216"},
+           Unsigned{"0x0007", "0xFFFFFFFF", 0xFFFF'FFFF, "4294967296"},
+           Unsigned{"0x0018", "1099511627775", 0xFF'FFFF'FFFF, "0x10000000000"},
+           Unsigned{"0x0019", "281474976710655", 0xFFFF'FFFF'FFFF, "0x1000000000000"},
+           Unsigned{"0x001A", "72057594037927935", 0xFF'FFFF'FFFF'FFFF, "0x100000000000000"},
+           Unsigned{"0x001B", "18446744073709551615", 0xFFFF'FFFF'FFFF'FFFF, "0x10000000000000000"},
+       }) {
+    SCOPED_TRACE(type.type);
+    EXPECT_EQ(value_of(type.type, "0"), Value{std::uint64_t{0}});
+    EXPECT_EQ(value_of(type.type, type.highest), Value{type.value});
+    EXPECT_EQ(value_of(type.type, "-1"), Value{type.value});
+    EXPECT_FALSE(value_of(type.type, type.above));
+  }
+  EXPECT_TRUE(exceeds("0x0016", "0x1000000"));
+  EXPECT_TRUE(exceeds("0x0016", "-8388609"));
+  EXPECT_TRUE(exceeds("0x001A", "0x100000000000000"));
+}
+
+TEST(DataType, OddWidthsGoOntoTheWireInTheirBytes) {
+  using Bytes = std::vector<std::byte>;
+  const auto b = [](auto... byte) { return Bytes{std::byte(byte)...}; };
+
+  EXPECT_EQ(to_bytes(*value_of("0x0002", "-128"), DataType::integer8), b(0x80));
+  EXPECT_EQ(to_bytes(*value_of("0x0012", "-2"), DataType::integer40),
+            b(0xFE, 0xFF, 0xFF, 0xFF, 0xFF));
+  EXPECT_EQ(to_bytes(*value_of("0x0013", "-2"), DataType::integer48),
+            b(0xFE, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF));
+  EXPECT_EQ(to_bytes(*value_of("0x0014", "-36028797018963968"), DataType::integer56),
+            b(0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80));
+  EXPECT_EQ(to_bytes(*value_of("0x0016", "0x010203"), DataType::unsigned24), b(0x03, 0x02, 0x01));
+  EXPECT_EQ(to_bytes(*value_of("0x0018", "0x0102030405"), DataType::unsigned40),
+            b(0x05, 0x04, 0x03, 0x02, 0x01));
+  EXPECT_EQ(to_bytes(*value_of("0x0019", "0x010203040506"), DataType::unsigned48),
+            b(0x06, 0x05, 0x04, 0x03, 0x02, 0x01));
+  EXPECT_EQ(to_bytes(*value_of("0x001A", "0x01020304050607"), DataType::unsigned56),
+            b(0x07, 0x06, 0x05, 0x04, 0x03, 0x02, 0x01));
+}
+
+TEST(DataType, TheNodeIdIsAddedWithinTheWidth) {
+  EXPECT_EQ(value_of("0x0016", "$NODEID+0xFFFFFA"), Value{std::uint64_t{0xFF'FFFF}});
+  EXPECT_TRUE(exceeds("0x0016", "$NODEID+0xFFFFFB"));
+  EXPECT_TRUE(exceeds("0x001A", "$NODEID+0xFFFFFFFFFFFFFB"));
+}
+
+TEST(DataType, ReservedCodesHaveNone) {
+  for (const auto* code : {"0x000E", "0x0017", "0x001C", "0x0020"}) {
+    EXPECT_TRUE(has(read(var(code, "1")).findings, "data-type-unknown")) << code;
+  }
+}
+
+TEST(ObjectTypes, OfDataTypesAreReadAsTheirForm) {
+  const auto deftype = read("[2000]\nObjectType=5\n" + var("0x0019", "7").substr(7));
+  const auto defstruct = read(
+      "[2000]\nParameterName=s\nObjectType=6\nSubNumber=2\n"
+      "[2000sub0]\nParameterName=n\nDataType=5\nAccessType=ro\nDefaultValue=1\n"
+      "[2000sub1]\nParameterName=e\nDataType=0x0013\nAccessType=rw\nDefaultValue=-2\n");
+  const auto null = read("[2000]\nObjectType=0\n" + var("0x0016", "3").substr(7));
+
+  EXPECT_EQ(deftype.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::deftype);
+  EXPECT_EQ(test::integer(deftype, {0x2000, 0}), 7);
+  EXPECT_EQ(defstruct.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::defstruct);
+  EXPECT_EQ(defstruct.dictionary.find(std::uint16_t{0x2000})->subs.size(), 2U);
+  EXPECT_EQ(test::integer(defstruct, {0x2000, 1}), -2);
+  EXPECT_EQ(null.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::null);
+  EXPECT_EQ(test::integer(null, {0x2000, 0}), 3);
+  for (const auto* file : {&deftype, &defstruct, &null}) {
+    EXPECT_FALSE(has(file->findings, "object-type-unknown"));
+    EXPECT_FALSE(has_error(file->findings));
+  }
+}
+
+TEST(ObjectTypes, WithSubObjectsButNoRecordAreTaken) {
+  for (const auto* code : {"0", "5"}) {
+    const auto file = read("[2000]\nParameterName=t\nDataType=5\nObjectType=" + std::string{code} +
+                           "\n[2000sub1]\nParameterName=e\nDataType=0x0016\nDefaultValue=9\n");
+
+    EXPECT_TRUE(has(file.findings, "sub-objects-of-var")) << code;
+    EXPECT_EQ(test::integer(file, {0x2000, 1}), 9) << code;
+  }
+  const auto empty = read("[2000]\nParameterName=t\nObjectType=6\nSubNumber=0\n");
+  EXPECT_TRUE(has(empty.findings, "no-sub-objects"));
+}
+
+TEST(ObjectTypes, ADefstructInShortNotationIsExpanded) {
+  const auto file = read(
+      "[2000]\nParameterName=s\nObjectType=6\nDataType=0x001A\nAccessType=rw\n"
+      "DefaultValue=72057594037927935\nCompactSubObj=2\n");
+
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->subs.size(), 3U);
+  EXPECT_EQ(*file.dictionary.find(ObjectKey{0x2000, 2})->value(),
+            Value{std::uint64_t{72057594037927935}});
+}
+
+}  // namespace
+}  // namespace takt
