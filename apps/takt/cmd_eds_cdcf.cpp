@@ -4,6 +4,7 @@
 #include "apps/takt/eds_commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/write/configured_values.hpp"
 
@@ -35,14 +36,12 @@ int decode(const Options& options) {
 }
 
 int encode(const Options& options) {
-  auto file = read_eds_file(options.file, NodeId::from(options.node));
-  Report report{options.file};
-  const auto entries = configured_values(file.dictionary, report);
-  std::ranges::move(report.take(), std::back_inserter(file.findings));
-  for (const auto& finding : file.findings) {
+  const auto [entries, findings] =
+      configured_values(read_eds_file(options.file, NodeId::from(options.node)));
+  for (const auto& finding : findings) {
     if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
   }
-  if (!file.readable) return 1;
+  if (has_error(findings)) return 1;
   if (entries.empty()) {
     return complain(options.file + ": no object has a ParameterValue that can be written", 1);
   }
@@ -58,14 +57,14 @@ void add_eds_cdcf(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = eds.add_subcommand("cdcf", "concise DCF (0x1F22) of a DCF, or what one holds");
   command->add_option("FILE", options->file, "DCF, or with --decode a concise DCF")->required();
-  command->add_option("--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
       ->check(CLI::Range(1U, 127U));
   auto* out = command->add_option("-o,--output", options->out, "the concise DCF; - for stdout");
   auto* decoding = command->add_flag("--decode", options->decode, "print a concise DCF as text");
   out->excludes(decoding);
   command->footer(
       "Holds each ParameterValue of the DCF, ascending; a PDO as one piece: invalid, mapping\n"
-      "off, mapping, parameters, valid.\n\n"
+      "off, mapping, parameters, valid. After an error nothing is written.\n\n"
       "Examples:\n  takt eds cdcf axis.dcf -o axis.bin\n  takt eds cdcf --decode axis.bin");
   command->callback([options, out, &exit_code] {
     if (!options->decode && out->empty()) throw CLI::RequiredError{"--output"};

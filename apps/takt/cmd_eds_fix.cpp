@@ -65,7 +65,7 @@ void add_eds_fix(CLI::App& eds, int& exit_code) {
       "`takt eds check`). No object and no value becomes another one; the text elsewhere stays\n"
       "byte for byte. Exit code 1 if an error is left. Mended are:\n" +
       rules +
-      ",\nand unknown keys that are slips of a known one.\n\n"
+      ",\nand slips of ParameterName and DataType.\n\n"
       "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

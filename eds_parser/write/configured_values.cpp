@@ -1,8 +1,11 @@
 #include "eds_parser/write/configured_values.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "eds_parser/integer_of.hpp"
+#include "eds_parser/number.hpp"
+#include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {
@@ -10,9 +13,18 @@ namespace {
 constexpr std::uint32_t refuse_write = 1;  // ObjFlags, bit 0
 constexpr std::uint64_t invalid_pdo = 0x8000'0000;
 
-bool is_configured(const SubObject& sub) noexcept {
-  return sub.parameter_value && sub.access != Access::ro && sub.access != Access::constant &&
+bool may_be_written(const SubObject& sub) noexcept {
+  return sub.access != Access::ro && sub.access != Access::constant &&
          (sub.flags & refuse_write) == 0;
+}
+
+bool is_configured(const SubObject& sub) noexcept {
+  return sub.parameter_value && may_be_written(sub);
+}
+
+/// Of an entry of a mapping.
+bool maps_something(const SubObject& sub) noexcept {
+  return is_configured(sub) && integer_of(sub.parameter_value).value_or(0) != 0;
 }
 
 bool any_configured(const Object* object) noexcept {
@@ -31,6 +43,7 @@ class Collector {
       : dictionary_{dictionary}, report_{report} {}
 
   std::vector<ConciseEntry> collect() {
+    tell_left_out();
     std::uint16_t last_pdo = 0;
     for (const auto& object : dictionary_.objects) {
       const auto pdo = pdo_of(object.index);
@@ -47,6 +60,26 @@ class Collector {
   }
 
  private:
+  void tell_left_out() {
+    for (const auto& files : dictionary_.domain_files) {
+      if (files.download.empty()) continue;
+      report_.warning(files.pos, "download-left-out",
+                      to_string(files.key) + ": the content of DownloadFile " +
+                          takt::quoted(files.download) + " is left out of a concise DCF");
+    }
+    if (dictionary_.node_id) return;
+    for (const auto& object : dictionary_.objects) {
+      for (const auto& sub : object.subs) {
+        const auto number = parse_number(sub.parameter_text);
+        if (!number || !number->relative() || !may_be_written(sub)) continue;
+        report_.warning(sub.parameter_pos, "value-left-out",
+                        to_string(ObjectKey{object.index, sub.sub}) + ": ParameterValue " +
+                            takt::quoted(sub.parameter_text) +
+                            " has no value without a node id; it is left out");
+      }
+    }
+  }
+
   void add_all(const Object& object) {
     for (const auto& sub : object.subs) {
       if (!is_configured(sub)) continue;
@@ -87,17 +120,40 @@ class Collector {
   void add_mapping(const Object& mapping) {
     const ObjectKey entries{mapping.index, 0};
     const auto* count = dictionary_.find(entries);
-    const auto number = integer_of(dictionary_, entries);
+    const auto said = integer_of(dictionary_, entries);
+    const auto number = said ? *said : entries_of(mapping);
     const bool writable =
         count != nullptr && count->access != Access::ro && count->access != Access::constant;
     if (writable) add({mapping.index, 0}, *count, Value{std::uint64_t{0}});
     for (const auto& sub : mapping.subs) {
-      if (sub.sub == 0 || sub.sub > number.value_or(0) || !sub.value()) continue;
-      add({mapping.index, sub.sub}, sub, *sub.value());
+      if (sub.sub == 0 || !sub.value()) continue;
+      if (sub.sub <= number) {
+        add({mapping.index, sub.sub}, sub, *sub.value());
+      } else if (maps_something(sub)) {
+        report_.warning(sub.parameter_pos, "mapping-entry-left-out",
+                        to_string(ObjectKey{mapping.index, sub.sub}) + " is left out: " +
+                            to_string(entries) + " counts " + std::to_string(number));
+      }
     }
-    if (writable) {
-      add({mapping.index, 0}, *count, Value{static_cast<std::uint64_t>(number.value_or(0))});
+    if (writable) add({mapping.index, 0}, *count, Value{static_cast<std::uint64_t>(number)});
+  }
+
+  /// Of a mapping whose sub 0 has no value: up to the last entry that is configured. The device
+  /// would fill a gap with what it has.
+  std::int64_t entries_of(const Object& mapping) {
+    std::int64_t number = 0;
+    for (const auto& sub : mapping.subs) {
+      if (sub.sub != 0 && maps_something(sub)) number = sub.sub;
     }
+    for (std::int64_t entry = 1; entry <= number; ++entry) {
+      const ObjectKey key{mapping.index, static_cast<std::uint8_t>(entry)};
+      if (integer_of(dictionary_, key).value_or(0) != 0) continue;
+      report_.error(mapping.pos, "mapping-count-unknown",
+                    to_string(ObjectKey{mapping.index, 0}) + " has no value, and " +
+                        to_string(key) + " before the last configured entry has none either");
+      break;
+    }
+    return number;
   }
 
   void add(ObjectKey key, const SubObject& sub, const Value& value) {
@@ -118,6 +174,16 @@ class Collector {
 
 std::vector<ConciseEntry> configured_values(const ObjectDictionary& dictionary, Report& report) {
   return Collector{dictionary, report}.collect();
+}
+
+ConfiguredValues configured_values(const EdsFile& file) {
+  ConfiguredValues result;
+  Report report{file.dictionary.file};
+  if (file.readable) result.entries = configured_values(file.dictionary, report);
+  result.findings = file.findings;
+  std::ranges::move(report.take(), std::back_inserter(result.findings));
+  if (has_error(result.findings)) result.entries.clear();
+  return result;
 }
 
 }  // namespace takt

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "eds_parser/eds.hpp"
+#include "eds_parser/eds_limits.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
 #include "eds_parser/value_reader.hpp"
@@ -25,19 +26,15 @@ std::string_view base_name(std::string_view path) noexcept {
   return slash == std::string_view::npos ? path : path.substr(slash + 1);
 }
 
-/// Whether a value can be compared with limits, and lies outside.
-bool outside(const Value& value, const SubObject& sub) {
-  if (const auto* real = std::get_if<double>(&value)) {
-    const auto* low = sub.low_limit ? std::get_if<double>(&*sub.low_limit) : nullptr;
-    const auto* high = sub.high_limit ? std::get_if<double>(&*sub.high_limit) : nullptr;
-    return (low != nullptr && *real < *low) || (high != nullptr && *real > *high);
-  }
-  const bool comparable = !std::holds_alternative<BoxedText>(value);
-  const auto same = [&](const std::optional<Value>& limit) {
-    return comparable && limit && limit->index() == value.index();
-  };
-  return (same(sub.low_limit) && value < *sub.low_limit) ||
-         (same(sub.high_limit) && value > *sub.high_limit);
+/// Of two values for one object the later counts.
+std::map<ObjectKey, const DcfValue*> last_values(const DcfOptions& options) {
+  std::map<ObjectKey, const DcfValue*> last;
+  for (const auto& value : options.values) last[value.object] = &value;
+  return last;
+}
+
+bool is_file(const DcfValue& value, const SubObject& sub) {
+  return sub.type == DataType::domain && value.text.starts_with('@');
 }
 
 class DcfWriter {
@@ -52,9 +49,7 @@ class DcfWriter {
         values_{report, options.node ? options.node : dictionary.node_id} {}
 
   std::string write() {
-    std::map<ObjectKey, const DcfValue*> last;  // of two values for one object the later counts
-    for (const auto& value : options_.values) last[value.object] = &value;
-    for (const auto& [object, value] : last) write_value(*value);
+    for (const auto& [object, value] : last_values(options_)) write_value(*value);
     write_new_lists();
     write_implied_objects();
     write_file_info();
@@ -72,8 +67,7 @@ class DcfWriter {
       }
       return;
     }
-    const bool from_file = sub->type == DataType::domain && value.text.starts_with('@');
-    if (from_file) {
+    if (is_file(value, *sub)) {
       place(value.object, "DownloadFile", value.text.substr(1));
     } else if (good(value, *sub)) {
       place(value.object, "ParameterValue", value.text);
@@ -110,7 +104,7 @@ class DcfWriter {
                         std::string{name(sub.type)} +
                         (parse_number(value.text) ? " (or $NODEID without --node)" : ""));
     }
-    if (!outside(*read, sub)) return true;
+    if (!outside_limits(*read, sub)) return true;
     const auto limit = [&](const std::optional<Value>& end) {
       return end ? eds_value_text(*end, sub.type) : std::string{"any"};
     };
@@ -127,7 +121,11 @@ class DcfWriter {
     const auto* object = dictionary_.find(key.index);
     const bool single = object->type == ObjectType::var || object->type == ObjectType::domain;
     if (own == nullptr && single && key.sub == 0) own = main;
-    if (own != nullptr) {
+    const auto* list = sections_.value_list(key.index);
+    const bool in_list = list != nullptr && sections_.list_entry(*list, key.sub);
+    if (in_list && keyword == "ParameterValue") {
+      place_in_list(key, std::move(text));  // it counts before that of a section
+    } else if (own != nullptr) {
       set(*own, keyword, std::move(text));
     } else if (main != nullptr && sections_.entry(*main, "compactsubobj")) {
       place_in_list(key, std::move(text));
@@ -156,12 +154,11 @@ class DcfWriter {
 
   void place_in_list(ObjectKey key, std::string text) {
     const auto* list = sections_.value_list(key.index);
-    const auto number = std::to_string(key.sub);
-    const auto entry = list == nullptr ? std::nullopt : sections_.entry(*list, number);
+    const auto entry = list == nullptr ? std::nullopt : sections_.list_entry(*list, key.sub);
     if (entry) {
       edits_.replace(entry->value, std::move(text));
     } else {
-      list_entries_[key.index].push_back(number + '=' + text);
+      list_entries_[key.index].push_back(std::to_string(key.sub) + '=' + text);
     }
   }
 
@@ -287,6 +284,36 @@ class DcfWriter {
   std::map<const IniSection*, std::size_t> listed_;  ///< objects added to each list
 };
 
+bool holds(const ObjectDictionary& dictionary, const DcfValue& value) {
+  const auto* sub = dictionary.find(value.object);
+  if (sub == nullptr) return false;
+  if (is_file(value, *sub)) {
+    return std::ranges::any_of(dictionary.domain_files, [&](const DomainFiles& files) {
+      return files.key == value.object && files.download == value.text.substr(1);
+    });
+  }
+  Report ignored{dictionary.file};
+  const ValuePlace place{.key = value.object, .what = "new value", .pos = {}};
+  const auto wanted = ValueReader{ignored, dictionary.node_id}.read(value.text, sub->type, place);
+  return wanted && sub->parameter_value &&
+         to_bytes(*wanted, sub->type) == to_bytes(*sub->parameter_value, sub->type);
+}
+
+/// Reads what was written: a file may hold a value in more places than one.
+void confirm(const std::string& text, const ObjectDictionary& before, const DcfOptions& options,
+             Report& report) {
+  if (options.values.empty()) return;
+  const auto node = options.node ? options.node : before.node_id;
+  const auto written = read_eds(text, before.file, node).dictionary;
+  for (const auto& [object, value] : last_values(options)) {
+    if (holds(written, *value)) continue;
+    report.error(before.find(object)->pos, "value-not-set",
+                 to_string(object) +
+                     ": another line of the file than takt would change says its "
+                     "value; set it there by hand");
+  }
+}
+
 }  // namespace
 
 DcfText write_dcf(std::string_view source, const std::string& source_name,
@@ -300,6 +327,10 @@ DcfText write_dcf(std::string_view source, const std::string& source_name,
   DcfText result;
   result.text = DcfWriter{file, text, eds.dictionary, options, report}.write();
   result.findings = report.take();
+  if (!has_error(result.findings)) {
+    confirm(result.text, eds.dictionary, options, report);
+    std::ranges::move(report.take(), std::back_inserter(result.findings));
+  }
   if (has_error(result.findings)) result.text.clear();
   return result;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 #include "eds_parser/eds.hpp"
 #include "eds_parser/number.hpp"
@@ -19,16 +20,22 @@ constexpr int most_passes = 40;  // each rule speaks a thousand times at most in
 constexpr std::uint32_t most_keys = 256;  // of a section in which a key is looked for
 
 constexpr std::array<std::string_view, 11> object_keys{
-    "ParameterName", "ObjectType", "DataType",  "LowLimit",      "HighLimit",     "AccessType",
-    "DefaultValue",  "PDOMapping", "SubNumber", "CompactSubObj", "ParameterValue"};
+    "ParameterName", "DataType",   "ObjectType",    "AccessType",   "SubNumber",     "LowLimit",
+    "HighLimit",     "PDOMapping", "CompactSubObj", "DefaultValue", "ParameterValue"};
+
+/// Of these, slips are mended; what stands behind the others would begin to count then.
+constexpr auto mended_keys = std::span{object_keys}.first<2>();
+
+enum class Slips : std::uint8_t { mended, left };
 
 /// One reading of the file and the edits that follow from its findings.
 class FixPass {
  public:
-  FixPass(std::string_view text, const IniFile& file, const EdsFile& eds)
+  FixPass(std::string_view text, const IniFile& file, const EdsFile& eds, Slips slips)
       : text_{text},
         file_{file},
         eds_{eds},
+        slips_{slips},
         sections_{file},
         edits_{text},
         lists_{text, file, sections_, edits_, touched_} {
@@ -191,9 +198,10 @@ class FixPass {
   bool slip(const Place& at) {
     const SectionName name = classify_section(at.section->name);
     if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return false;
-    if (at.section->count > most_keys) return false;
+    if (slips_ == Slips::left || at.section->count > most_keys) return false;
+    if (at.entry.key.find_first_of("0123456789") != std::string_view::npos) return false;
     const std::string_view meant = nearest(at.entry.key, object_keys);
-    if (meant.empty()) return false;
+    if (std::ranges::find(mended_keys, meant) == mended_keys.end()) return false;
     for (const IniEntry& entry : file_.entries(*at.section)) {
       if (classify_key(entry.key) == classify_key(meant)) return false;
     }
@@ -244,6 +252,7 @@ class FixPass {
   std::string_view text_;
   const IniFile& file_;
   const EdsFile& eds_;
+  Slips slips_;
   SectionIndex sections_;
   TextEdits edits_;
   std::set<std::uint32_t> touched_;  ///< lines that have their edit
@@ -255,23 +264,53 @@ class FixPass {
   std::map<std::uint16_t, std::set<std::uint8_t>> subs_;
 };
 
-/// Nothing that was there is gone, and no value is another one.
+bool same(const std::optional<Value>& old, const std::optional<Value>& now) {
+  return old == now ||
+         (old && now && std::holds_alternative<double>(*old));  // a NaN equals nothing
+}
+
+bool same(const SubObject& old, const SubObject& now) {
+  if (old.access != now.access || old.pdo_mappable != now.pdo_mappable) return false;
+  if (old.type == DataType::unknown && now.type != DataType::unknown) {
+    return old.default_text == now.default_text && old.parameter_text == now.parameter_text;
+  }
+  return old.type == now.type && same(old.default_value, now.default_value) &&
+         same(old.parameter_value, now.parameter_value) && same(old.low_limit, now.low_limit) &&
+         same(old.high_limit, now.high_limit);
+}
+
+/// Nothing that was there is gone or another one. A type may appear where there was none.
 bool keeps(const ObjectDictionary& before, const ObjectDictionary& after) {
-  const auto same = [](const std::optional<Value>& old, const std::optional<Value>& now) {
-    return !old || old == now || std::holds_alternative<double>(*old);  // a NaN equals nothing
-  };
   for (const Object& object : before.objects) {
     const Object* other = after.find(object.index);
-    if (other == nullptr) return false;
+    if (other == nullptr || other->type != object.type) return false;
     for (const SubObject& sub : object.subs) {
       const SubObject* now = after.find(ObjectKey{object.index, sub.sub});
-      if (now == nullptr || !same(sub.default_value, now->default_value) ||
-          !same(sub.parameter_value, now->parameter_value)) {
-        return false;
-      }
+      if (now == nullptr || !same(sub, *now)) return false;
     }
   }
   return true;
+}
+
+struct Pass {
+  std::string text;
+  Findings fixed;
+  EdsFile eds;
+};
+
+/// One pass; none where nothing is left to mend, or the file would say something else.
+std::optional<Pass> one_pass(const std::string& text, const std::string& source_name,
+                             const EdsFile& eds, Slips slips) {
+  Report ignored{source_name};
+  const IniFile file = read_ini(text, ignored);
+  const std::string& source = file.recoded ? *file.recoded : text;
+  Pass pass;
+  pass.text = FixPass{source, file, eds, slips}.run(pass.fixed);
+  if (pass.text.empty() && file.recoded) pass.text = source;
+  if (pass.text.empty() || pass.text == text) return std::nullopt;
+  pass.eds = read_eds(pass.text, source_name);
+  if (!pass.eds.readable || !keeps(eds.dictionary, pass.eds.dictionary)) return std::nullopt;
+  return pass;
 }
 
 }  // namespace
@@ -280,20 +319,13 @@ FixedEds fix_eds(std::string_view source, const std::string& source_name) {
   FixedEds out{.text = std::string{source}, .fixed = {}, .left = {}};
   EdsFile eds = read_eds(source, source_name);
   out.readable = eds.readable;
-  for (int pass = 0; pass < most_passes && eds.readable; ++pass) {
-    Report ignored{source_name};
-    const IniFile file = read_ini(out.text, ignored);
-    const std::string text = file.recoded ? *file.recoded : out.text;
-    Findings fixed;
-    std::string mended = file.recoded ? FixPass{*file.recoded, file, eds}.run(fixed)
-                                      : FixPass{out.text, file, eds}.run(fixed);
-    if (mended.empty() && file.recoded) mended = text;
-    if (mended.empty() || mended == out.text) break;
-    EdsFile again = read_eds(mended, source_name);
-    if (!again.readable || !keeps(eds.dictionary, again.dictionary)) break;
-    out.text = std::move(mended);
-    std::ranges::move(fixed, std::back_inserter(out.fixed));
-    eds = std::move(again);
+  for (int passes = 0; passes < most_passes && eds.readable; ++passes) {
+    auto pass = one_pass(out.text, source_name, eds, Slips::mended);
+    if (!pass) pass = one_pass(out.text, source_name, eds, Slips::left);
+    if (!pass) break;
+    out.text = std::move(pass->text);
+    std::ranges::move(pass->fixed, std::back_inserter(out.fixed));
+    eds = std::move(pass->eds);
   }
   out.left = std::move(eds.findings);
   return out;

@@ -8,7 +8,7 @@
 namespace takt {
 
 /// Rules of `takt eds check` whose findings have only one sensible reading, so that fix_eds() can
-/// mend them. Of unknown keys only slips of known ones; of those in brackets not every case.
+/// mend them. Of unknown keys only slips of some known ones; of those in brackets not every case.
 inline constexpr std::array<std::string_view, 26> fixable_rules{
     "baudrate-unit",          "blank-in-key",     "boolean-word",       "byte-order-mark",
     "compact-and-sub-number", "hash-comment",     "hex-without-prefix", "inline-comment",

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/text.hpp"
@@ -18,15 +19,6 @@ constexpr std::array<SectionKind, 3> kinds{SectionKind::mandatory_objects,
 
 bool is_number(std::string_view key) {
   return !key.empty() && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-/// `SupportedObjects`, also with blanks in it.
-bool is_count(std::string_view key) {
-  std::string squeezed;
-  for (const char c : key) {
-    if (!is_blank(c)) squeezed += c;
-  }
-  return same_word(squeezed, "supportedobjects");
 }
 
 }  // namespace
@@ -69,7 +61,7 @@ void ListFix::create(SectionKind kind, const std::vector<std::uint16_t>& more) {
 
 void ListFix::set_count(const IniSection& section, std::size_t number) {
   for (const IniEntry& entry : file_.entries(section)) {
-    if (!is_count(entry.key)) continue;
+    if (!is_count_key(entry.key)) continue;
     touched_.insert(entry.line);
     const std::string_view bare = without_comment(entry.value);
     const auto said = parse_number(bare);

@@ -1,5 +1,6 @@
 #include "eds_parser/write/section_index.hpp"
 
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -36,6 +37,14 @@ std::optional<IniEntry> SectionIndex::entry(const IniSection& section,
                                             std::string_view lower_key) const noexcept {
   for (const auto& entry : file_.entries(section)) {
     if (same_word(entry.key, lower_key)) return entry;
+  }
+  return std::nullopt;
+}
+
+std::optional<IniEntry> SectionIndex::list_entry(const IniSection& list,
+                                                 std::uint8_t sub) const noexcept {
+  for (const auto& entry : file_.entries(list)) {
+    if (entry_number(entry.key) == sub) return entry;
   }
   return std::nullopt;
 }

@@ -23,6 +23,8 @@ class SectionIndex {
 
   std::optional<IniEntry> entry(const IniSection& section,
                                 std::string_view lower_key) const noexcept;
+  /// The entry of a value list for one sub-index, however many zeros its key starts with.
+  std::optional<IniEntry> list_entry(const IniSection& list, std::uint8_t sub) const noexcept;
   /// Behind which a line is added to the section: its last entry, or its name.
   std::string_view last_line(const IniSection& section) const noexcept;
 

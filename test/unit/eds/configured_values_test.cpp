@@ -63,6 +63,66 @@ TEST(ConfiguredValues, APdoIsSwitchedOffWhileItChanges) {
             "1800:01 85 01 00 40\n");
 }
 
+/// TPDO 1 whose 1A00 has these sub-objects.
+std::string mapped(const std::string& entries) {
+  return record("1800", "") + sub("1800sub0", "5", "DefaultValue=1") +
+         sub("1800sub1", "7", "DefaultValue=$NODEID+0x180") + record("1A00", "") + entries;
+}
+
+TEST(ConfiguredValues, AMappingWithoutACountHasItsConfiguredEntries) {
+  const auto pdo =
+      mapped(sub("1A00sub0", "5", "") + sub("1A00sub1", "7", "DefaultValue=0x60410010") +
+             sub("1A00sub2", "7", "ParameterValue=0x10010008") +
+             sub("1A00sub3", "7", "DefaultValue=0x60640020"));
+  EXPECT_EQ(configured(pdo),
+            "1800:01 85 01 00 80\n"
+            "1A00:00 00\n"
+            "1A00:01 10 00 41 60\n"
+            "1A00:02 08 00 01 10\n"
+            "1A00:00 02\n"
+            "1800:01 85 01 00 00\n");
+}
+
+TEST(ConfiguredValues, AMappingWithoutACountAndWithAGapIsAnError) {
+  const auto file = test::read(mapped(sub("1A00sub0", "5", "") + sub("1A00sub1", "7", "") +
+                                      sub("1A00sub2", "7", "ParameterValue=0x10010008")));
+  const auto values = configured_values(file);
+  EXPECT_TRUE(values.entries.empty());
+  EXPECT_EQ(test::find(values.findings, "mapping-count-unknown")->severity, Severity::error);
+}
+
+TEST(ConfiguredValues, AnEntryBehindTheCountIsLeftOutAndTold) {
+  Findings findings;
+  const auto text = configured(mapped(sub("1A00sub0", "5", "DefaultValue=0") +
+                                      sub("1A00sub1", "7", "ParameterValue=0x10010008")),
+                               &findings);
+  EXPECT_EQ(text.find("1A00:01"), std::string::npos);
+  EXPECT_TRUE(test::has(findings, "mapping-entry-left-out"));
+}
+
+TEST(ConfiguredValues, AFileWithAnErrorConfiguresNothing) {
+  const auto values = configured_values(
+      test::read(sub("1017", "6", "ParameterValue=100") + sub("6081", "7", "ParameterValue=fast")));
+  EXPECT_TRUE(values.entries.empty());
+  EXPECT_TRUE(has_error(values.findings));
+  EXPECT_FALSE(test::has(values.findings, "value-left-out"));
+}
+
+TEST(ConfiguredValues, AFormulaOfAnUnknownNodeIsLeftOutAndTold) {
+  const auto values = configured_values(test::read(
+      sub("1017", "6", "ParameterValue=100") + sub("2000", "7", "ParameterValue=$NODEID+0x300"),
+      std::nullopt));
+  EXPECT_EQ(lines(values.entries), "1017:00 64 00\n");
+  EXPECT_TRUE(test::has(values.findings, "value-left-out"));
+}
+
+TEST(ConfiguredValues, AFileForADomainIsLeftOutAndTold) {
+  const auto values = configured_values(test::read(sub("1017", "6", "ParameterValue=100") +
+                                                   sub("1F50", "0xF", "DownloadFile=p.bin")));
+  EXPECT_EQ(lines(values.entries), "1017:00 64 00\n");
+  EXPECT_EQ(test::find(values.findings, "download-left-out")->severity, Severity::warning);
+}
+
 TEST(ConfiguredValues, StoreAndRestoreAreCommandsAndNoConfiguration) {
   Findings findings;
   EXPECT_EQ(configured(record("1010", "") + sub("1010sub1", "7", "ParameterValue=1"), &findings),

@@ -88,6 +88,41 @@ TEST(DcfWriter, CompactSubObjectsGetAValueList) {
   EXPECT_TRUE(more.text.ends_with("NrOfEntries=3\n1=9\n10=0x20\n2=5\n")) << more.text;
 }
 
+TEST(DcfWriter, AValueListCountsBeforeASectionAndItsKeysAreNumbers) {
+  const std::string source = R"([2000]
+ParameterName=c
+ObjectType=8
+DataType=5
+AccessType=rw
+CompactSubObj=3
+[2000sub2]
+ParameterName=own
+DataType=5
+AccessType=rw
+[2000Value]
+NrOfEntries=3
+2=9
+03=8
+0x1=7
+)";
+  const auto dcf = write_dcf(
+      source, "t.eds", {.values = {{{0x2000, 1}, "76"}, {{0x2000, 2}, "77"}, {{0x2000, 3}, "78"}}});
+  EXPECT_NE(dcf.text.find("NrOfEntries=4\n2=77\n03=78\n0x1=7\n1=76\n"), std::string::npos)
+      << dcf.text;
+  const auto after = read_eds(dcf.text, "t.dcf").dictionary;
+  EXPECT_EQ(as_integer(*after.find(ObjectKey{0x2000, 1})->value()), 76);
+  EXPECT_EQ(as_integer(*after.find(ObjectKey{0x2000, 2})->value()), 77);
+  EXPECT_EQ(as_integer(*after.find(ObjectKey{0x2000, 3})->value()), 78);
+}
+
+TEST(DcfWriter, AValueThatWouldNotBeReadIsAnError) {
+  const std::string source =
+      "[2000]\nParameterName=c\nObjectType=8\nDataType=0xF\nAccessType=rw\nCompactSubObj=3\n";
+  const auto dcf = write_dcf(source, "t.eds", {.values = {{{0x2000, 1}, "@new.bin"}}});
+  EXPECT_TRUE(dcf.text.empty());
+  EXPECT_TRUE(test::has(dcf.findings, "value-not-set"));
+}
+
 TEST(DcfWriter, NodeNameAndBitRateBecomeDeviceComissioning) {
   const auto dcf = write({.node = 5_node, .baudrate_kbit = 500, .node_name = "lift"});
   EXPECT_TRUE(

@@ -69,7 +69,8 @@ std::vector<Case> cases() {
       {"negative-unsigned", value_case(u16 + "DefaultValue=-1\n"), "DefaultValue=0xFFFF\n"},
       {"octet-string-form", value_case("DataType=0x000A\nDefaultValue=0x01 02\n"),
        "DefaultValue=0102\n"},
-      {"unknown-key", value_case("DataType=0x0006\nDefaultValu=3\n"), "DefaultValue=3\n"},
+      {"unknown-key", value_case("DataTyp=0x0006\nDefaultValue=3\n"),
+       "DataType=0x0006\nDefaultValue=3\n"},
       {"blank-in-key", with_objects("Supported Objects=1\n1=0x2000\n", plain),
        "\nSupportedObjects=1\n"},
       {"list-count-missing", with_objects("1=0x2000\n", plain),
@@ -159,10 +160,40 @@ TEST(EdsFix, WhatHasTwoReadingsIsLeftAndNamed) {
   EXPECT_TRUE(has(fixed.left, "duplicate-key"));
 }
 
+TEST(EdsFix, ABinaryNumberIsNotMadeHexadecimal) {
+  const std::string before = value_case("DataType=0x0006\nDefaultValue=0b101\n");
+  const FixedEds fixed = fix_eds(before, "t.eds");
+  EXPECT_EQ(fixed.text, before);
+  EXPECT_TRUE(has(fixed.left, "value-unreadable"));
+}
+
 TEST(EdsFix, AKeyThatTheSectionHasAlreadyIsNotMadeTwice) {
   const std::string before = value_case("DataType=0x0006\nDefaultValue=5\nDefaultValu=6\n");
 
   EXPECT_EQ(fix_eds(before, "t.eds").text, before);
+}
+
+TEST(EdsFix, AnIgnoredKeyDoesNotBecomeAValue) {
+  const std::string u16 = "DataType=0x0006\nDefaultValue=3\n";
+  for (const char* key : {"ParameterValue1=9\n", "HighLimit2=2\n", "LowLimitt=4\n", "PDOMaping=1\n",
+                          "DefaultValue2=7\n"}) {
+    const std::string before = value_case(u16 + key);
+
+    EXPECT_EQ(fix_eds(before, "t.eds").text, before);
+  }
+  const std::string empty = value_case("DataType=0x0006\nDefaultValu=3\n");
+  EXPECT_EQ(fix_eds(empty, "t.eds").text, empty);
+}
+
+TEST(EdsFix, ASlipThatWouldChangeTheObjectIsLeftAndTheRestMended) {
+  const std::string before =
+      with_objects("SupportedObjects=1\n1=0x2000\n",
+                   "[2000]\nParameterName=x\nAcessType=ro\nDataType=6\nDefaultValue=012\n");
+
+  const FixedEds fixed = fix_eds(before, "t.eds");
+
+  EXPECT_THAT(fixed.text, HasSubstr("AcessType=ro\nDataType=6\nDefaultValue=10\n"));
+  EXPECT_TRUE(has(fixed.left, "unknown-key"));
 }
 
 TEST(EdsFix, WhatIsNoEdsIsSaid) {
