@@ -1,23 +1,39 @@
 #include "eds_parser/write/cpp_header.hpp"
 
-#include <cstdio>
 #include <set>
 
 #include "eds_parser/write/dbc_text.hpp"
+#include "eds_parser/write/hex64.hpp"
 
 namespace takt {
 namespace {
 
+/// Names that a namespace or constant cannot have: keywords, macros of compilers, and std.
 const std::set<std::string_view> cpp_words{
-    "alignas", "alignof",  "and",       "asm",      "auto",     "bool",      "break",    "case",
-    "catch",   "char",     "class",     "concept",  "const",    "constexpr", "continue", "default",
-    "delete",  "do",       "double",    "else",     "enum",     "explicit",  "export",   "extern",
-    "false",   "float",    "for",       "friend",   "goto",     "if",        "inline",   "int",
-    "long",    "mutable",  "namespace", "new",      "noexcept", "not",       "nullptr",  "operator",
-    "or",      "private",  "protected", "public",   "register", "requires",  "return",   "short",
-    "signed",  "sizeof",   "static",    "struct",   "switch",   "template",  "this",     "throw",
-    "true",    "try",      "typedef",   "typename", "union",    "unsigned",  "using",    "virtual",
-    "void",    "volatile", "while",     "xor"};
+    "alignas",   "alignof",      "and",           "and_eq",
+    "asm",       "auto",         "bitand",        "bitor",
+    "bool",      "break",        "case",          "catch",
+    "char",      "char8_t",      "char16_t",      "char32_t",
+    "class",     "co_await",     "co_return",     "co_yield",
+    "compl",     "concept",      "const",         "const_cast",
+    "consteval", "constexpr",    "constinit",     "continue",
+    "decltype",  "default",      "delete",        "do",
+    "double",    "dynamic_cast", "else",          "enum",
+    "explicit",  "export",       "extern",        "false",
+    "float",     "for",          "friend",        "goto",
+    "if",        "inline",       "int",           "linux",
+    "long",      "mutable",      "namespace",     "new",
+    "noexcept",  "not",          "not_eq",        "nullptr",
+    "operator",  "or",           "or_eq",         "private",
+    "protected", "public",       "register",      "reinterpret_cast",
+    "requires",  "return",       "short",         "signed",
+    "sizeof",    "static",       "static_assert", "static_cast",
+    "std",       "struct",       "switch",        "template",
+    "this",      "thread_local", "throw",         "true",
+    "try",       "typedef",      "typeid",        "typename",
+    "union",     "unix",         "unsigned",      "using",
+    "virtual",   "void",         "volatile",      "wchar_t",
+    "while",     "xor",          "xor_eq"};
 
 std::string cpp_name(std::string_view text) {
   auto name = dbc_name(text);
@@ -25,10 +41,11 @@ std::string cpp_name(std::string_view text) {
   return name;
 }
 
-std::string hex64(std::uint64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%016llX", static_cast<unsigned long long>(value));
-  return text;
+/// A name that is not in `used`; it is then.
+std::string unique_name(std::string_view text, std::set<std::string>& used) {
+  auto name = cpp_name(text);
+  while (!used.insert(name).second) name += '_';
+  return name;
 }
 
 std::string quoted_text(std::string_view text) {
@@ -41,17 +58,18 @@ std::string quoted_text(std::string_view text) {
 }
 
 /// Positions of one node's signals, a constant each.
-std::string positions(const BusPlan& plan, std::size_t node) {
-  std::string out = "\nnamespace " + cpp_name(plan.nodes[node].name) + " {\n";
+std::string positions(const BusPlan& plan, std::size_t node, const std::string& space) {
+  std::string out = "\nnamespace " + space + " {\n";
+  std::set<std::string> used;
   for (std::size_t i = 0; i < plan.layout.signals.size(); ++i) {
     const auto& signal = plan.layout.signals[i];
     if (signal.node_index != node) continue;
     const auto what = to_string(signal.object) + (signal.output ? ", output" : ", input") +
                       (signal.unit.empty() ? "" : ", " + signal.unit);
-    out += "inline constexpr std::uint16_t " + cpp_name(signal.name) + " = " + std::to_string(i) +
-           ";  // " + what + '\n';
+    out += "inline constexpr std::uint16_t " + unique_name(signal.name, used) + " = " +
+           std::to_string(i) + ";  // " + what + '\n';
   }
-  return out + "}  // namespace " + cpp_name(plan.nodes[node].name) + '\n';
+  return out + "}  // namespace " + space + '\n';
 }
 
 std::string table(const BusPlan& plan) {
@@ -80,7 +98,10 @@ std::string to_cpp_header(const BusPlan& plan) {
       std::to_string(plan.layout.signals.size()) +
       ";\ninline constexpr std::uint16_t num_inputs = " + std::to_string(plan.layout.inputs) +
       ";  // the rest are outputs\n";
-  for (std::size_t node = 0; node < plan.nodes.size(); ++node) out += positions(plan, node);
+  std::set<std::string> used{"Signal", "signals", "layout_hash", "num_signals", "num_inputs"};
+  for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
+    out += positions(plan, node, unique_name(plan.nodes[node].name, used));
+  }
   if (!plan.layout.signals.empty()) out += table(plan);
   return out + "\n}  // namespace " + space + '\n';
 }

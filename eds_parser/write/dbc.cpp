@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "eds_parser/write/dbc_text.hpp"
 #include "eds_parser/write/drive_words.hpp"
@@ -25,7 +26,10 @@ struct DbcSignal {
 
 class DbcWriter {
  public:
-  DbcWriter(const BusPlan& plan, const DbcOptions& options) : plan_{plan}, options_{options} {}
+  DbcWriter(const BusPlan& plan, const DbcOptions& options) : plan_{plan}, options_{options} {
+    std::set<std::string> used{"master", "Vector__XXX"};
+    for (const auto& node : plan.nodes) nodes_.push_back(shorten(dbc_name(node.name), used));
+  }
 
   std::string write() {
     write_head();
@@ -39,7 +43,7 @@ class DbcWriter {
  private:
   void write_head() {
     out_ = "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: master";
-    for (const auto& node : plan_.nodes) out_ += ' ' + dbc_name(node.name);
+    for (const auto& node : nodes_) out_ += ' ' + node;
     out_ += '\n';
   }
 
@@ -52,8 +56,9 @@ class DbcWriter {
     if (plan_.master_heartbeat != Time{}) {
       write_heartbeat(plan_.master_id, "master", plan_.master_heartbeat, every_node());
     }
-    for (const auto& node : plan_.nodes) {
-      const auto name = dbc_name(node.name);
+    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+      const auto& node = plan_.nodes[i];
+      const auto& name = nodes_[i];
       begin_message(node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())),
                     name + "_EMCY", 8, name, {});
       write_signal({.name = "error_code", .bits = 16}, "master");
@@ -86,7 +91,7 @@ class DbcWriter {
 
   void write_pdo(const PdoRow& row, std::string_view kind) {
     const bool sent_by_node = kind == "TPDO";
-    const auto node = dbc_name(plan_.nodes[row.node_index].name);
+    const auto& node = nodes_[row.node_index];
     const std::string receiver = sent_by_node ? "master" : node;
     if (!continues_mpdo(row)) {
       const bool cyclic = row.cyclic() && plan_.cycle.sync;
@@ -180,7 +185,7 @@ class DbcWriter {
 
   std::string every_node() const {
     std::string all;
-    for (const auto& node : plan_.nodes) all += (all.empty() ? "" : ",") + dbc_name(node.name);
+    for (const auto& node : nodes_) all += (all.empty() ? "" : ",") + node;
     return all.empty() ? "Vector__XXX" : all;
   }
 
@@ -195,6 +200,7 @@ class DbcWriter {
 
   const BusPlan& plan_;
   const DbcOptions& options_;
+  std::vector<std::string> nodes_;  // their names, by node_index
   std::string out_;
   std::string comments_;
   std::string attributes_;

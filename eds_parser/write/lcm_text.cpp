@@ -1,18 +1,10 @@
 #include "eds_parser/write/lcm_text.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "eds_parser/write/hex64.hpp"
 
 namespace takt {
-namespace {
-
-std::string hex64(std::uint64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%016llX", static_cast<unsigned long long>(value));
-  return text;
-}
-
-}  // namespace
 
 std::string to_lcm(const TypedMessage& message, const BusPlan& plan) {
   const NodePlan& node = plan.nodes[message.node_index];

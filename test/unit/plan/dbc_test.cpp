@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eds_parser/write/cpp_header.hpp"
 #include "eds_parser/write/dbc_text.hpp"
 
 namespace takt {
@@ -108,6 +109,38 @@ TEST(Dbc, IdentifiersOf29BitsCarryTheFlag) {
   auto plan = plan_of({signal("one", {0x2001, 1}, DataType::unsigned8)});
   plan.pdos.tpdos[0].cob_id = CobId::extended(0x12345);
   EXPECT_TRUE(holds(to_dbc(plan), "BO_ 2147558213 axis_TPDO1:"));
+}
+
+TEST(Dbc, ANodeMayBeCalledMaster) {
+  auto plan = plan_of({signal("one", {0x2001, 1}, DataType::unsigned8)});
+  plan.nodes[0].name = "master";
+  plan.nodes.push_back({.name = "master_2", .id = 6_node});
+  const auto dbc = to_dbc(plan);
+  EXPECT_TRUE(holds(dbc, "BU_: master master_2 master_2_2\n")) << dbc;
+  EXPECT_TRUE(holds(dbc,
+                    "BO_ 389 master_2_TPDO1: 8 master_2\n SG_ one : 0|8@1+ (1,0) [0|0] \"\" "
+                    "master\n"))
+      << dbc;
+}
+
+TEST(CppHeader, NamesOfTheHeaderAndOfCppAreNotThoseOfNodesOrSignals) {
+  auto plan = plan_of({signal("new", {0x2001, 1}, DataType::unsigned8),
+                       signal("co_await", {0x2001, 2}, DataType::unsigned8),
+                       signal("a.b", {0x2001, 3}, DataType::unsigned8),
+                       signal("a_b", {0x2001, 4}, DataType::unsigned8)});
+  plan.name = "can";
+  plan.nodes[0].name = "signals";
+  for (const char* name : {"signals_", "layout_hash", "num_inputs", "std", "static_cast"}) {
+    plan.nodes.push_back({.name = name, .id = 6_node});
+  }
+  const auto header = to_cpp_header(plan);
+  for (const char* line :
+       {"namespace signals_ {\n", "namespace signals__ {\n", "namespace layout_hash_ {\n",
+        "namespace num_inputs_ {\n", "namespace std_ {\n", "namespace static_cast_ {\n",
+        "std::uint16_t new_ = 0;", "std::uint16_t co_await_ = 1;", "std::uint16_t a_b = 2;",
+        "std::uint16_t a_b_ = 3;"}) {
+    EXPECT_TRUE(holds(header, line)) << line << header;
+  }
 }
 
 TEST(Dbc, TextIsWindows1252WithoutQuotes) {
