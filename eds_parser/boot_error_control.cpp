@@ -1,5 +1,7 @@
 #include "eds_parser/boot_error_control.hpp"
 
+#include <algorithm>
+
 #include "eds_parser/integer_of.hpp"
 
 namespace takt {
@@ -37,18 +39,19 @@ class ErrorControl : BootPart {
   }
 
  private:
-  /// 0x1016: an entry that already names the master, else the first one.
   void watch_master() {
     if (context.master_consumer_ms == 0 || !*spec.heartbeat_consumer) return;
     const Object* object = dictionary.find(std::uint16_t{0x1016});
     if (object == nullptr) return;
-    ObjectKey key{0x1016, 1};
-    for (const SubObject& sub : object->subs) {
-      const auto value = integer_of(sub.value());
-      if (sub.sub != 0 && value && ((*value >> 16) & 0x7F) == context.master_id.value()) {
-        key.sub = sub.sub;
-      }
+    const auto entry = entry_for_master(*object);
+    if (!entry) {
+      report.warning(spec.heartbeat_consumer.pos.line != 0 ? spec.heartbeat_consumer.pos : spec.pos,
+                     "heartbeat-consumer",
+                     "node `" + spec.name + "`: each entry of 0x1016 of " + dictionary.file +
+                         " watches another node: the device will not watch the master");
+      return;
     }
+    const ObjectKey key{0x1016, *entry};
     if (!steps.writable(key)) return;
     const std::int64_t value =
         (std::int64_t{context.master_id.value()} << 16) | context.master_consumer_ms;
@@ -59,6 +62,32 @@ class ErrorControl : BootPart {
                   "the device watches the master (node " +
                       std::to_string(context.master_id.value()) + ") for " +
                       std::to_string(context.master_consumer_ms) + " ms");
+  }
+
+  /// 0x1016: the entry that names the master already, else the first that watches nobody, else the
+  /// first of which neither network file nor DCF says whom it watches.
+  std::optional<std::uint8_t> entry_for_master(const Object& object) const {
+    std::optional<std::uint8_t> unused;
+    std::optional<std::uint8_t> by_default;
+    for (const SubObject& sub : object.subs) {
+      if (sub.sub == 0) continue;
+      const auto configured = configured_consumer(sub);
+      const auto value = configured.value_or(integer_of(sub.default_value).value_or(0));
+      const auto watched = (value >> 16) & 0xFF;
+      if (watched == context.master_id.value()) return sub.sub;
+      const bool off = watched == 0 || watched > 127 || (value & 0xFFFF) == 0;
+      if (off && !unused) unused = sub.sub;
+      if (!configured && !by_default) by_default = sub.sub;
+    }
+    return unused ? unused : by_default;
+  }
+
+  /// What the network file, else a DCF, makes of an entry of 0x1016.
+  std::optional<std::int64_t> configured_consumer(const SubObject& sub) const {
+    const auto own = std::ranges::find(spec.sdo, ObjectKey{0x1016, sub.sub}, &SdoSpec::object);
+    const auto* value = own == spec.sdo.end() ? nullptr : std::get_if<std::int64_t>(&own->value);
+    if (value != nullptr) return *value;
+    return dictionary.is_dcf ? integer_of(sub.parameter_value) : std::nullopt;
   }
 
   /// 0x100C and 0x100D, for the device's own life guarding.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
 
+#include "eds_parser/integer_of.hpp"
 #include "eds_parser/object_units.hpp"
 #include "eds_parser/pdo_compiler.hpp"
 
@@ -58,11 +60,15 @@ class ValueSteps {
         dictionary_{*node.dictionary},
         context_{context},
         steps_{steps},
-        report_{report} {}
+        report_{report} {
+    for (const BootStep& step : steps.steps()) {
+      if (step.object != ObjectKey{}) set_already_.insert(step.object);
+    }
+  }
 
   void run() {
-    if (dictionary_.is_dcf) device_values();
     if (context_.cia402 && context_.sync) interpolation_periods();
+    if (dictionary_.is_dcf) device_values();
     for (const SdoSpec& sdo : spec_.sdo) configured(sdo);
   }
 
@@ -72,6 +78,7 @@ class ValueSteps {
     return found == spec_.sdo.end() ? nullptr : &*found;
   }
 
+  /// What follows from the plan or stands in the network file comes before the DCF.
   void device_values() {
     for (const Object& object : dictionary_.objects) {
       if (is_set_elsewhere(object.index)) continue;
@@ -82,6 +89,7 @@ class ValueSteps {
         if (!sub.parameter_value || refused || !steps_.writable(key) || configured_value(key)) {
           continue;
         }
+        if (set_already_.contains(key)) continue;
         write(key, to_bytes(*sub.parameter_value, sub.type),
               "DCF: " + label(dictionary_, key) + " = " + sub.parameter_text);
       }
@@ -121,7 +129,7 @@ class ValueSteps {
       if (!steps_.writable(value) || !steps_.has(exponent)) continue;
       const SdoSpec* own = configured_value(value);
       if (own != nullptr) {
-        compare_period(*own, configured_value(exponent));
+        compare_period(*own, exponent_of(exponent));
         continue;
       }
       const auto period = interpolation(context_.sync_period_us);
@@ -134,19 +142,30 @@ class ValueSteps {
       }
       const std::string text = "interpolation period = SYNC period";
       steps_.integer(BootAction::write_if_differs, value, period->value, text, 1);
+      set_already_.insert(value);
       if (steps_.writable(exponent)) {
         steps_.integer(BootAction::write_if_differs, exponent, period->exponent,
                        text + " (x 10^" + std::to_string(period->exponent) + " s)", 1);
+        set_already_.insert(exponent);
       }
     }
   }
 
-  void compare_period(const SdoSpec& value, const SdoSpec* exponent) {
+  /// Of 10, in seconds: as the network file has it, else the DCF, else milliseconds.
+  std::int64_t exponent_of(ObjectKey key) const {
+    const SdoSpec* own = configured_value(key);
+    const auto* power = own == nullptr ? nullptr : std::get_if<std::int64_t>(&own->value);
+    if (power != nullptr) return *power;
+    const SubObject* sub = dictionary_.find(key);
+    const bool of_dcf = dictionary_.is_dcf && sub != nullptr;
+    return of_dcf ? integer_of(sub->parameter_value).value_or(-3) : -3;
+  }
+
+  void compare_period(const SdoSpec& value, std::int64_t exponent) {
     const auto* counts = std::get_if<std::int64_t>(&value.value);
-    const auto* power = exponent == nullptr ? nullptr : std::get_if<std::int64_t>(&exponent->value);
     if (counts == nullptr) return;
-    const double seconds = static_cast<double>(*counts) *
-                           std::pow(10.0, power == nullptr ? -3.0 : static_cast<double>(*power));
+    const double seconds =
+        static_cast<double>(*counts) * std::pow(10.0, static_cast<double>(exponent));
     const double us = seconds * 1e6;
     if (std::abs(us - context_.sync_period_us) < 0.5) return;
     report_.warning(value.pos, "interpolation-period",
@@ -265,6 +284,7 @@ class ValueSteps {
   const BootContext& context_;
   BootSteps& steps_;
   NetworkReport& report_;
+  std::set<ObjectKey> set_already_;  ///< by parts of the boot before this one
 };
 
 }  // namespace

@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::uint32_t first_free = 0x181;
 constexpr std::uint32_t last_free = 0x57F;
-constexpr std::uint32_t time_id = 0x100;
 
 std::uint32_t predefined(const EffectivePdo& pdo, NodeId node) {
   const std::uint32_t base = pdo.is_tpdo ? 0x180U : 0x200U;
@@ -23,8 +22,9 @@ struct User {
 
 class CobIdAssigner {
  public:
-  CobIdAssigner(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report)
-      : nodes_{nodes}, sync_id_{sync_id}, report_{report} {}
+  CobIdAssigner(std::span<NodePdos> nodes, const std::map<CobId, std::string>& services,
+                NetworkReport& report)
+      : nodes_{nodes}, services_{services}, report_{report} {}
 
   void run() {
     each([&](NodePdos& n, EffectivePdo& p) {
@@ -66,16 +66,10 @@ class CobIdAssigner {
 
   /// Why no PDO may have this id; empty: it may.
   std::string service_at(CobId id) const {
-    if (id.is_extended()) return {};
-    if (is_restricted(id.id())) return "is reserved by CiA 301 (table 40)";
-    if (id.id() == sync_id_) return "is SYNC";
-    if (id.id() == time_id) return "is TIME";
-    for (const NodePdos& node : nodes_) {
-      if (id.id() == 0x80U + node.node.id.value()) {
-        return "is EMCY of node `" + node.node.spec->name + "`";
-      }
-    }
-    return {};
+    const auto service = services_.find(id);
+    if (service != services_.end()) return service->second;
+    const bool reserved = !id.is_extended() && is_restricted(id.id());
+    return reserved ? "is reserved by CiA 301 (table 40)" : "";
   }
 
   void take(NodePdos& node, EffectivePdo& pdo, CobId id) {
@@ -147,7 +141,9 @@ class CobIdAssigner {
   void move(NodePdos& node, EffectivePdo& pdo, const User* other, const std::string& service) {
     const User user{&pdo, &node.node};
     const CobId was = pdo.cob_id;
-    const CobId id = CobId::base(automatic(node, pdo));
+    const std::uint32_t free = automatic(node, pdo);
+    if (free == 0) return none_free(user, pdo);
+    const CobId id = CobId::base(free);
     const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
                              node.node.dictionary->file + ", which " +
                              (other == nullptr ? service : "is " + other->text()) +
@@ -168,14 +164,14 @@ class CobIdAssigner {
     take(node, pdo, id);
   }
 
+  void none_free(const User& user, const EffectivePdo& pdo) {
+    report_.error(pdo.cob_id_pos, "cob-id",
+                  "no COB-ID is free for " + user.text() + " in 0x181..0x57F");
+  }
+
   void claim_automatic(NodePdos& node, EffectivePdo& pdo) {
     const std::uint32_t id = automatic(node, pdo);
-    if (id == 0) {
-      report_.error(pdo.cob_id_pos, "cob-id",
-                    "no COB-ID is free for " + pdo.label() + " of node `" + node.node.spec->name +
-                        "` in 0x181..0x57F");
-      return;
-    }
+    if (id == 0) return none_free({&pdo, &node.node}, pdo);
     take(node, pdo, CobId::base(id));
   }
 
@@ -202,7 +198,7 @@ class CobIdAssigner {
   }
 
   std::span<NodePdos> nodes_;
-  std::uint32_t sync_id_;
+  const std::map<CobId, std::string>& services_;
   NetworkReport& report_;
   std::map<CobId, User> used_;
 };
@@ -215,8 +211,9 @@ bool is_restricted(std::uint32_t id) noexcept {
          in(0x6E0, 0x6FF) || in(0x701, 0x77F) || in(0x780, 0x7FF);
 }
 
-void assign_cob_ids(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report) {
-  CobIdAssigner{nodes, sync_id, report}.run();
+void assign_cob_ids(std::span<NodePdos> nodes, const std::map<CobId, std::string>& services,
+                    NetworkReport& report) {
+  CobIdAssigner{nodes, services, report}.run();
 }
 
 }  // namespace takt

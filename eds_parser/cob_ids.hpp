@@ -1,5 +1,7 @@
 #pragma once
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "eds_parser/effective_pdo.hpp"
@@ -20,7 +22,8 @@ bool is_restricted(std::uint32_t id) noexcept;
 /// device files that work are never moved; absolute ids of device files that clash become
 /// node-relative, with a note, unless they are a link: an RPDO with the id of another device's TPDO
 /// is fed by it. `auto`: the predefined set for PDO 1..4, above that the lowest free id in
-/// 0x181..0x57F.
-void assign_cob_ids(std::span<NodePdos> nodes, std::uint32_t sync_id, NetworkReport& report);
+/// 0x181..0x57F. `services`: identifiers that no PDO may have, with a word each ("is TIME").
+void assign_cob_ids(std::span<NodePdos> nodes, const std::map<CobId, std::string>& services,
+                    NetworkReport& report);
 
 }  // namespace takt

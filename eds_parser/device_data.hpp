@@ -46,6 +46,7 @@ struct PdoRule {
   NumberRange numbers{1, 512};
   std::vector<NumberRange> types;  ///< transmission types; empty: those of CiA 301
   bool without_timer = false;      ///< the event timer has to be 0
+  bool without_rtr = false;        ///< no remote requests
   PdoFunction function = PdoFunction::process_data;
 };
 
@@ -66,6 +67,7 @@ struct TimerRule {
 struct SyncRule {
   DeviceFact fact;
   std::optional<Firmware> own_tpdos_from;  ///< its own SYNC triggers its TPDOs from here on
+  std::uint16_t tx_identifier = 0;  ///< object that has to be the identifier of 0x1005; 0: none
 };
 
 /// The device has an object otherwise than its EDS says.

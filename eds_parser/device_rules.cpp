@@ -32,22 +32,20 @@ const PdoSpec* spec_of(const NodeSpec& node, const EffectivePdo& pdo) {
 
 class Judge {
  public:
-  Judge(const NodePdos& node, const Sourced<std::string>& sync_source, NetworkReport& report)
+  Judge(const NodePdos& node, const MasterSpec& master, NetworkReport& report)
       : node_{node},
         spec_{*node.node.spec},
         data_{*node.node.data},
-        sync_source_{sync_source},
+        master_{master},
         report_{report} {}
 
   void run() {
     for (const EffectivePdo& pdo : node_.pdos) {
-      if (pdo.use != PdoUse::exchanged && pdo.use != PdoUse::linked) continue;
       const PdoRule* rule = data_.rule(pdo.is_tpdo, pdo.number);
-      if (rule != nullptr) {
-        type(pdo, *rule);
-        timer(pdo, *rule);
-      }
-      if (pdo.is_tpdo) inhibit(pdo);
+      if (rule != nullptr && is_set(pdo, 2)) type(pdo, *rule);
+      if (rule != nullptr && is_set(pdo, 5)) timer(pdo, *rule);
+      if (rule != nullptr) remote_requests(pdo, *rule);
+      if (pdo.is_tpdo && is_set(pdo, 3)) inhibit(pdo);
     }
     sync_producer();
     reset();
@@ -61,10 +59,19 @@ class Judge {
     return (fact.reason.empty() ? "" : ": " + fact.reason) + " (" + data_.place(fact.pos) +
            (data_.manual.empty() ? "" : ", after " + data_.manual) + ")";
   }
+  /// The PDO is used, or its parameter written although it is not.
+  bool is_set(const EffectivePdo& pdo, std::uint8_t sub) const {
+    const bool used = pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked;
+    return used || written({pdo.communication_index(), sub}) != nullptr;
+  }
+  const SdoSpec* written(ObjectKey key) const {
+    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
+    return found == spec_.sdo.end() ? nullptr : &*found;
+  }
   /// Where the network file asks for it by an `sdo:` entry; `otherwise` where it does not.
   SourcePos sdo_pos(ObjectKey key, SourcePos otherwise) const {
-    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
-    return found == spec_.sdo.end() ? otherwise : found->pos;
+    const SdoSpec* entry = written(key);
+    return entry == nullptr ? otherwise : entry->pos;
   }
 
   template <class T>
@@ -87,6 +94,16 @@ class Judge {
     report_.error(pos_of(pdo, &PdoSpec::event_timer, 5), "device-data",
                   label(pdo) + " can't have an event timer (" + std::to_string(pdo.event_timer) +
                       " ms) on " + data_.name + source(rule.fact));
+  }
+
+  void remote_requests(const EffectivePdo& pdo, const PdoRule& rule) {
+    if (!rule.without_rtr || (pdo.poll_ms == 0 && pdo.poll_syncs == 0)) return;
+    const PdoSpec* spec = spec_of(spec_, pdo);
+    if (spec == nullptr) return;
+    const SourcePos pos = spec->poll_ms.given ? spec->poll_ms.pos : spec->poll_syncs.pos;
+    report_.error(pos, "device-data",
+                  label(pdo) + " can't be polled: " + data_.name + " answers no remote request" +
+                      source(rule.fact));
   }
 
   /// The network file counts in 100 us, as CiA 301 does; the device in its own unit.
@@ -117,7 +134,8 @@ class Judge {
 
   /// Where the network file makes this node the producer of SYNC.
   std::optional<SourcePos> producer_request() const {
-    if (sync_source_.given && *sync_source_ == spec_.name) return sync_source_.pos;
+    const Sourced<std::string>& source = master_.sync_source;
+    if (source.given && *source == spec_.name) return source.pos;
     for (const SdoSpec& sdo : spec_.sdo) {
       const auto* value = std::get_if<std::int64_t>(&sdo.value);
       if (sdo.object == ObjectKey{0x1005, 0} && value != nullptr && (*value & produce_bit) != 0) {
@@ -147,8 +165,10 @@ class Judge {
     const auto synchronous = std::ranges::find_if(node_.pdos, [](const EffectivePdo& pdo) {
       return pdo.is_tpdo && pdo.use == PdoUse::exchanged && pdo.synchronous();
     });
-    if (synchronous == node_.pdos.end() || (firmware && *firmware >= needed)) return;
+    if (synchronous == node_.pdos.end()) return;
     const std::string what = label(*synchronous) + " is synchronous, and this node makes the SYNC";
+    sync_identifier(what);
+    if (firmware && *firmware >= needed) return;
     if (!firmware) {
       report_.warning(*request, "device-data",
                       what + ": that needs firmware " + to_string(needed) +
@@ -162,10 +182,29 @@ class Judge {
                       source(data_.sync.fact));
   }
 
+  /// That of 0x1005, which the device receives.
+  std::int64_t received_sync() const {
+    const SdoSpec* entry = written({0x1005, 0});
+    const auto* value = entry == nullptr ? nullptr : std::get_if<std::int64_t>(&entry->value);
+    return value == nullptr ? *master_.sync_cob_id : *value & 0x7FF;
+  }
+
+  void sync_identifier(const std::string& what) {
+    if (data_.sync.tx_identifier == 0) return;
+    const SdoSpec* entry = written({data_.sync.tx_identifier, 0});
+    const auto* sent = entry == nullptr ? nullptr : std::get_if<std::int64_t>(&entry->value);
+    if (sent == nullptr || *sent == received_sync()) return;
+    report_.error(entry->value_pos, "device-data",
+                  what + " on " + hex(static_cast<std::uint32_t>(*sent), 3) +
+                      ", but receives it on " +
+                      hex(static_cast<std::uint32_t>(received_sync()), 3) + ": " + data_.name +
+                      " does not send it then" + source(data_.sync.fact));
+  }
+
   const NodePdos& node_;
   const NodeSpec& spec_;
   const DeviceData& data_;
-  const Sourced<std::string>& sync_source_;
+  const MasterSpec& master_;
   NetworkReport& report_;
 };
 
@@ -180,15 +219,15 @@ std::string rule_text(const PdoRule& rule) {
   std::string text = numbers_text(rule) + ":";
   if (!rule.types.empty()) text += " types " + list_of(rule.types);
   if (rule.without_timer) text += ", no event timer";
+  if (rule.without_rtr) text += ", no remote requests";
   if (rule.function == PdoFunction::parameter_channel) text += ", the parameter channel";
   return text;
 }
 
 }  // namespace
 
-void judge_by_device_data(const NodePdos& node, const Sourced<std::string>& sync_source,
-                          NetworkReport& report) {
-  if (node.node.data != nullptr) Judge{node, sync_source, report}.run();
+void judge_by_device_data(const NodePdos& node, const MasterSpec& master, NetworkReport& report) {
+  if (node.node.data != nullptr) Judge{node, master, report}.run();
 }
 
 std::vector<std::string> device_notes(const NodePdos& node) {

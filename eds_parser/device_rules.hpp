@@ -8,10 +8,9 @@
 namespace takt {
 
 /// Refuses what the device of a node can't do by its device data: transmission types, event timers,
-/// inhibit times, its part as SYNC producer (`sync_source` of the network file, or an `sdo` entry).
-/// Each error names the entry and its reason.
-void judge_by_device_data(const NodePdos& node, const Sourced<std::string>& sync_source,
-                          NetworkReport& report);
+/// remote requests, inhibit times, its part as SYNC producer (`sync_source` of the network file, or
+/// an `sdo` entry). Each error names the entry and its reason.
+void judge_by_device_data(const NodePdos& node, const MasterSpec& master, NetworkReport& report);
 
 /// What the entry of a node says, a line each, for people; empty where there is no entry.
 std::vector<std::string> device_notes(const NodePdos& node);

@@ -58,9 +58,10 @@ GuardPlan ErrorControl::guard(const NodeSource& node) const {
   const std::int64_t factor = integer_of(*node.dictionary, {0x100D, 0}).value_or(0);
   const auto of_device = static_cast<std::uint8_t>(
       factor > 0 && factor <= 255 ? factor : std::int64_t{*spec_.retry_factor});
-  return {.period = std::chrono::milliseconds{ms},
-          .retries = spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor
-                                                                         : of_device)};
+  const std::uint8_t retries =
+      spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor : of_device);
+  if (retries == 0) return {};  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off
+  return {.period = std::chrono::milliseconds{ms}, .retries = retries};
 }
 
 void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report) {

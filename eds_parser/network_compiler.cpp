@@ -17,6 +17,7 @@
 #include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
+#include "eds_parser/service_ids.hpp"
 #include "eds_parser/signal_rules.hpp"
 #include "eds_parser/sync_source.hpp"
 
@@ -27,6 +28,7 @@ constexpr std::uint32_t default_sdo_timeout_ms = 500;
 constexpr std::uint32_t default_boot_timeout_ms = 3000;
 constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
+constexpr std::uint8_t stand_in_id = 127;
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
@@ -66,14 +68,15 @@ class NetworkCompiler {
     compile_sync_source(spec_, nodes_, plan(), report_);
     for (NodePdos& node : nodes_) {
       node.pdos = compile_pdos(node.node, report_);
-      judge_by_device_data(node, spec_.master.sync_source, report_);
+      judge_by_device_data(node, spec_.master, report_);
     }
-    assign_cob_ids(nodes_, *spec_.master.sync_cob_id, report_);
+    assign_cob_ids(nodes_, service_ids(spec_, nodes_, report_), report_);
     for (const NodePdos& node : nodes_) add_node(node);
     compile_layout(nodes_, plan(), report_);
     compile_cycle(spec_, nodes_, plan(), report_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);
     for (const NodePdos& node : nodes_) out_.devices.push_back(compile_device(node.node));
+    for (NodePdos& node : strays_) judge_stray(node);
     return std::move(out_);
   }
 
@@ -118,23 +121,23 @@ class NetworkCompiler {
     }
   }
 
-  /// Nodes in ascending id; ids and names used once.
+  /// Nodes in ascending id; ids and names used once. A node without an id of its own is a stray.
   void collect_nodes() {
     std::map<unsigned, const NodeSpec*> by_id;
     std::map<std::string, const NodeSpec*> by_name;
     for (std::size_t i = 0; i < spec_.nodes.size(); ++i) {
       const NodeSpec& node = spec_.nodes[i];
       check_name(node, by_name);
-      if (!node.id.given) continue;
-      if (!check_id(node, by_id)) continue;
+      const bool has_id = node.id.given && check_id(node, by_id);
       if (i >= dictionaries_.size() || dictionaries_[i] == nullptr) continue;
-      nodes_.push_back({source_of(node, *dictionaries_[i]), {}});
+      const auto id = NodeId::from(has_id ? *node.id : stand_in_id);
+      (has_id ? nodes_ : strays_).push_back({source_of(node, *dictionaries_[i], *id), {}});
     }
     std::ranges::sort(nodes_, {}, [](const NodePdos& n) { return n.node.id; });
   }
 
-  NodeSource source_of(const NodeSpec& node, const ObjectDictionary& dictionary) {
-    NodeSource source{&node, &dictionary, *NodeId::from(*node.id)};
+  NodeSource source_of(const NodeSpec& node, const ObjectDictionary& dictionary, NodeId id) {
+    NodeSource source{&node, &dictionary, id};
     source.data = find_device_data(device_data_, node, dictionary, report_);
     source.firmware = firmware_of(source.data, node, dictionary);
     if (source.data != nullptr && !source.data->objects.empty()) {
@@ -199,7 +202,6 @@ class NetworkCompiler {
     node.lss = compile_lss(spec, dictionary, plan().nodes, report_);
     add_device_data(source, node);
     node.sdo = sdo_access(spec);
-    check_channel(spec, node);
     check_fallback(source.node, node.cia402, report_);
     check_node_values(source, report_);
     check_bit_rate(source.node);
@@ -215,16 +217,6 @@ class NetworkCompiler {
     node.on_sync_loss = data.on_sync_loss;
     node.firmware = firmware_plan(data, source.node.firmware);
     for (const EmcyMeaning& emcy : data.emcy) node.emcy_texts.push_back({emcy.code, emcy.text});
-  }
-
-  /// Of the network file, else of the device file; none: the predefined 0x080 + id.
-  static std::optional<CobId> emcy_cob_id(const NodeSource& node) {
-    const std::int64_t own = integer_of(*node.dictionary, {0x1014, 0}).value_or(0);
-    const std::int64_t id = node.spec->emcy_cob_id.given ? *node.spec->emcy_cob_id : own;
-    const bool off = (id & 0x8000'0000) != 0;
-    if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
-    const auto raw = static_cast<std::uint32_t>(id);
-    return (raw & 0x2000'0000) != 0 ? CobId::extended(raw) : CobId::base(raw);
   }
 
   std::uint8_t group(const std::string& name) {
@@ -248,24 +240,6 @@ class NetworkCompiler {
     return access;
   }
 
-  /// Answers of two devices on one COB-ID can't be told apart.
-  void check_channel(const NodeSpec& spec, const NodePlan& node) {
-    if (!node.sdo.channel) return;
-    for (const NodePdos& other : nodes_) {
-      const NodeSpec& its = *other.node.spec;
-      if (&its == &spec) continue;
-      const SdoChannel used =
-          its.sdo_channel.given ? *its.sdo_channel : default_sdo_channel(other.node.id);
-      if (used.answer != node.sdo.channel->answer && used.request != node.sdo.channel->request) {
-        continue;
-      }
-      report_.error(spec.sdo_channel.pos, "cob-id-clash",
-                    "`sdo_channel` of `" + spec.name + "` uses a COB-ID of the SDO channel of `" +
-                        its.name + "` (" + to_string(used.request) + ", " + to_string(used.answer) +
-                        ")");
-    }
-  }
-
   void check_bit_rate(const NodeSource& node) {
     const auto& rates = node.dictionary->device.baud_rates_kbit;
     const std::uint32_t kbit = *spec_.master.baudrate_kbit;
@@ -283,6 +257,15 @@ class NetworkCompiler {
     NodePlan& node = plan().nodes[index];
     if (node.boot) compile_boot_of(source, node);
     set_device_watch(*source.node.dictionary, node);
+  }
+
+  /// Of a node without an id of its own: what else is wrong with it, told in the same run.
+  void judge_stray(NodePdos& source) {
+    source.pdos = compile_pdos(source.node, report_);
+    judge_by_device_data(source, spec_.master, report_);
+    check_node_values(source, report_);
+    NodePlan node{.name = source.node.spec->name, .id = source.node.id};
+    if (*source.node.spec->boot) compile_boot_of(source, node);
   }
 
   void compile_boot_of(const NodePdos& source, NodePlan& node) {
@@ -324,6 +307,7 @@ class NetworkCompiler {
   NetworkReport report_;
   ErrorControl error_control_;
   std::vector<NodePdos> nodes_;
+  std::vector<NodePdos> strays_;
   CompiledNetwork out_;
 };
 

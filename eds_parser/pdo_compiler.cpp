@@ -37,7 +37,8 @@ class PdoCompiler {
   EffectivePdo compile(const PdoDescription& device, const PdoSpec* spec) {
     EffectivePdo pdo = of_device(device);
     if (spec == nullptr) {
-      if (!device.valid) pdo.use = written_by_sdo(pdo) ? PdoUse::off : PdoUse::ignored;
+      if (!device.valid) pdo.use = written(pdo, 1) != nullptr ? PdoUse::off : PdoUse::ignored;
+      judge_written_type(pdo);
       judge_unnamed(device, pdo);
       return pdo;
     }
@@ -69,9 +70,10 @@ class PdoCompiler {
     return node_.dictionary->find(ObjectKey{index, sub_index});
   }
 
-  bool written_by_sdo(const EffectivePdo& pdo) const {
-    const ObjectKey key{pdo.communication_index(), 1};
-    return std::ranges::find(node_.spec->sdo, key, &SdoSpec::object) != node_.spec->sdo.end();
+  const SdoSpec* written(const EffectivePdo& pdo, std::uint8_t sub_index) const {
+    const ObjectKey key{pdo.communication_index(), sub_index};
+    const auto found = std::ranges::find(node_.spec->sdo, key, &SdoSpec::object);
+    return found == node_.spec->sdo.end() ? nullptr : &*found;
   }
 
   EffectivePdo of_device(const PdoDescription& device) const {
@@ -111,6 +113,20 @@ class PdoCompiler {
     pdo.cob_id = device.extended ? CobId::extended(*id) : CobId::base(*id);
   }
 
+  /// By an `sdo:` entry, whatever becomes of the PDO. Device data with a word on types judge it
+  /// themselves.
+  void judge_written_type(const EffectivePdo& pdo) {
+    const SdoSpec* entry = written(pdo, 2);
+    if (entry == nullptr || usable_type(pdo)) return;
+    const PdoRule* rule =
+        node_.data == nullptr ? nullptr : node_.data->rule(pdo.is_tpdo, pdo.number);
+    if (rule != nullptr && !rule->types.empty()) return;
+    report_.error(entry->value_pos, "transmission-type",
+                  label(pdo) + " can't have transmission type " + std::to_string(pdo.transmission) +
+                      (pdo.transmission < 252 ? ": 241..251 are reserved"
+                                              : ": only a TPDO is sent on remote request"));
+  }
+
   /// A PDO of the device file alone: used where that is possible, else left out with a word.
   void judge_unnamed(const PdoDescription& device, EffectivePdo& pdo) {
     if (pdo.use != PdoUse::exchanged) return;
@@ -143,6 +159,7 @@ class PdoCompiler {
     pdo.cob_id_pos = spec.cob_id.given ? spec.cob_id.pos : spec.pos;
     if (!*spec.enabled) {
       pdo.use = PdoUse::off;
+      judge_written_type(pdo);
       return;
     }
     overlay_cob_id(spec, pdo);

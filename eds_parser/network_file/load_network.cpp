@@ -197,7 +197,7 @@ class Loader {
   }
 
   const ObjectDictionary* dictionary_of(const NetworkSpec& spec, const NodeSpec& node) {
-    if (!node.dcf.given || !node.id.given) return nullptr;
+    if (!node.dcf.given) return nullptr;
     const std::vector<fs::path> paths = candidates(spec, node, *node.dcf);
     if (const fs::path* found = existing(paths)) return read(tidy(*found), node);
     report_missing(node, paths);
@@ -221,11 +221,12 @@ class Loader {
   }
 
   const ObjectDictionary* read(const fs::path& path, const NodeSpec& node) {
-    const auto key = std::pair{path, *node.id};
+    const auto id = node.id.given ? NodeId::from(*node.id) : std::nullopt;
+    const auto key = std::pair{path, id ? id->value() : std::uint8_t{0}};
     const auto known = files_.find(key);
     if (known != files_.end()) return known->second.readable ? &known->second.dictionary : nullptr;
     EdsFile& file = files_[key];
-    file = read_eds_file(path, NodeId::from(*node.id));
+    file = read_eds_file(path, id);
     if (!file.readable) {
       std::ranges::copy_if(file.findings, std::back_inserter(out_.findings), [](const Finding& f) {
         return f.severity == Severity::error;  // the rest follows from it: any binary has hundreds

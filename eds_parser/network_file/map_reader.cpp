@@ -164,6 +164,16 @@ void MapReader::text(std::string_view key, Sourced<std::string>& out) {
   }
 }
 
+void MapReader::file(std::string_view key, Sourced<std::string>& out) {
+  const YamlNode* node = node_.find(key);
+  const bool none = node != nullptr && node->kind == YamlNode::Kind::scalar && node->text.empty();
+  if (none) {
+    known_.push_back(key);
+  } else {
+    text(key, out);
+  }
+}
+
 void MapReader::ignore(std::span<const std::string_view> keys, std::string_view why) {
   for (const std::string_view key : keys) {
     if (node_.find(key) == nullptr) continue;

@@ -55,6 +55,8 @@ class MapReader {
   void number(std::string_view key, Sourced<double>& out);
   void boolean(std::string_view key, Sourced<bool>& out);
   void text(std::string_view key, Sourced<std::string>& out);
+  /// As text(); an empty name is none, as to the generators of other masters.
+  void file(std::string_view key, Sourced<std::string>& out);
 
   /// Keys of other readers: a note each where present. `why` ends the sentence.
   void ignore(std::span<const std::string_view> keys, std::string_view why);

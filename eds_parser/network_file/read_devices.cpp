@@ -141,6 +141,9 @@ class DeviceReader {
     Sourced<bool> without_timer;
     reader.boolean("without_timer", without_timer);
     rule.without_timer = *without_timer;
+    Sourced<bool> without_rtr;
+    reader.boolean("without_rtr", without_rtr);
+    rule.without_rtr = *without_rtr;
     if (const YamlNode* function = reader.take("function")) {
       constexpr std::array<std::string_view, 2> names{"process_data", "parameter_channel"};
       if (const auto choice = read_choice(*function, "function", names, report_)) {
@@ -186,6 +189,9 @@ class DeviceReader {
 
   void sync(MapReader& reader) {
     data_.sync.own_tpdos_from = firmware(reader, "own_tpdos_from");
+    Sourced<std::uint16_t> tx_identifier;
+    reader.integer("tx_identifier", tx_identifier, {0x1000, 0xFFFF});
+    data_.sync.tx_identifier = *tx_identifier;
     data_.sync.fact = fact(reader, reader.key_pos("own_tpdos_from"));
   }
 

@@ -136,8 +136,8 @@ void read_boot(MapReader& reader, NodeSpec& node) {
   reader.integer("restore_configuration", node.restore, {0, 127});
   reader.integer("store_configuration", node.store, {0, 127});
   reader.integer("software_version", node.software_version);
-  reader.text("software_file", node.software_file);
-  reader.text("configuration_file", node.configuration_file);
+  reader.file("software_file", node.software_file);
+  reader.file("configuration_file", node.configuration_file);
   read_configuration_date(reader, node);
   reader.integer("boot_timeout_ms", node.boot_timeout_ms, {1, 600'000, " ms"});
   reader.integer("sdo_timeout_ms", node.sdo_timeout_ms, {1, 60'000, " ms"});
@@ -145,8 +145,7 @@ void read_boot(MapReader& reader, NodeSpec& node) {
 }
 
 void read_heartbeat(MapReader& reader, NodeSpec& node) {
-  reader.boolean("heartbeat_consumer", node.heartbeat_consumer);
-  reader.integer("heartbeat_producer", node.heartbeat_producer, {0, 65535, " ms"});
+  read_heartbeat_ends(reader, node.heartbeat_consumer, node.heartbeat_producer);
   reader.number("heartbeat_multiplier", node.heartbeat_multiplier);
   if (node.heartbeat_multiplier.given && *node.heartbeat_multiplier < 1.5) {
     reader.report().error(node.heartbeat_multiplier.pos, "out-of-range",
@@ -158,7 +157,7 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
   reader.integer("emcy_cob_id", node.emcy_cob_id, {0x001, 0x7FF});
   reader.integer("emcy_inhibit_time", node.emcy_inhibit_time, {0, 65535, " x 100 us"});
   reader.integer("time_cob_id", node.time_cob_id);
-  reader.integer("retry_factor", node.retry_factor, {1, 255});
+  reader.integer("retry_factor", node.retry_factor, {0, 255});
   const YamlNode* behavior = reader.take("error_behavior");
   if (behavior == nullptr || behavior->kind == YamlNode::Kind::null) return;
   if (behavior->kind != YamlNode::Kind::map) {

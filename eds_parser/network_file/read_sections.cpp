@@ -88,7 +88,7 @@ void read_sync(MapReader& reader, MasterSpec& master) {
                      " us has no room for frames; for " + std::to_string(period) + " ms write " +
                      std::to_string(period * 1000));
   }
-  if (master.sync_window_us.given && *master.sync_window_us > period) {
+  if (master.sync_window_us.given && period > 0 && *master.sync_window_us > period) {
     report.error(master.sync_window_us.pos, "out-of-range",
                  "`sync_window` of " + std::to_string(*master.sync_window_us) +
                      " us is longer than `sync_period` of " + std::to_string(period) + " us");
@@ -155,7 +155,7 @@ void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report
   MapReader reader{node, "`options`", report};
   reader.text("dcf_path", spec.dcf_path);
   reader.number("heartbeat_multiplier", spec.heartbeat_multiplier);
-  reader.integer("retry_factor", spec.retry_factor, {1, 255});
+  reader.integer("retry_factor", spec.retry_factor, {0, 255});
   reader.finish();
   if (spec.heartbeat_multiplier.given && *spec.heartbeat_multiplier < 1.5) {
     report.error(spec.heartbeat_multiplier.pos, "out-of-range",
@@ -176,9 +176,8 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   }
   read_sync(reader, master);
   read_time(reader, master);
-  reader.integer("heartbeat_producer", master.heartbeat_producer, {0, 65535, " ms"});
+  read_heartbeat_ends(reader, master.heartbeat_consumer, master.heartbeat_producer);
   reader.number("heartbeat_multiplier", master.heartbeat_multiplier);
-  reader.boolean("heartbeat_consumer", master.heartbeat_consumer);
   reader.boolean("start_nodes", master.start_nodes);
   reader.boolean("start", master.start);
   reader.boolean("start_all_nodes", master.start_all_nodes);

@@ -28,6 +28,10 @@ UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkRepo
 /// `index` and `sub_index` of a list entry; none: reported.
 std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos);
 
+/// `heartbeat_consumer` and `heartbeat_producer` of the master or of a node.
+void read_heartbeat_ends(MapReader& reader, Sourced<bool>& consumer,
+                         Sourced<std::uint16_t>& producer);
+
 /// `sdo_block`, `sdo_channel`, `sdo_timeouts` of a node.
 void read_sdo_access(MapReader& reader, NodeSpec& node);
 

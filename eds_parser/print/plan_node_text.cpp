@@ -2,6 +2,7 @@
 #include <string>
 
 #include "eds_parser/print/names.hpp"
+#include "eds_parser/print/pdo_picture.hpp"
 #include "eds_parser/print/plan_names.hpp"
 #include "eds_parser/print/plan_sections.hpp"
 
@@ -97,6 +98,9 @@ class NodeText {
     lines_.line("  {}{} {}  {} byte{}  {}{}", is_tpdo ? "TPDO" : "RPDO", row.number,
                 to_string(row.cob_id), row.length, row.length == 1 ? "" : "s",
                 transmission_name(row.transmission, is_tpdo), pdo_times(row, is_tpdo));
+    if (row.field_count != 0 && !row.multiplexed()) {
+      for (const std::string& line : pdo_picture(plan_, row)) lines_.line("    {}", line);
+    }
     unsigned expected = row.multiplexed() ? 32 : 0;  // behind address, index and sub-index
     for (std::uint16_t i = 0; i < row.field_count; ++i) {
       const PdoField& field = plan_.pdos.fields[row.first_field + i];

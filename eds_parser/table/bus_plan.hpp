@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -156,6 +158,18 @@ struct BusPlan {
   PdoTable pdos{};
   std::vector<NodePlan> nodes{};                ///< ascending node id
   Time stop_timeout = std::chrono::seconds{5};  ///< of the whole ordered stop
+
+  /// Place in `nodes`; nodes.size(): no node of this id is planned.
+  std::size_t index_of(unsigned id) const noexcept {
+    const auto found =
+        std::ranges::find(nodes, id, [](const NodePlan& node) { return node.id.value(); });
+    return static_cast<std::size_t>(found - nodes.begin());
+  }
+  /// Null: no node of this id is planned.
+  const NodePlan* find(unsigned id) const noexcept {
+    const std::size_t index = index_of(id);
+    return index == nodes.size() ? nullptr : &nodes[index];
+  }
 };
 
 }  // namespace takt

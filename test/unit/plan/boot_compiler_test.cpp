@@ -338,5 +338,78 @@ TEST(BootCompiler, ParameterValuesOfADcfAreWritten) {
   EXPECT_THAT(steps(net), testing::Contains("write if differs 6081:00 0x00000309"));
 }
 
+/// The tiny drive as a DCF with these values: {"[1006]", "2000"}.
+std::string tiny_dcf(const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string dcf = test::tiny_eds();
+  for (const auto& [section, value] : values) {
+    const std::string head = section + "\n";
+    dcf.insert(dcf.find(head) + head.size(), "ParameterValue=" + value + "\n");
+  }
+  return dcf;
+}
+
+TEST(BootCompiler, WhatFollowsFromTheNetworkFileIsNotWrittenOverByTheDcf) {
+  const auto net = compile(
+      "master: {sync_period: 10000, sync_window: 500}\n"
+      "arm: {node_id: 5, dcf: x}\n",
+      tiny_dcf({{"[1007]", "1000"}, {"[60C2sub1]", "77"}}), "tiny.dcf");
+
+  const auto all = steps(net);
+  EXPECT_THAT(all, testing::Contains("write if differs 1007:00 0x000001F4"));
+  EXPECT_THAT(all, testing::Not(testing::Contains("write if differs 1007:00 0x000003E8")));
+  EXPECT_THAT(all, testing::Contains("write if differs 60C2:01 0x0A"));
+  EXPECT_THAT(all, testing::Not(testing::Contains("write if differs 60C2:01 0x4D")));
+}
+
+TEST(BootCompiler, AnInterpolationPeriodOfTheNetworkFileIsReadWithTheExponentOfTheDcf) {
+  const std::string yaml =
+      "master: {sync_period: 2000}\n"
+      "arm: {node_id: 5, dcf: x, sdo: [{index: 0x60C2, sub_index: 1, value: 20}]}\n";
+  const auto net = compile(yaml, tiny_dcf({{"[60C2sub2]", "-4"}}), "tiny.dcf");
+
+  EXPECT_THAT(net.said("interpolation-period"), IsEmpty());
+  EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:01 0x14"));
+  EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:02 0xFC"));
+}
+
+TEST(BootCompiler, WhatAnEdsCallsParameterValueIsNotTakenForConfigured) {
+  const auto net = compile(arm(), tiny_dcf({{"[1016sub1]", "0x000300C8"}}), "tiny.eds");
+
+  EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:01 0x007F012C"));
+}
+
+TEST(BootCompiler, AConsumerEntryOfTheNetworkFileStays) {
+  const auto net = compile(arm("sdo: [{index: 0x1016, sub_index: 1, value: 0x0005012C}]"),
+                           test::tiny_eds() + test::entry("1016sub2", "entry", 7, "rw", "0"));
+
+  EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:01 0x0005012C"));
+  EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:02 0x007F012C"));
+}
+
+TEST(BootCompiler, AConsumerEntryOfADcfThatWatchesAnotherNodeStays) {
+  const std::string dcf = tiny_dcf({{"[1016sub1]", "0x000300C8"}});
+  const auto full = compile(arm(), dcf, "tiny.dcf");
+  EXPECT_THAT(steps(full), testing::Contains("write if differs 1016:01 0x000300C8"));
+  EXPECT_THAT(steps(full), testing::Not(testing::Contains(HasSubstr("0x007F012C"))));
+  EXPECT_THAT(full.said("heartbeat-consumer"), HasSubstr("each entry of 0x1016"));
+
+  const auto room =
+      compile(arm(), dcf + test::entry("1016sub2", "entry", 7, "rw", "0"), "tiny.dcf");
+  EXPECT_THAT(steps(room), testing::Contains("write if differs 1016:02 0x007F012C"));
+  EXPECT_THAT(room.said("heartbeat-consumer"), IsEmpty());
+}
+
+TEST(BootCompiler, AnEmcyIdOfAnEdsCountsOnlyWhereItIsRelative) {
+  const auto emcy = [](const std::string& text) {
+    return compile(arm(), test::tiny_eds() + test::entry("1014", "EMCY", 7, "rw", text))
+        .plan.nodes[0]
+        .emcy_cob_id;
+  };
+
+  EXPECT_EQ(emcy("166"), std::nullopt);
+  EXPECT_EQ(emcy("$NODEID+0x90"), CobId::base(0x95));
+  EXPECT_EQ(emcy("$NODEID+0x80"), std::nullopt);
+}
+
 }  // namespace
 }  // namespace takt

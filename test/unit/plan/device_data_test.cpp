@@ -202,6 +202,19 @@ TEST(DeviceData, RefusesReservedTypesOfALenze) {
   EXPECT_TRUE(has_error(lenze("tpdo: {1: {transmission: 245}}").findings));
 }
 
+TEST(DeviceData, RefusesTypesThatAreWrittenBySdo) {
+  const std::string sdo = "sdo: [{index: 0x1801, sub_index: 2, value: ";
+  for (const char* type : {"0", "245", "252", "253"}) {
+    const std::string said = drv28(sdo + type + "}]").said("device-data");
+    EXPECT_NE(said.find("can't have transmission type " + std::string{type}), std::string::npos);
+    EXPECT_NE(drv28(sdo + type + "}], tpdo: {2: {enabled: false}}").said("device-data"), "");
+  }
+  EXPECT_EQ(drv28(sdo + "254}]").said("device-data"), "");
+  const std::string reserved = lenze(sdo + "245}]").said("device-data");
+  EXPECT_NE(reserved.find("types 241 to 251 are reserved"), std::string::npos);
+  EXPECT_FALSE(has_error(lenze(sdo + "252}]").findings));
+}
+
 TEST(DeviceData, RefusesALenzeBeforeFirmware16AsProducerOfItsOwnSync) {
   const std::string producer =
       "tpdo: {1: {transmission: 1}}, sdo: [{index: 0x1005, value: 0x40000080}], ";
@@ -214,6 +227,29 @@ TEST(DeviceData, RefusesALenzeBeforeFirmware16AsProducerOfItsOwnSync) {
   EXPECT_TRUE(has_error(lenze(producer + "revision_number: 0x000F0002").findings));
   EXPECT_FALSE(has_error(lenze(producer + "firmware: \"16\"").findings));
   EXPECT_FALSE(has_error(lenze(producer + "revision_number: 0x00100000").findings));
+}
+
+TEST(DeviceData, RefusesALenzeThatSendsItsSyncOnAnotherIdentifierThanItReceives) {
+  const auto producer = [](const std::string& code, const std::string& type = "1") {
+    return lenze("firmware: \"16\", tpdo: {1: {transmission: " + type +
+                 "}}, sdo: [{index: 0x1005, value: 0x40000080}, {index: 0x5E8F, value: " + code +
+                 "}]");
+  };
+  const std::string said = producer("0x81").said("device-data");
+  EXPECT_NE(said.find("this node makes the SYNC on 0x081, but receives it on 0x080"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(producer("0x80").said("device-data"), "");
+  EXPECT_EQ(producer("0x81", "254").said("device-data"), "") << "needs no SYNC";
+}
+
+TEST(DeviceData, RefusesToPollADrv28) {
+  for (const char* poll : {"poll_ms: 100", "poll_syncs: 5"}) {
+    const auto net = drv28(std::string{"tpdo: {2: {transmission: 254, "} + poll + "}}");
+    EXPECT_NE(net.said("device-data").find("Astraada DRV-28 answers no remote request"),
+              std::string::npos);
+  }
+  EXPECT_EQ(lenze("tpdo: {1: {transmission: 253, poll_ms: 100}}").said("device-data"), "");
 }
 
 TEST(DeviceData, LeavesOutObjectsThatAnOlderFirmwareLacks) {

@@ -76,6 +76,17 @@ TEST(PdoKinds, ReservedAndWrongKeysAreRefusedAtTheirPlace) {
                           "7:36 error [transmission-type]"));
 }
 
+TEST(PdoKinds, ReservedTypesAreRefusedAlsoWhereTheyAreWrittenBySdo) {
+  const auto sdo = [](const char* index, const char* type) {
+    return compile(
+        arm(std::string{"sdo: [{index: "} + index + ", sub_index: 2, value: " + type + "}]"));
+  };
+  EXPECT_THAT(sdo("0x1800", "245").said("transmission-type"), HasSubstr("241..251 are reserved"));
+  EXPECT_THAT(sdo("0x1400", "241").said("transmission-type"), HasSubstr("241..251 are reserved"));
+  EXPECT_THAT(sdo("0x1400", "252").said("transmission-type"), HasSubstr("only a TPDO"));
+  EXPECT_THAT(sdo("0x1800", "252").said("transmission-type"), IsEmpty());
+}
+
 TEST(PdoKinds, LateFramesAreDroppedWhereTheFileSaysSo) {
   EXPECT_TRUE(tpdo(compile(arm("tpdo: {1: {late: drop}}")), 1)->drop_late);
   EXPECT_FALSE(tpdo(compile(arm("tpdo: {1: {late: use}}")), 1)->drop_late);

@@ -180,6 +180,29 @@ TEST(ReadNetwork, TheSameObjectWrittenTwiceIsAnErrorUnlessMeant) {
   EXPECT_THAT(net.said("written-twice"), HasSubstr("first in line 6"));
 }
 
+TEST(ReadNetwork, HeartbeatKeysOfOtherReadersAreReadAsTheyReadThem) {
+  const auto net = read(
+      "master: {heartbeat_consumer: 0, heartbeat_producer: false}\n"
+      "nodes:\n"
+      "  arm: {node_id: 1, dcf: a.eds, heartbeat_consumer: 2000, heartbeat_producer: off}\n"
+      "  leg: {node_id: 2, dcf: a.eds, retry_factor: 0, software_file: \"\"}\n");
+
+  EXPECT_THAT(net.complaints(),
+              ElementsAre("1:53 warning [wrong-type]", "3:53 warning [wrong-type]",
+                          "3:79 warning [wrong-type]"));
+  EXPECT_FALSE(*net.spec.master.heartbeat_consumer);
+  EXPECT_EQ(*net.spec.master.heartbeat_producer, 0);
+  EXPECT_TRUE(*net.spec.nodes[0].heartbeat_consumer);
+  EXPECT_EQ(*net.spec.nodes[0].heartbeat_producer, 0);
+  EXPECT_EQ(*net.spec.nodes[1].retry_factor, 0);
+  EXPECT_FALSE(net.spec.nodes[1].software_file.given);
+}
+
+TEST(ReadNetwork, ASyncWindowNeedsNoSyncOfTheMaster) {
+  EXPECT_THAT(read("master: {sync_window: 1000}\narm: {node_id: 1, dcf: a.eds}\n").complaints(),
+              IsEmpty());
+}
+
 TEST(ReadNetwork, ValuesOfSdoMayBeWholeRealOrText) {
   const auto net = read(
       "nodes:\n"

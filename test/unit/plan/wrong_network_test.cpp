@@ -65,6 +65,44 @@ TEST_F(WrongNetwork, UnitsOfAnObjectThatTheDeviceHasNotAreErrors) {
               AllOf(HasSubstr("`units: objects` of node `a`"), HasSubstr("9999:00 is not in")));
 }
 
+TEST_F(WrongNetwork, TheRestOfANodeIsJudgedThoughItsIdIsWrongOrTaken) {
+  const std::string text = told_of(
+      "nodes:\n"
+      "  a: {node_id: 1, dcf: " TAKT_SOURCE_DIR
+      "/share/eds/takt_drive402.eds}\n"
+      "  b: {node_id: 130, dcf: nope.eds}\n"
+      "  c:\n"
+      "    node_id: 1\n"
+      "    dcf: " TAKT_SOURCE_DIR
+      "/share/eds/takt_drive402.eds\n"
+      "    tpdo: {1: {mapping: [{index: 0x7777}]}}\n"
+      "    sdo: [{index: 0x8888, value: 1}]\n");
+
+  EXPECT_THAT(text, AllOf(HasSubstr("net.yaml:3:16: error"), HasSubstr("net.yaml:3:26: error"),
+                          HasSubstr("`nope.eds` not found")));
+  EXPECT_THAT(text, AllOf(HasSubstr("net.yaml:5:14: error"), HasSubstr("net.yaml:7:26: error"),
+                          HasSubstr("net.yaml:8:11: error")));
+}
+
+TEST_F(WrongNetwork, IdentifiersOfServicesClashWithPdosAndWithEachOther) {
+  const std::string drive = "dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds";
+  const auto two = [&](const std::string& master, const std::string& a, const std::string& b) {
+    return told_of("master: {sync_period: 10000" + master + "}\nnodes:\n  a: {node_id: 5, " +
+                   drive + a + "}\n  b: {node_id: 6, " + drive + b + "}\n");
+  };
+  const std::string pdo = ", tpdo: {1: {cob_id: ";
+
+  EXPECT_THAT(two(", time_period: 1000, time_cob_id: 0x185", pdo + "0x185}}", ""),
+              HasSubstr("`cob_id` 0x185 of TPDO1 of node `a` is TIME"));
+  EXPECT_THAT(two("", ", emcy_cob_id: 0x186", pdo + "0x186}}"),
+              HasSubstr("`cob_id` 0x186 of TPDO1 of node `b` is EMCY of node `a`"));
+  EXPECT_THAT(two("", ", sdo_channel: {request: 0x645, answer: 0x6C5}", pdo + "0x6C5}}"),
+              HasSubstr("is in the SDO channel of node `a`"));
+  EXPECT_THAT(two(", sync_cob_id: 0x86", "", ""), HasSubstr("EMCY (1014) of `b` 0x086 is SYNC"));
+  EXPECT_THAT(two("", ", emcy_cob_id: 0x86", ""), HasSubstr("is EMCY of node `a`"));
+  EXPECT_THAT(two("", "", ""), Not(HasSubstr("error")));
+}
+
 TEST_F(WrongNetwork, NumbersAndAllAreNoNamesOfNodes) {
   const std::string file =
       "nodes:\n  5: {node_id: 6, dcf: x.eds}\n  all: {node_id: 7, dcf: x.eds}\n";
