@@ -11,6 +11,10 @@ namespace {
 
 using Bounds = std::vector<std::optional<Time>>;
 
+bool same_identifier(const TrafficFrame& a, const TrafficFrame& b) noexcept {
+  return a.cob_id == b.cob_id && a.remote_request == b.remote_request;
+}
+
 /// Frames that come whenever they may, and those of the cycle as they look to them.
 Bounds bounds_of_others(const BusTraffic& traffic, const Bounds& in_cycle, const BusPlan& plan,
                         const BudgetOptions& options, Emcys emcys) {
@@ -24,13 +28,15 @@ Bounds bounds_of_others(const BusTraffic& traffic, const Bounds& in_cycle, const
   // Behind a SYNC that comes at any time the TPDOs do, too.
   if (!sync_end) return Bounds(traffic.frames.size());
   std::vector<FrameStream> streams;
+  std::size_t priority = 0;
   for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
     const auto& frame = traffic.frames[i];
     Time jitter = frame.jitter;
     const bool with_sync = frame.in_cycle && frame.from_master && !plan.cycle.makes_sync();
     if (frame.kind == Traffic::sync || with_sync) jitter = *sync_end - sync_frame;
     if (frame.in_cycle && frame.kind == Traffic::tpdo) jitter = *sync_end + options.device_time;
-    streams.push_back({.priority = i,
+    if (i == 0 || !same_identifier(traffic.frames[i - 1], frame)) priority = i;
+    streams.push_back({.priority = priority,
                        .frame = frame.frame,
                        .period = frame.period,
                        .jitter = jitter,

@@ -28,7 +28,11 @@ void CycleFrames::find_ends_of_cycle() {
   std::ranges::stable_sort(queue_, {}, [this](std::size_t i) { return frames_[i].cob_id; });
   for (const std::size_t i : queue_) lowest_output_ = std::max(lowest_output_, i);
   const auto by_itself = [this](const TrafficFrame& other) { return comes_by_itself(other); };
-  if (sync_) sync_blocking_ = blocking(*sync_, by_itself);
+  // Another device's SYNC does not wait for what is late of the cycle before.
+  const auto meets_sync = [&](const TrafficFrame& other) {
+    return by_itself(other) || (other.in_cycle && !plan_.cycle.makes_sync());
+  };
+  if (sync_) sync_blocking_ = blocking(*sync_, meets_sync);
   outputs_blocking_ = blocking(lowest_output_, by_itself);
 }
 

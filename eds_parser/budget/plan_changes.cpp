@@ -24,6 +24,12 @@ std::uint32_t step_of(std::uint32_t period_us) {
 
 bool is_event_driven(const PdoRow& row) { return !row.synchronous() && !row.multiplexed(); }
 
+/// As the budget counts it.
+Time least_distance(const PdoRow& row, Time cycle) {
+  if (row.inhibit > Time{0}) return row.inhibit;
+  return row.event_timer > Time{0} ? std::min(row.event_timer, cycle) : cycle;
+}
+
 }  // namespace
 
 std::string names_of(const std::vector<PdoChange>& changes) {
@@ -82,7 +88,7 @@ std::vector<PdoChange> longer_inhibits(const BusPlan& plan, unsigned factor) {
   std::vector<PdoChange> longer;
   for (const auto& row : plan.pdos.tpdos) {
     if (!is_event_driven(row)) continue;
-    const Time now = row.inhibit > Time{0} ? row.inhibit : plan.cycle.period;
+    const Time now = least_distance(row, plan.cycle.period);
     const auto units = (now * factor + inhibit_unit - Time{1}) / inhibit_unit;
     auto change = change_of(plan, row);
     change.inhibit_time = static_cast<std::uint16_t>(std::min(units, longest_inhibit));

@@ -25,8 +25,8 @@ class Analysis {
       : own_{own}, bit_{bit}, errors_{errors} {
     longest_ = own.frame;
     for (const auto& other : streams) {
-      if (!other.counts) continue;
-      if (other.priority < own.priority) {
+      if (!other.counts || &other == &own) continue;
+      if (other.priority <= own.priority) {
         higher_.push_back(&other);
         longest_ = std::max(longest_, other.frame);
       } else if (other.priority > own.priority) {

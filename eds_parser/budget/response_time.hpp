@@ -10,7 +10,7 @@ namespace takt {
 
 /// Frames of one identifier: when they come at most, and how long each is on the wire.
 struct FrameStream {
-  std::uint64_t priority = 0;  ///< the smaller goes first; CAN arbitrates by identifier
+  std::uint64_t priority = 0;  ///< the smaller goes first, of equals either; CAN: the identifier
   Time frame{};                ///< with worst stuffing and interframe space
   Time period{};               ///< least distance of two; > 0
   Time jitter{};               ///< how much later than its period one may be queued
@@ -29,7 +29,7 @@ Time error_time(Time time, const WireErrors& errors, Time bit, Time frame) noexc
 
 /// Worst-case time from queueing to the end of the frame, of each stream; none where there is no
 /// bound (its priority and those above it need the whole bus). Davis, Burns, Bril, Lukkien 2007,
-/// with all instances of the busy period. Priorities must differ. `bit` is one bit time.
+/// with all instances of the busy period. `bit` is one bit time.
 std::vector<std::optional<Time>> worst_responses(std::span<const FrameStream> streams, Time bit,
                                                  const WireErrors& errors = {});
 

@@ -22,6 +22,17 @@ std::uint64_t rank(const TrafficFrame& frame) noexcept {
   return (id >> 18) << 21 | 3ULL << 19 | (id & 0x3FFFF) << 1 | remote;
 }
 
+void append(std::string& names, const std::string& name) {
+  names += (names.empty() ? "" : ", ") + name;
+}
+
+bool is_polled(const PdoRow& pdo) noexcept { return pdo.poll > Time{0} || pdo.poll_syncs != 0; }
+
+/// Types 252 and 253: no event sends them.
+bool only_on_request(const PdoRow& pdo) noexcept {
+  return pdo.transmission == 252 || pdo.transmission == 253;
+}
+
 class TrafficCollector {
  public:
   TrafficCollector(const BusPlan& plan, const BudgetOptions& options)
@@ -130,7 +141,7 @@ class TrafficCollector {
                        .awaited = in_cycle && pdo.cyclic(),
                        .bytes = pdo.length});
     set_rate(frame, pdo);
-    if (pdo.poll > Time{0} || pdo.poll_syncs != 0) add_poll(pdo);
+    if (is_polled(pdo)) add_poll(pdo);
   }
 
   void add_rpdo(const PdoRow& pdo) {
@@ -152,7 +163,18 @@ class TrafficCollector {
          .cob_id = pdo.cob_id,
          .remote_request = true,
          .from_master = true,
-         .period = pdo.poll > Time{0} ? pdo.poll : pdo.poll_syncs * plan_.cycle.period});
+         .period = poll_period(pdo)});
+    if (pdo.synchronous() || only_on_request(pdo)) return;
+    auto& answer = add({.name = name_of(pdo, "answer of TPDO"),
+                        .kind = Traffic::tpdo,
+                        .cob_id = pdo.cob_id,
+                        .bytes = pdo.length,
+                        .period = poll_period(pdo)});
+    limit_by_period(answer);
+  }
+
+  Time poll_period(const PdoRow& pdo) const {
+    return pdo.poll > Time{0} ? pdo.poll : pdo.poll_syncs * plan_.cycle.period;
   }
 
   void set_rate(TrafficFrame& frame, const PdoRow& pdo) {
@@ -164,15 +186,28 @@ class TrafficCollector {
       frame.turn = certain_turn(pdo);
     } else if (plan_.cycle.sync && pdo.synchronous()) {
       return;
-    } else if (pdo.inhibit > Time{0}) {
-      frame.period = frame.from_master ? std::max(pdo.inhibit, plan_.cycle.period) : pdo.inhibit;
-      if (!frame.from_master) limit_by_period(frame);
-    } else if (pdo.poll > Time{0} || pdo.poll_syncs != 0) {
-      frame.period = pdo.poll > Time{0} ? pdo.poll : pdo.poll_syncs * plan_.cycle.period;
+    } else if (frame.from_master) {
+      frame.period = std::max(pdo.inhibit, plan_.cycle.period);
+    } else if (is_polled(pdo) && only_on_request(pdo)) {
+      frame.period = poll_period(pdo);
       limit_by_period(frame);
     } else {
-      frame.period_assumed = !frame.from_master;
+      set_rate_of_events(frame, pdo);
     }
+  }
+
+  /// An event timer is one more cause to send; no cause sends within the inhibit time.
+  void set_rate_of_events(TrafficFrame& frame, const PdoRow& pdo) {
+    if (pdo.inhibit > Time{0}) {
+      frame.period = pdo.inhibit;
+    } else if (pdo.event_timer > Time{0} && pdo.event_timer <= plan_.cycle.period) {
+      frame.period = pdo.event_timer;
+      append(by_timer_, frame.name);
+    } else {
+      frame.period_assumed = true;
+      return;
+    }
+    limit_by_period(frame);
   }
 
   static void limit_by_period(TrafficFrame& frame) {
@@ -263,20 +298,27 @@ class TrafficCollector {
                                " us after SYNC (--device-time)");
     std::string free;
     for (const auto& frame : out_.frames) {
-      if (frame.period_assumed) free += (free.empty() ? "" : ", ") + frame.name;
+      if (frame.period_assumed) append(free, frame.name);
     }
-    if (!free.empty()) {
-      out_.assumptions.push_back(
-          "no inhibit time, so counted once a cycle, though the device may send as often as values "
-          "change: " +
-          free);
-    }
+    assume(
+        "no inhibit time, so counted once a cycle, though the device may send as often as values "
+        "change: ",
+        free);
+    assume(
+        "no inhibit time, so counted by the event timer, though the device may send in between as "
+        "values change: ",
+        by_timer_);
+  }
+
+  void assume(const std::string& what, const std::string& names) {
+    if (!names.empty()) out_.assumptions.push_back(what + names);
   }
 
   const BusPlan& plan_;
   const BudgetOptions& options_;
   ServiceShare services_;
   BusTraffic out_;
+  std::string by_timer_;  ///< names
 };
 
 }  // namespace

@@ -7,7 +7,14 @@
 namespace takt {
 namespace {
 
+constexpr std::uint32_t shortest_period_us = 200;
 constexpr std::uint32_t longest_period_us = 60'000'000;
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
 
 template <class T>
 std::optional<T> number(std::string_view text, T least, T most) {
@@ -38,6 +45,11 @@ PdoChange& change_of(WhatIf& changes, PdoChange pdo) {
   return same != changes.pdos.end() ? *same : changes.pdos.emplace_back(std::move(pdo));
 }
 
+/// CiA 301, tables 69 and 72.
+bool is_reserved(std::uint8_t transmission, bool tpdo) {
+  return transmission > 240 && transmission < (tpdo ? 252 : 254);
+}
+
 bool set_pdo(std::string_view what, std::string_view value, PdoChange& pdo) {
   if (what.empty() && value == "off") {
     pdo.off = true;
@@ -45,7 +57,7 @@ bool set_pdo(std::string_view what, std::string_view value, PdoChange& pdo) {
   }
   if (what.empty()) {
     pdo.transmission = number<std::uint8_t>(value, 0, 255);
-    return pdo.transmission.has_value();
+    return pdo.transmission && !is_reserved(*pdo.transmission, pdo.tpdo);
   }
   if (what == "start") {
     pdo.sync_start = number<std::uint8_t>(value, 0, 240);
@@ -107,11 +119,11 @@ void append(std::string& text, const PdoChange& pdo) {
 bool add_change(std::string_view text, WhatIf& changes) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos) return false;
-  const auto key = text.substr(0, equals);
-  const auto value = text.substr(equals + 1);
+  const auto key = trimmed(text.substr(0, equals));
+  const auto value = trimmed(text.substr(equals + 1));
   if (key == "period") {
     changes.sync_period_us = microseconds(value);
-    return changes.sync_period_us.has_value();
+    return changes.sync_period_us && *changes.sync_period_us >= shortest_period_us;
   }
   if (key == "bitrate") {
     changes.bitrate_kbit = number<std::uint16_t>(value, 10, 1000);
@@ -119,12 +131,12 @@ bool add_change(std::string_view text, WhatIf& changes) {
            std::ranges::find(known_bitrates, *changes.bitrate_kbit) != std::end(known_bitrates);
   }
   if (key == "services") {
-    changes.service_frames = number<std::uint16_t>(value, 1, 1000);
+    changes.service_frames = number<std::uint16_t>(value, 1, 250);
     return changes.service_frames.has_value();
   }
   if (key == "counter") {
     changes.sync_overflow = number<std::uint8_t>(value, 0, 240);
-    return changes.sync_overflow.has_value();
+    return changes.sync_overflow && *changes.sync_overflow != 1;
   }
   return add_pdo_change(key, value, changes);
 }

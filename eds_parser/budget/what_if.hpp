@@ -34,7 +34,7 @@ inline constexpr std::uint16_t known_bitrates[] = {10, 20, 50, 100, 125, 250, 50
 
 /// Adds `period=1ms`, `bitrate=500`, `services=2`, `counter=60`, `elbow.tpdo2=10` (transmission),
 /// `elbow.tpdo2=off`, `elbow.tpdo2.start=2`, `.inhibit=10ms`, `.cob_id=0x1C0`. False: it is none
-/// of these.
+/// of these, or a value that no network file may have.
 bool add_change(std::string_view text, WhatIf& changes);
 
 /// What is given in `more` takes the place of what is there.

@@ -29,35 +29,48 @@ bool cycle_fits(const BusBudget& budget) {
 }
 
 /// Bound against sight of the latest synchronous frame, of that direction where it is wider.
-double widest(const BusBudget& budget, const std::vector<SeenRow>& seen) {
+double widest(const BusBudget& budget, const SeenBus& seen) {
   double widest = 0;
   for (const auto kind : {Traffic::tpdo, Traffic::rpdo}) {
     Time bound{};
     Time sight{1};
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t i = 0; i < seen.rows.size(); ++i) {
       const auto& row = budget.rows[i];
       if (!row.frame.in_cycle || row.frame.kind != kind || *row.worst <= bound) continue;
       bound = *row.worst;
-      sight = seen[i].worst;
+      sight = seen.rows[i].worst;
     }
     widest = std::max(widest, std::chrono::duration<double>(bound) / sight);
   }
   return widest;
 }
 
-void take_worst(std::vector<SeenRow>& seen, const std::vector<SeenRow>& more) {
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    seen[i].worst = std::max(seen[i].worst, more[i].worst);
+/// The same of SYNC and each synchronous frame.
+double widest_of_each(const BusBudget& budget, const SeenBus& seen) {
+  double widest = 0;
+  for (std::size_t i = 0; i < seen.rows.size(); ++i) {
+    const auto& row = budget.rows[i];
+    if (!row.frame.in_cycle) continue;
+    const Time sight = std::max(seen.rows[i].worst, Time{1});
+    widest = std::max(widest, std::chrono::duration<double>(*row.worst) / sight);
+  }
+  return widest;
+}
+
+void take_worst(SeenBus& seen, const SeenBus& more) {
+  for (std::size_t i = 0; i < seen.rows.size(); ++i) {
+    seen.rows[i].worst = std::max(seen.rows[i].worst, more.rows[i].worst);
   }
 }
 
-void expect_within_bounds(const BusBudget& budget, const std::vector<SeenRow>& seen, bool burst,
+void expect_within_bounds(const BusBudget& budget, const SeenBus& seen, bool burst,
                           unsigned network) {
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  EXPECT_EQ(seen.not_in_budget, 0U) << "network " << network;
+  for (std::size_t i = 0; i < seen.rows.size(); ++i) {
     const auto& row = budget.rows[i];
     const auto& bound = burst ? row.worst_in_burst : row.worst;
-    if (!bound || seen[i].frames == 0) continue;
-    EXPECT_LE(seen[i].worst, *bound) << row.frame.name << " of network " << network;
+    if (!bound || seen.rows[i].frames == 0) continue;
+    EXPECT_LE(seen.rows[i].worst, *bound) << row.frame.name << " of network " << network;
   }
 }
 
@@ -86,11 +99,23 @@ TEST(Budget, NoFrameIsLaterThanItsBound) {
   std::printf("%u of %u networks have all bounds\n", bounded, networks());
 }
 
-TEST(Budget, TheBoundOfTheLastPdoOfAFullBusIsWithinFifteenPercentOfTheWorstSeen) {
+/// Turns and chances that meet the longest frames are rare: those are looked for longer.
+SeenBus seen_on(const BusPlan& plan, const BusBudget& budget, sim::Random& random, double most) {
+  auto seen = run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 600}, random);
+  for (std::uint64_t more = 1; more <= 8 && widest_of_each(budget, seen) > most; ++more) {
+    take_worst(seen, run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 2000},
+                                     random.fork(more)));
+  }
+  return seen;
+}
+
+TEST(Budget, TheBoundsOfAFullBusAreWithinFifteenPercentOfTheWorstSeen) {
   constexpr double most = 1.15;
+  constexpr double most_of_rare = 1.25;  // some of the first TPDOs: all of their chances at once
   unsigned full = 0;
+  unsigned each = 0;
   double worst = 0;
-  double sum = 0;
+  double worst_of_each = 0;
   for (unsigned n = 0; n < networks(); ++n) {
     const unsigned network = first_network() + n;
     sim::Random random{network};
@@ -99,21 +124,23 @@ TEST(Budget, TheBoundOfTheLastPdoOfAFullBusIsWithinFifteenPercentOfTheWorstSeen)
     const auto budget = bus_budget(plan);
     if (!cycle_fits(budget)) continue;
 
-    auto seen = run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 600}, random);
+    const auto seen = seen_on(plan, budget, random, most);
 
-    // Turns of several SYNCs that meet the longest frames are rare: those are looked for longer.
-    for (std::uint64_t more = 1; more <= 8 && widest(budget, seen) > most; ++more) {
-      take_worst(seen, run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 2000},
-                                       random.fork(more)));
-    }
-    EXPECT_LE(widest(budget, seen), most) << "network " << network;
-    worst = std::max(worst, widest(budget, seen));
-    sum += widest(budget, seen);
+    const double last = widest(budget, seen);
+    const double any = widest_of_each(budget, seen);
+    EXPECT_LE(last, most) << "the last PDOs of network " << network;
+    EXPECT_LE(any, most_of_rare) << "a PDO of network " << network;
+    worst = std::max(worst, last);
+    worst_of_each = std::max(worst_of_each, any);
+    each += any <= most;
     ++full;
   }
   EXPECT_GT(full, networks() / 5);
-  std::printf("%u full buses: bound / worst seen is %.3f in the mean, %.3f at most\n", full,
-              sum / full, worst);
+  EXPECT_GE(each * 10, full * 9);
+  std::printf(
+      "bound / worst seen of %u full buses: %.3f at most of the last PDOs, %.3f of any; "
+      "on %u buses each is within 15 %%\n",
+      full, worst, worst_of_each, each);
 }
 
 TEST(Budget, NoFrameIsLaterThanItsBoundInABurstOfEmcys) {

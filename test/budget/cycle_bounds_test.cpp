@@ -107,6 +107,15 @@ TEST(CycleBounds, OutputsThatAreLateOnlyWhileAllEventDrivenOnesChangeFitWithAWar
   EXPECT_TRUE(budget.fits_but_for_changes());
 }
 
+TEST(CycleBounds, ALateOutputMayHaveBegunBeforeTheSyncOfAnotherDevice) {
+  auto plan = hand_made_bus(2, 4ms);
+  plan.cycle.sync_followed = true;
+  plan.pdos.rpdos[1].cob_id = CobId::extended(0x500U << 18);  // 160 bits
+  compile(plan);
+
+  EXPECT_EQ(latest_us(bus_budget(plan))[0], 160 + 55);
+}
+
 TEST(CycleBounds, ACycleThatNeedsMoreThanTheBusHasNoBounds) {
   const auto budget = bus_budget(hand_made_bus(8, 2ms));
 

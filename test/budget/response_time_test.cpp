@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <span>
 
 namespace takt {
 namespace {
@@ -28,20 +29,43 @@ TEST(ResponseTime, TheWorstInstanceNeedNotBeTheFirst) {
   EXPECT_THAT(in_us(worst_responses(streams, Time{1})), ElementsAre(2000, 3000, 3500));
 }
 
-/// Four drives at 1 Mbit/s and 2 ms: NMT, SYNC, EMCY, 4 TPDOs, 4 RPDOs, SDO response and request,
-/// 4 heartbeats.
-std::vector<FrameStream> four_drives(Time tpdo_jitter = {}) {
-  std::vector<FrameStream> streams{{0, microseconds{75}, milliseconds{1000}, {}},
-                                   {1, microseconds{55}, milliseconds{2}, {}},
-                                   {2, microseconds{135}, milliseconds{100}, {}}};
+struct Bus {
+  int drives = 4;
+  Time period = milliseconds{2};
+  Time tpdo_jitter{};
+  int bit_us = 1;
+};
+
+/// NMT, SYNC, EMCY, a TPDO and an RPDO of each drive, SDO response and request, heartbeats.
+std::vector<FrameStream> drives(const Bus& bus) {
+  const auto bits = [&](int count) { return microseconds{count * bus.bit_us}; };
+  std::vector<FrameStream> streams{{0, bits(75), milliseconds{1000}, {}},
+                                   {1, bits(55), bus.period, {}},
+                                   {2, bits(135), milliseconds{100}, {}}};
   const auto add = [&](int count, Time frame, Time period, Time jitter) {
     for (int i = 0; i < count; ++i) streams.push_back({streams.size(), frame, period, jitter});
   };
-  add(4, microseconds{135}, milliseconds{2}, tpdo_jitter);
-  add(4, microseconds{135}, milliseconds{2}, {});
-  add(2, microseconds{135}, milliseconds{10}, {});
-  add(4, microseconds{65}, milliseconds{100}, {});
+  add(bus.drives, bits(135), bus.period, bus.tpdo_jitter);
+  add(bus.drives, bits(135), bus.period, {});
+  add(2, bits(135), milliseconds{10}, {});
+  add(bus.drives, bits(65), milliseconds{100}, {});
   return streams;
+}
+
+std::vector<FrameStream> four_drives(Time tpdo_jitter = {}) {
+  return drives({.tpdo_jitter = tpdo_jitter});
+}
+
+/// Response of an RPDO of `drives`.
+std::int64_t rpdo_us(const Bus& bus, int number) {
+  const auto all = in_us(worst_responses(drives(bus), bus.bit_us * bit));
+  return all[static_cast<std::size_t>(3 + bus.drives + number - 1)];
+}
+
+double load(std::span<const FrameStream> streams) {
+  double sum = 0;
+  for (const auto& stream : streams) sum += 1.0 * stream.frame / stream.period;
+  return sum;
 }
 
 TEST(ResponseTime, FourDrivesAtTwoMilliseconds) {
@@ -60,6 +84,66 @@ TEST(ResponseTime, JitterOfTpdosReachesTheNextCycle) {
   EXPECT_THAT(in_us(worst_responses(four_drives(microseconds{200}), bit)),
               ElementsAre(210, 265, 400, 735, 870, 1005, 1140, 1075, 1210, 1345, 1480, 1615, 1680,
                           1745, 1810, 3010, 3010));
+}
+
+TEST(ResponseTime, WhatFitsWithoutServicesMayFailWithThem) {
+  EXPECT_EQ(rpdo_us({.drives = 3, .period = milliseconds{1}}, 2), 1075);
+  EXPECT_EQ(rpdo_us({.drives = 3, .period = milliseconds{1}}, 3), 1940);
+  EXPECT_EQ(rpdo_us({.drives = 6}, 6), 2020);
+  EXPECT_EQ(rpdo_us({.drives = 6, .period = milliseconds{4}, .bit_us = 2}, 6), 4040);
+}
+
+TEST(ResponseTime, TheLoadIsThatOfTheWorkedExamples) {
+  EXPECT_NEAR(load(drives({})), 0.599, 5e-4);
+  EXPECT_NEAR(load(drives({.drives = 3, .period = milliseconds{1}})), 0.895, 5e-4);
+  EXPECT_NEAR(load(drives({.drives = 6})), 0.870, 5e-4);
+  EXPECT_NEAR(load(drives({.drives = 6, .period = milliseconds{4}, .bit_us = 2})), 0.902, 5e-4);
+}
+
+/// SYNC, a TPDO and an RPDO of each drive.
+std::vector<FrameStream> sync_and_pdos(int drives, Time period, Time one_bit) {
+  std::vector<FrameStream> streams{{0, 55 * one_bit, period, {}}};
+  for (int i = 0; i < 2 * drives; ++i) {
+    streams.push_back({streams.size(), 135 * one_bit, period, {}});
+  }
+  return streams;
+}
+
+/// The most drives whose last PDO is through before the next SYNC, behind a frame that has begun.
+int most_in_time(Time period, Time one_bit) {
+  for (int count = 0;; ++count) {
+    auto streams = sync_and_pdos(count + 1, period, one_bit);
+    streams.push_back({streams.size(), 135 * one_bit, std::chrono::seconds{1000}, {}});
+    const auto last = worst_responses(streams, one_bit)[streams.size() - 2];
+    if (!last || *last > period) return count;
+  }
+}
+
+/// The most that need no more than 80 % of the bus.
+int most_at_80_percent(Time period, Time one_bit) {
+  int count = 0;
+  while (load(sync_and_pdos(count + 1, period, one_bit)) <= 0.8) ++count;
+  return count;
+}
+
+TEST(ResponseTime, MostDrivesOfEachBitRateAndPeriod) {
+  struct Case {
+    int bit_us;
+    std::vector<int> in_time;
+    std::vector<int> at_80_percent;
+  };
+  for (const auto& [bit_us, in_time, at_80_percent] :
+       {Case{1, {3, 6, 14, 36}, {2, 5, 11, 29}}, Case{2, {1, 3, 6, 17}, {1, 2, 5, 14}},
+        Case{4, {0, 1, 3, 8}, {0, 1, 2, 7}}, Case{8, {0, 0, 1, 3}, {0, 0, 1, 3}}}) {
+    std::vector<int> first;
+    std::vector<int> second;
+    for (const int ms : {1, 2, 4, 10}) {
+      first.push_back(most_in_time(milliseconds{ms}, bit_us * bit));
+      second.push_back(most_at_80_percent(milliseconds{ms}, bit_us * bit));
+    }
+    EXPECT_EQ(first, in_time) << bit_us << " us a bit";
+    EXPECT_EQ(second, at_80_percent) << bit_us << " us a bit";
+  }
 }
 
 TEST(ResponseTime, AFullBusHasNoBoundForTheLast) {

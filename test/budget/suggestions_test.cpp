@@ -128,6 +128,28 @@ TEST(WhatIf, IsWrittenAsItIsRead) {
   EXPECT_EQ(to_string(changes), text);
 }
 
+TEST(WhatIf, BlanksAroundAChangeAreNoPartOfIt) {
+  WhatIf changes;
+
+  EXPECT_TRUE(add_change(" bitrate = 500 ", changes));
+  EXPECT_TRUE(add_change(" arm.tpdo2=10", changes));
+
+  EXPECT_EQ(to_string(changes), "bitrate=500,arm.tpdo2=10");
+}
+
+TEST(WhatIf, WhatANetworkFileMayNotHaveIsRefused) {
+  for (const auto* text : {"counter=1", "arm.tpdo1=241", "arm.tpdo1=251", "arm.rpdo1=252",
+                           "arm.rpdo1=253", "period=199us", "services=251"}) {
+    WhatIf changes;
+    EXPECT_FALSE(add_change(text, changes)) << text;
+  }
+  for (const auto* text : {"counter=0", "counter=2", "arm.tpdo1=240", "arm.tpdo1=252",
+                           "arm.rpdo1=254", "period=200us", "services=250"}) {
+    WhatIf changes;
+    EXPECT_TRUE(add_change(text, changes)) << text;
+  }
+}
+
 TEST(WhatIf, WhatItCanNotBeIsRefused) {
   for (const auto* text :
        {"", "period", "period=", "period=1", "period=0us", "period=61s", "bitrate=300", "=5",

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <deque>
 
+#include "eds_parser/frame_time.hpp"
 #include "master/sim/frame_bits.hpp"
 #include "master/sim/virtual_bus.hpp"
+#include "test/budget/plan_traffic.hpp"
 
 namespace takt {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 constexpr Time moment{1};
 
 /// Of many data the one with the most stuff bits.
-Frame stuffed(const TrafficFrame& what, sim::Random& random) {
+Frame stuffed(const PlanFrame& what, sim::Random& random) {
   Frame best{.id = what.cob_id, .length = what.bytes, .rtr = what.remote_request};
   std::uint16_t most = sim::frame_bits(best).total;
   Frame frame = best;
@@ -37,31 +39,31 @@ class WorstPhase {
   WorstPhase(const BusPlan& plan, const BusBudget& budget, const PhaseOptions& options,
              sim::Random random)
       : plan_{plan},
-        rows_{budget.rows},
+        traffic_{traffic_of(plan, {budget.service_dialogues, budget.service_round})},
         options_{options},
         random_{random},
         bus_{plan.bitrate, random.fork(1)},
-        streams_(rows_.size()),
-        seen_(rows_.size()) {
+        streams_(traffic_.size()) {
+    seen_.rows.resize(budget.rows.size());
     master_ = bus_.attach({.order = sim::QueueOrder::fifo, .capacity = 1024});
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
+    services_ = bus_.attach({.capacity = 1024});
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
       auto& stream = streams_[i];
-      stream.frame = stuffed(rows_[i].frame, random_);
-      // A sender for each device's frame: what counts is the bus.
-      stream.sender = rows_[i].frame.from_master ? master_ : bus_.attach({.capacity = 64});
+      stream.frame = stuffed(traffic_[i], random_);
+      stream.row = row_of(traffic_[i], budget.rows);
+      seen_.not_in_budget += !stream.row;
+      stream.sender = sender_of(i);
       bus_.node(stream.sender).faults.error = options.wire_errors;
       stream.next = Time{random_.below(1'000'000)};
     }
   }
 
-  std::vector<SeenRow> run() {
+  SeenBus run() {
     for (unsigned cycle = 1; cycle <= options_.cycles; ++cycle) {
       cycle_ = cycle;
       sync_ = cycle * plan_.cycle.period;
       const Time next = sync_ + plan_.cycle.period;
-      queue_sync();
-      if (plan_.cycle.makes_sync()) queue_outputs();
-      hurt_at(sync_);
+      begin_cycle();
       if (options_.emcys && cycle == options_.cycles / 2) burst();
       run_until(next);
     }
@@ -72,32 +74,63 @@ class WorstPhase {
   struct Stream {
     Frame frame;
     sim::BusNodeIndex sender = 0;
+    std::optional<std::size_t> row;
+    unsigned left = 0;        ///< of a burst
     Time next{};              ///< may come again from here on
     std::deque<Time> queued;  ///< when those were that are not through
   };
 
-  void queue(std::size_t row, Time ready, Time since) {
-    auto& stream = streams_[row];
+  /// Of the devices one for each identifier: what counts is the bus.
+  sim::BusNodeIndex sender_of(std::size_t i) {
+    const PlanFrame& what = traffic_[i];
+    if (what.sent == Sent::in_slack) return services_;
+    if (what.sent == Sent::outputs) return master_;
+    if (what.sent == Sent::sync && plan_.cycle.makes_sync()) return master_;
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool same = traffic_[k].cob_id == what.cob_id && !traffic_[k].remote_request;
+      if (same) return streams_[k].sender;
+    }
+    return bus_.attach({.capacity = 64});
+  }
+
+  /// Of two rows with one identifier the second is what is sent on request.
+  static std::optional<std::size_t> row_of(const PlanFrame& what,
+                                           const std::vector<BudgetRow>& rows) {
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto& frame = rows[i].frame;
+      const bool same = frame.cob_id == what.cob_id && frame.remote_request == what.remote_request;
+      if (same && (!found || what.sent == Sent::on_request)) found = i;
+    }
+    return found;
+  }
+
+  void queue(std::size_t i, Time ready, Time since) {
+    auto& stream = streams_[i];
     if (bus_.queue(stream.sender, stream.frame, ready)) stream.queued.push_back(since);
   }
 
-  void queue_sync() {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (rows_[i].frame.kind == Traffic::sync) queue(i, sync_, sync_);
+  void begin_cycle() {
+    served_ = put_out_ = !plan_.cycle.makes_sync();
+    awaited_ = 0;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      if (traffic_[i].sent == Sent::sync) queue(i, sync_, sync_);
     }
+    hurt_at(sync_);
   }
 
   /// SocketCAN sends in the order of the calls: that of the identifiers.
   void queue_outputs() {
+    put_out_ = true;
     std::vector<std::size_t> due;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& frame = rows_[i].frame;
-      if (!frame.in_cycle || frame.kind != Traffic::rpdo || cycle_ % frame.every != 0) continue;
-      if (frame.on_change && sync_ < streams_[i].next) continue;
-      streams_[i].next = sync_ + frame.period;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      const auto& frame = traffic_[i];
+      if (frame.sent != Sent::outputs || cycle_ % frame.every != 0) continue;
+      if (frame.distance > Time{0} && sync_ < streams_[i].next) continue;
+      streams_[i].next = sync_ + frame.distance;
       due.push_back(i);
     }
-    std::ranges::sort(due, {}, [this](std::size_t i) { return rows_[i].frame.cob_id; });
+    std::ranges::sort(due, {}, [this](std::size_t i) { return traffic_[i].cob_id; });
     for (const std::size_t i : due) queue(i, sync_ + plan_.cycle.output_deadline, sync_);
     if (random_.chance(0.5)) hurt_at(sync_ + plan_.cycle.output_deadline);
   }
@@ -106,22 +139,59 @@ class WorstPhase {
   void sync_arrived(Time end) {
     if (!plan_.cycle.makes_sync()) {
       sync_ = end;
-      queue_outputs();
+      served_ = put_out_ = false;
     }
+    if (starved_ >= patience) relieve(end);
     queue_inputs(end);
+  }
+
+  /// Where cycles are too full for it one frame goes out right behind SYNC.
+  void relieve(Time sync_end) {
+    std::vector<std::size_t> due;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      if (traffic_[i].sent == Sent::in_slack && sync_end >= streams_[i].next) due.push_back(i);
+    }
+    if (due.empty()) return;
+    const std::size_t i = due[random_.below(static_cast<std::uint32_t>(due.size()))];
+    queue(i, sync_end, sync_end);
+    streams_[i].next = sync_end + traffic_[i].distance;
+    starved_ = 0;
   }
 
   void queue_inputs(Time sync_end) {
     const bool all_late = random_.chance(0.5);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& frame = rows_[i].frame;
-      if (!frame.in_cycle || frame.kind != Traffic::tpdo) continue;
-      if (cycle_ % frame.every != frame.turn.value_or(0)) continue;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      const auto& frame = traffic_[i];
+      if (frame.sent != Sent::after_sync || cycle_ % frame.every != frame.turn) continue;
       const auto limit = static_cast<std::uint32_t>(options_.device_time.count()) + 1;
       const Time own = all_late ? options_.device_time : Time{random_.below(limit)};
       queue(i, sync_end + own, sync_);
+      awaited_ += frame.awaited;
     }
     hurt_at(sync_end + options_.device_time);
+  }
+
+  /// What the master has to send beside the cycle, as much as ends before the outputs.
+  void serve(Time now) {
+    served_ = true;
+    const Time dialogue = wire_time(2 * worst_frame_bits(8), plan_.bitrate);
+    Time room = sync_ + plan_.cycle.output_deadline - now;
+    unsigned served = 0;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      auto& stream = streams_[i];
+      const auto& frame = traffic_[i];
+      if (frame.sent != Sent::in_slack || now < stream.next) continue;
+      if (room < dialogue) {
+        starved_ += served == 0;
+        return;
+      }
+      ++served;
+      for (unsigned n = 0; n < frame.burst && room >= dialogue; ++n, room -= dialogue) {
+        queue(i, now, now);
+      }
+      stream.next += frame.distance;
+      if (stream.next <= now) stream.next = now + frame.distance;
+    }
   }
 
   /// What comes by itself comes now, if it may: of higher priority at once, the others one moment
@@ -129,67 +199,122 @@ class WorstPhase {
   void hurt_at(Time when) {
     if (random_.chance(0.1)) return;
     const bool flood = random_.chance(0.3);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& frame = rows_[i].frame;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      const auto& frame = traffic_[i];
       auto& stream = streams_[i];
-      const bool may_come = frame.by_itself() && frame.kind != Traffic::emcy;
-      if (!may_come || when < stream.next || random_.chance(flood ? 0.05 : 0.2)) continue;
+      if (frame.sent != Sent::by_itself || random_.chance(flood ? 0.05 : 0.2)) continue;
+      if (frame.burst > 1 && !flood) {
+        dribble(i, when);
+        continue;
+      }
+      if (when < stream.next) continue;
+      stream.left = 0;
       Time ready = std::max(when - (random_.chance(0.7) ? moment : Time{}), stream.next);
-      stream.next = std::max(stream.next, ready - frame.jitter);
+      // A server is as late as it likes, and on time with the next.
+      const Time jitter = frame.kind == Traffic::sdo ? frame.distance : Time{};
+      stream.next = std::max(stream.next, ready - jitter);
       do {
         for (unsigned n = 0; n < frame.burst; ++n) queue(i, ready, ready);
-        ready += frame.period;
-        stream.next += frame.period;
+        ready += frame.distance;
+        stream.next += frame.distance;
       } while (flood && ready < when + plan_.cycle.period);
     }
+  }
+
+  /// Some of what comes at once, and the others later in its period.
+  void dribble(std::size_t i, Time when) {
+    auto& stream = streams_[i];
+    if (when >= stream.next) {
+      stream.left = traffic_[i].burst;
+      stream.next = when + traffic_[i].distance;
+    }
+    const unsigned count = std::min(stream.left, 1 + random_.below(stream.left + 1));
+    stream.left -= count;
+    const Time ready = when - moment;
+    for (unsigned n = 0; n < count; ++n) queue(i, ready, ready);
   }
 
   void burst() {
     const Time when =
         sync_ + Time{static_cast<Time::rep>(
                     random_.next() % static_cast<std::uint64_t>(plan_.cycle.period.count()))};
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (rows_[i].frame.kind == Traffic::emcy) queue(i, when, when);
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      if (traffic_[i].sent == Sent::as_emcy) queue(i, when, when);
     }
   }
 
   void run_until(Time end) {
     sim::WireFrame wire;
-    while (bus_.next_event() < end) {
+    for (;;) {
       const Time now = bus_.next_event();
-      if (bus_.step(now, wire) && wire.result == sim::WireResult::sent) arrived(wire);
+      const Time next = std::min(now, end);
+      if (!served_ && sync_ + plan_.cycle.receive_window < next) {
+        serve(sync_ + plan_.cycle.receive_window);
+      } else if (!put_out_ && sync_ + plan_.cycle.output_deadline < next) {
+        queue_outputs();
+      } else if (now >= end) {
+        return;
+      } else if (bus_.step(now, wire) && wire.result == sim::WireResult::sent) {
+        arrived(wire);
+      }
     }
   }
 
   void arrived(const sim::WireFrame& wire) {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      auto& stream = streams_[i];
-      if (stream.frame.id != wire.frame.id || stream.frame.rtr != wire.frame.rtr) continue;
-      if (stream.queued.empty()) continue;
-      seen_[i].worst = std::max(seen_[i].worst, wire.end - stream.queued.front());
-      ++seen_[i].frames;
-      stream.queued.pop_front();
-      if (rows_[i].frame.kind == Traffic::sync) sync_arrived(wire.end);
-      return;
+    std::optional<std::size_t> first;
+    for (std::size_t i = 0; i < traffic_.size(); ++i) {
+      const auto& stream = streams_[i];
+      const bool same = stream.frame.id == wire.frame.id && stream.frame.rtr == wire.frame.rtr;
+      if (!same || stream.queued.empty() || stream.sender != wire.sender) continue;
+      if (!first || stream.queued.front() < streams_[*first].queued.front()) first = i;
     }
+    if (!first) return;
+    auto& stream = streams_[*first];
+    if (stream.row) note(seen_.rows[*stream.row], wire.end - stream.queued.front());
+    stream.queued.pop_front();
+    follow(*first, wire.end);
   }
 
+  static void note(SeenRow& row, Time response) {
+    row.worst = std::max(row.worst, response);
+    ++row.frames;
+  }
+
+  /// What a frame makes others send.
+  void follow(std::size_t i, Time end) {
+    const auto& frame = traffic_[i];
+    if (frame.sent == Sent::sync) sync_arrived(end);
+    if (frame.answer) {
+      const Time ready = end + Time{random_.below(longest_answer)};
+      queue(*frame.answer, ready, ready);
+    }
+    if (frame.sent == Sent::after_sync && frame.awaited && --awaited_ == 0 && !served_) serve(end);
+  }
+
+  static constexpr unsigned patience = 2;
+  static constexpr std::uint32_t longest_answer = 100'000;
+
   const BusPlan& plan_;
-  const std::vector<BudgetRow>& rows_;
+  std::vector<PlanFrame> traffic_;
   PhaseOptions options_;
   sim::Random random_;
   sim::VirtualBus bus_;
-  sim::BusNodeIndex master_ = 0;
+  sim::BusNodeIndex master_ = 0;    ///< SYNC and outputs
+  sim::BusNodeIndex services_ = 0;  ///< the master's other frames
   std::vector<Stream> streams_;
-  std::vector<SeenRow> seen_;
+  SeenBus seen_;
   unsigned cycle_ = 0;
   Time sync_{};
+  int awaited_ = 0;       ///< inputs of this cycle that are not there
+  unsigned starved_ = 0;  ///< cycles
+  bool served_ = false;
+  bool put_out_ = false;
 };
 
 }  // namespace
 
-std::vector<SeenRow> run_worst_phase(const BusPlan& plan, const BusBudget& budget,
-                                     const PhaseOptions& options, sim::Random random) {
+SeenBus run_worst_phase(const BusPlan& plan, const BusBudget& budget, const PhaseOptions& options,
+                        sim::Random random) {
   return WorstPhase{plan, budget, options, random}.run();
 }
 

@@ -20,10 +20,17 @@ struct SeenRow {
   Time worst{};  ///< as BudgetRow::worst: after SYNC, or after being queued
 };
 
-/// Lets the frames of a budget run over the bit-accurate bus, at the moments that hurt most: data
-/// that stuff most, what comes by itself just before SYNC, the TPDOs and the outputs, as often as
-/// its rows say. In the order of the rows.
-std::vector<SeenRow> run_worst_phase(const BusPlan& plan, const BusBudget& budget,
-                                     const PhaseOptions& options, sim::Random random);
+/// What was seen of a bus.
+struct SeenBus {
+  std::vector<SeenRow> rows;   ///< as those of the budget
+  unsigned not_in_budget = 0;  ///< frames of the network that no row speaks of
+};
+
+/// Lets the frames of a network run over the bit-accurate bus, at the moments that hurt most: data
+/// that stuff most, what comes by itself just before SYNC, the TPDOs and the outputs. What is sent,
+/// and how often, is the network's word; of the budget only the number of SDO dialogues is taken.
+/// The master's frames beside SYNC and outputs have a queue of their own here.
+SeenBus run_worst_phase(const BusPlan& plan, const BusBudget& budget, const PhaseOptions& options,
+                        sim::Random random);
 
 }  // namespace takt

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "eds_parser/budget/traffic.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+
+namespace takt {
+
+/// When a frame of a network may be sent.
+enum class Sent : std::uint8_t {
+  sync,        ///< each period
+  after_sync,  ///< by devices
+  outputs,     ///< with the outputs of the master
+  by_itself,   ///< by devices, whenever `distance` has gone by
+  as_emcy,     ///< by devices, now and then
+  in_slack,    ///< by the master, between the inputs and the outputs
+  on_request,  ///< by devices, behind a remote request
+};
+
+/// One frame of a network as the standard and the plan have it, without a look at the budget.
+struct PlanFrame {
+  CobId cob_id;
+  std::uint8_t bytes = 0;
+  bool remote_request = false;
+  Traffic kind = Traffic::nmt;
+  Sent sent = Sent::by_itself;
+  bool awaited = false;  ///< after_sync: the master waits for it
+  unsigned every = 1;    ///< after_sync, outputs: SYNCs
+  unsigned turn = 0;     ///< after_sync: number of SYNC, modulo `every`
+  Time distance{};       ///< least of two
+  unsigned burst = 1;
+  std::optional<std::size_t> answer{};  ///< of a remote request
+};
+
+/// SDO dialogues, of which a plan does not say how many there are.
+struct Dialogues {
+  unsigned count = 0;
+  Time round{};
+};
+
+/// All that may be on the bus: each PDO by its type, its times and its polls; heartbeats, guarding
+/// with its requests, EMCYs, NMT, TIME and SDO.
+std::vector<PlanFrame> traffic_of(const BusPlan& plan, Dialogues dialogues);
+
+}  // namespace takt
