@@ -205,6 +205,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::not_exchanging:
     case SdoFault::lss_failed:
     case SdoFault::lss_refused:
+    case SdoFault::wrong_length:
       break;
   }
   return {};

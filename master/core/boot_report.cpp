@@ -147,6 +147,7 @@ std::string meaning_text(const BootFailure& failure) {
     case SdoFault::not_exchanging:
     case SdoFault::lss_failed:
     case SdoFault::lss_refused:
+    case SdoFault::wrong_length:
       return {};
   }
   return {};

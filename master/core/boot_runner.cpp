@@ -1,6 +1,7 @@
 #include "master/core/boot_runner.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -25,13 +26,14 @@ void BootRunner::start(From from, Time now) noexcept {
   cob_id_object_.reset();
   reset_sent_ = false;
   guards_ = running_ = wrote_ = false;
+  asks_ = from == From::silent;
   left_alone_ = 0;
   serial_number_.reset();
   firmware_.reset();
   bootup_seen_ = from == From::bootup;
   heartbeat_seen_ = false;
   heard_ = from == From::bootup ? NmtState::bootup : NmtState::unknown;
-  go_to(from == From::bootup ? after_reset_ : 0);
+  go_to(from == From::beginning ? 0 : after_reset_);
 }
 
 void BootRunner::go_to(std::size_t step) noexcept {
@@ -58,7 +60,7 @@ void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
     return;
   }
   cob_id_object_.reset();
-  differs_ = guards_ = running_ = false;
+  differs_ = guards_ = running_ = asks_ = false;
   go_to(current().action == BootAction::probe ? step_ : after_reset_);
 }
 
@@ -87,6 +89,12 @@ Time BootRunner::deadline() const noexcept {
   if (state_ != State::running) return never;
   if (phase_ == Phase::wait) return wait_until_;
   return phase_ == Phase::enter || phase_ == Phase::nmt ? at_once : never;
+}
+
+void BootRunner::excuse(Time away) noexcept {
+  for (Time* const limit : {&deadline_, &wait_until_}) {
+    if (*limit != never) *limit += away;
+  }
 }
 
 void BootRunner::on_time(Time now, SdoClient& client) noexcept {
@@ -119,6 +127,7 @@ bool BootRunner::proceed(Time now, SdoClient& client) noexcept {
 
 void BootRunner::enter(Time now) noexcept {
   if (step_ == plan_->steps.size()) {
+    if (std::exchange(asks_, false)) return go_to(after_reset_);
     state_ = State::done;
     return;
   }
@@ -131,8 +140,27 @@ void BootRunner::enter(Time now) noexcept {
   begin(step);
 }
 
+/// What makes a node tell its state and harms none that is OPERATIONAL.
+bool BootRunner::asks(const BootStep& step) noexcept {
+  const std::uint16_t index = step.object.index;
+  switch (step.action) {
+    case BootAction::probe:
+    case BootAction::await_heartbeat:
+    case BootAction::await_guarding:
+      return true;
+    case BootAction::expect:
+      return index == 0x1000 || index == 0x1018;
+    case BootAction::write:
+    case BootAction::write_if_differs:
+      return index == 0x1017 || index == 0x100C || index == 0x100D;
+    default:
+      return false;
+  }
+}
+
 /// What would change a node that is left running, or is not needed.
 bool BootRunner::skips(const BootStep& step) const noexcept {
+  if (asks_) return !asks(step);
   switch (step.action) {
     case BootAction::write_if_changed:
       return running_ || !wrote_;
@@ -224,6 +252,10 @@ bool BootRunner::end_sign_of_life(bool over, Time now, const SdoClient& client) 
   if (!heartbeat_in_step_) {
     if (over) fail({.fault = SdoFault::timeout}, now, client);
     return over;
+  }
+  if (std::exchange(asks_, false)) {
+    go_to(0);
+    return true;
   }
   running_ =
       current().action == BootAction::await_alive ? heard_ == NmtState::operational : running_;

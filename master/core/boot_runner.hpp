@@ -21,6 +21,7 @@ class BootRunner {
   enum class From : std::uint8_t {
     beginning,
     bootup,  ///< the node has just said boot-up: the reset at the beginning isn't needed
+    silent,  ///< it may be OPERATIONAL: its error control is set up first, then `beginning`
   };
 
   /// `plan` must outlive the runner. The client is lent to each call, always the same one.
@@ -36,13 +37,17 @@ class BootRunner {
   void on_time(Time now, SdoClient& client) noexcept;
   /// Of its own waits; the client has its own.
   Time deadline() const noexcept;
+  /// The master itself was away for so long: nothing that is awaited is late by that.
+  void excuse(Time away) noexcept;
 
   /// NMT command that waits to be sent to the node; nmt_sent tells that it was.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
   void nmt_sent(Time now, SdoClient& client) noexcept;
 
   State state() const noexcept { return state_; }
-  std::uint16_t step() const noexcept { return step_; }
+  std::uint16_t step() const noexcept {
+    return asks_ ? static_cast<std::uint16_t>(after_reset_) : step_;
+  }
   Time began() const noexcept { return began_; }
   bool reset_sent() const noexcept { return reset_sent_; }
   /// The node was OPERATIONAL and is left as it is. CiA 302-2, status L.
@@ -84,6 +89,7 @@ class BootRunner {
   void enter(Time now) noexcept;
   void begin(const BootStep& step) noexcept;
   bool skips(const BootStep& step) const noexcept;
+  static bool asks(const BootStep& step) noexcept;
   // False: has to wait.
   bool proceed(Time now, SdoClient& client) noexcept;
   bool begin_transfer(Time now, SdoClient& client) noexcept;
@@ -122,6 +128,7 @@ class BootRunner {
   bool reset_sent_ = false;
   bool guards_ = false;
   bool running_ = false;
+  bool asks_ = false;  // From::silent, until a sign of life
   bool wrote_ = false;
   std::uint16_t left_alone_ = 0;
   ObjectKey first_left_alone_;

@@ -23,6 +23,7 @@ enum class SdoFault : std::uint8_t {
   not_exchanging,     ///< PDO requests: the node is not operational
   lss_failed,         ///< LSS requests: the last LssResult of the reply says why
   lss_refused,        ///< LSS requests: nonsense, or a service that a running master does not offer
+  wrong_length,       ///< PDO requests: the RPDO is mapped with another number of bytes
 };
 
 /// The one record of a failed boot: all that is needed to explain it. boot_report turns it into

@@ -40,11 +40,10 @@ std::string_view reason(std::uint32_t detail) noexcept {
 }
 
 std::string_view emcy_meaning(const BusPlan& plan, std::uint8_t node, std::uint16_t code) {
-  const auto found =
-      std::ranges::find(plan.nodes, node, [](const NodePlan& one) { return one.id.value(); });
-  if (found == plan.nodes.end()) return emcy_text(code);
-  const auto own = std::ranges::find(found->emcy_texts, code, &EmcyText::code);
-  return own == found->emcy_texts.end() ? emcy_text(code) : std::string_view{own->text};
+  const NodePlan* const planned = plan.find(node);
+  if (planned == nullptr) return emcy_text(code);
+  const auto own = std::ranges::find(planned->emcy_texts, code, &EmcyText::code);
+  return own == planned->emcy_texts.end() ? emcy_text(code) : std::string_view{own->text};
 }
 
 std::string emcy_line(const BusPlan& plan, const Event& event) {
@@ -53,8 +52,9 @@ std::string emcy_line(const BusPlan& plan, const Event& event) {
   std::string text = "EMCY of 1 byte, too short for an error code (bytes";
   if (length > 1) {
     const auto code = load_le<std::uint16_t>(bytes);
-    text = "EMCY " + hex(code) + ": " + std::string{emcy_meaning(plan, event.node, code)} +
-           " (error register: " + error_register_text(bytes[2]) + "; bytes";
+    text = "EMCY " + hex(code) + ": " + std::string{emcy_meaning(plan, event.node, code)} + " (";
+    if (length > 2) text += "error register: " + error_register_text(bytes[2]) + "; ";
+    text += "bytes";
   }
   for (const std::uint8_t byte : bytes.first(length)) text += " " + hex(byte, 2).substr(2);
   text += length == 8 ? ")" : ", always 8)";
@@ -111,10 +111,9 @@ std::string lss_trouble_text(const Event& event) {
 }
 
 std::string firmware_line(const BusPlan& plan, const Event& event) {
-  const auto found =
-      std::ranges::find(plan.nodes, event.node, [](const NodePlan& one) { return one.id.value(); });
-  if (found == plan.nodes.end() || !found->firmware) return "another firmware than planned";
-  return firmware_text(*found->firmware, Firmware::unpacked(event.value));
+  const NodePlan* const node = plan.find(event.node);
+  if (node == nullptr || !node->firmware) return "another firmware than planned";
+  return firmware_text(*node->firmware, Firmware::unpacked(event.value));
 }
 
 std::string node_line(const BusPlan& plan, const Event& event) {
@@ -371,18 +370,13 @@ std::string line(const BusPlan& plan, const Event& event) {
 
 std::string subject(const BusPlan& plan, std::uint8_t node) {
   if (node == 0) return "bus '" + plan.name + "'";
-  const auto found =
-      std::ranges::find(plan.nodes, node, [](const NodePlan& each) { return each.id.value(); });
-  if (found == plan.nodes.end()) return "node " + std::to_string(int{node});
-  return node_text(*found);
+  const NodePlan* const planned = plan.find(node);
+  return planned == nullptr ? "node " + std::to_string(int{node}) : node_text(*planned);
 }
 
 std::string describe(const BusPlan& plan, const Event& event) {
   if (event.kind == EventKind::boot_failed) {
-    const auto found = std::ranges::find(plan.nodes, event.node,
-                                         [](const NodePlan& node) { return node.id.value(); });
-    std::string text =
-        explain(plan, static_cast<std::size_t>(found - plan.nodes.begin()), event.failure);
+    std::string text = explain(plan, plan.index_of(event.node), event.failure);
     if (event.detail > 1) {
       text += "\n  repeated  " + std::to_string(event.detail) + " times in a row by the same cause";
     }

@@ -44,7 +44,7 @@ void FallbackWriter::skip_uncommanded() noexcept {
 
 const Request& FallbackWriter::request() noexcept {
   const Value& value = values_[next_];
-  request_.id = own_id;
+  request_.id = request_id;
   request_.kind = RequestKind::sdo_download;
   request_.node = value.node;
   request_.object = value.object;

@@ -28,11 +28,11 @@ class FallbackWriter {
   void submitted() noexcept;
 
   /// The answer to one of these requests: nobody else asked.
-  static bool owns(const Reply& reply) noexcept { return reply.id == own_id; }
+  static bool owns(const Reply& reply) noexcept { return reply.id == request_id; }
+  /// Of all its requests.
+  static constexpr std::uint64_t request_id = 1ULL << 61;
 
  private:
-  static constexpr std::uint64_t own_id = 1ULL << 61;
-
   struct Value {
     SignalIndex signal = 0;
     std::uint8_t node = 0;

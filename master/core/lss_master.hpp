@@ -27,6 +27,8 @@ class LssMaster {
   /// Gives up; there will be no result.
   void cancel() noexcept { phase_ = Phase::idle; }
   bool idle() const noexcept { return phase_ == Phase::idle; }
+  /// The newest fast scan may have brought a device into configuration state, whatever its outcome.
+  bool scan_may_have_switched() const noexcept { return fast_.may_have_switched(); }
 
  private:
   enum class Phase : std::uint8_t { idle, sending, waiting, over };

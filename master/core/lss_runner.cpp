@@ -8,10 +8,16 @@ namespace {
 /// Devices that it concerns are in configuration state afterwards.
 bool leads_to_configuration(const LssCommand& command) noexcept {
   return (command.op == LssOp::switch_global && command.a == 1) ||
-         command.op == LssOp::switch_selective || command.op == LssOp::fast_scan;
+         command.op == LssOp::switch_selective;
 }
 
 }  // namespace
+
+/// A scan that was lost may have found somebody all the same.
+bool LssRunner::may_configure(const LssCommand& command, LssOutcome outcome) const noexcept {
+  if (command.op != LssOp::fast_scan) return leads_to_configuration(command);
+  return outcome != LssOutcome::nobody || master_.scan_may_have_switched();
+}
 
 void LssRunner::begin(std::span<const LssCommand> commands, Time timeout) noexcept {
   master_.cancel();
@@ -57,8 +63,7 @@ void LssRunner::on_result(const LssResult& result, Time now) noexcept {
   }
   const LssCommand& command = commands_[results_count_];
   results_[results_count_++] = result;
-  // A scan that was lost may have found somebody all the same.
-  if (leads_to_configuration(command) && result.outcome != LssOutcome::nobody) configuring_ = true;
+  configuring_ = configuring_ || may_configure(command, result.outcome);
   if (command.op == LssOp::switch_global && command.a == 0) configuring_ = left_there_ = false;
   left_there_ = left_there_ || configuring_;
   if (result.outcome == LssOutcome::done) {

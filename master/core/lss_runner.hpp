@@ -39,6 +39,7 @@ class LssRunner {
   enum class State : std::uint8_t { idle, running, leaving, done, failed };
 
   void step(Time now) noexcept;
+  bool may_configure(const LssCommand& command, LssOutcome outcome) const noexcept;
   void on_result(const LssResult& result, Time now) noexcept;
 
   LssMaster master_;

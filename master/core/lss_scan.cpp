@@ -43,6 +43,7 @@ void LssFastScan::on_anybody(bool answered) noexcept {
 /// with known bits may just belong to nobody.
 void LssFastScan::on_confirm(bool answered) noexcept {
   const std::uint8_t part = question_.part;
+  may_have_switched_ = may_have_switched_ || part + 1 == parts;
   if (answered) {
     address_[part] = question_.number;
     repeated_ = false;

@@ -24,6 +24,9 @@ class LssFastScan {
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
   const LssAddress& address() const noexcept { return address_; }
+  /// A device that heard the last question is in configuration state, even where its answer was
+  /// lost.
+  bool may_have_switched() const noexcept { return may_have_switched_; }
   /// A question had a reaction that can't be: wait for as long as may be.
   bool doubtful() const noexcept { return repeated_; }
 
@@ -40,6 +43,7 @@ class LssFastScan {
   LssScanState state_ = LssScanState::running;
   bool confirming_ = false;
   bool repeated_ = false;
+  bool may_have_switched_ = false;
 };
 
 /// Finds the lowest LSS address in ranges of revision and serial number of one product, by halving

@@ -162,6 +162,8 @@ std::string_view name(SdoFault fault) noexcept {
       return "LSS service failed";
     case SdoFault::lss_refused:
       return "LSS service refused";
+    case SdoFault::wrong_length:
+      return "wrong length";
   }
   return "unknown";
 }

@@ -75,7 +75,7 @@ void Network::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
     return touched(asked, now);
   }
   if (frame.id == default_sdo_channel(plan_.master_id).request) {
-    if (!observe_) server_.on_frame(frame, now, out);
+    if (!observe_) ask_own_dictionary(frame, now);
     return;
   }
   const std::uint32_t node = frame.id.id() & 0x7F;
@@ -118,9 +118,9 @@ void Network::on_time(Time now, Outbox& out) noexcept {
   follow_start(now);
   send_heartbeat(now, out);
   send_own_commands(now, out);
+  serve_own_dictionary(now, out);  // what it confirms follows
   send_commands(now, out);
   if (!observe_) lss_.on_time(now, out, statuses_);
-  serve_own_dictionary(now, out);
   run_sessions(now, out);
   out.set_limit(limit);
 }
@@ -135,12 +135,18 @@ void Network::send_heartbeat(Time now, Outbox& out) noexcept {
   if (heartbeat_at_ <= now) heartbeat_at_ = now + plan_.master_heartbeat;
 }
 
-void Network::serve_own_dictionary(Time now, Outbox& out) noexcept {
-  // A block goes out in one turn, as far as there is room.
-  while (server_.deadline() <= now && out.room() != 0) server_.on_time(now, out);
+/// What is confirmed must not be lost.
+void Network::ask_own_dictionary(const Frame& frame, Time now) noexcept {
+  using enum SdoServer::Orders;
+  server_.on_frame(frame, now, stopping_ || requests_.full() ? refused : taken);
   if (const auto order = server_.take_order()) {
     requests_.accept({.kind = RequestKind::nmt, .node = order->node, .command = order->command});
   }
+}
+
+/// A block goes out in one turn, as far as there is room.
+void Network::serve_own_dictionary(Time now, Outbox& out) noexcept {
+  while (server_.deadline() <= now && out.room() != 0) server_.on_time(now, out);
 }
 
 void Network::run_sessions(Time now, Outbox& out) noexcept {
@@ -175,6 +181,13 @@ Time Network::deadline() const noexcept {
   if (command_ != nullptr || requests_.has_waiting(0) || !broadcasts_.empty()) return at_once;
   return std::min(
       {heartbeat_at_, server_.deadline(), start_.deadline(), lss_.deadline(), first_deadline()});
+}
+
+void Network::withdraw(std::uint64_t id) noexcept {
+  requests_.withdraw(id);
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // it may turn to the next one
+  }
 }
 
 bool Network::submit(const Request& request, Time now) noexcept {

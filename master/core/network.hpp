@@ -51,7 +51,10 @@ class Network {
   /// False: queue full, the caller answers. Every accepted request is answered exactly once.
   bool submit(const Request& request, Time now) noexcept;
   bool take(Reply& reply) noexcept;
+  /// Answers the requests of this id of which nothing was sent so far.
+  void withdraw(std::uint64_t id) noexcept;
   bool take(Event& event) noexcept;
+  std::uint64_t events_lost() const noexcept { return events_.lost(); }
 
   /// In the order of plan.nodes.
   std::span<const NodeStatus> nodes() const noexcept;
@@ -99,6 +102,7 @@ class Network {
   void command_master(NmtCommand command) noexcept;
   void send_own_commands(Time now, Outbox& out) noexcept;
   void follow_start(Time now) noexcept;
+  void begin_anew(Time now) noexcept;
   void on_loss(std::size_t index, Time now) noexcept;
   void on_mandatory_loss(Time now) noexcept;
   void halt_group(std::size_t index) noexcept;
@@ -106,6 +110,7 @@ class Network {
   void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
             std::uint8_t node = 0) noexcept;
   NodeSession* emcy_sender(CobId id) noexcept;
+  void ask_own_dictionary(const Frame& frame, Time now) noexcept;
   void serve_own_dictionary(Time now, Outbox& out) noexcept;
   void run_sessions(Time now, Outbox& out) noexcept;
   Time first_deadline() const noexcept;

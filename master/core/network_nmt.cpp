@@ -120,6 +120,14 @@ bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noe
   return true;
 }
 
+void Network::begin_anew(Time now) noexcept {
+  start_.begin(now);
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].on_network_reset();
+    touched(i, now);
+  }
+}
+
 void Network::send_own_commands(Time now, Outbox& out) noexcept {
   while (!broadcasts_.empty()) {
     if (!send_command(broadcasts_.front(), now, out)) return;
@@ -128,7 +136,7 @@ void Network::send_own_commands(Time now, Outbox& out) noexcept {
     if (sent.command == NmtCommand::stop) {
       for (NodeSession& session : sessions_) session.await_command();
     }
-    if (is_reset(sent.command)) start_.begin(now);
+    if (is_reset(sent.command)) begin_anew(now);
   }
 }
 

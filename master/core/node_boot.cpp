@@ -114,10 +114,10 @@ void NodeSession::on_boot_failed(Time now) noexcept {
   runner_.stop();
   guard_.stop();
   BootFailure failure = runner_.failure();
-  // A node that should be alive and shows no sign of it is asked by SDO next, still without a
-  // reset.
+  // A node that should be alive and shows no sign of it is asked by SDO next: it may be OPERATIONAL
+  // and have no heartbeat.
   const bool silent = failure.action == BootAction::await_alive;
-  retry_later(BootState::failed, silent ? BootRunner::From::bootup : BootRunner::From::beginning,
+  retry_later(BootState::failed, silent ? BootRunner::From::silent : BootRunner::From::beginning,
               now);
   if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
   if (met_counter_too_early(failure) && !std::exchange(counter_excused_, true)) {

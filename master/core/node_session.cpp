@@ -22,7 +22,7 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
       runner_{plan.boot_plan},
       watch_{plan.heartbeat_timeout},
       guard_{plan.guard},
-      twins_{plan.heartbeat_period} {}
+      twins_{plan.heartbeat_period, plan.sdo.channel_of(plan.id).request} {}
 
 void NodeSession::tell(EventKind kind, Time now, std::int64_t value,
                        std::uint32_t detail) noexcept {
@@ -106,6 +106,13 @@ void NodeSession::begin_request(Time now) noexcept {
 
 void NodeSession::on_request(Time now) noexcept { advance(now); }
 
+bool NodeSession::withdraw(std::uint64_t id) noexcept {
+  if (active_ == nullptr || active_->request.id != id || client_.begun()) return false;
+  client_.cancel();
+  if (const auto result = client_.take_result()) answer_request(*result);
+  return true;
+}
+
 void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
   tell_twin(twins_.on_sdo_answer(frame, now), now);
   client_.on_frame(frame, now);
@@ -149,14 +156,15 @@ void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
 
 void NodeSession::on_bootup(Time now) noexcept {
   if (stopping_) return;
-  if (managed_ == Managed::no) return tell(EventKind::node_state, now, 0);
+  const bool again = managed_ == Managed::yes && status_.boot == BootState::ready;
+  tell(again ? EventKind::bootup_again : EventKind::node_state, now);
+  if (managed_ == Managed::no) return;
   if (booting()) {
     guard_.node_was_reset();
     runner_.on_bootup(now, client_);
     return advance(now);
   }
   node_was_reset();
-  if (status_.boot == BootState::ready) tell(EventKind::bootup_again, now);
   if (halted_) return;
   if (restless(now)) {
     if (status_.boot == BootState::ready)
@@ -216,11 +224,10 @@ void NodeSession::node_was_reset() noexcept {
 }
 
 void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
-  Emcy emcy = emcy_of(plan_->id, frame);
-  if (frame.length == 1) {  // no code: what was told before stands
-    emcy.code = status_.last_emcy;
-    emcy.error_register = status_.error_register;
-  }
+  if (frame.length == 0) return;
+  Emcy emcy = emcy_of(plan_->id, frame);  // what it lacks stands as it was told before
+  if (frame.length < 2) emcy.code = status_.last_emcy;
+  if (frame.length < 3) emcy.error_register = status_.error_register;
   if (!watch_.on_emcy(emcy, now, status_)) return;
   Event event{.when = now,
               .kind = EventKind::emcy,
@@ -342,6 +349,7 @@ void NodeSession::excuse(Time away) noexcept {
   watch_.excuse(away);
   guard_.excuse(away);
   client_.excuse(away);
+  runner_.excuse(away);
 }
 
 void NodeSession::begin_stop() noexcept {

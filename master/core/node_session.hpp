@@ -60,6 +60,9 @@ class NodeSession {
   void on_emcy(const Frame& frame, Time now) noexcept;
   /// A request for this node has been accepted.
   void on_request(Time now) noexcept;
+  /// Answers the request of this id that has its turn but was not sent so far; false: there is
+  /// none.
+  bool withdraw(std::uint64_t id) noexcept;
   /// An NMT command that covers this node has been sent for an application.
   void on_commanded(NmtCommand command, Time now) noexcept;
   /// False: it had nothing to send, or `out` has no room.
@@ -70,6 +73,8 @@ class NodeSession {
 
   /// The network is started: nodes that come later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
+  /// The network begins anew: nobody is started until it is complete.
+  void on_network_reset() noexcept { network_started_ = status_.boot_tried = false; }
   /// A node that was ready has fallen silent; told once.
   bool take_loss() noexcept { return std::exchange(loss_, false); }
   /// NMT stop, and no boot until an application resets or starts the node.

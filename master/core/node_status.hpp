@@ -21,7 +21,7 @@ enum class BootState : std::uint8_t {
 struct NodeStatus {
   NmtState nmt = NmtState::unknown;
   BootState boot = BootState::idle;
-  bool boot_tried = false;      ///< a boot has ended, well or not
+  bool boot_tried = false;      ///< a boot has ended, well or not, since the network began
   char boot_letter = 0;         ///< status of CiA 302-2 of the newest boot: A..O, 0 = good
   std::uint16_t boot_step = 0;  ///< of the plan, counted from 0
   std::uint8_t error_register = 0;

@@ -17,11 +17,30 @@ constexpr std::string_view device_name = "takt CANopen master";
 constexpr std::uint8_t all_nodes = 128;  // sub-index of 0x1F82
 constexpr std::uint32_t makes_sync = 0x4000'0000;
 constexpr std::uint32_t makes_time = 0x4000'0000;
-constexpr std::uint32_t is_master = 0x01;      // 0x1F80, bit 0
-constexpr std::uint32_t starts_nobody = 0x08;  // bit 3
-constexpr std::uint32_t is_slave = 0x01;       // 0x1F81, bit 0
-constexpr std::uint32_t is_booted = 0x04;      // bit 2
-constexpr std::uint32_t is_mandatory = 0x08;   // bit 3
+
+/// Bits of 0x1F80. CiA 302-2.
+namespace start_up {
+constexpr std::uint32_t is_master = 0x01;
+constexpr std::uint32_t starts_all_at_once = 0x02;
+constexpr std::uint32_t stays_preoperational = 0x04;
+constexpr std::uint32_t starts_nobody = 0x08;
+constexpr std::uint32_t resets_all = 0x10;
+constexpr std::uint32_t stops_all = 0x40;
+}  // namespace start_up
+
+/// Bits of 0x1F81. CiA 302-2.
+namespace assigned {
+constexpr std::uint32_t is_slave = 0x01;
+constexpr std::uint32_t is_booted = 0x04;
+constexpr std::uint32_t is_mandatory = 0x08;
+constexpr std::uint32_t is_kept_alive = 0x10;
+constexpr std::uint32_t is_verified = 0x20;
+constexpr std::uint32_t is_updated = 0x40;
+constexpr std::uint32_t is_restored = 0x80;
+}  // namespace assigned
+
+constexpr ObjectKey software{0x1F56, 1};
+constexpr std::uint16_t restore_defaults = 0x1011;
 
 Value refuse(std::uint32_t code) noexcept { return {.abort_code = code}; }
 
@@ -75,10 +94,73 @@ std::optional<NmtCommand> requested(std::uint8_t code) noexcept {
   }
 }
 
-/// One value for each node: 0x1F81, 0x1F84-0x1F88, and the counters 0x2100-0x2103.
+/// One value for each node.
 constexpr bool is_node_list(std::uint16_t index) noexcept {
-  return index == 0x1F81 || (index >= 0x1F84 && index <= 0x1F88) ||
-         (index >= 0x2100 && index <= 0x2103);
+  switch (index) {
+    case 0x1F26:  // configuration date
+    case 0x1F27:  // configuration time
+    case 0x1F55:  // software version
+    case 0x1F81:  // assignment
+    case 0x1F84:  // device type
+    case 0x1F85:  // vendor id
+    case 0x1F86:  // product code
+    case 0x1F87:  // revision number
+    case 0x1F88:  // serial number
+    case 0x1F8A:  // sub-index of 0x1011
+      return true;
+    default:
+      return index >= 0x2100 && index <= 0x2103;
+  }
+}
+
+/// 0x1F80.
+std::uint32_t start_up_of(const BusPlan& plan) noexcept {
+  using namespace start_up;
+  std::uint32_t bits = is_master;
+  if (plan.start_up.start_all) bits |= starts_all_at_once;
+  if (!plan.start_up.start_master) bits |= stays_preoperational;
+  if (!plan.start_nodes) bits |= starts_nobody;
+  if (plan.start_up.on_loss == MandatoryLoss::reset_all) bits |= resets_all;
+  if (plan.start_up.on_loss == MandatoryLoss::stop_all) bits |= stops_all;
+  return bits;
+}
+
+/// 0x1F8A of a node; 0: nothing is restored.
+std::uint8_t restored_sub(const BootPlan& boot) noexcept {
+  const auto restores = [](const BootStep& step) {
+    return step.action == BootAction::write && step.object.index == restore_defaults;
+  };
+  const auto found = std::ranges::find_if(boot.steps, restores);
+  return found == boot.steps.end() ? std::uint8_t{0} : found->object.sub;
+}
+
+/// What the boot of a node looks for in an object; 0: it does not look.
+std::uint32_t expected(const NodePlan& node, ObjectKey object) noexcept {
+  for (const BootStep& step : node.boot_plan.steps) {
+    const bool looks = step.action == BootAction::expect || step.action == BootAction::compare;
+    if (looks && step.object == object) return load_le<std::uint32_t>(std::span{step.value});
+  }
+  return 0;
+}
+
+/// 0x1F81 of a node.
+std::uint32_t assignment_of(const NodePlan& node) noexcept {
+  using namespace assigned;
+  const auto has = [&](BootAction action) {
+    return std::ranges::find(node.boot_plan.steps, action, &BootStep::action) !=
+           node.boot_plan.steps.end();
+  };
+  std::uint32_t bits = is_slave;
+  if (node.boot) bits |= is_booted;
+  if (node.mandatory) bits |= is_mandatory;
+  if (has(BootAction::await_alive)) bits |= is_kept_alive;
+  if (expected(node, software) != 0) bits |= is_verified;
+  if (has(BootAction::download_program)) bits |= is_updated;
+  if (restored_sub(node.boot_plan) != 0) bits |= is_restored;
+  const std::uint64_t guard_ms = count_of<std::chrono::milliseconds>(node.guard.period);
+  if (guard_ms == 0) return bits;
+  const auto time = static_cast<std::uint32_t>(std::min<std::uint64_t>(guard_ms, 0xFFFF));
+  return bits | time << 16U | std::uint32_t{node.guard.retries} << 8U;
 }
 
 }  // namespace
@@ -139,8 +221,16 @@ Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
     case 0x1019:
       value = number(cycle.sync_overflow);
       break;
+    case 0x102A:
+      value = number(static_cast<std::uint16_t>(
+          count_of<std::chrono::microseconds>(plan_.start_up.nmt_inhibit) / 100));
+      break;
     case 0x1F80:
-      value = number(is_master | (plan_.start_nodes ? 0U : starts_nobody));
+      value = number(start_up_of(plan_));
+      break;
+    case 0x1F89:
+      value = number(static_cast<std::uint32_t>(
+          count_of<std::chrono::milliseconds>(plan_.start_up.boot_time)));
       break;
     default:
       break;
@@ -170,6 +260,9 @@ Value OwnDictionary::read_nodes(ObjectKey key) const noexcept {
   }
   const std::uint8_t node = position_[key.sub];
   if (states) return number(node == no_node ? std::uint8_t{0} : state_code(statuses_[node]));
+  if (key.index == 0x1F8A) {
+    return number(node == no_node ? std::uint8_t{0} : restored_sub(plan_.nodes[node].boot_plan));
+  }
   return number(node == no_node ? 0U : node_value(key.index, node));
 }
 
@@ -178,7 +271,13 @@ std::uint32_t OwnDictionary::node_value(std::uint16_t index, std::size_t positio
   const NodeStatus& status = statuses_[position];
   switch (index) {
     case 0x1F81:
-      return is_slave | (node.boot ? is_booted : 0U) | (node.mandatory ? is_mandatory : 0U);
+      return assignment_of(node);
+    case 0x1F26:
+      return expected(node, {0x1020, 1});
+    case 0x1F27:
+      return expected(node, {0x1020, 2});
+    case 0x1F55:
+      return expected(node, software);
     case 0x1F84:
       return expected(node, {0x1000, 0});
     case 0x2100:
@@ -192,15 +291,6 @@ std::uint32_t OwnDictionary::node_value(std::uint16_t index, std::size_t positio
     default:  // 0x1F85-0x1F88
       return expected(node, {0x1018, static_cast<std::uint8_t>(index - 0x1F84)});
   }
-}
-
-/// What the boot of a node expects; 0: it does not look.
-std::uint32_t OwnDictionary::expected(const NodePlan& node, ObjectKey object) const noexcept {
-  for (const BootStep& step : node.boot_plan.steps) {
-    if (step.action != BootAction::expect || step.object != object) continue;
-    return load_le<std::uint32_t>(std::span{step.value});
-  }
-  return 0;
 }
 
 OwnDictionary::Order OwnDictionary::write(ObjectKey key,

@@ -61,6 +61,14 @@ void RequestTable::cancel_all() noexcept {
   }
 }
 
+void RequestTable::withdraw(std::uint64_t id) noexcept {
+  for (RequestSlot& slot : slots_) {
+    if (slot.state == RequestSlot::State::waiting && slot.request.id == id) {
+      answer(slot, SdoFault::cancelled);
+    }
+  }
+}
+
 bool RequestTable::take(Reply& reply) noexcept {
   if (answered_ == 0) return false;
   const RequestSlot* found = oldest(RequestSlot::State::answered, any_lane);

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,9 @@ class RequestTable {
     if (request.kind == RequestKind::lss) return lss_lane;
     return request.kind == RequestKind::nmt ? std::uint8_t{0} : request.node;
   }
+  bool full() const noexcept {
+    return std::ranges::find(slots_, RequestSlot::State::free, &RequestSlot::state) == slots_.end();
+  }
   /// Null: no room.
   RequestSlot* accept(const Request& request) noexcept;
   /// Makes the oldest waiting request of a lane the active one. Null: nobody waits.
@@ -40,6 +44,8 @@ class RequestTable {
               std::size_t size = 0) noexcept;
   /// Answers all that wait or are active.
   void cancel_all() noexcept;
+  /// Answers those of this id that still wait.
+  void withdraw(std::uint64_t id) noexcept;
   bool take(Reply& reply) noexcept;
   /// Nobody waits, for his turn or to be answered.
   bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }

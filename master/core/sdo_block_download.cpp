@@ -51,6 +51,7 @@ void SdoBlockDownload::sent() noexcept {
 
 SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
   using Kind = SdoBlockStep::Kind;
+  if (state_ != State::initiate && accepts(frame)) return {};  // said twice
   switch (state_) {
     case State::initiate:
       return on_accept(frame);
@@ -59,16 +60,19 @@ SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
       break;
     case State::end:
       if (is_block_end_confirm(frame)) return {.kind = Kind::done};
-      if (is_block_confirm(frame)) return {.kind = Kind::stranger};  // said twice
+      if (is_block_confirm(frame)) return {};  // said twice
       break;
   }
   return block_abort(abort_code::command_unknown);
 }
 
+bool SdoBlockDownload::accepts(const Frame& frame) const noexcept {
+  return is_block_accept(frame) && sdo_object(frame) == object_;
+}
+
 SdoBlockStep SdoBlockDownload::on_accept(const Frame& frame) noexcept {
-  if (!is_block_accept(frame)) return {};
+  if (!accepts(frame)) return {};
   const SdoBlockAccept accept = decode_block_accept(frame);
-  if (accept.object != object_) return {};
   if (!valid_block_size(accept.segments)) return block_abort(abort_code::block_size);
   crc_used_ = accept.crc;
   block_segments_ = accept.segments;
@@ -80,11 +84,15 @@ SdoBlockStep SdoBlockDownload::on_accept(const Frame& frame) noexcept {
 /// Comes in the middle of a sub-block too: some servers confirm as soon as a segment is missing.
 SdoBlockStep SdoBlockDownload::on_confirm(const Frame& frame) noexcept {
   const SdoBlockConfirm confirm = decode_block_confirm(frame);
-  if (confirm.received > sent_in_block_) return block_abort(abort_code::sequence);
+  if (confirm.received > sent_in_block_) {
+    if (confirm == newest_) return {};  // of the sub-block before, said twice
+    return block_abort(abort_code::sequence);
+  }
   if (!valid_block_size(confirm.segments)) return block_abort(abort_code::block_size);
   confirmed_ = std::min(confirmed_ + confirm.received * segment_bytes, value_.size());
   fruitless_ = confirm.received == 0 ? static_cast<std::uint8_t>(fruitless_ + 1) : std::uint8_t{0};
   if (fruitless_ == most_fruitless_blocks) return block_abort(abort_code::sequence);
+  newest_ = confirm;
   block_segments_ = confirm.segments;
   sent_in_block_ = 0;
   waits_ = false;

@@ -34,6 +34,7 @@ class SdoBlockDownload {
  private:
   enum class State : std::uint8_t { initiate, segments, end };
 
+  bool accepts(const Frame& frame) const noexcept;
   SdoBlockStep on_accept(const Frame& frame) noexcept;
   SdoBlockStep on_confirm(const Frame& frame) noexcept;
   std::size_t offset() const noexcept { return confirmed_ + sent_in_block_ * segment_bytes; }
@@ -47,6 +48,7 @@ class SdoBlockDownload {
   std::uint8_t block_segments_ = 0;
   std::uint8_t sent_in_block_ = 0;
   std::uint8_t fruitless_ = 0;
+  std::optional<SdoBlockConfirm> newest_;
   std::uint16_t crc_ = 0;
   std::size_t summed_ = 0;  ///< bytes in crc_
   std::size_t confirmed_ = 0;

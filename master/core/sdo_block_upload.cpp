@@ -65,10 +65,10 @@ SdoBlockStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
 }
 
 SdoBlockStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
-  if (to_send_ == Next::start) return {};  // before it was asked for
+  if (to_send_ != Next::nothing) return {};  // before it was asked for, or once more
   const SdoBlockSegment part = decode_block_segment(frame);
   if (part.number == 0 || part.number > setup_.segments) return block_abort(abort_code::sequence);
-  if (part.number == in_sequence_ + 1 && to_send_ == Next::nothing) {
+  if (part.number == in_sequence_ + 1) {
     if (holds_ && !commit(segment_bytes)) {
       return {.kind = Kind::abort,
               .fault = SdoFault::too_long,
@@ -107,8 +107,10 @@ bool SdoBlockUpload::confirm_after_silence() noexcept {
 }
 
 SdoBlockStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
-  if (!is_block_end(frame)) return {};  // a segment that was under way already
+  const bool confirmed = to_send_ == Next::nothing;
+  if (!confirmed || !is_block_end(frame)) return {};  // a segment that was under way already
   const SdoBlockEnd end = decode_block_end(frame);
+  if (repeats_last(frame) && end.crc != crc_with_held(end)) return {};
   if (!commit(segment_bytes - end.unused)) {
     return {
         .kind = Kind::abort, .fault = SdoFault::too_long, .abort_code = abort_code::out_of_memory};
@@ -118,6 +120,17 @@ SdoBlockStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   state_ = State::done;
   to_send_ = Next::end;
   return {.kind = Kind::done};
+}
+
+/// The last segment once more; of some numbers it looks like the end of the transfer.
+bool SdoBlockUpload::repeats_last(const Frame& frame) const noexcept {
+  const SdoBlockSegment part = decode_block_segment(frame);
+  return part.last && part.number == confirmed_ && part.data == held_;
+}
+
+/// What the end has to say.
+std::uint16_t SdoBlockUpload::crc_with_held(const SdoBlockEnd& end) const noexcept {
+  return crc_used_ ? sdo_crc(std::span{held_}.first(segment_bytes - end.unused), crc_) : 0;
 }
 
 bool SdoBlockUpload::commit(std::size_t bytes) noexcept {

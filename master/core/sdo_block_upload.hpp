@@ -8,6 +8,7 @@
 #include "eds_parser/table/sdo_access.hpp"
 #include "master/core/sdo_block.hpp"
 #include "master/wire/frame.hpp"
+#include "master/wire/sdo_block_codec.hpp"
 
 namespace takt {
 
@@ -53,6 +54,8 @@ class SdoBlockUpload {
   SdoBlockStep on_accept(const Frame& frame) noexcept;
   SdoBlockStep on_segment(const Frame& frame) noexcept;
   SdoBlockStep on_end(const Frame& frame) noexcept;
+  bool repeats_last(const Frame& frame) const noexcept;
+  std::uint16_t crc_with_held(const SdoBlockEnd& end) const noexcept;
   void confirm() noexcept;
   // The newest segment, or what of it is data, into the buffer. False: no room.
   bool commit(std::size_t bytes) noexcept;

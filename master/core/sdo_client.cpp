@@ -81,9 +81,8 @@ void SdoClient::begin_plain(State state) noexcept {
 
 void SdoClient::cancel() noexcept {
   if (state_ == State::idle || state_ == State::settling) return;
-  const bool begun = last_sent_.length != 0;
   abort(SdoFault::cancelled, abort_code::general_error);
-  if (!begun) to_send_.reset();
+  if (!begun()) to_send_.reset();
 }
 
 void SdoClient::drop() noexcept {
@@ -164,10 +163,18 @@ void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
   late_segments_ = segments;
 }
 
+/// Of a block, only the last segment may be short.
+bool SdoClient::is_whole(const Frame& frame) const noexcept {
+  const bool segment =
+      state_ == State::block_upload && block_upload_.in_sub_block() && frame.data[0] != 0x80;
+  if (segment) return frame.length == 8 || (frame.length > 1 && (frame.data[0] & 0x80) != 0);
+  return frame.length >= sdo_answer_bytes(frame);
+}
+
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
   // While a request waits to be sent, every answer belongs to an earlier one.
   if (state_ == State::idle || state_ == State::settling) return;
-  if (to_send_ || frame.length < 8) return;
+  if (to_send_ || !is_whole(frame)) return;
   if (state_ == State::block_upload || state_ == State::block_download) return on_block(frame, now);
   if (late_segments_ && in_initiate() && sdo_object(frame) != object_) return;
   switch (sdo_answer(frame)) {
@@ -216,9 +223,9 @@ bool SdoClient::fall_back(std::uint32_t code) noexcept {
 }
 
 void SdoClient::on_block(const Frame& frame, Time now) noexcept {
-  if (frame.data[0] == 0x80)
-    return on_abort(frame, now);       // as a segment it would have the number 0
   if (last_sent_.length == 0) return;  // nothing has been asked yet
+  if (frame.data[0] == 0x80)
+    return on_abort(frame, now);  // as a segment it would have the number 0
   const bool upload = state_ == State::block_upload;
   const SdoBlockStep step =
       upload ? block_upload_.on_frame(frame) : block_download_.on_frame(frame);

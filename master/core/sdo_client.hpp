@@ -73,6 +73,8 @@ class SdoClient {
   const SdoChannel& channel() const noexcept { return channel_; }
   /// The newest frames of the newest transfer, for reports. Length 0: there is none.
   const Frame& last_sent() const noexcept { return last_sent_; }
+  /// Some frame of the transfer was sent.
+  bool begun() const noexcept { return last_sent_.length != 0; }
   const Frame& last_received() const noexcept { return last_received_; }
 
   template <class Archive>
@@ -108,6 +110,7 @@ class SdoClient {
   void on_abort(const Frame& frame, Time now) noexcept;
   void on_block(const Frame& frame, Time now) noexcept;
   bool fall_back(std::uint32_t code) noexcept;
+  bool is_whole(const Frame& frame) const noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
   void on_upload_segment(const Frame& frame) noexcept;
   void on_download_confirmed(const Frame& frame) noexcept;

@@ -36,8 +36,9 @@ void SdoServer::on_time(Time now, Outbox& out) noexcept {
   deadline_ = state_ == State::idle ? never : now + patience;
 }
 
-void SdoServer::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
+void SdoServer::on_frame(const Frame& frame, Time now, Orders orders) noexcept {
   if (frame.length < 8 || frame.rtr) return;
+  orders_ = orders;
   if (state_ != State::idle) deadline_ = now + patience;
   if (frame.data[0] == 0x80 ||
       (state_ != State::block_download && sdo_request(frame) == SdoRequest::abort)) {
@@ -141,6 +142,7 @@ bool SdoServer::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
 void SdoServer::write(std::span<const std::byte> value, const Frame& confirmation) noexcept {
   const OwnDictionary::Order order = dictionary_.write(object_, value);
   if (order.abort_code != 0) return abort(order.abort_code);
+  if (orders_ == Orders::refused) return abort(abort_code::device_state);
   order_ = order;
   answer(confirmation, State::idle);
 }

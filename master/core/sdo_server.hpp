@@ -21,7 +21,10 @@ class SdoServer {
   SdoServer(SdoChannel channel, const OwnDictionary& dictionary) noexcept
       : channel_{channel}, dictionary_{dictionary} {}
 
-  void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  /// What becomes of NMT that a client asks for now.
+  enum class Orders : std::uint8_t { taken, refused };
+
+  void on_frame(const Frame& frame, Time now, Orders orders) noexcept;
   /// Looks at the deadline and sends at most one frame.
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept { return to_send_ || sending_block() ? at_once : deadline_; }
@@ -64,6 +67,7 @@ class SdoServer {
   SdoChannel channel_;
   const OwnDictionary& dictionary_;
   State state_ = State::idle;
+  Orders orders_ = Orders::taken;
   ObjectKey object_;
   bool toggle_ = false;
   bool crc_used_ = false;

@@ -12,7 +12,6 @@ enum class Request : std::uint8_t { other, transfer, block };
 
 /// Begins a transfer, or answers its beginning. CiA 301, 7.2.4.3: every one has exactly one answer.
 Request request_of(const Frame& frame) noexcept {
-  if ((frame.id.id() & 0x780U) != 0x600) return Request::other;
   switch (frame.data[0] >> 5U) {
     case 1:
     case 2:
@@ -27,7 +26,7 @@ Request request_of(const Frame& frame) noexcept {
 
 bool answers_transfer(const Frame& frame) noexcept {
   const unsigned command = frame.data[0] >> 5U;
-  return frame.length == 8 && (command == 2 || command == 3);
+  return frame.length >= 4 && (command == 2 || command == 3);
 }
 
 }  // namespace
@@ -57,7 +56,7 @@ std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
 
 void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
   for (const Frame& frame : frames) {
-    const Request request = request_of(frame);
+    const Request request = frame.id == sdo_request_ ? request_of(frame) : Request::other;
     if (request == Request::other) continue;
     block_ = request == Request::block;
     asked_ += !block_;

@@ -13,8 +13,10 @@ namespace takt {
 /// request. Told at most once in ten seconds.
 class TwinWatch {
  public:
-  /// `heartbeat_period` of the device; 0 = not known, heartbeats tell nothing.
-  explicit TwinWatch(Time heartbeat_period) noexcept : period_{heartbeat_period} {}
+  /// `heartbeat_period` of the device; 0 = not known, heartbeats tell nothing. `sdo_request` is
+  /// what its SDO server listens to.
+  TwinWatch(Time heartbeat_period, CobId sdo_request) noexcept
+      : period_{heartbeat_period}, sdo_request_{sdo_request} {}
 
   std::optional<DuplicateSign> on_heartbeat(Time now) noexcept;
   std::optional<DuplicateSign> on_sdo_answer(const Frame& frame, Time now) noexcept;
@@ -31,6 +33,7 @@ class TwinWatch {
   std::optional<DuplicateSign> once(DuplicateSign sign, Time now) noexcept;
 
   Time period_;
+  CobId sdo_request_;
   Time window_begin_{};
   std::uint32_t heartbeats_ = 0;
   std::uint32_t full_windows_ = 0;  // in a row, with too many heartbeats

@@ -88,6 +88,7 @@ AsciiError error_of(const Reply& reply) {
     case SdoFault::not_exchanging:
       return AsciiError::internal_state;
     case SdoFault::lss_refused:
+    case SdoFault::wrong_length:
       return AsciiError::not_supported;
     case SdoFault::lss_failed:
       break;

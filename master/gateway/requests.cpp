@@ -62,6 +62,8 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
     case SdoFault::lss_refused:
       return "the daemon takes 1 to 28 LSS services a request, and does not activate another bit "
              "rate while it runs: stop it and use takt lss with --bus";
+    case SdoFault::wrong_length:
+      return "the RPDO has another number of bytes: takt plan shows its mapping";
   }
   return {};
 }

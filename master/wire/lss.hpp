@@ -72,9 +72,25 @@ struct Answer {
   }
 };
 
+/// Bytes of an answer that say something; some devices send no more.
+constexpr std::size_t answer_bytes(std::uint8_t code) noexcept {
+  const auto inquire = static_cast<std::uint8_t>(Service::inquire);
+  if (code >= inquire && code < inquire + 4) return 5;
+  switch (static_cast<Service>(code)) {
+    case Service::configure_node_id:
+    case Service::configure_bit_timing:
+    case Service::store:
+    case Service::inquire_node_id:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
 /// None: no answer of an LSS slave.
 constexpr std::optional<Answer> decode_answer(const Frame& frame) noexcept {
-  if (frame.id != answer_cob_id || frame.rtr || frame.length != 8) return {};
+  const bool whole = frame.length >= answer_bytes(frame.data[0]);
+  if (frame.id != answer_cob_id || frame.rtr || !whole) return {};
   return Answer{frame.data[0], frame.data[1], frame.data[2],
                 load_le<std::uint32_t>(std::span{frame.data}.subspan(1))};
 }

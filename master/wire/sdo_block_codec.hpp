@@ -48,6 +48,8 @@ struct SdoBlockSegment {
 struct SdoBlockConfirm {
   std::uint8_t received = 0;  ///< number of the last segment that came in sequence
   std::uint8_t segments = 0;  ///< of the next sub-block
+
+  bool operator==(const SdoBlockConfirm&) const = default;
 };
 
 struct SdoBlockEnd {

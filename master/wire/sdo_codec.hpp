@@ -13,7 +13,7 @@
 namespace takt {
 
 /// SDO on the default channel, expedited and segmented. CiA 301, 7.2.4.3. All frames have eight
-/// bytes; unused ones are sent as zero and ignored on reception.
+/// bytes; unused ones are sent as zero and ignored on reception, or missing in frames of others.
 constexpr CobId sdo_request_cob_id(NodeId server) noexcept {
   return CobId::base(0x600U + server.value());
 }
@@ -214,5 +214,31 @@ constexpr SdoSegment decode_segment(const Frame& frame) noexcept {
 
 /// Toggle bit of any segment frame, request or answer.
 constexpr bool sdo_toggle(const Frame& frame) noexcept { return (frame.data[0] & 0x10) != 0; }
+
+/// Bytes of a server's frame that say something, segments of a block apart; some devices send no
+/// more.
+constexpr std::size_t sdo_answer_bytes(const Frame& frame) noexcept {
+  const unsigned subcommand = frame.data[0] & 3U;
+  switch (sdo_answer(frame)) {
+    case SdoAnswer::upload_segment:
+      return 1U + decode_segment(frame).size;
+    case SdoAnswer::upload_initiate: {
+      const SdoInitiate begin = decode_initiate(frame);
+      if (!begin.expedited) return 4;
+      return 4 + begin.size.value_or(1);
+    }
+    case SdoAnswer::download_initiate:
+    case SdoAnswer::abort:
+      return 4;
+    case SdoAnswer::block_download:  // accepted with a block size, the end confirmed, or a block
+      return subcommand == 0 ? 5 : (subcommand == 1 ? 1 : 3);
+    case SdoAnswer::block_upload:  // begin, or end with the checksum
+      return subcommand == 0 ? 4 : 3;
+    case SdoAnswer::download_segment:
+    case SdoAnswer::reserved:
+      break;
+  }
+  return 1;
+}
 
 }  // namespace takt

@@ -238,13 +238,31 @@ TEST(KeepAlive, ResetsANodeThatIsAliveButNotOperational) {
   EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
 }
 
-TEST(KeepAlive, WithoutASignOfLifeTheNodeIsBootedUnreset) {
+TEST(KeepAlive, WithoutASignOfLifeTheNodeIsAskedForItsHeartbeat) {
   Plant plant{valve("reset: keep_alive, heartbeat_producer: 100")};
   plant.run_without_master(1s);
   plant.run(5s);
   EXPECT_NE(plant.text_of(EventKind::boot_failed).find("E of CiA 302-2"), std::string::npos);
-  EXPECT_EQ(sent(plant, nmt(0x82, 5)), 0);
+  EXPECT_EQ(sent(plant, nmt(0x82, 5)), 1) << "its heartbeat says that it is not OPERATIONAL";
   EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
+}
+
+TEST(KeepAlive, AnOperationalNodeWithoutHeartbeatGetsOneAndNothingElse) {
+  Plant plant{valve("reset: keep_alive, heartbeat_producer: 100, heartbeat_consumer: false, "
+                    "sdo: [{index: 0x2000, value: 7}]"),
+              {fault(sim::FaultKind::self_start, 5_node)}};
+  plant.run_without_master(1s);
+  plant.run(5s);
+  EXPECT_NE(plant.text_of(EventKind::boot_failed).find("E of CiA 302-2"), std::string::npos);
+  EXPECT_EQ(plant.frames(0x000), 0) << "no NMT command at all";
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+  EXPECT_EQ(plant.node().boot_letter, 'L');
+  std::vector<std::uint16_t> written;
+  for (const Frame& frame : plant.wire.frames) {
+    if (frame.id != CobId::base(0x605) || (frame.data[0] >> 5U) != 1) continue;
+    written.push_back(static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8));
+  }
+  EXPECT_EQ(written, std::vector<std::uint16_t>{0x1017});
 }
 
 // configuration date, store, concise DCF

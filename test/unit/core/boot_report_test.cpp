@@ -286,6 +286,9 @@ TEST(Describe, IsOneLineAnEvent) {
   EXPECT_EQ(describe(plan, emcy),
             "node 5 'shoulder': EMCY 0x7310: speed sensor (error register: generic, profile; bytes "
             "10 73 21, always 8)");
+  emcy.detail = 2;
+  EXPECT_EQ(describe(plan, emcy),
+            "node 5 'shoulder': EMCY 0x7310: speed sensor (bytes 10 73, always 8)");
   emcy.detail = 1;
   emcy.bytes = {0x11};
   EXPECT_EQ(describe(plan, emcy),

@@ -74,6 +74,21 @@ struct Talk {
 // The bytes are those of CiA 305's services, for a slave of vendor 0x15A, product 2, revision
 // 0x00010003, serial number 0xA5.
 
+TEST(LssAnswer, MayLeaveOutTheBytesThatSayNothing) {
+  const auto decoded = [](std::initializer_list<std::uint8_t> bytes) {
+    return lss::decode_answer(make_frame(CobId::base(0x7E4), bytes));
+  };
+  EXPECT_TRUE(decoded({0x44}));
+  EXPECT_TRUE(decoded({0x4F}));
+  EXPECT_TRUE(decoded({0x50}));
+  EXPECT_EQ(decoded({0x11, 0x01})->error, 1);
+  EXPECT_EQ(decoded({0x5E, 0x05})->error, 5);
+  EXPECT_EQ(decoded({0x5A, 0x5A, 0x01, 0x00, 0x00})->number, 0x15AU);
+  EXPECT_FALSE(decoded({}));
+  EXPECT_FALSE(decoded({0x11}));
+  EXPECT_FALSE(decoded({0x5D, 0x11, 0x00, 0x00}));
+}
+
 TEST(LssMaster, SwitchesAllWithoutWaitingForAnAnswer) {
   Talk talk;
   const Time before = talk.now;
@@ -264,6 +279,40 @@ TEST(LssRunner, SendsAllToWaitingWhenAServiceFails) {
   ASSERT_EQ(runner.results().size(), 2U);
   EXPECT_EQ(runner.results()[1].outcome, LssOutcome::refused);
   EXPECT_EQ(talk.sent, (std::vector<Bytes>{{4, 1}, {0x11, 0x80}, {4, 0}}));
+}
+
+TEST(LssRunner, SendsAllToWaitingWhenTheLastAnswerOfAScanIsLost) {
+  Talk talk;
+  talk.slave = [](const Bytes& frame) {
+    const bool last = frame[6] == 3 && frame[7] == 0;
+    return frame[0] == 0x51 && !last ? std::vector<Bytes>{{0x4F}} : std::vector<Bytes>{};
+  };
+  const std::array<LssCommand, 2> commands{
+      LssCommand{.op = LssOp::fast_scan,
+                 .numbers = {0x15A, 2, 0x0001'0003, 0xA5, ~0U, ~0U, ~0U, ~0U}},
+      LssCommand{.op = LssOp::configure_node_id, .a = 5}};
+  LssRunner runner;
+
+  talk.run(runner, commands);
+
+  ASSERT_EQ(runner.results().size(), 1U);
+  EXPECT_EQ(runner.results()[0].outcome, LssOutcome::nobody);
+  EXPECT_EQ(talk.sent.back(), (Bytes{4, 0}));
+}
+
+TEST(LssRunner, SendsNothingAfterAScanThatFoundNobody) {
+  Talk talk;
+  talk.slave = [](const Bytes& frame) {
+    return frame[5] == 0x80 ? std::vector<Bytes>{{0x4F}} : std::vector<Bytes>{};
+  };
+  const std::array<LssCommand, 1> commands{LssCommand{
+      .op = LssOp::fast_scan, .numbers = {0x15A, 2, 0x0001'0003, 0xA5, ~0U, ~0U, ~0U, ~0U}}};
+  LssRunner runner;
+
+  talk.run(runner, commands);
+
+  EXPECT_EQ(runner.results()[0].outcome, LssOutcome::nobody);
+  EXPECT_EQ(talk.sent.back()[0], 0x51);
 }
 
 TEST(LssRunner, LeavesTheStateAloneThatItDidNotChange) {

@@ -88,6 +88,49 @@ TEST_F(NetworkTest, CancelsARequestWhoseNodeRestarts) {
   EXPECT_EQ(status().boot, BootState::ready);
 }
 
+TEST_F(NetworkTest, DoesNotSendARequestThatWasWithdrawnWhileItWaited) {
+  add_drive();
+  start();
+  run(100ms);
+  device().latency = 50ms;
+  network->submit(read(1, {0x1000, 0}), now);
+  Request write{.id = 2, .kind = RequestKind::sdo_download, .node = 5, .object = {0x6040, 0}};
+  write.size = 2;
+  network->submit(write, now);
+  network->submit(read(3, {0x1000, 0}), now);
+  run(10ms);
+
+  network->withdraw(1);  // is under way
+  network->withdraw(2);
+  run(200ms);
+
+  ASSERT_EQ(replies.size(), 3U);
+  EXPECT_EQ(replies[0].id, 2U);
+  EXPECT_EQ(replies[0].fault, SdoFault::cancelled);
+  EXPECT_EQ(replies[1].fault, SdoFault::none);
+  EXPECT_EQ(replies[2].fault, SdoFault::none);
+  EXPECT_TRUE(device().writes.empty());
+}
+
+TEST_F(NetworkTest, WithdrawsARequestThatHasItsTurnButWasNotSent) {
+  add_drive();
+  start();
+  run(100ms);
+  Request write{.id = 7, .kind = RequestKind::sdo_download, .node = 5, .object = {0x6040, 0}};
+  write.size = 2;
+  network->submit(write, now);
+  network->submit(read(8, {0x1000, 0}), now);
+
+  network->withdraw(7);
+  run(200ms);
+
+  ASSERT_EQ(replies.size(), 2U);
+  EXPECT_EQ(replies[0].id, 7U);
+  EXPECT_EQ(replies[0].fault, SdoFault::cancelled);
+  EXPECT_EQ(replies[1].fault, SdoFault::none);
+  EXPECT_TRUE(device().writes.empty());
+}
+
 TEST_F(NetworkTest, AnswersRequestsForNodesItDoesNotKnow) {
   add_drive();
   start();
@@ -147,6 +190,47 @@ TEST_F(NetworkTest, BootsANodeThatAnApplicationHasReset) {
   EXPECT_EQ(count(EventKind::heartbeat_lost), 0);
   EXPECT_EQ(sent_count(nmt({0x81, 0x05})), 1);
   EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 1);  // of the first boot only
+}
+
+// NMT by 0x1F82 of the master
+
+const Frame start_5 = padded(CobId::base(0x67F), {0x2F, 0x82, 0x1F, 0x05, 0x05});
+const Frame refused = padded(CobId::base(0x5FF), {0x80, 0x82, 0x1F, 0x05, 0x22, 0x00, 0x00, 0x08});
+
+TEST_F(NetworkTest, ConfirmsAnNmtRequestAndSendsItsCommand) {
+  add_drive();
+  start();
+  run(100ms);
+  sent.clear();
+  hear(start_5);
+  step();
+  EXPECT_EQ(sent, (std::vector<Frame>{padded(CobId::base(0x5FF), {0x60, 0x82, 0x1F, 0x05}),
+                                      nmt({0x01, 0x05})}));
+}
+
+TEST_F(NetworkTest, RefusesAnNmtRequestWhereItsQueueIsFull) {
+  add_drive();
+  start();
+  run(100ms);
+  device().latency = 1s;
+  while (network->submit(read(1, {0x1000, 0}), now)) {
+  }
+  sent.clear();
+  hear(start_5);
+  run(5ms);
+  EXPECT_EQ(sent_count(refused), 1);
+  EXPECT_EQ(sent_count(nmt({0x01, 0x05})), 0);
+}
+
+TEST_F(NetworkTest, RefusesAnNmtRequestWhileItStops) {
+  add_drive();
+  start();
+  run(100ms);
+  network->begin_stop(now);
+  run(2ms);
+  hear(start_5);
+  run(2ms);
+  EXPECT_EQ(sent_count(refused), 1);
 }
 
 // Stop

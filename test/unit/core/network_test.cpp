@@ -93,6 +93,23 @@ TEST_F(NetworkTest, BootsANodeThatRestartedWithoutResettingItAgain) {
   EXPECT_EQ(status().boot, BootState::ready);
 }
 
+TEST_F(NetworkTest, TellsEachBootUpMessage) {
+  add_drive();
+  start();
+  const auto bootups = [&] {
+    return std::ranges::count_if(events, [](const Event& event) {
+      return event.kind == EventKind::bootup_again ||
+             (event.kind == EventKind::node_state && event.value == 0);
+    });
+  };
+  run(200ms);
+  EXPECT_EQ(bootups(), 1) << "after the reset of its boot";
+  hear(heartbeat(0x00));
+  EXPECT_EQ(bootups(), 2) << "it was ready";
+  hear(heartbeat(0x00));
+  EXPECT_EQ(bootups(), 3) << "it was booting";
+}
+
 TEST_F(NetworkTest, BootsAFailedNodeAtOnceWithItsNextBootUpMessage) {
   add_drive();
   device().on = false;
@@ -114,6 +131,24 @@ TEST_F(NetworkTest, TellsOfANodeThatStaysAwayMoreAndMoreRarely) {
   EXPECT_LE(count(EventKind::boot_failed), 6);
   EXPECT_GE(count(EventKind::boot_failed), 4);
   EXPECT_LE(count(EventKind::boot_started), 6);
+}
+
+TEST_F(NetworkTest, CountsNoTimeOfItsOwnAbsenceWhileItBoots) {
+  NodePlan& drive = add_drive();
+  drive.boot_plan.steps.insert(drive.boot_plan.steps.end() - 1,
+                               {.action = BootAction::await_heartbeat, .timeout = 100ms});
+  start();
+  run(30ms);
+  ASSERT_EQ(status().boot, BootState::booting);
+  ASSERT_EQ(status().boot_step, 3);
+
+  now += 2s;
+  network->on_absence(2s);
+  step();
+  run(100ms);
+
+  EXPECT_EQ(count(EventKind::boot_failed), 0);
+  EXPECT_EQ(status().boot, BootState::ready);
 }
 
 TEST_F(NetworkTest, FollowsTheStateInTheHeartbeat) {
@@ -222,6 +257,26 @@ TEST_F(NetworkTest, TakesAnEmcyOfOneByteForNoErrorCode) {
   EXPECT_EQ(status().last_emcy, 0x7310) << "what was told before stands";
   EXPECT_EQ(status().error_register, 0x21);
   EXPECT_EQ(status().emcy_count, 2U);
+}
+
+TEST_F(NetworkTest, KeepsTheErrorRegisterThatAShortEmcyDoesNotTell) {
+  add_drive();
+  start();
+  hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
+  hear(make_frame(CobId::base(0x85), {0x20, 0x43}));
+  EXPECT_EQ(status().last_emcy, 0x4320);
+  EXPECT_EQ(status().error_register, 0x21);
+}
+
+TEST_F(NetworkTest, TakesAFrameWithoutBytesForNoEmcy) {
+  add_drive();
+  start();
+  hear(make_frame(CobId::base(0x85), {0x10, 0x73, 0x21, 1, 2, 3, 4, 5}));
+  hear(make_frame(CobId::base(0x85), {}));
+  EXPECT_EQ(count(EventKind::emcy), 1);
+  EXPECT_EQ(status().last_emcy, 0x7310);
+  EXPECT_EQ(status().error_register, 0x21);
+  EXPECT_EQ(status().emcy_count, 1U);
 }
 
 TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {

@@ -182,6 +182,26 @@ TEST_F(BlockDownload, AbortsAConfirmationOfMoreThanWasSent) {
   EXPECT_EQ(machine.on_frame(rx({0xA2, 0x03, 0x7F})).abort_code, 0x05040003U);
 }
 
+TEST_F(BlockDownload, TakesEachAnswerOnceThatComesTwice) {
+  begin(hello);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x1D}));
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x03}));
+  EXPECT_EQ(hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x03})), Kind::stranger);
+  sends_segment(0x01, "Hello C");
+  EXPECT_EQ(hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x03})), Kind::stranger);
+  sends_segment(0x02, "ANopen ");
+  sends_segment(0x03, "block t");
+  hears(rx({0xA2, 0x03, 0x03}));
+  EXPECT_EQ(hears(rx({0xA2, 0x03, 0x03})), Kind::stranger);
+  sends_segment(0x01, "ransfer");
+  EXPECT_EQ(hears(rx({0xA2, 0x03, 0x03})), Kind::stranger);
+  sends_segment(0x82, "!");
+  hears(rx({0xA2, 0x02, 0x03}));
+  EXPECT_EQ(hears(rx({0xA2, 0x02, 0x03})), Kind::stranger);
+  sends(tx({0xD9, 0xC3, 0xBA}));
+  EXPECT_EQ(hears(rx({0xA1})), Kind::done);
+}
+
 TEST_F(BlockDownload, TakesNoAnswerForAnotherObject) {
   begin(hello);
   machine.sent();

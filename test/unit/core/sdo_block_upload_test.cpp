@@ -104,6 +104,47 @@ TEST_F(BlockUpload, TakesADuplicateOnce) {
   EXPECT_EQ(hears(rx({0xD9, 0xC3, 0xBA})), Kind::done);
 }
 
+TEST_F(BlockUpload, ConfirmsABlockOnceWhoseLastSegmentComesTwice) {
+  begin_and_start();
+  for (const Frame& frame : {hello1, hello2, hello3, hello4, hello4}) hears(frame);
+  sends(tx({0xA2, 0x04, 0x04}));
+  waits();
+  hears(hello5);
+  sends(tx({0xA2, 0x01, 0x04}));
+  EXPECT_EQ(hears(rx({0xD9, 0xC3, 0xBA})), Kind::done);
+  EXPECT_EQ(text(), hello);
+}
+
+TEST_F(BlockUpload, TakesARepeatedLastSegmentForNoEnd) {
+  std::array<std::byte, 512> room{};
+  machine.begin({.channel = default_sdo_channel(5_node), .object = {0x1021, 0}, .segments = 127},
+                room);
+  machine.sent();
+  hears(rx({0xC6, 0x21, 0x10, 0x00, 0xC7, 0x01}));  // 455 bytes: 65 full segments
+  machine.sent();
+  const Frame last = segment(0xC1, {'a', 'b', 'c', 'd', 'e', 'f', 'g'});
+  for (std::uint8_t number = 1; number < 65; ++number) hears(segment(number, {'x'}));
+  hears(last);
+  EXPECT_EQ(hears(last), Kind::stranger);
+  sends(tx({0xA2, 0x41, 0x7F}));
+  EXPECT_EQ(hears(last), Kind::stranger);
+  EXPECT_EQ(hears(rx({0xC1, 0x57, 0x73})), Kind::done);
+  EXPECT_EQ(machine.received(), 455U);
+}
+
+TEST_F(BlockUpload, TakesTheEndOfManyZerosThoughItIsLikeTheLastSegment) {
+  std::array<std::byte, 512> room{};
+  machine.begin({.channel = default_sdo_channel(5_node), .object = {0x1021, 0}, .segments = 127},
+                room);
+  machine.sent();
+  hears(rx({0xC6, 0x21, 0x10, 0x00, 0xC7, 0x01}));
+  machine.sent();
+  for (std::uint8_t number = 1; number < 65; ++number) hears(segment(number, {}));
+  hears(segment(0xC1, {}));
+  sends(tx({0xA2, 0x41, 0x7F}));
+  EXPECT_EQ(hears(rx({0xC1})), Kind::done);
+}
+
 TEST_F(BlockUpload, AbortsWhenTheCrcIsWrong) {
   begin_and_start();
   for (const Frame& frame : {hello1, hello2, hello3, hello4}) hears(frame);

@@ -116,6 +116,13 @@ TEST_F(SdoClientBlock, ReportsARefusalThatHasNothingToDoWithBlock) {
   sends_nothing();
 }
 
+TEST_F(SdoClientBlock, TakesNoAbortBeforeItHasAskedForAnything) {
+  download(128);
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.take_result());
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+}
+
 TEST_F(SdoClientBlock, DoesNotFallBackOnceDataHaveMoved) {
   download(128);
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
@@ -157,6 +164,35 @@ TEST_F(SdoClientBlock, ConfirmsWhatItHasWhenTheServerFallsSilentInABlock) {
   now += 500ms;
   sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
   EXPECT_EQ(client.take_result()->fault, SdoFault::timeout);
+}
+
+TEST_F(SdoClientBlock, TakesShortFramesThatSayEverything) {
+  const auto short_rx = [](std::initializer_list<std::uint8_t> bytes) {
+    return make_frame(CobId::base(0x585), bytes);
+  };
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
+  hears(short_rx({0xC0, 0x21, 0x10, 0x00}));
+  sends(tx({0xA3}));
+  hears(short_rx({0x01, 1, 2}));  // not the last one, so that something is missing
+  hears(segment(0x01, {1, 2, 3, 4, 5, 6, 7}));
+  hears(short_rx({0x82, 8, 9}));
+  sends(tx({0xA2, 0x02, 0x7F}));
+  hears(short_rx({0xD5, 0x00, 0x00}));
+  EXPECT_EQ(client.take_result()->size, 9U);
+  EXPECT_EQ(buffer[8], std::byte{9});
+  sends(tx({0xA1}));
+
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(short_rx({0xA0, 0x50, 0x1F, 0x01}));
+  sends_nothing();  // it lacks the block size
+  hears(short_rx({0xA0, 0x50, 0x1F, 0x01, 0x7F}));
+  sends_some(19);
+  hears(short_rx({0xA2, 0x13, 0x7F}));
+  sends_some(1);
+  hears(short_rx({0xA1}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
 }
 
 TEST_F(SdoClientBlock, TimesOutInEveryStateOfADownload) {

@@ -295,11 +295,54 @@ TEST_F(SdoClientTest, IgnoresAnswersBeforeItsRequestIsSent) {
   sends(tx({0x40, 0x18, 0x10, 0x01}));
 }
 
-TEST_F(SdoClientTest, IgnoresFramesShorterThanEightBytes) {
+Frame short_rx(std::initializer_list<std::uint8_t> bytes) {
+  return make_frame(CobId::base(0x585), bytes);
+}
+
+// CiA 301 has eight bytes in each frame; some devices leave out those that say nothing.
+TEST_F(SdoClientTest, TakesShortAnswersThatSayEverything) {
   upload({0x1018, 1});
   sends(tx({0x40, 0x18, 0x10, 0x01}));
-  hears(make_frame(CobId::base(0x585), {0x4F, 0x18, 0x10, 0x01, 0x5A}));
+  hears(short_rx({0x4B, 0x18, 0x10, 0x01, 0x5A, 0x01}));
+  EXPECT_EQ(client.take_result()->size, 2U);
+  EXPECT_EQ(buffer[1], std::byte{1});
+
+  upload({0x1008, 0});
+  sends(tx({0x40, 0x08, 0x10, 0x00}));
+  hears(short_rx({0x40, 0x08, 0x10, 0x00}));
+  sends(tx({0x60}));
+  hears(short_rx({0x0B, 'o', 'k'}));
+  EXPECT_EQ(text(*client.take_result()), "ok");
+
+  download({0x1017, 0}, bytes({1, 2, 3, 4, 5, 6, 7, 8}));
+  sends(tx({0x21, 0x17, 0x10, 0x00, 0x08}));
+  hears(short_rx({0x60, 0x17, 0x10, 0x00}));
+  sends(tx({0x00, 1, 2, 3, 4, 5, 6, 7}));
+  hears(short_rx({0x20}));
+  sends(tx({0x1D, 8}));
+  hears(short_rx({0x30}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+
+  upload({0x1018, 1});
+  sends(tx({0x40, 0x18, 0x10, 0x01}));
+  hears(short_rx({0x80, 0x18, 0x10, 0x01, 0x00, 0x00, 0x02}));
+  EXPECT_EQ(client.take_result()->abort_code, 0x0002'0000U);
+}
+
+TEST_F(SdoClientTest, IgnoresAnswersThatLackAPartOfTheirValue) {
+  upload({0x1018, 1});
+  sends(tx({0x40, 0x18, 0x10, 0x01}));
+  for (const Frame& frame : {short_rx({}), short_rx({0x43}), short_rx({0x43, 0x18, 0x10}),
+                             short_rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00}),
+                             short_rx({0x42, 0x18, 0x10, 0x01}), short_rx({0x80, 0x18, 0x10})}) {
+    hears(frame);
+    EXPECT_FALSE(client.take_result());
+  }
+  hears(short_rx({0x41, 0x18, 0x10, 0x01}));
+  sends(tx({0x60}));
+  hears(short_rx({0x09, 1, 2}));  // says that it has three
   EXPECT_FALSE(client.take_result());
+  sends_nothing();
 }
 
 TEST_F(SdoClientTest, AbortsAnswersOfABlockTransferItNeverAskedFor) {

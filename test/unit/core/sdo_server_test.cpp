@@ -42,9 +42,7 @@ class OwnServer : public testing::Test {
     return padded(CobId::base(0x5FF), bytes);
   }
   std::vector<Frame> ask(std::initializer_list<std::uint8_t> bytes) {
-    Outbox none;
-    server.on_frame(request(bytes), now, none);
-    EXPECT_TRUE(none.empty());
+    server.on_frame(request(bytes), now, orders);
     return answers();
   }
   std::vector<Frame> answers() {
@@ -58,6 +56,7 @@ class OwnServer : public testing::Test {
   std::vector<NodeStatus> statuses{1};
   OwnDictionary dictionary{plan, statuses};
   SdoServer server{default_sdo_channel(127_node), dictionary};
+  SdoServer::Orders orders = SdoServer::Orders::taken;
   Time now = 1s;
 };
 
@@ -106,6 +105,44 @@ TEST_F(OwnServer, TellsTheNodesThatItManages) {
   EXPECT_EQ(ask({0x40, 0x82, 0x1F, 0x05}), Frames{answer({0x4F, 0x82, 0x1F, 0x05, 0x01})});
 }
 
+TEST_F(OwnServer, TellsHowItStartsTheNetwork) {
+  EXPECT_EQ(ask({0x40, 0x89, 0x1F, 0x00}), Frames{answer({0x43, 0x89, 0x1F, 0x00})});
+  EXPECT_EQ(ask({0x40, 0x2A, 0x10, 0x00}), Frames{answer({0x4B, 0x2A, 0x10, 0x00})});
+  plan.start_up = {
+      .start_all = true, .on_loss = MandatoryLoss::reset_all, .boot_time = 30s, .nmt_inhibit = 5ms};
+  EXPECT_EQ(ask({0x40, 0x80, 0x1F, 0x00}), Frames{answer({0x43, 0x80, 0x1F, 0x00, 0x13})});
+  EXPECT_EQ(ask({0x40, 0x89, 0x1F, 0x00}),
+            Frames{answer({0x43, 0x89, 0x1F, 0x00, 0x30, 0x75, 0x00, 0x00})});
+  EXPECT_EQ(ask({0x40, 0x2A, 0x10, 0x00}), Frames{answer({0x4B, 0x2A, 0x10, 0x00, 0x32})});
+  plan.start_nodes = false;
+  plan.start_up = {.start_master = false, .on_loss = MandatoryLoss::stop_all};
+  EXPECT_EQ(ask({0x40, 0x80, 0x1F, 0x00}), Frames{answer({0x43, 0x80, 0x1F, 0x00, 0x4D})});
+}
+
+TEST_F(OwnServer, TellsHowItBootsEachNode) {
+  const auto word = [](std::uint8_t low) {
+    return std::vector{std::byte{low}, std::byte{2}, std::byte{}, std::byte{}};
+  };
+  NodePlan& node = plan.nodes[0];
+  node.mandatory = false;
+  node.guard = {.period = 500ms, .retries = 3};
+  node.boot_plan.steps = {
+      {.action = BootAction::await_alive},
+      {.action = BootAction::compare, .object = {0x1F56, 1}, .value = word(0x34)},
+      {.action = BootAction::download_program, .object = {0x1F50, 1}},
+      {.action = BootAction::compare, .object = {0x1020, 1}, .value = word(0x11)},
+      {.action = BootAction::compare, .object = {0x1020, 2}, .value = word(0x22)},
+      {.action = BootAction::write, .object = {0x1011, 2}, .value = word(0)}};
+  EXPECT_EQ(ask({0x40, 0x81, 0x1F, 0x05}),
+            Frames{answer({0x43, 0x81, 0x1F, 0x05, 0xF5, 0x03, 0xF4, 0x01})});
+  EXPECT_EQ(ask({0x40, 0x55, 0x1F, 0x05}), Frames{answer({0x43, 0x55, 0x1F, 0x05, 0x34, 0x02})});
+  EXPECT_EQ(ask({0x40, 0x26, 0x1F, 0x05}), Frames{answer({0x43, 0x26, 0x1F, 0x05, 0x11, 0x02})});
+  EXPECT_EQ(ask({0x40, 0x27, 0x1F, 0x05}), Frames{answer({0x43, 0x27, 0x1F, 0x05, 0x22, 0x02})});
+  EXPECT_EQ(ask({0x40, 0x8A, 0x1F, 0x05}), Frames{answer({0x4F, 0x8A, 0x1F, 0x05, 0x02})});
+  EXPECT_EQ(ask({0x40, 0x8A, 0x1F, 0x06}), Frames{answer({0x4F, 0x8A, 0x1F, 0x06})});
+  EXPECT_EQ(ask({0x40, 0x55, 0x1F, 0x00}), Frames{answer({0x4F, 0x55, 0x1F, 0x00, 0x7F})});
+}
+
 TEST_F(OwnServer, TakesNmtRequestsAndNothingElse) {
   EXPECT_EQ(ask({0x2F, 0x82, 0x1F, 0x05, 0x06}), Frames{answer({0x60, 0x82, 0x1F, 0x05})});
   auto order = server.take_order();
@@ -135,13 +172,19 @@ TEST_F(OwnServer, TakesNmtRequestsAndNothingElse) {
       {request({0xE0}), 0x0504'0001},
   };
   for (const Refusal& refusal : refusals) {
-    Outbox none;
-    server.on_frame(refusal.asked, now, none);
+    server.on_frame(refusal.asked, now, orders);
     const auto answered = answers();
     ASSERT_EQ(answered.size(), 1U);
     EXPECT_EQ(answered[0].data[0], 0x80);
     EXPECT_EQ(load_le<std::uint32_t>(std::span{answered[0].data}.subspan(4)), refusal.code);
   }
+  EXPECT_FALSE(server.take_order());
+}
+
+TEST_F(OwnServer, RefusesNmtRequestsThatNobodyTakes) {
+  orders = SdoServer::Orders::refused;
+  EXPECT_EQ(ask({0x2F, 0x82, 0x1F, 0x05, 0x06}),
+            Frames{answer({0x80, 0x82, 0x1F, 0x05, 0x22, 0x00, 0x00, 0x08})});
   EXPECT_FALSE(server.take_order());
 }
 
