@@ -51,7 +51,7 @@ void PdoInputs::tell(EventKind kind, const Row& row, Time now, std::uint32_t det
                 .value = row.number});
 }
 
-void PdoInputs::set_reception(std::size_t node_index, Reception reception, Time /*now*/) noexcept {
+void PdoInputs::set_reception(std::size_t node_index, Reception reception) noexcept {
   if (receptions_[node_index] == reception) return;
   receptions_[node_index] = reception;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -64,9 +64,12 @@ void PdoInputs::set_reception(std::size_t node_index, Reception reception, Time 
     row.waited = false;
     row.was_late = false;
     row.expires = never;
-    // The first frame may take up to n beats; 2 n is too long for every phase.
+    // The first frame may take up to n beats, and with a SYNC start value as long as the counter
+    // takes to come to it; 2 n more is too long for every phase.
     const bool watched = reception != Reception::off && row.every != 0;
-    row.due = watched ? beat_ + 2 * std::uint64_t{row.every} : not_due;
+    const std::uint64_t counted =
+        plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;
+    row.due = watched ? beat_ + counted + 2 * std::uint64_t{row.every} : not_due;
     // Who only listens does not know which SYNC a frame answers.
     const bool windowed = reception == Reception::full && plan_.cycle.sync &&
                           plan_.pdos.tpdos[i].synchronous() && window_ > Time{};

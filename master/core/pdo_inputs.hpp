@@ -26,7 +26,7 @@ class PdoInputs {
   /// Keeps references to the three.
   PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& events);
 
-  void set_reception(std::size_t node_index, Reception reception, Time now) noexcept;
+  void set_reception(std::size_t node_index, Reception reception) noexcept;
   Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
 
   /// A SYNC went out at `sync`: what is expected now? `heard` is false where it could not be sent.

@@ -83,7 +83,10 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
     const FieldProgram& field = fields_[pdo.first_field + i];
     Output& output = outputs_[output_of(field.signal)];
     const SetPoint& set_point = set_points[output_of(field.signal)];
-    if (set_point.generation != output.generation && !stopping_ && !output.forced) {
+    const bool news = set_point.generation != output.generation;
+    if (news && refuses(output)) {
+      output.generation = set_point.generation;
+    } else if (news) {
       if (output.fallen && row.risen++ == 0) row.first_risen = field.signal;
       take(output, field.signal, set_point, moment);
       ++fresh_commands_;
@@ -118,14 +121,18 @@ void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment m
   row.held_told = true;
 }
 
-bool PdoOutputs::due(std::size_t position, Time now) const noexcept {
+/// Times count in cycles: a late wake-up makes none of them longer. It makes the inhibit time
+/// shorter by as much, a stall by no more than a quarter of a period.
+bool PdoOutputs::due(std::size_t position, OutputMoment moment) const noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   const Row& row = rows_[position];
   if (!row.ever_sent || row.due) return true;
   if (pdo.cyclic()) return stopping_ || turn_ % pdo.transmission == 0;
   if (pdo.synchronous()) return row.pending;
-  const Time since = now - row.last_sent;
-  if (since < pdo.inhibit) return false;
+  const Time period = plan_.cycle.period;
+  const Time since = static_cast<std::int64_t>(moment.cycle - row.last_cycle) * period;
+  const bool near = moment.now - row.last_sent < pdo.inhibit - period / 4;
+  if (since < pdo.inhibit || near) return false;
   return row.pending || (pdo.event_timer > Time{0} && since >= pdo.event_timer);
 }
 
@@ -155,7 +162,7 @@ std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
     Row& row = rows_[i];
     if (!row.ready || !row.open) continue;
     const PdoRow& pdo = plan_.pdos.rpdos[i];
-    row.due = due(i, moment.now) || (together && row.pending && pdo.synchronous());
+    row.due = due(i, moment) || (together && row.pending && pdo.synchronous());
     if (row.due) add_frame(i);
   }
   ++turn_;
@@ -197,10 +204,11 @@ std::span<const Frame> PdoOutputs::pack_less(
   return {frames_.data(), packed_count_};
 }
 
-void PdoOutputs::sent(std::size_t count, Time now) noexcept {
+void PdoOutputs::sent(std::size_t count, OutputMoment moment) noexcept {
   for (std::size_t i = 0; i < std::min(count, packed_count_); ++i) {
     Row& row = rows_[packed_[i]];
-    row.last_sent = now;
+    row.last_sent = moment.now;
+    row.last_cycle = moment.cycle;
     row.ever_sent = true;
     row.pending = row.due = false;
     ++row.sent;
@@ -212,7 +220,7 @@ void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t t
                          OutputMoment moment) noexcept {
   if (signal < inputs_count_ || output_of(signal) >= outputs_.size()) return;
   Output& output = outputs_[output_of(signal)];
-  if (stopping_ || output.forced) return;
+  if (refuses(output)) return;
   take(output, signal,
        {.value = value,
         .generation = output.generation,
@@ -234,6 +242,7 @@ void PdoOutputs::fall_back() noexcept {
 void PdoOutputs::force(SignalIndex signal, std::int64_t value) noexcept {
   Output& output = outputs_[output_of(signal)];
   output.forced = true;
+  output.expires = no_end;
   output.known = true;
   output.commanded = true;
   image_.values[signal] = value;

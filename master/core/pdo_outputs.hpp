@@ -44,22 +44,22 @@ class PdoOutputs {
   std::span<const Frame> pack_less(std::int64_t bits,
                                    std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
   /// The first `count` of the packed frames went out; the others are tried again.
-  void sent(std::size_t count, Time now) noexcept;
+  void sent(std::size_t count, OutputMoment moment) noexcept;
 
   /// A command from within the bus thread; `signal` counts in the whole layout.
   void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
                OutputMoment moment) noexcept;
 
-  /// Ordered stop, or SYNC is lost: every commanded output takes its fallback and commands are no
-  /// longer heard.
+  /// Ordered stop, or SYNC is lost: every commanded output takes its fallback. Commands are refused
+  /// from now on: none of them acts later.
   void fall_back() noexcept;
   /// The end of fall_back(): each output keeps its fallback until its next command.
   void hear_again() noexcept { stopping_ = false; }
   /// It was commanded, and its fallback is in force.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
-  /// Ordered stop: this value from now on, whatever is commanded.
+  /// Ordered stop, or the loss of a node: this value from now on; commands are refused.
   void force(SignalIndex signal, std::int64_t value) noexcept;
-  /// The next command is heard again.
+  /// The next command is heard again, none from before.
   void release(SignalIndex signal) noexcept;
 
   /// Commands that the last pack() saw for the first time.
@@ -97,6 +97,7 @@ class PdoOutputs {
   struct Row {
     std::uint64_t word = 0;  ///< as it was packed last
     Time last_sent{};
+    std::uint64_t last_cycle = 0;
     std::uint32_t sent = 0;
     bool open = false;
     bool ready = false;
@@ -112,7 +113,8 @@ class PdoOutputs {
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(word, last_sent, sent, open, ready, ever_sent, pending, due, held_told, partial);
+      state(word, last_sent, last_cycle, sent, open, ready, ever_sent, pending, due, held_told,
+            partial);
     }
   };
   struct Built {
@@ -146,11 +148,12 @@ class PdoOutputs {
     constexpr std::int64_t most = 0xFFFF'FFFF;
     return static_cast<std::uint32_t>(std::min(passed / period, most));
   }
+  bool refuses(const Output& output) const noexcept { return stopping_ || output.forced; }
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;
   /// Builds all rows. True: one set of commands has changed several synchronous ones.
   bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
-  bool due(std::size_t row, Time now) const noexcept;
+  bool due(std::size_t row, OutputMoment moment) const noexcept;
   const Frame& add_frame(std::size_t row) noexcept;
   void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
   void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,

@@ -20,7 +20,8 @@ std::size_t find(const std::vector<PdoRow>& rows, std::uint8_t node, std::uint16
 
 }  // namespace
 
-PdoRequests::PdoRequests(const BusPlan& plan) : plan_{plan} {
+PdoRequests::PdoRequests(const BusPlan& plan)
+    : plan_{plan}, owed_until_(plan.pdos.tpdos.size(), never) {
   for (std::size_t i = 0; i < plan.pdos.tpdos.size(); ++i) {
     const PdoRow& row = plan.pdos.tpdos[i];
     if (row.poll > Time{} || row.poll_syncs != 0) {
@@ -42,9 +43,11 @@ SdoFault PdoRequests::prepare(const Request& request, Slot& slot) const noexcept
   if (rpdo == plan_.pdos.rpdos.size() || !plan_.pdos.rpdos[rpdo].on_request) {
     return SdoFault::no_such_pdo;
   }
+  const PdoRow& row = plan_.pdos.rpdos[rpdo];
+  const bool mapped = row.length != 0;  // else its mapping is not known
+  if (mapped && request.size != row.length) return SdoFault::wrong_length;
   if (request.size > slot.frame.data.size()) return SdoFault::too_long;
-  slot.frame = {.id = plan_.pdos.rpdos[rpdo].cob_id,
-                .length = static_cast<std::uint8_t>(request.size)};
+  slot.frame = {.id = row.cob_id, .length = static_cast<std::uint8_t>(request.size)};
   for (std::size_t i = 0; i < request.size; ++i) {
     slot.frame.data[i] = std::to_integer<std::uint8_t>(request.data[i]);
   }
@@ -57,8 +60,10 @@ bool PdoRequests::submit(const Request& request, Time now) noexcept {
   *slot = Slot{.state = Slot::State::to_send, .id = request.id, .order = ++order_};
   ++used_;
   slot->timeout = request.timeout > Time{} ? request.timeout : default_timeout;
-  // Those before it may wait for the same PDO, one after another.
-  slot->deadline = now + static_cast<Time::rep>(capacity) * slot->timeout;
+  // Those before it may wait for the same PDO, one after another, an exchange with a rest behind
+  // it.
+  const Time::rep turns = request.kind == RequestKind::pdo_exchange ? 2 : 1;
+  slot->deadline = now + turns * static_cast<Time::rep>(capacity) * slot->timeout;
   const SdoFault fault = prepare(request, *slot);
   if (fault != SdoFault::none) answer(*slot, fault);
   return true;
@@ -71,8 +76,28 @@ void PdoRequests::answer(Slot& slot, SdoFault fault) noexcept {
   if (fault != SdoFault::none) slot.frame.length = 0;
 }
 
+/// The answer to a time-out may come late: it must not be taken for that of the next request. A
+/// remote request is different, any frame of its PDO is as good.
+void PdoRequests::give_up(Slot& slot, Time now) noexcept {
+  if (slot.state == Slot::State::sent && !slot.frame.rtr) {
+    Time& until = owed_until_[slot.tpdo];
+    owed_ += until == never;
+    until = now + slot.timeout;
+  }
+  answer(slot, SdoFault::timeout);
+}
+
+void PdoRequests::forget_owed(Time now) noexcept {
+  for (Time& until : owed_until_) {
+    if (now < until) continue;
+    until = never;
+    --owed_;
+  }
+}
+
 /// One request at a time for each TPDO: answers carry no number.
 bool PdoRequests::is_next(const Slot& slot) const noexcept {
+  if (owed_until_[slot.tpdo] != never) return false;
   return std::ranges::none_of(slots_, [&](const Slot& other) {
     const bool open = other.state == Slot::State::to_send || other.state == Slot::State::sent;
     return open && other.tpdo == slot.tpdo && other.order < slot.order;
@@ -106,16 +131,29 @@ void PdoRequests::on_time(std::span<const bool> exchanging, std::uint64_t beat, 
     poll.next = poll.next + row.poll > now ? poll.next + row.poll : now + row.poll;
     poll.last_beat = beat;
   }
+  if (owed_ != 0) forget_owed(now);
   if (used_ == 0) return;
   for (Slot& slot : slots_) {
     const bool open = slot.state == Slot::State::to_send || slot.state == Slot::State::sent;
-    if (open && now >= slot.deadline) answer(slot, SdoFault::timeout);
+    if (open && now >= slot.deadline) give_up(slot, now);
     if (slot.state == Slot::State::to_send) send(slot, exchanging, now, out);
+  }
+}
+
+void PdoRequests::excuse(Time away) noexcept {
+  for (Slot& slot : slots_) slot.deadline += away;
+  for (Time& until : owed_until_) {
+    if (until != never) until += away;
   }
 }
 
 void PdoRequests::on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept {
   if (stamped.frame.rtr) return;
+  if (owed_until_[row] != never) {
+    owed_until_[row] = never;
+    --owed_;
+    return;
+  }
   for (Slot& slot : slots_) {
     const bool waits = slot.state == Slot::State::sent && slot.tpdo == row;
     if (!waits || stamped.when < slot.sent_at) continue;

@@ -30,13 +30,15 @@ class PdoRequests {
   /// by node index who is OPERATIONAL, `beat` counts SYNCs.
   void on_time(std::span<const bool> exchanging, std::uint64_t beat, Time now,
                Outbox& out) noexcept;
+  /// The master itself was away for so long: no answer is late by that.
+  void excuse(Time away) noexcept;
   /// Somebody waits for a TPDO: on_frame wants to see those that come.
-  bool waiting() const noexcept { return waiting_ != 0; }
+  bool waiting() const noexcept { return waiting_ != 0 || owed_ != 0; }
   /// `row` of PdoTable::tpdos.
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
   bool take(Reply& reply) noexcept;
-  /// No request is under way.
-  bool idle() const noexcept { return used_ == 0; }
+  /// No request is under way, and no answer is late.
+  bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
   void cancel_all() noexcept;
 
   template <class Archive>
@@ -69,10 +71,14 @@ class PdoRequests {
   void send(Slot& slot, std::span<const bool> exchanging, Time now, Outbox& out) noexcept;
   bool is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept;
   bool is_next(const Slot& slot) const noexcept;
+  void give_up(Slot& slot, Time now) noexcept;
+  void forget_owed(Time now) noexcept;
 
   const BusPlan& plan_;
   std::vector<Poll> polls_;
   std::array<Slot, capacity> slots_{};
+  std::vector<Time> owed_until_;  // by TPDO: the answer to a request that timed out may still come
+  std::size_t owed_ = 0;          // TPDOs with one
   std::size_t used_ = 0;
   std::size_t waiting_ = 0;
   std::uint64_t order_ = 0;

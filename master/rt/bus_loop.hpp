@@ -113,6 +113,8 @@ class BusLoop {
   void send_outputs() noexcept;
   void step_stop() noexcept;
   void take_fallbacks() noexcept;
+  void call_off_fallbacks() noexcept;
+  bool stalled(Time now) const noexcept;
   void write_fallbacks() noexcept;
   SyncState sync_state() const noexcept;
   void give_events() noexcept;

@@ -85,7 +85,7 @@ void BusLoop<P, N>::follow_nodes() noexcept {
     const bool listen = options_.observe || !plan_.nodes[i].boot;
     hearing_ = hearing_ || exchanging || listen;
     const Reception unheard = listen ? Reception::listening : Reception::off;
-    pdos_.inputs().set_reception(i, exchanging ? heard : unheard, sync_sent_);
+    pdos_.inputs().set_reception(i, exchanging ? heard : unheard);
   }
 }
 
@@ -236,8 +236,8 @@ void BusLoop<P, N>::send_outputs() noexcept {
   if (options_.observe || outputs_rest()) return;
   const Time now = port_.now();
   const SetPointFrame& commands = newest_set_points();
-  std::span<const Frame> frames =
-      pdos_.outputs().pack(commands.points, {.cycle = clock_.cycle(), .now = now});
+  const OutputMoment moment{.cycle = clock_.cycle(), .now = now};
+  std::span<const Frame> frames = pdos_.outputs().pack(commands.points, moment);
   if (pdos_.outputs().fresh_commands() != 0) {
     exchange_.timing.command_age.record(now - commands.when);
   }
@@ -248,7 +248,7 @@ void BusLoop<P, N>::send_outputs() noexcept {
     frames = pdos_.outputs().pack_less(wire_.bits_in(room), WireTime::worst_bits);
     status_.outputs_skipped += frames.empty();
   }
-  pdos_.outputs().sent(frames.empty() ? 0 : send(frames), now);
+  pdos_.outputs().sent(frames.empty() ? 0 : send(frames), moment);
 }
 
 /// Begins and follows the ordered stop.
@@ -260,6 +260,7 @@ void BusLoop<P, N>::step_stop() noexcept {
     tell(EventKind::stopping, now);
     stop_.begin(now);
     pdos_.outputs().fall_back();
+    call_off_fallbacks();
     pdo_requests_.cancel_all();
   }
   const StopStage before = stop_.stage();
@@ -286,7 +287,7 @@ template <Port P, class N>
 void BusLoop<P, N>::write_status() noexcept {
   status_.cycle = clock_.cycle();
   status_.stop = stop_.stage();
-  status_.events_lost = events_.lost();
+  status_.events_lost = events_.lost() + network_.events_lost();
   status_.sync = sync_state();
   status_.sync_period = follower_.period();
   if (sync_sent_ - last_status_ < status_interval && !done_) return;

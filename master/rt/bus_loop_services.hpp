@@ -22,6 +22,13 @@ void BusLoop<P, N>::excuse_absence() noexcept {
   const Time away = sync_sent_ - std::exchange(last_sync_, sync_sent_) - clock_.period();
   if (away <= longest_lapse * clock_.period()) return;
   if constexpr (requires { network_.on_absence(away); }) network_.on_absence(away);
+  pdo_requests_.excuse(away);
+}
+
+/// This thread stood still since SYNC: that has to be excused before anything times out.
+template <Port P, class N>
+bool BusLoop<P, N>::stalled(Time now) const noexcept {
+  return now - sync_sent_ > longest_lapse * clock_.period();
 }
 
 /// Slack: machines and requests. A long cycle has many rounds, so that boots and heartbeats go on
@@ -62,10 +69,12 @@ void BusLoop<P, N>::serve_round() noexcept {
   std::size_t budget = plan_.cycle.service_frames;
   std::size_t open = 0;  // dialogues of this round without an answer so far
   services_.inbox().set_limit(budget);
-  pdo_requests_.on_time(exchanging_, status_.beats, port_.now(), services_.inbox());
+  if (const Time now = port_.now(); !stalled(now)) {
+    pdo_requests_.on_time(exchanging_, status_.beats, now, services_.inbox());
+  }
   for (;;) {
     const Time now = port_.now();
-    if (now - sync_sent_ > longest_lapse * clock_.period()) break;  // a stall, to be excused first
+    if (stalled(now)) break;
     services_.inbox().set_limit(budget);
     network_.on_time(now, services_.inbox());
     if (options_.observe) services_.clear();
@@ -146,8 +155,8 @@ void BusLoop<P, N>::write_fallbacks() noexcept {
 template <Port P, class N>
 bool BusLoop<P, N>::submit(const Request& request) noexcept {
   const Time now = port_.now();
-  return PdoRequests::takes(request.kind) ? pdo_requests_.submit(request, now)
-                                          : network_.submit(request, now);
+  if (!PdoRequests::takes(request.kind)) return network_.submit(request, now);
+  return stop_.stage() == StopStage::running && pdo_requests_.submit(request, now);
 }
 
 template <Port P, class N>

@@ -108,11 +108,18 @@ void BusLoop<P, N>::react_to_sync() noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::take_fallbacks() noexcept {
   if (!sync_lost_) {
-    fallbacks_.stop();
+    call_off_fallbacks();
     return pdos_.outputs().hear_again();
   }
   pdos_.outputs().fall_back();
   fallbacks_.begin(pdos_.outputs());
+}
+
+/// What is not written by now must not reach a drive that is commanded again, or is being stopped.
+template <Port P, class N>
+void BusLoop<P, N>::call_off_fallbacks() noexcept {
+  fallbacks_.stop();
+  network_.withdraw(FallbackWriter::request_id);
 }
 
 template <Port P, class N>

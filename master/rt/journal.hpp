@@ -127,7 +127,7 @@ class Journal {
   explicit Journal(std::size_t bytes) : tapes_{Tape{bytes / 8}, Tape{bytes / 8}} {}
 
   void begin_cycle(std::uint64_t cycle) noexcept {
-    if (state_.load(std::memory_order_relaxed) == State::wanted) [[unlikely]]
+    if (state_.load(std::memory_order_acquire) == State::wanted) [[unlikely]]
       change();
     tape_->mark_cycle();
     put(Mark::cycle, cycle);
@@ -162,7 +162,7 @@ class Journal {
 
   /// Front side: the running tape is wanted; recording goes on, on the other one, at the next
   /// cycle. Not again before give_back().
-  void want() noexcept { state_.store(State::wanted, std::memory_order_relaxed); }
+  void want() noexcept { state_.store(State::wanted, std::memory_order_release); }
   /// Front side: the wanted tape, for this thread or one that it starts; null: not yet.
   const Tape* wanted() const noexcept {
     if (state_.load(std::memory_order_acquire) != State::changed) return nullptr;

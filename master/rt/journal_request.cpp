@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::size_t head_words = 4;
 constexpr std::size_t most_transfer_bytes = 16 << 20;
+constexpr std::size_t most_kept_bytes = 64 << 10;  // copied within one cycle
 
 std::size_t words_for(std::size_t bytes) noexcept { return (bytes + 7) / 8; }
 
@@ -25,6 +26,7 @@ void put_request(Journal& journal, const Request& request, const SdoTransfers& t
   const std::size_t length = number == 0 ? 0 : request.transfer->data.size();
   const bool download = request.kind == RequestKind::sdo_download;
   const std::size_t kept = number == 0 ? request.size : download ? length : 0;
+  if (kept > most_kept_bytes) return journal.put(Mark::gap, std::uint64_t{0});
   const std::size_t count = head_words + words_for(kept);
   std::uint64_t* const room = journal.claim(Mark::request, count, count);
   if (room == nullptr) return;

@@ -12,8 +12,9 @@ namespace takt {
 /// The transfers of an Exchange, or those of a replay in their place.
 using SdoTransfers = std::array<SdoTransfer, 4>;
 
-/// Writes down an accepted request, with the value of a long download as far as the journal has
-/// room for it. Bus thread.
+/// Writes down an accepted request, with the value of a long download. A gap where the value has
+/// more than 64 KiB, or more than the journal has room for: what follows can't be replayed. Bus
+/// thread.
 void put_request(Journal& journal, const Request& request, const SdoTransfers& transfers) noexcept;
 
 /// The request of a record; `words` are those behind its first. False: not a request.

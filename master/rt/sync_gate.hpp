@@ -9,7 +9,8 @@ namespace takt {
 /// Keeps SYNCs and outputs from piling up in the queue of an interface whose bus is off or where
 /// nobody acknowledges: they would all go out at once, and too old, when the bus comes back. While
 /// the echo of the newest SYNC is outstanding the next one is held; now and then one is tried, in
-/// case only the echo was lost. Ports without echo are held by bus-off alone. Bus thread only.
+/// case only the echo was lost. Ports without echo are held by bus-off alone. An interface that
+/// goes down loses its queue: nothing is held for its sake when it is back. Bus thread only.
 class SyncGate {
  public:
   explicit SyncGate(Time period) noexcept : tolerance_{period / 4} {}
@@ -21,7 +22,8 @@ class SyncGate {
 
   /// May the frames of this cycle be handed to the interface?
   bool open(const PortNews& news, Time now) noexcept {
-    if (!news.bus_off && !doubtful(news)) {
+    if (news.interface_down) last_sent_ = Time{0};
+    if (news.interface_down || (!news.bus_off && !doubtful(news))) {
       holding_ = false;
       pause_ = first_pause;
       return true;

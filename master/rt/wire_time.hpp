@@ -16,13 +16,13 @@ class WireTime {
   /// Bits with the most stuff bits and the space to the next frame. CiA 301 says nothing of it;
   /// ISO 11898-1 stuffs after five equal bits.
   static constexpr std::int64_t worst_bits(const Frame& frame) noexcept {
-    const std::int64_t data = 8 * std::int64_t{frame.length};
+    const std::int64_t data = data_bits(frame);
     return frame.id.is_extended() ? 67 + data + (54 + data - 1) / 4
                                   : 47 + data + (34 + data - 1) / 4;
   }
   /// The same with the stuff bits of random data.
   static constexpr std::int64_t mean_bits(const Frame& frame) noexcept {
-    const std::int64_t data = 8 * std::int64_t{frame.length};
+    const std::int64_t data = data_bits(frame);
     return (frame.id.is_extended() ? 69 : 48) + data + data / 32;
   }
   Time worst(std::span<const Frame> frames) const noexcept {
@@ -40,6 +40,11 @@ class WireTime {
   Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
 
  private:
+  /// A remote frame names a length, but has no data.
+  static constexpr std::int64_t data_bits(const Frame& frame) noexcept {
+    return frame.rtr ? 0 : 8 * std::int64_t{frame.length};
+  }
+
   Time bit_;
 };
 

@@ -63,6 +63,21 @@ TEST(BusLoop, ExcusesTheNodesForTheTimeOfItsOwnAbsence) {
   EXPECT_EQ(FakeNetwork::newest->absences, std::vector<Time>{400ms});
 }
 
+TEST(BusLoop, ExcusesTheAnswersToPdoRequestsForTheTimeOfItsOwnAbsence) {
+  Loop bus;
+  bus.port.answers.clear();
+  bus.exchange->requests.push(
+      {.id = 1, .kind = RequestKind::pdo_poll, .node = 1, .object = {1, 0}, .timeout = 100ms});
+  bus.run(2);
+  bus.port.stall = 400ms;
+  bus.run(10);
+  Reply reply;
+  EXPECT_FALSE(bus.exchange->replies.pop(reply));
+  bus.run(50);
+  ASSERT_TRUE(bus.exchange->replies.pop(reply));
+  EXPECT_EQ(reply.fault, SdoFault::timeout);
+}
+
 TEST(BusLoop, SendsALateSyncButKeepsHalfAPeriodToTheNext) {
   Loop bus;
   bus.run(5);
@@ -75,6 +90,7 @@ TEST(BusLoop, SendsALateSyncButKeepsHalfAPeriodToTheNext) {
   EXPECT_EQ(syncs[6].when - bus.start, 16ms);  // 14 ms was left out
   bus.run(6);
   EXPECT_EQ(bus.status().cycles_missed, 1U);
+  EXPECT_EQ(bus.status().cycles_late, 1U);
 }
 
 TEST(BusLoop, TwoStallsInARowMakeNoBurstOfSyncs) {
@@ -169,6 +185,30 @@ TEST(BusLoop, TellsAFullSendBufferWithItsCauseOnceASecond) {
   EXPECT_EQ(full[0].detail, static_cast<std::uint32_t>(SendTrouble::nobody_acknowledges));
 }
 
+TEST(BusLoop, CountsTheEventsThatFoundNoRoomInTheServicesToo) {
+  Loop bus;
+  bus.network->lost_events = 3;
+  bus.run(10);
+  EXPECT_EQ(bus.status().events_lost, 3U);
+}
+
+TEST(BusLoop, SendsSyncAtOnceWhereAnInterfaceIsBackThatTookOneDownWithIt) {
+  Loop bus;
+  bus.port.news_now.last_sync_echo = bus.start;
+  bus.run(10);  // not one echo: held, and tried ever less often
+  bus.port.news_now.interface_down = true;
+  bus.port.room = 0;
+  bus.port.error = ENETDOWN;
+  bus.run(30000);  // a minute
+  bus.port.sent.clear();
+
+  bus.port.news_now.interface_down = false;
+  bus.port.room = 1000;
+  bus.run(1);
+
+  EXPECT_EQ(bus.port.sent_with(0x080).size(), 1U);
+}
+
 TEST(BusLoop, ANodeThatIsOffDoesNotDisturbTheOthers) {
   Loop bus{test::axes({.fallback_cycles = 0})};
   bus.run(1);
@@ -205,6 +245,22 @@ TEST(BusLoop, AnswersEveryRequestOnceEvenWithAFullReplyRing) {
   ASSERT_EQ(answered.size(), asked);
   std::ranges::sort(answered);
   for (std::uint64_t i = 0; i < asked; ++i) EXPECT_EQ(answered[i], i + 1);
+}
+
+TEST(BusLoop, CancelsPdoRequestsThatComeWhileItStops) {
+  Loop bus;
+  bus.run(2);
+  bus.loop->request_stop();
+  bus.run(1);
+  bus.exchange->requests.push(
+      {.id = 1, .kind = RequestKind::pdo_poll, .node = 1, .object = {1, 0}});
+  bus.run(1);
+
+  Reply reply;
+  ASSERT_TRUE(bus.exchange->replies.pop(reply));
+  EXPECT_EQ(reply.fault, SdoFault::cancelled);
+  const auto asked = bus.port.sent_with(0x181);
+  EXPECT_TRUE(asked.empty());
 }
 
 TEST(BusLoop, StopsWithinItsTimeWhenAnAxisStaysEnabled) {

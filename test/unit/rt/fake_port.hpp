@@ -107,6 +107,7 @@ class FakeNetwork {
   bool streams() const noexcept { return false; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
+    submitted.push_back(request);
     replies.push_back({.id = request.id, .data = {}});
     return true;
   }
@@ -117,6 +118,8 @@ class FakeNetwork {
     return true;
   }
   bool take(Event&) noexcept { return false; }
+  std::uint64_t events_lost() const noexcept { return lost_events; }
+  void withdraw(std::uint64_t id) noexcept { withdrawn.push_back(id); }
   std::span<const NodeStatus> nodes() const noexcept { return status_; }
   bool exchanges_pdos(std::size_t node) const noexcept { return up_[node] && !stopping; }
   void begin_stop(Time) noexcept { stopping = true; }
@@ -126,10 +129,13 @@ class FakeNetwork {
 
   std::vector<Frame> heard;
   std::vector<Frame> to_send;
+  std::vector<Request> submitted;
+  std::vector<std::uint64_t> withdrawn;
   std::vector<Reply> replies;
   std::vector<Time> absences;
   bool refuse = false;
   bool stopping = false;
+  std::uint64_t lost_events = 0;
   static inline FakeNetwork* newest = nullptr;  ///< the one inside the newest loop
 
  private:

@@ -1,6 +1,8 @@
 #include "master/rt/journal.hpp"
 
+#include <atomic>
 #include <gtest/gtest.h>
+#include <thread>
 
 #include "master/rt/journal_request.hpp"
 #include "master/rt/replay_port.hpp"
@@ -71,6 +73,29 @@ TEST(Journal, GivesTheRunningTapeAwayAtTheNextCycleAndGoesOnWithTheOther) {
   EXPECT_EQ(journal.wanted(), nullptr);
 }
 
+/// For the thread sanitizer: what was read is not written over.
+TEST(Journal, IsReadByOneThreadWhileTheOtherRecords) {
+  Journal journal{8192};
+  std::atomic<bool> done{false};
+  std::thread bus{[&] {
+    for (std::uint64_t cycle = 1; !done; ++cycle) {
+      journal.begin_cycle(cycle);
+      journal.put(Mark::now, cycle);
+    }
+  }};
+
+  for (int i = 0; i < 50; ++i) {
+    journal.want();
+    const Tape* tape = nullptr;
+    while ((tape = journal.wanted()) == nullptr) std::this_thread::yield();
+    const std::vector<std::uint64_t> records = tape->read();
+    EXPECT_TRUE(records.empty() || journal::mark_of(records.front()) == Mark::cycle);
+    journal.give_back();
+  }
+  done = true;
+  bus.join();
+}
+
 TEST(Journal, MarksAGapWhereARecordIsTooLong) {
   Journal journal{8192};
   for (int i = 0; i < 1000; ++i) journal.put(Mark::now, std::uint64_t{1});
@@ -121,6 +146,18 @@ TEST(JournalRequest, KeepsTheValueOfALongDownload) {
 
   EXPECT_EQ(back.transfer, &other[2]);
   EXPECT_EQ(other[2].data, transfers[2].data);
+}
+
+/// It would have to be copied by the bus thread, in one cycle.
+TEST(JournalRequest, LeavesAGapForADownloadOfMegabytes) {
+  Journal journal{32 << 20};
+  SdoTransfers transfers;
+  transfers[0].data.resize(4 << 20);
+  const Request request{.kind = RequestKind::sdo_download, .transfer = &transfers[0]};
+
+  put_request(journal, request, transfers);
+
+  EXPECT_EQ(journal.last().read(), (std::vector<std::uint64_t>{word(Mark::gap, 0)}));
 }
 
 TEST(JournalRequest, RefusesWhatIsNone) {

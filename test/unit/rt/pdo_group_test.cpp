@@ -30,11 +30,12 @@ class Axes {
     const Time now = static_cast<Time::rep>(cycle_) * Time{2ms};
     frames.clear();
     std::vector<std::uint32_t> ids;
-    for (const Frame& frame : pdos_.outputs().pack(points_, {.cycle = cycle_, .now = now})) {
+    const OutputMoment moment{.cycle = cycle_, .now = now};
+    for (const Frame& frame : pdos_.outputs().pack(points_, moment)) {
       frames.push_back(frame);
       ids.push_back(frame.id.id());
     }
-    pdos_.outputs().sent(accepted, now);
+    pdos_.outputs().sent(accepted, moment);
     return ids;
   }
   std::vector<Frame> frames;

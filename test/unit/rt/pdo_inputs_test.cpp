@@ -15,7 +15,7 @@ class Inputs {
  public:
   explicit Inputs(BusPlan plan, Reception reception = Reception::full)
       : plan_{std::move(plan)}, image{plan_.layout.signals.size()}, pdos{plan_, image, events} {
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) pdos.set_reception(i, reception, 0ms);
+    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) pdos.set_reception(i, reception);
   }
 
   void beat() {
@@ -226,6 +226,15 @@ TEST(PdoInputs, MissASilentPdoOfRateNAfterTwoRounds) {
   EXPECT_EQ(in.told().size(), 1U);
 }
 
+TEST(PdoInputs, WaitForTheSyncStartValueAsLongAsTheCounterTakes) {
+  BusPlan plan = test::axes({.nodes = 1, .tpdo_type = 1});
+  plan.cycle.sync_overflow = 10;
+  plan.pdos.tpdos[0].sync_start = 10;
+  Inputs in{std::move(plan)};
+  for (int beat = 1; beat < 12; ++beat) EXPECT_EQ(in.beat_with({}), 0U) << beat;
+  EXPECT_EQ(in.beat_with({}), 1U);
+}
+
 TEST(PdoInputs, KeepThePhaseOfRateNThroughALoss) {
   Inputs in{test::axes({.nodes = 1, .tpdo_type = 4})};
   in.beat_with({1});
@@ -275,7 +284,7 @@ TEST(PdoInputs, ExpectNothingInACycleWhoseSyncWasNotSent) {
 TEST(PdoInputs, GrowStaleWhenTheirNodeLeaves) {
   Inputs in{test::axes({.nodes = 1})};
   in.beat_with({1});
-  in.pdos.set_reception(0, Reception::off, 3ms);
+  in.pdos.set_reception(0, Reception::off);
   EXPECT_TRUE(in.image.is_stale(0));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(in.beat_with({}), 0U);
   EXPECT_TRUE(in.told().empty());

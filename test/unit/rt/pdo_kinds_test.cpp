@@ -17,7 +17,7 @@ class Bus {
   explicit Bus(BusPlan plan)
       : plan_{std::move(plan)}, image{plan_.layout.signals.size()}, pdos{plan_, image, *events} {
     for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      pdos.set_reception(i, Reception::full, 0ms);
+      pdos.set_reception(i, Reception::full);
     }
   }
   void beat() {

@@ -17,7 +17,7 @@ class Outputs {
   explicit Outputs(BusPlan plan) : plan_{std::move(plan)}, pdos{plan_, events} {
     points.resize(plan_.layout.outputs());
     for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      pdos.inputs().set_reception(i, Reception::full, 0ms);
+      pdos.inputs().set_reception(i, Reception::full);
       pdos.outputs().open(i, points);
     }
   }
@@ -30,10 +30,11 @@ class Outputs {
   }
   std::vector<Frame> pack() {
     ++cycle_;
-    now_ = static_cast<std::int64_t>(cycle_) * Time{2ms};
-    const auto frames = pdos.outputs().pack(points, {.cycle = cycle_, .now = now_});
+    now_ = static_cast<std::int64_t>(cycle_) * Time{2ms} + late;
+    const OutputMoment moment{.cycle = cycle_, .now = now_};
+    const auto frames = pdos.outputs().pack(points, moment);
     const std::vector<Frame> copy{frames.begin(), frames.end()};
-    pdos.outputs().sent(accepted, now_);
+    pdos.outputs().sent(accepted, moment);
     return copy;
   }
   void skip(std::uint64_t cycles) { cycle_ += cycles; }
@@ -53,6 +54,7 @@ class Outputs {
   PdoExchange pdos;
   std::vector<SetPoint> points;
   std::size_t accepted = 100;  // frames that the interface takes
+  Time late{};                 // how much later than its time a cycle packs
 };
 
 BusPlan one_axis(std::uint8_t type = 1, bool seeds = false) {
@@ -264,6 +266,37 @@ TEST(PdoOutputs, RepeatAfterTheEventTimer) {
   EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
 }
 
+TEST(PdoOutputs, CountTheirTimesInCyclesHoweverLateTheyWakeUp) {
+  BusPlan plan = one_axis(255);
+  plan.pdos.rpdos[0].event_timer = 4ms;
+  plan.pdos.rpdos[0].inhibit = 4ms;
+  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
+  Outputs out{plan};
+  out.command(controlword, 1);
+  out.command(target, 1);
+  std::vector<std::size_t> sizes;
+  for (const Time late : {90us, 10us, 30us, 80us, 0us, 50us, 20us}) {
+    out.late = late;
+    sizes.push_back(out.pack().size());
+  }
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 0, 1, 0, 1, 0, 1}));
+}
+
+TEST(PdoOutputs, KeepTheInhibitTimeAlsoAfterAStall) {
+  BusPlan plan = one_axis(255);
+  plan.pdos.rpdos[0].inhibit = 4ms;
+  Outputs out{plan};
+  out.command(controlword, 1);
+  out.command(target, 1);
+  out.late = 1ms;
+  EXPECT_EQ(out.pack().size(), 1U);
+  out.command(target, 2);
+  out.late = 0ms;
+  EXPECT_TRUE(out.pack().empty());
+  EXPECT_TRUE(out.pack().empty()) << "3 ms after the frame before";
+  EXPECT_EQ(out.pack().size(), 1U);
+}
+
 TEST(PdoOutputs, TryAgainWhatTheInterfaceDidNotTake) {
   Outputs out{one_axis(255)};
   out.command(controlword, 1);
@@ -294,6 +327,53 @@ TEST(PdoOutputs, WhileStoppingHearNoCommandAndSendWhatIsForced) {
   EXPECT_EQ(out.pack().at(0).data[0], 0x02);
   out.pdos.outputs().force(2, 0x0000);
   EXPECT_EQ(out.pack().at(0).data[0], 0x00);
+}
+
+TEST(PdoOutputs, KeepTheFallbackUntilTheNextCommandWhenCommandsAreHeardAgain) {
+  Outputs out{one_axis()};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  out.pdos.outputs().fall_back();
+  out.command(controlword, 0x001F);
+  out.pack();
+
+  out.pdos.outputs().hear_again();
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  out.command(controlword, 0x000F);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
+}
+
+TEST(PdoOutputs, KeepWhatWasForcedUntilTheNextCommandHoweverLateItComes) {
+  Outputs out{one_axis()};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  out.pdos.outputs().force(2, 0x0002);
+  for (int i = 0; i < 20; ++i) out.pack();
+  out.told();
+
+  out.pdos.outputs().release(2);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  EXPECT_TRUE(out.told().empty());
+}
+
+TEST(PdoOutputs, HearNoCommandFromTheTimeOfAForcedValue) {
+  BusPlan plan = one_axis();
+  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
+  Outputs out{plan};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  out.pdos.outputs().force(2, 0x0002);
+  out.command(controlword, 0x001F);
+  out.pack();
+
+  out.pdos.outputs().release(2);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  out.command(controlword, 0x000F);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x0F);
 }
 
 }  // namespace

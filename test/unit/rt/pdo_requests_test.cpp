@@ -36,6 +36,15 @@ class Asker {
     for (const std::uint8_t byte : data) request.data[request.size++] = std::byte{byte};
     return requests.submit(request, 0ms);
   }
+  /// At 1 ms; it times out at 501 ms.
+  void ask_in_vain() {
+    ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
+    at(1ms);
+    at(501ms);
+    const auto timed_out = replies();
+    ASSERT_EQ(timed_out.size(), 1U);
+    EXPECT_EQ(timed_out[0].fault, SdoFault::timeout);
+  }
   void answer(Time when, std::initializer_list<std::uint8_t> bytes) {
     requests.on_frame(0, {.frame = make_frame(CobId::base(0x181), bytes), .when = when});
   }
@@ -105,7 +114,9 @@ TEST(PdoRequests, AnswerAPollOnDemandWithTheBytesOfThePdo) {
 
 // P15.13 := 1 of node 3 in the fact sheet, here node 1
 TEST(PdoRequests, ExchangeAnRpdoForTheTpdoThatAnswersIt) {
-  Asker asker{plan_of()};
+  BusPlan plan = plan_of();
+  plan.pdos.rpdos[0].length = 8;
+  Asker asker{plan};
   asker.ask(1, RequestKind::pdo_exchange, {0x02, 0x00, 0x0D, 0x0F, 0x01, 0x00, 0x00, 0x00});
   EXPECT_EQ(asker.at(5ms), std::vector{make_frame(CobId::base(0x201), {0x02, 0x00, 0x0D, 0x0F, 0x01,
                                                                        0x00, 0x00, 0x00})});
@@ -120,7 +131,7 @@ TEST(PdoRequests, ExchangeAnRpdoForTheTpdoThatAnswersIt) {
 
 TEST(PdoRequests, WaitNoLongerThanTheirTime) {
   Asker asker{plan_of()};
-  asker.ask(1, RequestKind::pdo_exchange, {1});
+  asker.ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
   asker.at(0ms);
   asker.at(499ms);
   EXPECT_TRUE(asker.replies().empty());
@@ -128,15 +139,65 @@ TEST(PdoRequests, WaitNoLongerThanTheirTime) {
   const auto replies = asker.replies();
   ASSERT_EQ(replies.size(), 1U);
   EXPECT_EQ(replies[0].fault, SdoFault::timeout);
-  EXPECT_FALSE(asker.requests.waiting());
   asker.answer(501ms, {1, 2, 3, 4, 5, 6});
   EXPECT_TRUE(asker.replies().empty()) << "answered once";
+  EXPECT_FALSE(asker.requests.waiting());
+}
+
+// The answer of a DRV-28 does not say to which parameter it belongs.
+TEST(PdoRequests, NeverTakeALateAnswerForThatOfTheNext) {
+  Asker asker{plan_of()};
+  asker.ask_in_vain();
+  EXPECT_FALSE(asker.requests.idle());
+  asker.ask(2, RequestKind::pdo_exchange, {2, 0, 0, 0, 0, 0});
+  EXPECT_TRUE(asker.at(510ms).empty()) << "the answer may still come";
+  asker.answer(600ms, {1, 1, 1, 1, 1, 1});
+  EXPECT_TRUE(asker.replies().empty());
+
+  EXPECT_EQ(asker.at(601ms).size(), 1U) << "it came";
+  asker.answer(602ms, {2, 2, 2, 2, 2, 2});
+
+  const auto replies = asker.replies();
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].id, 2U);
+  EXPECT_EQ(replies[0].data[0], std::byte{2});
+  EXPECT_TRUE(asker.requests.idle());
+}
+
+TEST(PdoRequests, WaitForALateAnswerAsLongAsForOneInTime) {
+  Asker asker{plan_of()};
+  asker.ask_in_vain();
+  asker.ask(2, RequestKind::pdo_exchange, {2, 0, 0, 0, 0, 0});
+  EXPECT_TRUE(asker.at(1000ms).empty());
+  EXPECT_EQ(asker.at(1001ms).size(), 1U);
+  asker.answer(1002ms, {2, 2, 2, 2, 2, 2});
+  EXPECT_EQ(asker.replies().size(), 1U);
+}
+
+TEST(PdoRequests, WaitForALateAnswerNoLessForTheMastersOwnAbsence) {
+  Asker asker{plan_of()};
+  asker.ask_in_vain();
+  asker.ask(2, RequestKind::pdo_exchange, {2, 0, 0, 0, 0, 0});
+  asker.requests.excuse(2s);
+  EXPECT_TRUE(asker.at(3000ms).empty());
+  EXPECT_EQ(asker.at(3001ms).size(), 1U);
+}
+
+TEST(PdoRequests, CountNoTimeOfTheMastersOwnAbsence) {
+  Asker asker{plan_of()};
+  asker.ask(1, RequestKind::pdo_poll);
+  asker.at(0ms);
+  asker.requests.excuse(2s);
+  asker.at(2s + 499ms);
+  EXPECT_TRUE(asker.replies().empty());
+  asker.at(2s + 500ms);
+  EXPECT_EQ(asker.replies().size(), 1U);
 }
 
 TEST(PdoRequests, ForOnePdoGoOneAfterAnother) {
   Asker asker{plan_of()};
-  asker.ask(1, RequestKind::pdo_exchange, {1});
-  asker.ask(2, RequestKind::pdo_exchange, {2});
+  asker.ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
+  asker.ask(2, RequestKind::pdo_exchange, {2, 0, 0, 0, 0, 0});
   EXPECT_EQ(asker.at(0ms).size(), 1U);
   EXPECT_TRUE(asker.at(1ms).empty());
   asker.answer(2ms, {1, 0, 0, 0, 0, 0});
@@ -157,6 +218,24 @@ TEST(PdoRequests, AreRefusedForPdosThatCantBeAsked) {
   for (const Reply& reply : asker.replies()) faults.push_back(reply.fault);
   EXPECT_EQ(faults,
             (std::vector{SdoFault::no_such_pdo, SdoFault::no_such_pdo, SdoFault::not_exchanging}));
+}
+
+TEST(PdoRequests, AreRefusedWhereTheRpdoHasAnotherLength) {
+  Asker asker{plan_of()};  // six bytes
+  asker.ask(1, RequestKind::pdo_exchange, {1, 2, 3, 4, 5});
+  asker.ask(2, RequestKind::pdo_exchange, {1, 2, 3, 4, 5, 6, 7});
+  EXPECT_TRUE(asker.at(0ms).empty());
+  const auto replies = asker.replies();
+  ASSERT_EQ(replies.size(), 2U);
+  for (const Reply& reply : replies) EXPECT_EQ(reply.fault, SdoFault::wrong_length);
+}
+
+TEST(PdoRequests, TakeAnyLengthWhereTheMappingIsNotKnown) {
+  BusPlan plan = plan_of();
+  plan.pdos.rpdos[0].length = 0;
+  Asker asker{plan};
+  asker.ask(1, RequestKind::pdo_exchange, {1, 2, 3});
+  EXPECT_EQ(asker.at(0ms), std::vector{make_frame(CobId::base(0x201), {1, 2, 3})});
 }
 
 TEST(PdoRequests, AreAnsweredEvenWhereNothingCanBeSentForLong) {

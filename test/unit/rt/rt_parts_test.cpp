@@ -65,6 +65,12 @@ TEST(WireTime, KnowsTheWorstCaseOfTheLimits) {
   EXPECT_EQ(WireTime{250'000}.worst({&eight, 1}), 540us);
 }
 
+TEST(WireTime, OfARemoteFrameHasNoData) {
+  const Frame remote{.id = CobId::base(0x181), .length = 8, .rtr = true};
+  EXPECT_EQ(WireTime::worst_bits(remote), 55);
+  EXPECT_EQ(WireTime::mean_bits(remote), 48);
+}
+
 TEST(Histogram, PutsTimesIntoBinsOfAnEighthOctave) {
   EXPECT_EQ(Histogram::bin_of(-5us), 0U);
   EXPECT_EQ(Histogram::bin_of(0ns), 0U);
@@ -120,6 +126,22 @@ TEST(SyncGate, IsHeldByBusOffAlone) {
   EXPECT_TRUE(gate.open({}, 1s));
   for (Time now = 1s; now < 9s; now += 10ms) EXPECT_FALSE(gate.open({.bus_off = true}, now));
   EXPECT_TRUE(gate.open({}, 10s));
+}
+
+TEST(SyncGate, ForgetsTheSyncThatAnInterfaceTookDownWithIt) {
+  SyncGate gate{2ms};
+  gate.sent(1s);
+  PortNews news{.bus_off = true, .last_sync_echo = 1ms};
+  EXPECT_FALSE(gate.open(news, 1002ms));
+
+  news.interface_down = true;
+  for (Time now = 1004ms; now < 61s; now += 2ms) EXPECT_TRUE(gate.open(news, now));
+
+  news.interface_down = news.bus_off = false;
+  EXPECT_TRUE(gate.open(news, 61s));
+  gate.sent(61s);
+  EXPECT_FALSE(gate.open(news, 61s + 2ms));  // a new doubt begins with the shortest pause
+  EXPECT_TRUE(gate.open(news, 61s + 102ms));
 }
 
 TEST(SyncGate, KnowsNoDoubtWithoutEchoes) {

@@ -189,11 +189,13 @@ TEST_F(SyncFollowerTest, TakesTheFirstSyncAfterALossForTheBeat) {
 
 class FollowingLoop : public testing::Test {
  protected:
-  static BusPlan plan() {
+  explicit FollowingLoop(SyncLoss on_loss = SyncLoss::hold) : loop{plan(on_loss)} {}
+
+  static BusPlan plan(SyncLoss on_loss) {
     BusPlan plan = test::axes();
     plan.cycle.sync_followed = true;
     plan.cycle.sync_timeout = 3ms;
-    plan.cycle.on_sync_loss = SyncLoss::hold;
+    plan.cycle.on_sync_loss = on_loss;
     return plan;
   }
   /// SYNC at this time, and the two TPDOs 300 and 400 us after it.
@@ -203,7 +205,7 @@ class FollowingLoop : public testing::Test {
       loop.port.inbox.push_back({.frame = answer.frame, .when = when + answer.after});
     }
   }
-  Loop loop{plan()};
+  Loop loop;
   Time first = loop.start + 2500us;
 };
 
@@ -268,6 +270,33 @@ TEST_F(FollowingLoop, HoldsItsOutputsWithoutSyncAndGoesOnWithIt) {
   const auto told = loop.told();
   EXPECT_EQ(std::ranges::count(told, EventKind::sync_lost), 1);
   EXPECT_EQ(std::ranges::count(told, EventKind::sync_back), 2);
+}
+
+class FallingLoop : public FollowingLoop {
+ protected:
+  FallingLoop() : FollowingLoop{SyncLoss::fallback} {
+    for (int i = 0; i < 6; ++i) sync(first + i * 2ms);
+    loop.run(2);
+    loop.command_all(0x0F, 5000);
+    loop.run(10);  // the last of them without SYNC
+  }
+};
+
+TEST_F(FallingLoop, CallsOffTheWritesOfFallbacksWhenSyncIsBack) {
+  ASSERT_EQ(loop.network->submitted.size(), 2u);
+  EXPECT_EQ(loop.network->submitted[0].object, (ObjectKey{0x6040, 0}));
+  EXPECT_TRUE(loop.network->withdrawn.empty());
+
+  sync(loop.port.now() + 1ms);
+  loop.run(1);
+
+  EXPECT_EQ(loop.network->withdrawn, std::vector{loop.network->submitted[0].id});
+}
+
+TEST_F(FallingLoop, CallsOffTheWritesOfFallbacksWhenItIsToStop) {
+  loop.loop->request_stop();
+  loop.run(1);
+  EXPECT_EQ(loop.network->withdrawn, std::vector{loop.network->submitted.at(0).id});
 }
 
 TEST_F(FollowingLoop, TakesTheNewestOfSyncsThatWaitedForIt) {

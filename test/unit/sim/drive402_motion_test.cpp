@@ -145,6 +145,22 @@ TEST_F(Drive, FollowsCyclicPositions) {
   EXPECT_EQ(get(0x6064), last);
 }
 
+TEST_F(Drive, FollowsCyclicVelocities) {
+  enable(9);
+  EXPECT_EQ(get(0x6061), 9);
+
+  set(0x60FF, 2'000);
+  run(500ms);
+  const std::int64_t before = get(0x6064);
+  run(100ms);
+  EXPECT_NEAR(static_cast<double>(get(0x606C)), 2'000, 20);
+  EXPECT_NEAR(static_cast<double>(get(0x6064) - before), 200, 10);
+
+  set(0x60FF, -1'000);
+  run(500ms);
+  EXPECT_NEAR(static_cast<double>(get(0x606C)), -1'000, 10);
+}
+
 TEST_F(Drive, TellsTorqueOfTheSignOfItsAcceleration) {
   enable(9);
   set(0x60FF, 100'000);

@@ -1,5 +1,6 @@
 #include "master/sim/virtual_bus.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -223,6 +224,21 @@ TEST_F(Bus, LetsNothingCollideWithAFrameThatWasOnAnotherWire) {
   EXPECT_EQ(sent[1].frame, heartbeat);
   EXPECT_EQ(sent[2].frame, boot_up);
   EXPECT_EQ(bus_.node(0).transmit_errors, 0u);
+}
+
+TEST_F(Bus, DelaysTheFramesOfANodeUpToTheTimeGiven) {
+  bus_.node(0).faults.delay = 300us;
+  Time longest{};
+  for (int i = 0; i < 100; ++i) {
+    const Time queued = i * 1ms;
+    bus_.queue(0, frame(0x185), queued);
+    for (const WireFrame& wire : run(queued + 900us)) {
+      longest = std::max(longest, wire.start - queued);
+    }
+  }
+
+  EXPECT_GT(longest, 200us);
+  EXPECT_LE(longest, 300us);
 }
 
 TEST_F(Bus, GivesTheSameRunForTheSameSeed) {
