@@ -9,8 +9,10 @@
 #include <thread>
 
 #include "apps/takt/commands.hpp"
-#include "apps/takt/interface_bitrate.hpp"
 #include "apps/takt/lss_selection.hpp"
+#include "apps/takt/whole_number.hpp"
+#include "master/linux/frame_witness.hpp"
+#include "master/linux/interface_bitrate.hpp"
 #include "master/wire/lss.hpp"
 
 namespace takt {
@@ -165,8 +167,12 @@ int set_id(const LssOptions& options) {
   return 0;
 }
 
+/// The interface goes down only when the devices have got the command: that would throw away what
+/// waits in its queue.
 int activate(const LssOptions& options, LssAccess& access) {
   using std::chrono::milliseconds;
+  auto witness = FrameWitness::open(options.access.bus);
+  if (!witness) return complain(witness.error().message, 3);
   const std::array<LssCommand, 2> commands{
       LssCommand{.op = LssOp::switch_global, .a = 1},
       LssCommand{.op = LssOp::activate_bit_timing,
@@ -175,6 +181,12 @@ int activate(const LssOptions& options, LssAccess& access) {
   if (!results) return failed(results.error());
   if (results->back().outcome != LssOutcome::done) {
     return complain(lss_failure_text(results->back()), 1);
+  }
+  const auto activation = static_cast<std::uint8_t>(lss::Service::activate_bit_timing);
+  if (!witness->sees(lss::request_cob_id, activation, milliseconds{options.delay_ms})) {
+    return complain("the activation waits to be sent: does nobody acknowledge it on " +
+                        options.access.bus + "? The interface keeps its bit rate",
+                    3);
   }
   const std::string trouble = set_interface_bitrate(options.access.bus, options.kbit * 1000);
   std::this_thread::sleep_for(milliseconds{2 * options.delay_ms});
@@ -197,6 +209,10 @@ int set_bitrate(const LssOptions& options) {
   if (options.delay_ms != 0 && (!options.all || options.access.bus.empty())) {
     return complain(
         "--activate changes the whole bus: it needs --all, and --bus with taktd stopped", 2);
+  }
+  if (options.delay_ms != 0) {
+    const std::string trouble = interface_bitrate_trouble(options.access.bus);
+    if (!trouble.empty()) return complain(trouble, 3);
   }
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());
@@ -295,8 +311,8 @@ CLI::App* add_verb(CLI::App& lss, const char* name, const char* text, Takes take
   if (takes != Takes::nothing) add_identity(*verb, *options, takes);
   verb->add_option("--bus", options->access.bus, "directly on can0, unix:PATH; without a daemon")
       ->type_name("IFACE");
-  verb->add_option("--timeout", options->access.timeout_ms,
-                   "wait for each answer, ms; else 100 in scans, 5000 to store, 1000")
+  add_number(*verb, "--timeout", options->access.timeout_ms,
+             "wait for each answer, ms; else 100 in scans, 5000 to store, 1000")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
   add_live_options(*verb, options->access.live);
@@ -329,7 +345,7 @@ void add_searches(CLI::App& lss, int& exit_code) {
 void add_settings(CLI::App& lss, int& exit_code) {
   const auto id = std::make_shared<LssOptions>();
   auto* id_verb = add_verb(lss, "set-id", "give one device a node id", Takes::one_device, id);
-  id_verb->add_option("ID", id->node_id, "1..127; 255 takes the id away")
+  add_number(*id_verb, "ID", id->node_id, "1..127; 255 takes the id away")
       ->required()
       ->check([](const std::string& text) {
         const auto value = lss_number(text);
@@ -342,12 +358,11 @@ void add_settings(CLI::App& lss, int& exit_code) {
   const auto rate = std::make_shared<LssOptions>();
   auto* rate_verb =
       add_verb(lss, "set-bitrate", "configure another bit rate", Takes::one_device, rate);
-  rate_verb->add_option("KBIT", rate->kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
+  add_number(*rate_verb, "KBIT", rate->kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
   rate_verb->add_flag("--all", rate->all, "every device of the bus");
   rate_verb->add_flag("--store", rate->store, "the devices keep it");
-  rate_verb
-      ->add_option("--activate", rate->delay_ms,
-                   "change the whole bus and the interface now; silent for twice this time, ms")
+  add_number(*rate_verb, "--activate", rate->delay_ms,
+             "change the whole bus and the interface now; silent for twice this time, ms")
       ->check(CLI::Range(100, 60000))
       ->type_name("MS");
   run_as(rate_verb, rate, set_bitrate, exit_code);

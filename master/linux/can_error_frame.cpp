@@ -11,7 +11,6 @@ static_assert(state_error_classes ==
 constexpr unsigned passive_bits = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
 constexpr unsigned state_bits =
     passive_bits | CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING | CAN_ERR_CRTL_ACTIVE;
-constexpr unsigned overflow_bits = CAN_ERR_CRTL_RX_OVERFLOW | CAN_ERR_CRTL_TX_OVERFLOW;
 
 }  // namespace
 
@@ -20,7 +19,7 @@ void apply_error_frame(const can_frame& frame, PortNews& news) noexcept {
   if ((frame.can_id & CAN_ERR_CRTL) != 0) {
     const unsigned what = frame.data[1];
     if ((what & state_bits) != 0) news.error_passive = (what & passive_bits) != 0;
-    if ((what & overflow_bits) != 0) ++news.receive_overruns;
+    if ((what & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++news.receive_overruns;
     if ((what & state_bits) != 0) news.bus_off = false;
   }
   // Drivers fill in the counters with changes of state; newer ones say so by CAN_ERR_CNT.

@@ -16,6 +16,7 @@
 #include "master/linux/message_batch.hpp"
 #include "master/linux/unix_address.hpp"
 #include "master/linux/unix_bus_record.hpp"
+#include "master/rt/wire_time.hpp"
 
 namespace takt {
 namespace {
@@ -23,12 +24,6 @@ namespace {
 constexpr std::size_t batch_frames = 128;
 constexpr int batches_a_poll = 32;
 constexpr Time look_again = std::chrono::seconds{1};
-
-/// Bits of a frame with its interframe space; data like that of machines adds some 3 % stuff bits.
-std::uint64_t bits_of(const Frame& frame) noexcept {
-  const unsigned bare = (frame.id.is_extended() ? 67U : 47U) + (frame.rtr ? 0U : 8U * frame.length);
-  return bare + bare / 32;
-}
 
 FileDescriptor open_can(const std::string& interface) {
   FileDescriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)};
@@ -85,7 +80,7 @@ struct DiagnosticSocket::State {
 void DiagnosticSocket::State::hear(const StampedFrame& frame, Origin origin,
                                    const OnFrame& on_frame) {
   ++traffic.frames;
-  traffic.bits += bits_of(frame.frame);
+  traffic.bits += static_cast<std::uint64_t>(WireTime::mean_bits(frame.frame));
   watch.on_frame(frame, origin);
   if (on_frame) on_frame(frame);
 }

@@ -51,12 +51,14 @@ struct SocketCanPort::State {
   SentFrames* sent = nullptr;
   Time next_look{};
   PortNews news;
+  std::uint32_t dropped = 0;  // by the kernel, of news.receive_overruns
   MessageBatch<can_frame, batch_frames, can_control_bytes> in;
   MessageBatch<can_frame, batch_frames, 0> out;
 
   bool bind_interface() noexcept;
   void note(int error) noexcept;
   void look_for_interface() noexcept;
+  std::size_t fetch(std::size_t most) noexcept;
   bool take(std::size_t i, Time offset, Time now, StampedFrame& frame) noexcept;
 };
 
@@ -94,6 +96,13 @@ void SocketCanPort::State::look_for_interface() noexcept {
   news.error_passive = false;
 }
 
+/// Messages that the next batch has got.
+std::size_t SocketCanPort::State::fetch(std::size_t most) noexcept {
+  const int got = in.receive(fd, most);
+  if (got < 0 && errno != EAGAIN && errno != EINTR) note(errno);
+  return got < 0 ? 0 : static_cast<std::size_t>(got);
+}
+
 /// Message i of the batch: false where it is for the port alone (error frames, own frames).
 bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
                                 StampedFrame& frame) noexcept {
@@ -101,7 +110,9 @@ bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
   const can_frame& raw = in.record(i);
   msghdr& header = in.header(i);
   const CanControl control = can_control_of(header);
-  if (control.dropped) news.receive_overruns = *control.dropped;
+  if (control.dropped) {
+    news.receive_overruns += *control.dropped - std::exchange(dropped, *control.dropped);
+  }
   if ((raw.can_id & CAN_ERR_FLAG) != 0) {
     apply_error_frame(raw, news);
     return false;
@@ -185,17 +196,18 @@ bool SocketCanPort::wait_frame(Time until) noexcept {
 std::size_t SocketCanPort::receive(std::span<StampedFrame> in) noexcept {
   State& state = *state_;
   if (state.news.interface_down) state.look_for_interface();
-  const int got = state.in.receive(state.fd, in.size());
-  if (got <= 0) {
-    if (got < 0 && errno != EAGAIN && errno != EINTR) state.note(errno);
-    return 0;
-  }
-  const Time offset = realtime_offset();
-  state.news.since_1970 = offset;
-  const Time now = monotonic_now();
   std::size_t taken = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i) {
-    if (state.take(i, offset, now, in[taken])) ++taken;
+  for (bool more = true; more;) {
+    const std::size_t room = std::min(in.size() - taken, batch_frames);
+    const std::size_t got = state.fetch(room);
+    if (got == 0) break;
+    const Time offset = realtime_offset();
+    state.news.since_1970 = offset;
+    const Time now = monotonic_now();
+    for (std::size_t i = 0; i < got; ++i) {
+      if (state.take(i, offset, now, in[taken])) ++taken;
+    }
+    more = got == room && taken < in.size();
   }
   return taken;
 }

@@ -25,8 +25,9 @@ struct SocketCanOptions {
 };
 
 /// A CAN interface of the kernel as a Port. One system call for each sleep, wait, receive and send;
-/// more only in trouble: the rest of a batch that was cut short is tried once, and an interface
-/// that is gone is looked for at most every 50 ms, by name, from within receive().
+/// more only in trouble: the rest of a batch that was cut short is tried once, a full batch in
+/// which something was for the port alone is filled up, and an interface that is gone is looked for
+/// at most every 50 ms, by name, from within receive().
 class SocketCanPort {
  public:
   static std::expected<SocketCanPort, BusError> open(const SocketCanOptions& options);

@@ -156,19 +156,22 @@ std::size_t UnixBusPort::receive(std::span<StampedFrame> in) noexcept {
   State& state = *state_;
   if (state.news.interface_down) state.look_for_hub();
   if (state.news.interface_down || in.empty()) return 0;
-  const int got = state.in.receive(state.socket.get(), in.size());
-  if (got < 0) {
-    if (errno != EAGAIN && errno != EINTR) state.note(errno);
-    return 0;
-  }
-  const auto count = static_cast<std::size_t>(got);
-  state.news.since_1970 = realtime_offset();
-  if (state.echoes) state.echo(count);
   std::size_t taken = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (state.take(i, in[taken])) ++taken;
+  for (bool more = true; more;) {
+    const std::size_t room = std::min(in.size() - taken, batch_frames);
+    const int got = state.in.receive(state.socket.get(), room);
+    if (got < 0 && errno != EAGAIN && errno != EINTR) state.note(errno);
+    if (got <= 0) break;
+    const auto count = static_cast<std::size_t>(got);
+    state.news.since_1970 = realtime_offset();
+    if (state.echoes) state.echo(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (state.take(i, in[taken])) ++taken;
+    }
+    const bool ended = state.in.bytes(count - 1) == 0;
+    if (ended) state.note(ECONNRESET);
+    more = !ended && count == room && taken < in.size();
   }
-  if (count > 0 && state.in.bytes(count - 1) == 0) state.note(ECONNRESET);  // end of file
   return taken;
 }
 

@@ -56,5 +56,14 @@ TEST(CanErrorFrame, AControllerOverflowCountsAsLostFramesAndChangesNoState) {
   EXPECT_TRUE(news.error_passive);
 }
 
+TEST(CanErrorFrame, AFrameThatCouldNotBeSentIsNoLostReceivedFrame) {
+  PortNews news;
+
+  apply_error_frame(error_frame(0x004, {0, 0x02, 0, 0, 0, 0, 0, 0}), news);
+
+  EXPECT_EQ(news.receive_overruns, 0U);
+  EXPECT_EQ(news.error_frames, 1U);
+}
+
 }  // namespace
 }  // namespace takt

@@ -1,13 +1,12 @@
-#include "apps/takt/interface_bitrate.hpp"
+#include "master/linux/interface_bitrate.hpp"
 
-#include <array>
+#include <optional>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
 #include "master/linux/bus_name.hpp"
-#include "master/linux/can_link.hpp"
 
 namespace takt {
 namespace {
@@ -24,12 +23,31 @@ bool run(std::vector<std::string> words) {
   return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-}  // namespace
-
-std::string set_interface_bitrate(const std::string& bus, int bitrate) {
+/// None: a bus without bit rate.
+std::optional<CanLink> link_of(const std::string& bus) {
   const BusName name = BusName::parse(bus);
   if (name.kind != BusName::Kind::can_interface) return {};
   const auto link = read_can_link(std::string{name.name});
+  return link ? std::optional{*link} : std::nullopt;
+}
+
+}  // namespace
+
+std::string interface_bitrate_trouble(const CanLink& link) {
+  if (link.kind != "can") return {};
+  const std::string length = std::to_string(link.tx_queue_length);  // as it is
+  if (run({"ip", "link", "set", link.name, "txqueuelen", length})) return {};
+  return "the bit rate of " + link.name +
+         " can't be changed (ip link: needs root, or CAP_NET_ADMIN); no device was changed";
+}
+
+std::string interface_bitrate_trouble(const std::string& bus) {
+  const auto link = link_of(bus);
+  return link ? interface_bitrate_trouble(*link) : std::string{};
+}
+
+std::string set_interface_bitrate(const std::string& bus, int bitrate) {
+  const auto link = link_of(bus);
   if (!link || link->kind != "can") return {};
   const std::string rate = std::to_string(bitrate);
   const std::string& interface = link->name;

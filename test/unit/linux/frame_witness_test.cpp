@@ -1,0 +1,41 @@
+#include "master/linux/frame_witness.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+#include "master/linux/interface_bitrate.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(FrameWitness, SeesWhatWasSentOnTheBusAndNothingElse) {
+  const std::string bus = "unix:/tmp/takt-witness-" + std::to_string(::getpid());
+  auto sender = FrameChannel::open(bus);
+  ASSERT_TRUE(sender);
+  auto witness = FrameWitness::open(bus);
+  ASSERT_TRUE(witness);
+  constexpr CobId lss = CobId::base(0x7E5);
+
+  ASSERT_TRUE(sender->send(make_frame(lss, {0x13, 0, 3})));
+  EXPECT_FALSE(witness->sees(lss, 0x15, 50ms)) << "another frame";
+  ASSERT_TRUE(sender->send(make_frame(lss, {0x15, 0xE8, 3})));
+  EXPECT_TRUE(witness->sees(lss, 0x15, 1s));
+  EXPECT_FALSE(witness->sees(lss, 0x15, 0ms)) << "seen once";
+}
+
+TEST(InterfaceBitrate, IsNoTroubleWhereThereIsNone) {
+  EXPECT_EQ(interface_bitrate_trouble(std::string{"unix:/tmp/x"}), "");
+  EXPECT_EQ(interface_bitrate_trouble(CanLink{.name = "vcan7", .kind = "vcan"}), "");
+}
+
+TEST(InterfaceBitrate, IsFoundOutBeforeAnythingChanges) {
+  const std::string said = interface_bitrate_trouble(CanLink{.name = "takt-none", .kind = "can"});
+  EXPECT_NE(said.find("the bit rate of takt-none can't be changed"), std::string::npos) << said;
+  EXPECT_NE(said.find("no device was changed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace takt
