@@ -23,7 +23,8 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(const s
       {.connected = [&gateway](int client) { gateway.connect(client); },
        .line = [&gateway](int client, std::string_view line) { gateway.command(client, line); },
        .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
-       .gone = [&gateway](int client) { gateway.disconnect(client); }});
+       .gone = [&gateway](int client) { gateway.disconnect(client); },
+       .owed = [&gateway](int client) { return gateway.owes(client); }});
   if (!server) return std::unexpected{server.error()};
   front->server_ = std::move(*server);
   return front;

@@ -33,6 +33,11 @@ class AsciiGateway final : public FrontGuest {
 
   void connect(int client) { clients_[client] = {}; }
   void disconnect(int client);
+  /// A command of this client is still to be answered.
+  bool owes(int client) const {
+    const auto found = clients_.find(client);
+    return found != clients_.end() && found->second.pending != 0;
+  }
   /// One line, any bytes. Each command is answered exactly once, by the number in front of it.
   void command(int client, std::string_view line);
   /// A line was so long that it was dropped.

@@ -5,19 +5,15 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <utility>
 
+#include "master/gateway/tcp_loopback.hpp"
 #include "master/linux/unix_address.hpp"
 
 namespace takt {
 namespace {
-
-bool would_wait(int error) noexcept {
-  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
-}
 
 std::unexpected<std::string> failed(const std::string& where, int error) {
   return std::unexpected{"--gateway " + where + ": " + std::strerror(error)};
@@ -68,23 +64,11 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp
   if (error != std::errc{} || end != text.data() + text.size()) {
     return std::unexpected{"--gateway tcp:" + text + ": a port is 0..65535"};
   }
-  FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  if (!socket) return failed("tcp:" + text, errno);
-  const int on = 1;
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const generic = reinterpret_cast<sockaddr*>(&address);
-  if (::bind(socket.get(), generic, size) != 0 || ::listen(socket.get(), 8) != 0 ||
-      ::getsockname(socket.get(), generic, &size) != 0) {
-    return failed("tcp:" + text, errno);
-  }
-  const std::string where = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  auto listener = listen_on_loopback(port);
+  if (!listener) return failed("tcp:" + text, listener.error());
+  const std::string where = "tcp:127.0.0.1:" + std::to_string(listener->port);
   return std::unique_ptr<AsciiServer>{
-      new AsciiServer{std::move(socket), where, {}, std::move(handler)}};
+      new AsciiServer{std::move(listener->socket), where, {}, std::move(handler)}};
 }
 
 AsciiServer::~AsciiServer() {
@@ -131,10 +115,11 @@ void AsciiServer::flush(Client& client) {
 
 void AsciiServer::receive(Client& client) {
   std::array<char, 4096> chunk;
-  for (int rounds = 0; rounds < 4 && !client.closed; ++rounds) {
+  for (int rounds = 0; rounds < 4 && !client.closed && !client.ended; ++rounds) {
     const ssize_t size = ::recv(client.socket.get(), chunk.data(), chunk.size(), MSG_DONTWAIT);
     if (size <= 0) {
-      client.closed = size == 0 || !would_wait(errno);
+      client.ended = size == 0;
+      client.closed = size < 0 && !would_wait(errno);
       return;
     }
     client.unread.append(chunk.data(), static_cast<std::size_t>(size));
@@ -161,11 +146,20 @@ void AsciiServer::take_lines(Client& client) {
   client.unread.clear();
 }
 
+/// It has ended, and so has all that it may still read.
+bool AsciiServer::is_through(const Client& client) const {
+  if (!client.ended) return false;
+  pollfd state{.fd = client.socket.get(), .events = 0, .revents = 0};
+  if (::poll(&state, 1, 0) == 1) return true;  // it reads no more either
+  return client.unsent.empty() && !handler_.owed(client.id);
+}
+
 void AsciiServer::serve() {
   accept_clients();
   for (const auto& client : clients_) {
     flush(*client);
     receive(*client);
+    client->closed |= is_through(*client);
   }
   for (const auto& client : clients_) {
     if (client->closed) handler_.gone(client->id);
@@ -176,7 +170,7 @@ void AsciiServer::serve() {
 void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
   descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
   for (const auto& client : clients_) {
-    const int events = POLLIN | (client->unsent.empty() ? 0 : POLLOUT);
+    const int events = (client->ended ? 0 : POLLIN) | (client->unsent.empty() ? 0 : POLLOUT);
     descriptors.push_back(
         {.fd = client->socket.get(), .events = static_cast<short>(events), .revents = 0});
   }

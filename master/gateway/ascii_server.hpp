@@ -24,6 +24,8 @@ class AsciiServer {
     std::function<void(int client, std::string_view line)> line;
     std::function<void(int client)> too_long;  ///< a line, which is dropped
     std::function<void(int client)> gone;
+    /// An answer is on its way: a client that writes no more is kept until it has it.
+    std::function<bool(int client)> owed;
   };
 
   /// `unix:PATH` or `tcp:PORT` (0: any free one). An error is a sentence.
@@ -48,6 +50,7 @@ class AsciiServer {
     std::string unread;
     std::string unsent;
     bool skips = false;  // the rest of a line that was too long
+    bool ended = false;  // it writes no more
     bool closed = false;
   };
 
@@ -64,6 +67,7 @@ class AsciiServer {
   void receive(Client& client);
   void take_lines(Client& client);
   static void flush(Client& client);
+  bool is_through(const Client& client) const;
 
   FileDescriptor listener_;
   std::string where_;

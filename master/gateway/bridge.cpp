@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "master/core/boot_report.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
 #include "master/gateway/sync_message.hpp"
@@ -161,9 +162,11 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
   if (!request) return tell_damaged(channels_.request, request.error());
+  const Time now = monotonic_now();
+  if (requests_.is_echo(*request, now)) return;
   if (request->service == "emcy_history") return answer_history(*request);
   if (request->service == "record" && record_) return record_(*request);
-  if (auto reply = requests_.take(*request)) answer(std::move(*reply));
+  if (auto reply = requests_.take(*request, now)) answer(std::move(*reply));
 }
 
 reply_t Bridge::reply_to(const request_t& request) const {
@@ -190,9 +193,8 @@ void Bridge::answer_history(const request_t& request) {
     reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
   } else {
     const auto& records = emcy_log_.of(static_cast<std::uint8_t>(request.node_id));
-    for (const NodePlan& node : master_.plan().nodes) {
-      if (node.id.value() == request.node_id) reply.text = pack_texts(records, node.emcy_texts);
-    }
+    const NodePlan* const node = master_.plan().find(static_cast<unsigned>(request.node_id));
+    if (node != nullptr) reply.text = pack_texts(records, node->emcy_texts);
     const auto bytes = pack(records);
     reply.data.assign(bytes.begin(), bytes.end());
     reply.size = static_cast<std::int32_t>(bytes.size());
@@ -233,7 +235,7 @@ void Bridge::take_replies() {
       if (guest_ != nullptr) guest_->take(reply);
       continue;
     }
-    if (auto message = requests_.finish(reply)) answer(std::move(*message));
+    if (auto message = requests_.finish(reply, monotonic_now())) answer(std::move(*message));
   }
 }
 
@@ -251,6 +253,24 @@ void Bridge::take_events() {
     tell(event);
   }
   for (const Notice& notice : outages_.take_due(monotonic_now())) send(notice);
+  tell_lost_events();
+}
+
+std::uint64_t Bridge::events_lost() const noexcept {
+  return master_.event_overruns() + snapshot_.bus.events_lost;
+}
+
+void Bridge::tell_lost_events() {
+  const std::uint64_t lost = events_lost();
+  const std::uint64_t more = lost - std::exchange(events_lost_told_, lost);
+  if (more == 0) return;
+  tell({.when = monotonic_now(),
+        .cycle = cycle_,
+        .node = 0,
+        .kind = "events_lost",
+        .weight = Weight::warning,
+        .text = subject(master_.plan(), 0) + ": " + std::to_string(more) +
+                " events lost: more came at once than there is room for"});
 }
 
 void Bridge::tell(const Event& event) {
@@ -269,10 +289,7 @@ void Bridge::remember(const Event& event) {
   const auto code = load_le<std::uint16_t>(std::span{event.bytes});
   const bool coded = event.kind == EventKind::emcy && event.detail != 1;
   if (!coded || code == 0) return;
-  const auto& nodes = master_.plan().nodes;
-  const auto found =
-      std::ranges::find(nodes, event.node, [](const NodePlan& node) { return node.id.value(); });
-  emcys_.add(static_cast<std::size_t>(found - nodes.begin()), code);
+  emcys_.add(master_.plan().index_of(event.node), code);
 }
 
 void Bridge::tell(Notice notice) {
@@ -305,7 +322,7 @@ void Bridge::publish_status() {
   const Time now = monotonic_now();
   next_status_ = now + status_period;
   GatewayStatus gateway{.image_overruns = master_.image_overruns(),
-                        .event_overruns = master_.event_overruns(),
+                        .event_overruns = events_lost(),
                         .commands_taken = commands_.taken(),
                         .commands_refused = commands_.refused(),
                         .holders = {},

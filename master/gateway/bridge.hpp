@@ -78,6 +78,9 @@ class Bridge {
  private:
   bool publish_images();
   void take_events();
+  /// By the bus thread, and on the way from there.
+  std::uint64_t events_lost() const noexcept;
+  void tell_lost_events();
   void remember(const Event& event);
   void take_replies();
   void take_messages();
@@ -133,6 +136,7 @@ class Bridge {
   Time next_timing_{};
   std::uint64_t cycle_ = 0;  // of the newest image
   std::uint64_t images_ = 0;
+  std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;
 };
 

@@ -29,9 +29,13 @@ void BusView::new_session(std::int64_t session) {
 
 void BusView::take(const status_t& status) {
   new_session(status.session);
-  if (status.part == 0) status_parts_ = status;
-  if (!status_parts_ || status_parts_->cycle != status.cycle) return;
-  if (status.part != 0) {
+  if (status.part == 0) {
+    status_parts_ = status;
+  } else if (!status_parts_ || status_parts_->cycle != status.cycle ||
+             status.part != status_parts_->part + 1) {
+    return status_parts_.reset();
+  } else {
+    status_parts_->part = status.part;
     status_parts_->nodes.insert(status_parts_->nodes.end(), status.nodes.begin(),
                                 status.nodes.end());
     status_parts_->num_nodes = static_cast<std::int32_t>(status_parts_->nodes.size());

@@ -1,7 +1,5 @@
 #include "master/gateway/notice.hpp"
 
-#include <algorithm>
-
 #include "master/core/boot_report.hpp"
 #include "master/gateway/messages.hpp"
 
@@ -89,10 +87,8 @@ Notice to_notice(const BusPlan& plan, const Event& event) {
 }
 
 std::string_view node_name(const BusPlan& plan, std::uint8_t node) noexcept {
-  for (const NodePlan& candidate : plan.nodes) {
-    if (candidate.id.value() == node) return candidate.name;
-  }
-  return {};
+  const NodePlan* const planned = plan.find(node);
+  return planned == nullptr ? std::string_view{} : std::string_view{planned->name};
 }
 
 event_t to_message(const BusPlan& plan, const Notice& notice) {

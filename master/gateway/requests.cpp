@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "master/core/lss_command.hpp"
@@ -12,8 +14,26 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_recent = 256;
+using namespace std::chrono_literals;
+
+constexpr std::size_t most_known = 256;
+constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
+constexpr std::size_t longest_sender = 64;
+constexpr Time remembered = 10s;   // from the answer on
+constexpr Time echo_limit = 50ms;  // between the ways of one message
+
+bool same_asker(const request_t& a, const request_t& b) {
+  return a.id == b.id && a.sender == b.sender;
+}
+
+bool same_message(const request_t& a, const request_t& b) {
+  const auto fields = [](const request_t& m) {
+    return std::tie(m.utime, m.schema, m.session, m.id, m.sender, m.service, m.node_id, m.index,
+                    m.sub, m.nmt_command, m.timeout_ms, m.data);
+  };
+  return fields(a) == fields(b);
+}
 
 std::optional<NmtCommand> nmt_command(std::int16_t code) noexcept {
   switch (static_cast<NmtCommand>(code)) {
@@ -80,38 +100,63 @@ Requests::Requests(const BusPlan& plan, RequestsOptions options,
                    std::function<bool(const Request&)> submit)
     : plan_{plan}, options_{options}, submit_{std::move(submit)} {}
 
-reply_t Requests::reply_to(const Asker& asker) const {
+reply_t Requests::reply_to(const request_t& message) const {
   reply_t reply{};
   reply.schema = message_schema;
   reply.session = options_.session;
-  reply.id = asker.id;
-  reply.sender = asker.sender;
+  reply.id = message.id;
+  reply.sender = message.sender.substr(0, longest_sender);
   return reply;
 }
 
-bool Requests::seen_before(const Asker& asker) {
-  if (std::ranges::find(recent_, asker) != recent_.end()) return true;
-  if (recent_.size() == most_recent) recent_.pop_front();
-  recent_.push_back(asker);
+reply_t Requests::refusal(const request_t& message, std::string why) const {
+  reply_t reply = reply_to(message);
+  reply.text = std::move(why);
+  return reply;
+}
+
+bool Requests::is_echo(const request_t& message, Time now) {
+  while (!heard_.empty() && now - heard_.front().when > echo_limit) heard_.pop_front();
+  const auto same = [&](const Heard& heard) { return same_message(heard.message, message); };
+  if (message.data.size() > request_bytes) return false;  // it will be refused
+  if (std::ranges::any_of(heard_, same)) return true;
+  if (heard_.size() == most_heard) heard_.pop_front();
+  heard_.push_back({message, now});
   return false;
 }
 
-std::optional<reply_t> Requests::take(const request_t& message) {
-  Asker asker{.sender = message.sender.substr(0, 64), .id = message.id};
-  if (seen_before(asker)) return std::nullopt;
-  const auto refuse = [&](std::string why) {
-    reply_t reply = reply_to(asker);
-    reply.text = std::move(why);
-    return reply;
-  };
+void Requests::forget(Time now) {
+  std::erase_if(known_, [now](const Known& known) {
+    return known.answered != never && now - known.answered > remembered;
+  });
+  if (known_.size() < most_known) return;
+  const auto answered =
+      std::ranges::find_if(known_, [](const Known& known) { return known.answered != never; });
+  if (answered != known_.end()) known_.erase(answered);
+}
+
+/// What is on its way is answered once.
+std::optional<reply_t> Requests::take_again(const Known& known, const request_t& message) const {
+  if (known.answered == never) return std::nullopt;
+  if (same_message(known.message, message)) return known.reply;
+  return refusal(message, "id " + std::to_string(message.id) +
+                              " of this sender was used already, " +
+                              "some seconds ago; each request has another one");
+}
+
+std::optional<reply_t> Requests::take(const request_t& message, Time now) {
+  forget(now);
+  const auto known = std::ranges::find_if(
+      known_, [&](const Known& one) { return same_asker(one.message, message); });
+  if (known != known_.end()) return take_again(*known, message);
   auto request = translate(message);
-  if (!request) return refuse(request.error());
+  if (!request) return refusal(message, request.error());
   request->id = next_id_;
-  asker.kind = request->kind;
   if (pending_.size() == most_pending || !submit_(*request)) {
-    return refuse("too many requests at once; ask again later");
+    return refusal(message, "too many requests at once; ask again later");
   }
-  pending_.emplace(next_id_++, std::move(asker));
+  known_.push_back({.message = message});
+  pending_.emplace(next_id_++, Pending{std::prev(known_.end()), request->kind});
   return std::nullopt;
 }
 
@@ -214,10 +259,11 @@ std::expected<Request, std::string> Requests::translate_sdo(const request_t& mes
   return request;
 }
 
-std::optional<reply_t> Requests::finish(const Reply& reply) {
+std::optional<reply_t> Requests::finish(const Reply& reply, Time now) {
   const auto found = pending_.find(reply.id);
   if (found == pending_.end()) return std::nullopt;
-  reply_t message = reply_to(found->second);
+  Known& known = *found->second.known;
+  reply_t message = reply_to(known.message);
   message.good = reply.fault == SdoFault::none ? 1 : 0;
   message.abort_code = reply.abort_code;
   message.text = reply.fault == SdoFault::lss_failed ? lss_fault_text(reply)
@@ -230,6 +276,8 @@ std::optional<reply_t> Requests::finish(const Reply& reply) {
                    [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
   }
   pending_.erase(found);
+  known.answered = now;
+  known.reply = message;
   return message;
 }
 

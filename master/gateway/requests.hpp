@@ -3,6 +3,7 @@
 #include <deque>
 #include <expected>
 #include <functional>
+#include <list>
 #include <optional>
 #include <string>
 #include <takt/reply_t.hpp>
@@ -19,29 +20,36 @@ struct RequestsOptions {
   bool observe = false;
 };
 
-/// request_t -> Request, Reply -> reply_t: each request gets exactly one answer, a repeated one
-/// (same sender and id) none. Front thread.
+/// request_t -> Request, Reply -> reply_t: each request gets exactly one answer, and is done once
+/// however often it is sent. One that is sent again within some seconds of its answer gets that
+/// answer again; another one of the same sender and id is refused for so long. One that was refused
+/// may be sent again at once. Front thread.
 class Requests {
  public:
   /// `submit` hands a request to the bus thread; false: it has too many.
   Requests(const BusPlan& plan, RequestsOptions options,
            std::function<bool(const Request&)> submit);
 
-  /// An answer that can be given at once (refused); none: it comes later, or never for a repeat.
-  std::optional<reply_t> take(const request_t& message);
+  /// True: the very same message came a moment ago, by another way (udpm and the hub). Once for
+  /// each message, before anything else is done with it.
+  bool is_echo(const request_t& message, Time now);
+  /// An answer that can be given at once; none: it comes later.
+  std::optional<reply_t> take(const request_t& message, Time now);
   /// The answer to whoever asked; none: nobody did.
-  std::optional<reply_t> finish(const Reply& reply);
+  std::optional<reply_t> finish(const Reply& reply, Time now);
 
   std::size_t pending() const noexcept { return pending_.size(); }
 
  private:
-  struct Asker {
-    std::string sender;
-    std::int64_t id = 0;
-    RequestKind kind = RequestKind::sdo_upload;
-    bool operator==(const Asker& other) const noexcept {
-      return id == other.id && sender == other.sender;
-    }
+  /// A request that is done or being done.
+  struct Known {
+    request_t message;
+    Time answered = never;
+    reply_t reply{};  // when it is
+  };
+  struct Heard {
+    request_t message;
+    Time when{};
   };
 
   std::expected<Request, std::string> translate(const request_t& message) const;
@@ -49,15 +57,22 @@ class Requests {
   std::expected<Request, std::string> translate_sdo(const request_t& message) const;
   std::expected<Request, std::string> translate_pdo(const request_t& message) const;
   static std::expected<Request, std::string> translate_lss(const request_t& message);
-  bool seen_before(const Asker& asker);
-  reply_t reply_to(const Asker& asker) const;
+  void forget(Time now);
+  std::optional<reply_t> take_again(const Known& known, const request_t& message) const;
+  reply_t reply_to(const request_t& message) const;
+  reply_t refusal(const request_t& message, std::string why) const;
 
   const BusPlan& plan_;
   RequestsOptions options_;
   std::function<bool(const Request&)> submit_;
   std::uint64_t next_id_ = 1;
-  std::unordered_map<std::uint64_t, Asker> pending_;
-  std::deque<Asker> recent_;
+  struct Pending {
+    std::list<Known>::iterator known;
+    RequestKind kind = RequestKind::sdo_upload;
+  };
+  std::list<Known> known_;  // oldest first
+  std::unordered_map<std::uint64_t, Pending> pending_;
+  std::deque<Heard> heard_;
 };
 
 /// Why an LSS request failed, in words: of the last of its results.

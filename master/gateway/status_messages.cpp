@@ -1,6 +1,8 @@
 #include "master/gateway/status_messages.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "master/gateway/messages.hpp"
@@ -20,9 +22,9 @@ std::int64_t missing_pdos(const BusPlan& plan, const StatusSnapshot& snapshot, s
 
 std::int32_t heartbeat_age(const NodeStatus& node, Time now) {
   if (node.last_heartbeat == Time{0}) return -1;
-  using std::chrono::milliseconds;
-  return static_cast<std::int32_t>(
-      std::chrono::duration_cast<milliseconds>(now - node.last_heartbeat).count());
+  constexpr std::chrono::milliseconds longest{std::numeric_limits<std::int32_t>::max()};
+  const Time age = std::min<Time>(now - node.last_heartbeat, longest);
+  return static_cast<std::int32_t>(age / std::chrono::milliseconds{1});
 }
 
 node_status_t node_message(const NodePlan& plan, const NodeStatus& status) {

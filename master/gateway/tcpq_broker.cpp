@@ -1,29 +1,17 @@
 #include "master/gateway/tcpq_broker.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <utility>
+
+#include "master/gateway/tcp_loopback.hpp"
 
 namespace takt {
 
 std::expected<std::unique_ptr<TcpqBroker>, int> TcpqBroker::listen(std::uint16_t port) {
-  FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
-  if (!socket) return std::unexpected{errno};
-  const int on = 1;
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const generic = reinterpret_cast<sockaddr*>(&address);
-  if (::bind(socket.get(), generic, size) != 0 || ::listen(socket.get(), 16) != 0 ||
-      ::getsockname(socket.get(), generic, &size) != 0) {
-    return std::unexpected{errno};
-  }
-  return std::unique_ptr<TcpqBroker>{new TcpqBroker{std::move(socket), ntohs(address.sin_port)}};
+  auto listener = listen_on_loopback(port);
+  if (!listener) return std::unexpected{listener.error()};
+  return std::unique_ptr<TcpqBroker>{new TcpqBroker{std::move(listener->socket), listener->port}};
 }
 
 std::string TcpqBroker::url() const { return "tcpq://127.0.0.1:" + std::to_string(port_); }

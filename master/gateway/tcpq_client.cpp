@@ -39,10 +39,10 @@ void TcpqClient::connect() {
 }
 
 bool TcpqClient::publish(const std::string& channel, std::span<const std::byte> data) {
-  if (!connection_) return false;
+  if (!connected()) return false;  // kept, it would come too late and look fresh
   const bool taken =
       connection_->queue({.type = tcpq::Type::publish, .channel = channel, .data = data});
-  if (connected()) connection_->flush();
+  connection_->flush();
   return taken;
 }
 

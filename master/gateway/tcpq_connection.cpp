@@ -7,15 +7,13 @@
 #include <sys/socket.h>
 #include <utility>
 
+#include "master/gateway/tcp_loopback.hpp"
+
 namespace takt::tcpq {
 namespace {
 
 void set_option(int fd, int level, int option, int value) noexcept {
   ::setsockopt(fd, level, option, &value, sizeof value);
-}
-
-bool would_wait(int error) noexcept {
-  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
 }
 
 }  // namespace

@@ -53,6 +53,8 @@ class Client {
       unread_.append(text, static_cast<std::size_t>(size));
     }
   }
+  /// Says no more, but reads on.
+  void end() { ::shutdown(socket_.get(), SHUT_WR); }
   std::string ask(const std::string& command) {
     const std::string number = "[" + std::to_string(++sequence_) + "]";
     say(number + " " + command + "\r\n");
@@ -110,6 +112,20 @@ TEST(Gateway, AnswersALiveClientOverTcpOnLoopback) {
   EXPECT_EQ(client.ask("10 r 0x6200 1 u8"), "3");
   EXPECT_EQ(client.ask("10 preop"), "OK");
   EXPECT_EQ(client.line("1 10 "), "1 10 USER STATE PREO");
+}
+
+TEST(Gateway, AnswersAClientThatSaysNoMore) {
+  Folder folder;
+  const std::string path = folder.path() / "gateway";
+  DaemonProcess daemon{slow_network(folder.path()), {"--bus", "sim", "--gateway", "unix:" + path}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+
+  Client client{path};
+  client.say("[1] 1 r 0x1018 1 u32\n");
+  client.end();
+
+  EXPECT_EQ(client.line("[1]"), "[1] 43981");
+  EXPECT_EQ(client.line("["), "(nothing)");
 }
 
 TEST(Gateway, OutlivesClientsThatMisbehave) {

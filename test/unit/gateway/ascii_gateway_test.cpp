@@ -152,6 +152,20 @@ TEST(AsciiGateway, TellsBootUpsUnlessAClientDoesNotWantThem) {
   EXPECT_EQ(rig.said, (std::deque<std::string>{"[1] OK"}));
 }
 
+TEST(AsciiGateway, TellsTheBootUpOfANodeThatItResets) {
+  GatewayRig rig{axes({.nodes = 2})};
+  ASSERT_TRUE(rig.rig.boot());
+  rig.connect();
+  rig.gateway.command(1, "[1] 1 reset node");
+  for (int i = 0; i < 500; ++i) rig.cycle();
+  EXPECT_TRUE(rig.rig.all_ready());
+  const auto at = [&](const char* line) { return std::ranges::find(rig.said, line); };
+  EXPECT_EQ(std::ranges::count(rig.said, "1 1 BOOT_UP"), 1);
+  EXPECT_LT(at("[1] OK"), at("1 1 BOOT_UP"));
+  EXPECT_LT(at("1 1 BOOT_UP"), at("1 1 USER BOOT OK"));
+  EXPECT_NE(at("1 1 USER BOOT OK"), rig.said.end());
+}
+
 TEST(AsciiGateway, HelpsInLines) {
   GatewayRig rig{axes({.nodes = 1})};
   rig.connect();

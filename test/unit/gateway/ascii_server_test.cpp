@@ -26,7 +26,8 @@ class AsciiServerTest : public testing::Test {
     return {.connected = [this](int client) { connected.push_back(client); },
             .line = [this](int, std::string_view line) { lines.emplace_back(line); },
             .too_long = [this](int) { ++too_long; },
-            .gone = [this](int client) { gone.push_back(client); }};
+            .gone = [this](int client) { gone.push_back(client); },
+            .owed = [this](int) { return owed; }};
   }
   void listen() {
     auto opened = AsciiServer::listen("unix:" + path_, handler());
@@ -67,6 +68,7 @@ class AsciiServerTest : public testing::Test {
   std::vector<int> connected;
   std::vector<int> gone;
   int too_long = 0;
+  bool owed = false;
 };
 
 TEST_F(AsciiServerTest, TakesLinesAndSendsThem) {
@@ -102,6 +104,40 @@ TEST_F(AsciiServerTest, TellsThatAClientHasGone) {
   serve();
   EXPECT_EQ(gone, connected);
   server->send(connected[0], "to nobody");
+}
+
+TEST_F(AsciiServerTest, KeepsAClientThatWritesNoMoreUntilItHasItsAnswer) {
+  listen();
+  const FileDescriptor client = connect();
+  owed = true;
+  write(client, "[1] 1 r 0x1018 1\n");
+  ::shutdown(client.get(), SHUT_WR);
+  serve();
+  EXPECT_EQ(lines.size(), 1U);
+  server->serve();
+  EXPECT_TRUE(gone.empty());
+  std::vector<pollfd> descriptors;
+  server->watch(descriptors);
+  EXPECT_EQ(::poll(descriptors.data(), descriptors.size(), 0), 0) << "nothing to do meanwhile";
+
+  server->send(connected[0], "[1] 43981");
+  owed = false;
+  server->serve();
+
+  EXPECT_EQ(gone, connected);
+  EXPECT_EQ(read(client), "[1] 43981\r\n");
+  EXPECT_EQ(read(client), "");
+}
+
+TEST_F(AsciiServerTest, KeepsNobodyWhoReadsNoMoreEither) {
+  listen();
+  owed = true;
+  {
+    const FileDescriptor client = connect();
+    write(client, "[1] 1 r 0x1018 1\n");
+  }
+  serve();
+  EXPECT_EQ(gone, connected);
 }
 
 TEST_F(AsciiServerTest, LeavesAClientThatReadsNoMore) {

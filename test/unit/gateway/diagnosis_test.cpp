@@ -122,6 +122,17 @@ TEST(EmcyHistory, KeepsTheNewestTenOfANode) {
   EXPECT_EQ(history.of(1).back(), 3);
 }
 
+TEST(StatusMessages, OfANodeThatHasBeenSilentForAMonthTellTheLongestAge) {
+  const BusPlan plan = two_nodes();
+  StatusMessages messages{plan, {}};
+  StatusSnapshot snapshot = good();
+  snapshot.nodes[0].last_heartbeat = std::chrono::seconds{1};
+
+  const auto sent = messages.fill(snapshot, {}, std::chrono::days{31});
+
+  EXPECT_EQ(sent[0].nodes[0].heartbeat_age_ms, 2'147'483'647);
+}
+
 TEST(StatusMessages, CarryTheDiagnosisAndTheEmcysOfEachNode) {
   const BusPlan plan = two_nodes();
   StatusMessages messages{plan, {}};

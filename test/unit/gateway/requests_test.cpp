@@ -1,5 +1,6 @@
 #include "master/gateway/requests.hpp"
 
+#include <chrono>
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -7,6 +8,8 @@
 
 namespace takt {
 namespace {
+
+using namespace std::chrono_literals;
 
 class RequestsTest : public testing::Test {
  protected:
@@ -25,6 +28,7 @@ class RequestsTest : public testing::Test {
   BusPlan plan = test::a_plan();
   std::vector<Request> submitted;
   bool room = true;
+  Time now = 100s;
   Requests requests{plan, {.session = 42, .observe = false}, [this](const Request& request) {
                       if (room) submitted.push_back(request);
                       return room;
@@ -32,7 +36,7 @@ class RequestsTest : public testing::Test {
 };
 
 TEST_F(RequestsTest, EachRequestIsAnsweredExactlyOnce) {
-  EXPECT_FALSE(requests.take(upload(7)));
+  EXPECT_FALSE(requests.take(upload(7), now));
   ASSERT_EQ(submitted.size(), 1U);
   EXPECT_EQ(submitted[0].object, (ObjectKey{0x1018, 1}));
   Reply reply{.id = submitted[0].id};
@@ -40,29 +44,94 @@ TEST_F(RequestsTest, EachRequestIsAnsweredExactlyOnce) {
   reply.data[0] = std::byte{0x34};
   reply.data[1] = std::byte{0x12};
 
-  const auto answer = requests.finish(reply);
+  const auto answer = requests.finish(reply, now);
 
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->id, 7);
   EXPECT_EQ(answer->sender, "takt-1");
   EXPECT_NE(answer->good, 0);
   EXPECT_EQ(answer->data, (std::vector<std::uint8_t>{0x34, 0x12}));
-  EXPECT_FALSE(requests.finish(reply));
+  EXPECT_FALSE(requests.finish(reply, now));
   EXPECT_EQ(requests.pending(), 0U);
 }
 
 TEST_F(RequestsTest, RepeatedRequestIsNotDoneTwice) {
-  requests.take(upload(7));
+  requests.take(upload(7), now);
 
-  EXPECT_FALSE(requests.take(upload(7)));
+  EXPECT_FALSE(requests.take(upload(7), now));
   EXPECT_EQ(submitted.size(), 1U);
 }
 
+TEST_F(RequestsTest, RepeatAfterTheAnswerGetsThatAnswerAgain) {
+  requests.take(upload(7), now);
+  Reply reply{.id = submitted[0].id};
+  reply.size = 1;
+  reply.data[0] = std::byte{0x55};
+  requests.finish(reply, now);
+
+  const auto again = requests.take(upload(7), now + 9s);
+
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->id, 7);
+  EXPECT_NE(again->good, 0);
+  EXPECT_EQ(again->data, (std::vector<std::uint8_t>{0x55}));
+  EXPECT_EQ(submitted.size(), 1U);
+}
+
+TEST_F(RequestsTest, AnotherRequestOfAUsedIdIsRefusedAndTaken10sLater) {
+  requests.take(upload(7), now);
+  requests.finish({.id = submitted[0].id}, now);
+  request_t other = upload(7);
+  other.index = 0x1000;
+
+  const auto refused = requests.take(other, now + 5s);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->good, 0);
+  EXPECT_NE(refused->text.find("id 7 of this sender was used already"), std::string::npos);
+
+  EXPECT_FALSE(requests.take(other, now + 11s));
+  ASSERT_EQ(submitted.size(), 2U);
+  EXPECT_EQ(submitted[1].object, (ObjectKey{0x1000, 0x01}));
+}
+
+TEST_F(RequestsTest, RefusedOneMayBeSentAgain) {
+  room = false;
+  EXPECT_TRUE(requests.take(upload(7), now));
+  room = true;
+
+  EXPECT_FALSE(requests.take(upload(7), now));
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_TRUE(requests.finish({.id = submitted[0].id}, now));
+}
+
+TEST_F(RequestsTest, TheSameMessageByAnotherWayIsAnEcho) {
+  request_t message = upload(7);
+  message.utime = 1'000'000;
+  EXPECT_FALSE(requests.is_echo(message, now));
+  EXPECT_TRUE(requests.is_echo(message, now + 20ms));
+
+  EXPECT_FALSE(requests.is_echo(message, now + 1s)) << "sent again";
+  message.utime = 1'000'001;
+  EXPECT_FALSE(requests.is_echo(message, now + 1s)) << "another one";
+}
+
+TEST_F(RequestsTest, RemembersABoundedNumber) {
+  for (std::int64_t id = 1; id <= 1000; ++id) {
+    requests.take(upload(id), now);
+    requests.finish({.id = submitted.back().id}, now);
+  }
+  EXPECT_EQ(submitted.size(), 1000U);
+
+  EXPECT_FALSE(requests.take(upload(1), now)) << "forgotten";
+  EXPECT_TRUE(requests.take(upload(1000), now));
+}
+
 TEST_F(RequestsTest, AbortIsToldInWords) {
-  requests.take(upload(1));
+  requests.take(upload(1), now);
 
   const auto answer = requests.finish(
-      {.id = submitted[0].id, .fault = SdoFault::aborted_by_device, .abort_code = 0x0602'0000});
+      {.id = submitted[0].id, .fault = SdoFault::aborted_by_device, .abort_code = 0x0602'0000},
+      now);
 
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->good, 0);
@@ -75,7 +144,7 @@ TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
   const auto refused = [&](auto change) {
     request_t message = upload(++id);
     change(message);
-    const auto answer = requests.take(message);
+    const auto answer = requests.take(message, now);
     return answer && answer->good == 0 && !answer->text.empty();
   };
 
@@ -97,7 +166,7 @@ TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
 TEST_F(RequestsTest, FullRingIsAnAnswerToo) {
   room = false;
 
-  const auto answer = requests.take(upload(1));
+  const auto answer = requests.take(upload(1), now);
 
   ASSERT_TRUE(answer);
   EXPECT_NE(answer->text.find("again later"), std::string::npos);
@@ -109,7 +178,7 @@ TEST_F(RequestsTest, NmtGoesToAllNodesOrOne) {
   message.node_id = 0;
   message.nmt_command = 129;
 
-  EXPECT_FALSE(requests.take(message));
+  EXPECT_FALSE(requests.take(message, now));
   ASSERT_EQ(submitted.size(), 1U);
   EXPECT_EQ(submitted[0].kind, RequestKind::nmt);
   EXPECT_EQ(submitted[0].node, 0);
@@ -122,7 +191,7 @@ TEST_F(RequestsTest, PdosAreAskedForByNumber) {
   message.index = 1;
   message.size = 2;
   message.data = {0x01, 0x02};
-  EXPECT_FALSE(requests.take(message));
+  EXPECT_FALSE(requests.take(message, now));
   ASSERT_EQ(submitted.size(), 1U);
   EXPECT_EQ(submitted[0].kind, RequestKind::pdo_exchange);
   EXPECT_EQ(submitted[0].object.index, 1);
@@ -130,13 +199,13 @@ TEST_F(RequestsTest, PdosAreAskedForByNumber) {
   Reply reply{.id = submitted[0].id};
   reply.size = 1;
   reply.data[0] = std::byte{0x55};
-  const auto answer = requests.finish(reply);
+  const auto answer = requests.finish(reply, now);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->data, (std::vector<std::uint8_t>{0x55}));
 
   message.id = 9;
   message.index = 513;
-  const auto refused = requests.take(message);
+  const auto refused = requests.take(message, now);
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->text, "PDO number 513 is not in 1..512");
 }

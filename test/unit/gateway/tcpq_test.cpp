@@ -154,6 +154,63 @@ TEST(TcpqBroker, CarriesMessagesFromItsOwnerToClientsAndBack) {
   EXPECT_EQ(heard, (std::vector<std::string>{"UP:3", "DOWN_1:3"}));
 }
 
+/// A server that listens, and answers when it is told to.
+class SlowServer {
+ public:
+  SlowServer() : listener_{::socket(AF_INET, SOCK_STREAM, 0)} {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const generic = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(::bind(listener_.get(), generic, size), 0);
+    EXPECT_EQ(::listen(listener_.get(), 1), 0);
+    EXPECT_EQ(::getsockname(listener_.get(), generic, &size), 0);
+    port_ = ntohs(address.sin_port);
+  }
+  std::uint16_t port() const { return port_; }
+  void answer() {
+    client_ = FileDescriptor{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK)};
+    const Octets magic = octets({0x28, 0x76, 0x17, 0xFA, 0, 0, 1, 0});
+    EXPECT_EQ(::send(client_.get(), magic.data(), magic.size(), 0), 8);
+  }
+  /// Channels of what has come so far, "subscribe AB" or "publish C".
+  const std::vector<std::string>& heard() {
+    std::byte chunk[4096];
+    const ssize_t size = ::recv(client_.get(), chunk, sizeof chunk, MSG_DONTWAIT);
+    if (size > 0) parser_.feed({chunk, static_cast<std::size_t>(size)});
+    while (const auto message = parser_.next()) {
+      const bool publish = message->type == tcpq::Type::publish;
+      heard_.push_back((publish ? "publish " : "subscribe ") + std::string{message->channel});
+    }
+    return heard_;
+  }
+
+ private:
+  FileDescriptor listener_;
+  FileDescriptor client_;
+  std::uint16_t port_ = 0;
+  tcpq::Parser parser_{tcpq::magic_client};
+  std::vector<std::string> heard_;
+};
+
+TEST(TcpqClient, KeepsItsSubscriptionsAndNoOldMessagesForAServerThatAnswersLate) {
+  SlowServer server;
+  TcpqClient client{"127.0.0.1", server.port()};
+  client.subscribe("DOWN");
+  const Octets data(3);
+  const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
+  client.serve(ignore);
+
+  EXPECT_FALSE(client.publish("OLD", data));
+  server.answer();
+  ASSERT_TRUE(serve_until({&client}, ignore, [&] { return client.connected(); }));
+  EXPECT_TRUE(client.publish("NEW", data));
+
+  ASSERT_TRUE(serve_until({&client}, ignore, [&] { return server.heard().size() >= 2; }));
+  EXPECT_EQ(server.heard(), (std::vector<std::string>{"subscribe DOWN", "publish NEW"}));
+}
+
 TEST(TcpqBroker, KnowsWhatItsClientsWant) {
   auto broker = TcpqBroker::listen(0).value();
   EXPECT_FALSE(broker->wanted("DOWN_1"));

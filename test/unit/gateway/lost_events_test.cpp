@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "master/gateway/bridge.hpp"
+#include "test/virtual/rig.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The port of a controller whose state changes in each cycle: an event a cycle.
+class RestlessPort {
+ public:
+  explicit RestlessPort(sim::SimPort& port) : port_{port} {}
+  Time now() noexcept { return port_.now(); }
+  void sleep_until(Time until) noexcept { port_.sleep_until(until); }
+  void sleep_precisely_until(Time until) noexcept { port_.sleep_precisely_until(until); }
+  bool wait_frame(Time until) noexcept { return port_.wait_frame(until); }
+  std::size_t receive(std::span<StampedFrame> in) noexcept { return port_.receive(in); }
+  SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
+  PortNews news() const noexcept {
+    PortNews news = port_.news();
+    news.error_passive = port_.now() / 4ms % 2 != 0;
+    return news;
+  }
+
+ private:
+  sim::SimPort& port_;
+};
+
+class NobodyHears final : public Transport {
+ public:
+  bool publish(const std::string&, std::span<const std::byte>) override { return true; }
+  void subscribe(const std::string&) override {}
+  void serve(const MessageHandler&) override {}
+  void watch(std::vector<pollfd>&) const override {}
+  bool good() const override { return true; }
+  std::string url() const override { return {}; }
+};
+
+TEST(LostEvents, AreToldOnceWithTheirNumber) {
+  test::Rig rig{test::axes({.period = 4ms})};
+  RestlessPort port{*rig.port};
+  rig.use(port);
+  NobodyHears lcm;
+  std::vector<std::string> texts;
+  Bridge bridge{*rig.master, lcm, {}, [&](const Notice& notice) {
+                  if (notice.kind == "events_lost") texts.push_back(notice.text);
+                }};
+
+  for (int i = 0; i < 1200; ++i) rig.master->cycle();  // the front thread sleeps meanwhile
+  const std::uint64_t lost = rig.master->event_overruns();
+  bridge.serve();
+  bridge.serve();
+
+  EXPECT_GT(lost, 100U);
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_EQ(texts[0], "bus 'test': " + std::to_string(lost) +
+                          " events lost: more came at once than there is room for");
+}
+
+}  // namespace
+}  // namespace takt
