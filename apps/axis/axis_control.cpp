@@ -19,6 +19,25 @@ ValueFormat format_of(const signal_t& signal) {
           .offset = signal.offset};
 }
 
+/// Whether drives obey 0x607A in this mode.
+bool is_position_mode(std::int8_t mode) noexcept {
+  return mode == std::to_underlying(DriveMode::profile_position) ||
+         mode == std::to_underlying(DriveMode::cyclic_position);
+}
+
+double finite_or_zero(double si) noexcept { return std::isfinite(si) ? si : 0.0; }
+
+bool missing(AxisSignals::Position signal, const ImageInput& input) {
+  return signal && input.stale(*signal);
+}
+
+/// Whether the image shows a target position that is sent to a drive which obeys it.
+bool shows_set_points(const AxisSignals& signals, const ImageInput& input) {
+  constexpr std::int64_t enable_operation = 0x000F;
+  const std::int64_t controlword = input.values()[*signals.controlword];
+  return signals.target_position && (controlword & enable_operation) == enable_operation;
+}
+
 }  // namespace
 
 void AxisControl::set_layout(const ImageInput& input) {
@@ -62,31 +81,47 @@ void AxisControl::on_image(const ImageInput& input) {
     torques_(i) = read(axis.signals.torque, input);
     sent_positions_(i) = read(axis.signals.target_position, input);
     step(axis, input);
-    rest(i);
+    rest(i, input);
   }
   command_.session = input.session();
   command_.cycle = input.cycle();
 }
 
 void AxisControl::step(Axis& axis, const ImageInput& input) {
-  const auto missing = [&](AxisSignals::Position signal) { return signal && input.stale(*signal); };
-  axis.stale = missing(axis.signals.statusword) || missing(axis.signals.position);
-  if (axis.signals.mode_display) {
-    axis.shown_mode = static_cast<std::int8_t>(input.values()[*axis.signals.mode_display]);
-  }
-  if (missing(axis.signals.statusword)) return;  // hold the controlword
+  axis.stale = missing(axis.signals.statusword, input) || missing(axis.signals.position, input);
+  const auto mode = axis.signals.mode_display ? axis.signals.mode_display : axis.signals.mode;
+  if (mode) axis.shown_mode = static_cast<std::int8_t>(input.values()[*mode]);
+  if (missing(axis.signals.statusword, input)) return;  // hold the controlword
   axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
-  axis.controlword = axis.drive.step(axis.statusword);
+  const bool placed = axis.seeded || !missing(axis.signals.position, input);
+  axis.controlword = axis.drive.step(axis.statusword, placed ? Enabling::goes_on : Enabling::waits);
   if (mode_ == DriveMode::profile_position && axis.drive.enabled()) {
     axis.controlword |= axis.handshake.step(axis.statusword);
   }
 }
 
-void AxisControl::rest(Index axis) {
-  if (drive(axis).enabled()) return;
-  target_positions_(axis) = positions_(axis);
-  target_velocities_(axis) = 0.0;
-  target_torques_(axis) = 0.0;
+/// In Operation enabled and in a position mode, by command and by what the image shows.
+bool AxisControl::takes_positions(const Axis& axis) const noexcept {
+  const bool shown = axis.signals.mode_display || axis.signals.mode;
+  return axis.drive.enabled() && is_position_mode(std::to_underlying(mode_)) &&
+         (!shown || is_position_mode(axis.shown_mode));
+}
+
+void AxisControl::rest(Index index, const ImageInput& input) {
+  Axis& axis = axes_[at(index)];
+  if (!axis.drive.enabled() || (axis.signals.position && !axis.seeded)) {
+    target_velocities_(index) = 0.0;
+    target_torques_(index) = 0.0;
+  }
+  const bool takes = takes_positions(axis);
+  if (takes && axis.seeded) return;
+  const bool goes_on = takes && shows_set_points(axis.signals, input);
+  if (goes_on) {
+    target_positions_(index) = sent_positions_(index);
+  } else if (axis.signals.position) {
+    target_positions_(index) = positions_(index);
+  }
+  axis.seeded |= !axis.stale && (goes_on || axis.signals.position);
 }
 
 command_t& AxisControl::command() {
@@ -97,7 +132,7 @@ command_t& AxisControl::command() {
     const Axis& axis = axes_[at(i)];
     put(axis.signals.controlword, axis.controlword);
     put(axis.signals.mode, std::to_underlying(mode_));
-    put_si(axis.signals.target_position, target_positions_(i));
+    if (axis.seeded) put_si(axis.signals.target_position, target_positions_(i));
     put_si(axis.signals.target_velocity, target_velocities_(i));
     put_si(axis.signals.target_torque, target_torques_(i));
     put_si(axis.signals.velocity_offset, 0.0);
@@ -145,19 +180,23 @@ bool AxisControl::in_mode() const noexcept {
 
 void AxisControl::set_positions(const Eigen::Ref<const Eigen::VectorXd>& si) {
   for (Index i = 0; i < size(); ++i) {
-    if (drive(i).enabled()) target_positions_(i) = si(i);
+    Axis& axis = axes_[at(i)];
+    const bool takes = !axis.signals.position || (axis.seeded && takes_positions(axis));
+    if (!takes || !std::isfinite(si(i))) continue;
+    target_positions_(i) = si(i);
+    axis.seeded = true;
   }
 }
 
 void AxisControl::set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si) {
   for (Index i = 0; i < size(); ++i) {
-    if (drive(i).enabled()) target_velocities_(i) = si(i);
+    if (drive(i).enabled()) target_velocities_(i) = finite_or_zero(si(i));
   }
 }
 
 void AxisControl::set_torques(const Eigen::Ref<const Eigen::VectorXd>& si) {
   for (Index i = 0; i < size(); ++i) {
-    if (drive(i).enabled()) target_torques_(i) = si(i);
+    if (drive(i).enabled()) target_torques_(i) = finite_or_zero(si(i));
   }
 }
 

@@ -27,7 +27,10 @@ enum class DriveMode : std::int8_t {
 
 /// All axes of a bus as vectors in SI units: image in, command out, without LCM and without a
 /// clock. Until an axis is in Operation enabled its target follows its position and its target
-/// velocity and torque are zero, so that enabling never makes it jump.
+/// velocity and torque are zero, so that enabling never makes it jump. One that is enabled already
+/// keeps the target that the image shows as sent, or its position where none is sent. No axis is
+/// enabled before its position has arrived once, as far as it is mapped. In modes without target
+/// positions (profile or cyclic velocity and torque, homing) these follow the position too.
 class AxisControl {
  public:
   using Index = Eigen::Index;
@@ -67,7 +70,11 @@ class AxisControl {
   /// Whether every axis shows the mode (0x6061), as far as it is mapped.
   bool in_mode() const noexcept;
 
-  // One value an axis. Axes that are not in Operation enabled keep to their position and rest.
+  // One value an axis. Axes that are not in Operation enabled keep to their position and rest;
+  // those that are not in a position mode, as commanded and as shown, keep to their position.
+  // One whose position is not mapped has no target position before set_positions() gave it one,
+  // enabled or not. A position that is not finite leaves the target as it is; a velocity or torque
+  // that is not finite is 0.
   void set_positions(const Eigen::Ref<const Eigen::VectorXd>& si);
   void set_velocities(const Eigen::Ref<const Eigen::VectorXd>& si);
   void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
@@ -82,15 +89,17 @@ class AxisControl {
     SetPointHandshake handshake;
     std::uint16_t statusword = 0;
     std::uint16_t controlword = 0;
-    std::int8_t shown_mode = 0;
+    std::int8_t shown_mode = 0;  // 0x6061; where it is not mapped, 0x6060 as the image shows it
     bool stale = false;
+    bool seeded = false;  // its target position stands for something
   };
 
   static std::size_t at(Index axis) noexcept { return static_cast<std::size_t>(axis); }
   double read(AxisSignals::Position signal, const ImageInput& input) const;
   double to_si(std::size_t signal, std::int64_t raw) const;
   void step(Axis& axis, const ImageInput& input);
-  void rest(Index axis);
+  bool takes_positions(const Axis& axis) const noexcept;
+  void rest(Index axis, const ImageInput& input);
   void put(AxisSignals::Position signal, std::int64_t raw);
   void put_si(AxisSignals::Position signal, double si);
 

@@ -65,11 +65,11 @@ void DriveSequence::reset_fault() noexcept {
   waited_ = 0;
 }
 
-std::uint16_t DriveSequence::step(std::uint16_t statusword) noexcept {
+std::uint16_t DriveSequence::step(std::uint16_t statusword, Enabling enabling) noexcept {
   const auto state = decode_statusword(statusword);
   unknown_ = !state;
   notice(state.value_or(state_));
-  return resetting_ ? reset_word() : word_for_goal();
+  return resetting_ ? reset_word() : word_for_goal(enabling);
 }
 
 void DriveSequence::notice(State402 state) noexcept {
@@ -88,9 +88,10 @@ std::uint16_t DriveSequence::reset_word() noexcept {
   return disable_voltage;
 }
 
-std::uint16_t DriveSequence::word_for_goal() const noexcept {
+std::uint16_t DriveSequence::word_for_goal(Enabling enabling) const noexcept {
   switch (goal_) {
     case DriveGoal::enabled:
+      if (enabling == Enabling::waits && !enabled()) break;
       return word_to_enable(state_);
     case DriveGoal::quick_stopped:
       return word_to_quick_stop(state_);

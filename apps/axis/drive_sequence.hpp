@@ -8,6 +8,9 @@ namespace takt {
 /// Where a drive shall go.
 enum class DriveGoal : std::uint8_t { disabled, enabled, quick_stopped };
 
+/// Whether a drive may be led towards Operation enabled; one that is there stays.
+enum class Enabling : std::uint8_t { waits, goes_on };
+
 /// Limits of a DriveSequence, in steps (one a cycle).
 struct DriveSequenceLimits {
   std::uint32_t reset_low_steps = 10;  ///< bit 7 rests low so long before its edge
@@ -27,7 +30,7 @@ class DriveSequence {
   void reset_fault() noexcept;
 
   /// The controlword (without mode-specific bits) that answers this statusword. CiA 402-2, 1.4.
-  std::uint16_t step(std::uint16_t statusword) noexcept;
+  std::uint16_t step(std::uint16_t statusword, Enabling enabling = Enabling::goes_on) noexcept;
 
   DriveGoal goal() const noexcept { return goal_; }
   /// Last known state; a statusword that tells none leaves it as it was.
@@ -41,7 +44,7 @@ class DriveSequence {
  private:
   void notice(State402 state) noexcept;
   std::uint16_t reset_word() noexcept;
-  std::uint16_t word_for_goal() const noexcept;
+  std::uint16_t word_for_goal(Enabling enabling) const noexcept;
 
   DriveSequenceLimits limits_;
   DriveGoal goal_ = DriveGoal::disabled;

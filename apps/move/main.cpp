@@ -12,7 +12,12 @@ namespace {
 
 volatile std::sig_atomic_t stop = 0;
 
-void on_signal(int) { stop = 1; }
+void on_signal(int) { stop = stop == 0 ? 1 : 2; }
+
+/// The terminal is gone. It may tell so again and again, which makes no second signal.
+void on_hangup(int) {
+  if (stop == 0) stop = 1;
+}
 
 /// Ahead of ordinary programs and behind taktd, where the machine grants it.
 void ask_for_real_time() {
@@ -27,6 +32,8 @@ int main(int argc, char** argv) {
   if (exit_code) return *exit_code;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGPIPE, on_hangup);
   ask_for_real_time();
   auto lcm = takt::open_lcm(options.lcm_url);
   if (!lcm) {

@@ -29,7 +29,12 @@ constexpr double longest_refusal = 1.0;
 constexpr std::chrono::milliseconds tick{2};
 /// A drive may need so long for its brake and its DC link.
 constexpr double enable_seconds = 5.0;
+/// Of waiting in vain for the axes that shall be disabled, all together.
 constexpr double disable_seconds = 2.0;
+/// For the axes whose turn did not come in that time, or before a second signal.
+constexpr double last_seconds = 0.2;
+constexpr int second_stop = 2;
+constexpr int any_stops = 3;
 /// How long a set-point lives when this program stalls, where the network file allows as much.
 constexpr std::chrono::milliseconds set_point_life{1000};
 
@@ -40,48 +45,63 @@ MoveRun::MoveRun(AxisGroup& group, const MoveOptions& options,
     : group_{group}, axes_{group.axes()}, options_{options}, stop_{stop} {}
 
 int MoveRun::run() {
-  if (!find_axes()) return exit_no_daemon;
-  const auto targets = static_cast<Eigen::Index>(options_.to.size());
-  if (targets > 1 && targets != axes_.size()) {
-    progress_.say(fmt::format("--to has {} values for {} axes", targets, axes_.size()));
-    return exit_wrong_use;
-  }
+  if (!hear_bus()) return exit_no_daemon;
+  if (!fits()) return exit_wrong_use;
+  begin();
   good_ = devices_answer() && enable() && move();
   if (commanding_ && !restarted_) disable();
   return sum_up();
 }
 
-bool MoveRun::find_axes() {
+bool MoveRun::hear_bus() {
   progress_.say("waiting for " + (options_.bus.empty() ? "a bus" : "bus " + options_.bus) +
                 " on LCM");
   const auto until = Clock::now() + std::chrono::duration<double>(options_.wait_seconds);
   while (stop_ == 0 && Clock::now() < until) {
-    if (group_.wait(std::chrono::milliseconds{50}) != Input::fresh) continue;
-    if (axes_.size() == 0) {
-      progress_.say("bus " + group_.bus() + " has no CiA 402 axis (6040 and 6041 in PDOs)");
-      return false;
-    }
-    const auto& signals = group_.input().signals();
-    const auto position = axes_.signals(0).position;
-    unit_ = position ? signals[*position].unit : std::string{};
-    sizes_ = sizes_for(options_, unit_);
-    progress_.set_unit(unit_.empty() ? "counts" : unit_);
-    following_ = Following{axes_.size()};
-    group_.set_time_to_live(
-        std::max(2 * options_.stale_cycles, static_cast<int>(set_point_life / group_.period())));
-    progress_.say(fmt::format("bus {}: {} signals, {} axes, SYNC every {:g} ms", group_.bus(),
-                              signals.size(), axes_.size(),
-                              std::chrono::duration<double, std::milli>(group_.period()).count()));
-    return true;
+    if (group_.wait(std::chrono::milliseconds{50}) == Input::fresh) return true;
   }
   progress_.say(group_.bus().empty() ? "no bus heard: is taktd running, with the same LCM URL?"
                                      : "bus " + group_.bus() + " sends no image");
   return false;
 }
 
-bool MoveRun::hold_until(const std::function<bool()>& done, double seconds) {
+/// Whether there is something to move, and targets for it.
+bool MoveRun::fits() {
+  if (axes_.size() == 0) {
+    progress_.say("no axis with profile cia402 on bus " + group_.bus() +
+                  ": no node has 6040 and 6041 in its PDOs");
+    return false;
+  }
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    if (axes_.signals(i).position && axes_.signals(i).target_position) continue;
+    progress_.say(axes_.name(i) + " can't be moved: 6064 and 607A are not both in its PDOs");
+    return false;
+  }
+  const auto targets = static_cast<AxisControl::Index>(options_.to.size());
+  if (targets <= 1 || targets == axes_.size()) return true;
+  progress_.say(fmt::format("--to has {} values for {} axes", targets, axes_.size()));
+  return false;
+}
+
+void MoveRun::begin() {
+  const auto& signals = group_.input().signals();
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const std::string& unit = signals[*axes_.signals(i).position].unit;
+    sizes_.push_back(sizes_for(options_, unit));
+    units_.push_back(unit.empty() ? "counts" : unit);
+  }
+  progress_.set_units(units_);
+  following_ = Following{axes_.size()};
+  group_.set_time_to_live(
+      std::max(2 * options_.stale_cycles, static_cast<int>(set_point_life / group_.period())));
+  progress_.say(fmt::format("bus {}: {} signals, {} axes, SYNC every {:g} ms", group_.bus(),
+                            signals.size(), axes_.size(),
+                            std::chrono::duration<double, std::milli>(group_.period()).count()));
+}
+
+bool MoveRun::hold_until(const std::function<bool()>& done, double seconds, int stops) {
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
-  while (!restarted_ && Clock::now() < until) {
+  while (!restarted_ && stop_ < stops && Clock::now() < until) {
     const Input input = group_.wait(tick);
     restarted_ = input == Input::restarted;
     if (input != Input::fresh) continue;
@@ -98,11 +118,12 @@ bool MoveRun::devices_answer() {
   };
   const auto all_answer = [&] {
     for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-      if (!answers(i)) return stop_ != 0;
+      if (!answers(i)) return false;
     }
     return true;
   };
-  if (hold_until(all_answer, options_.wait_seconds)) return stop_ == 0;
+  if (hold_until(all_answer, options_.wait_seconds)) return true;
+  if (stop_ != 0) return false;
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
     if (!answers(i)) progress_.say(axes_.name(i) + ": no sign of the device (did it boot?)");
   }
@@ -114,8 +135,9 @@ bool MoveRun::enable() {
   axes_.set_mode(DriveMode::cyclic_position);
   axes_.reset_faults();
   axes_.set_goal(DriveGoal::enabled);
-  const auto ready = [&] { return stop_ != 0 || (axes_.all_enabled() && axes_.in_mode()); };
-  if (hold_until(ready, enable_seconds)) return stop_ == 0;
+  const auto ready = [&] { return axes_.all_enabled() && axes_.in_mode(); };
+  if (hold_until(ready, enable_seconds)) return true;
+  if (stop_ != 0) return false;
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
     if (axes_.drive(i).enabled()) continue;
     progress_.say(fmt::format("{}: not enabled, {}", axes_.name(i), name(axes_.drive(i).state())));
@@ -125,8 +147,13 @@ bool MoveRun::enable() {
 }
 
 Eigen::VectorXd MoveRun::target() const {
-  const Eigen::VectorXd& from = axes_.target_positions();
-  if (options_.to.empty()) return from.array() + sizes_.distance;
+  Eigen::VectorXd from = axes_.target_positions();
+  if (options_.to.empty()) {
+    for (AxisControl::Index i = 0; i < from.size(); ++i) {
+      from(i) += sizes_[static_cast<std::size_t>(i)].distance;
+    }
+    return from;
+  }
   if (options_.to.size() == 1) return Eigen::VectorXd::Constant(from.size(), options_.to.front());
   return Eigen::VectorXd::Map(options_.to.data(), from.size());
 }
@@ -134,16 +161,36 @@ Eigen::VectorXd MoveRun::target() const {
 bool MoveRun::move() {
   double left = options_.seconds;
   if (options_.point) {
-    const SynchronisedMove move{axes_.target_positions(), target(), sizes_.limits};
+    std::vector<MotionLimits> limits(sizes_.size());
+    std::ranges::transform(sizes_, limits.begin(), &MoveSizes::limits);
+    const SynchronisedMove move{axes_.target_positions(), target(), limits};
     progress_.say(fmt::format("moving all axes together, {:.2f} s", move.duration()));
     if (!follow("move", move.duration(), [&](double t) { return move.position(t); })) return false;
     left -= move.duration();
   }
   if (!options_.sine || stop_ != 0) return true;
-  const Sine sine{
-      axes_.target_positions(),
-      {.amplitude = sizes_.amplitude, .frequency = options_.frequency, .duration = left}};
-  progress_.say(fmt::format("sine of {:g} Hz, {:.2f} s", options_.frequency, sine.duration()));
+  return swing(left);
+}
+
+bool MoveRun::swing(double seconds) {
+  Eigen::VectorXd amplitude{axes_.size()};
+  std::ranges::transform(sizes_, amplitude.begin(), &MoveSizes::amplitude);
+  Sine sine{axes_.target_positions(),
+            {.amplitude = amplitude, .frequency = options_.frequency, .duration = seconds}};
+  std::string reduced;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const double within = sine.amplitude_within(sizes_[axis].limits);
+    if (amplitude(i) <= within) continue;
+    sine.set_amplitude(i, within);
+    reduced += fmt::format("{}{} {:.4g} {}", reduced.empty() ? "" : ", ", axes_.name(i), within,
+                           units_[axis]);
+  }
+  if (!reduced.empty()) progress_.say("amplitude reduced to keep to the limits: " + reduced);
+  const double longer = sine.duration() - seconds;
+  progress_.say(fmt::format(
+      "sine of {:g} Hz, {:.2f} s{}", options_.frequency, sine.duration(),
+      longer > 0.0 ? fmt::format(", one period: {:.2f} s longer than --for", longer) : ""));
   return follow("sine", sine.duration(), [&](double t) { return sine.position(t); });
 }
 
@@ -225,35 +272,55 @@ bool MoveRun::axes_lost() {
 
 void MoveRun::disable() {
   progress_.say("disabling the axes, one after the other");
-  for (AxisControl::Index i = axes_.size() - 1; i >= 0; --i) {
+  double left = disable_seconds;
+  for (AxisControl::Index i = axes_.size() - 1; i >= 0 && left > 0.0; --i) {
     axes_.set_goal(i, DriveGoal::disabled);
-    if (!hold_until([&] { return axes_.drive(i).reached(); }, disable_seconds)) {
-      progress_.say(axes_.name(i) + " does not confirm that it is disabled");
-      good_ = false;
-    }
+    const auto begin = Clock::now();
+    if (hold_until([&] { return axes_.drive(i).reached(); }, left, second_stop)) continue;
+    if (restarted_ || stop_ >= second_stop) break;
+    left -= std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  axes_.set_goal(DriveGoal::disabled);
+  const auto all_reached = [this] { return axes_.all_reached(); };
+  if (all_reached() || hold_until(all_reached, last_seconds, any_stops)) return;
+  good_ = false;
+  if (stop_ >= second_stop) progress_.say("a second signal: not waiting for the axes any longer");
+  for (AxisControl::Index i = axes_.size() - 1; i >= 0; --i) {
+    if (axes_.drive(i).reached()) continue;
+    progress_.say(axes_.name(i) + " does not confirm that it is disabled");
   }
 }
 
-std::string MoveRun::verdict(bool followed) const {
-  if (following_.samples() == 0) return "The axes never moved.";
-  if (!followed) {
-    return fmt::format("The axes did NOT follow (limit {:g}).", sizes_.following_limit);
+/// Axes with more than the allowed following error; empty: all followed.
+std::string MoveRun::too_far() const {
+  std::string text;
+  for (std::size_t i = 0; i < sizes_.size(); ++i) {
+    const auto axis = static_cast<AxisControl::Index>(i);
+    if (following_.largest()(axis) <= sizes_[i].following_limit) continue;
+    text += fmt::format("{}{} (limit {:g} {})", text.empty() ? "" : ", ", axes_.name(axis),
+                        sizes_[i].following_limit, units_[i]);
   }
+  return text;
+}
+
+std::string MoveRun::verdict() const {
+  if (following_.samples() == 0) return "The axes never moved.";
+  if (!too_far().empty()) return "The axes did NOT follow: " + too_far() + ".";
   return good_ ? "The axes followed."
                : "The motion did not come to its end; as far as it went, the axes followed.";
 }
 
 int MoveRun::sum_up() const {
-  fmt::print("\n{:<14}{:>16}{:>24}   unit\n", "axis", "position", "largest following error");
-  bool followed = following_.samples() > 0;
+  std::string text =
+      fmt::format("\n{:<14}{:>16}{:>24}   unit\n", "axis", "position", "largest following error");
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-    const double error = following_.largest()(i);
-    followed = followed && error <= sizes_.following_limit;
-    fmt::print("{:<14}{:>16.4f}{:>24.4f}   {}\n", axes_.name(i), axes_.positions()(i), error,
-               unit_.empty() ? "counts" : unit_);
+    text += fmt::format("{:<14}{:>16.4f}{:>24.4f}   {}\n", axes_.name(i), axes_.positions()(i),
+                        following_.largest()(i), units_[static_cast<std::size_t>(i)]);
   }
-  fmt::print("{} images compared, held {} times. {}\n", following_.samples(), holds_,
-             verdict(followed));
+  text += fmt::format("{} images compared, held {} times. {}\n", following_.samples(), holds_,
+                      verdict());
+  Progress::print(text);
+  const bool followed = following_.samples() > 0 && too_far().empty();
   return good_ && followed ? exit_good : exit_not_followed;
 }
 

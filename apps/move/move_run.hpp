@@ -2,9 +2,11 @@
 #include <csignal>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "apps/axis/axis_group.hpp"
 #include "apps/move/following.hpp"
+#include "apps/move/move_sizes.hpp"
 #include "apps/move/options.hpp"
 #include "apps/move/pace.hpp"
 #include "apps/move/progress.hpp"
@@ -14,7 +16,7 @@ namespace takt {
 /// Finds the axes of a bus, enables them, moves them, disables them in order and sums up.
 class MoveRun {
  public:
-  /// `stop` becomes 1 when the user wants an end.
+  /// `stop` becomes 1 when the user wants an end, 2 when disabling takes too long.
   MoveRun(AxisGroup& group, const MoveOptions& options, const volatile std::sig_atomic_t& stop);
 
   /// The exit code of takt-move.
@@ -23,10 +25,13 @@ class MoveRun {
  private:
   using Trajectory = std::function<Eigen::VectorXd(double seconds)>;
 
-  bool find_axes();
+  bool hear_bus();
+  bool fits();
+  void begin();
   bool devices_answer();
   bool enable();
   bool move();
+  bool swing(double seconds);
   bool follow(const char* what, double duration, const Trajectory& trajectory);
   Hold take_input(Input input);
   void compare(const char* what);
@@ -36,9 +41,11 @@ class MoveRun {
   bool axes_lost();
   bool not_taken();
   void disable();
-  /// Serves images and sends commands until `done` or for this long; false: time is up.
-  bool hold_until(const std::function<bool()>& done, double seconds);
-  std::string verdict(bool followed) const;
+  /// Serves images and sends commands until `done`, true; or for this long, or until the user has
+  /// stopped so often.
+  bool hold_until(const std::function<bool()>& done, double seconds, int stops = 1);
+  std::string verdict() const;
+  std::string too_far() const;
   int sum_up() const;
   Eigen::VectorXd target() const;
 
@@ -48,8 +55,8 @@ class MoveRun {
   const volatile std::sig_atomic_t& stop_;
   Progress progress_;
   Following following_{0};
-  MoveSizes sizes_{};
-  std::string unit_;
+  std::vector<MoveSizes> sizes_;    // one an axis
+  std::vector<std::string> units_;  // the same
   bool good_ = true;
   bool commanding_ = false;  // before its devices answer, takt-move only listens
   bool restarted_ = false;

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// What the user of takt-move asked for. Lengths in the unit of the axes, times in seconds.
+/// What the user of takt-move asked for. Lengths in the unit of each axis, times in seconds.
 struct MoveOptions {
   std::string bus;
   std::string lcm_url;
@@ -31,14 +31,5 @@ struct ParsedMove {
   std::optional<int> exit_code;
 };
 ParsedMove parse_move(int argc, char** argv);
-
-/// Distance, limits, amplitude and allowed following error, defaults chosen by the axes' unit.
-struct MoveSizes {
-  double distance;
-  double amplitude;
-  double following_limit;
-  MotionLimits limits;
-};
-MoveSizes sizes_for(const MoveOptions& options, const std::string& unit);
 
 }  // namespace takt

@@ -8,7 +8,11 @@ namespace takt {
 
 void Progress::say(std::string_view text) {
   const std::chrono::duration<double> since = Clock::now() - start_;
-  fmt::print("{:6.2f} s  {}\n", since.count(), text);
+  print(fmt::format("{:6.2f} s  {}\n", since.count(), text));
+}
+
+void Progress::print(const std::string& text) {
+  std::fputs(text.c_str(), stdout);  // fmt::print throws where stdout is gone
   std::fflush(stdout);
 }
 
@@ -44,8 +48,8 @@ void Progress::positions(const AxisControl& axes, const Following& following,
   next_positions_ = now + std::chrono::milliseconds{250};
   std::string line = fmt::format("{:<8}", what);
   for (AxisControl::Index i = 0; i < axes.size(); ++i) {
-    line += fmt::format("  {} {:9.4f} {} (error {:+.4f})", axes.name(i), axes.positions()(i), unit_,
-                        following.error()(i));
+    line += fmt::format("  {} {:9.4f} {} (error {:+.4f})", axes.name(i), axes.positions()(i),
+                        units_[static_cast<std::size_t>(i)], following.error()(i));
   }
   say(line);
 }

@@ -13,16 +13,17 @@
 namespace takt {
 
 /// Lines about a running motion on stdout, each with the time since the start: every change of an
-/// axis' state, and the positions a few times a second.
+/// axis' state, and the positions a few times a second. Where stdout is gone, they are lost.
 class Progress {
  public:
   void say(std::string_view text);
+  static void print(const std::string& text);
   /// States that changed since the last call, and the daemon's warnings: one a kind and node in
   /// two seconds.
   void states(AxisGroup& group);
   /// At most four lines a second.
   void positions(const AxisControl& axes, const Following& following, std::string_view what);
-  void set_unit(std::string_view unit) { unit_ = unit; }
+  void set_units(std::vector<std::string> units) { units_ = std::move(units); }  ///< one an axis
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -32,7 +33,7 @@ class Progress {
   Clock::time_point next_positions_{};
   std::vector<State402> told_;
   std::map<std::pair<std::int16_t, std::string>, Clock::time_point> last_of_kind_;
-  std::string unit_;
+  std::vector<std::string> units_;
 };
 
 }  // namespace takt

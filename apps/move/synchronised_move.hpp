@@ -1,15 +1,17 @@
 #pragma once
 #include <Eigen/Core>
+#include <span>
 
 #include "apps/move/jerk_limited.hpp"
 
 namespace takt {
 
 /// A jerk-limited move of all axes along the straight line from one point to another: they start
-/// together, arrive together, and each stays within the limits.
+/// together, arrive together, and each stays within its own limits.
 class SynchronisedMove {
  public:
-  SynchronisedMove(Eigen::VectorXd from, Eigen::VectorXd to, const MotionLimits& limits);
+  /// `limits`: one an axis.
+  SynchronisedMove(Eigen::VectorXd from, Eigen::VectorXd to, std::span<const MotionLimits> limits);
 
   double duration() const noexcept { return profile_.duration(); }
   Eigen::VectorXd position(double seconds) const;
@@ -18,8 +20,7 @@ class SynchronisedMove {
  private:
   Eigen::VectorXd from_;
   Eigen::VectorXd to_;
-  double longest_;       // distance of the axis that has farthest to go
-  JerkLimited profile_;  // of that axis; the others move in proportion
+  JerkLimited profile_;  // of the share of the way, 0 to 1
 };
 
 }  // namespace takt

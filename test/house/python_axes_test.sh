@@ -1,5 +1,5 @@
 #!/bin/sh
-# python_axes_test.sh BIN BUILD - the Python example of the README moves both axes of the demo.
+# python_axes_test.sh BIN BUILD - the Python example of the README moves both axes of the demo, and ends where things go wrong.
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 bin=$1 build=$2
@@ -18,3 +18,4 @@ export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
 daemon=$!
 for _ in $(seq 50); do grep -q 'serving' "$tmp/log" && break || sleep 0.1; done
 PYTHONPATH=$tmp timeout 40 "$python" "$here/apps/python/axes.py" demo 2 || { cat "$tmp/log" >&2; exit 1; }
+timeout 60 "$python" "$here/test/house/python_axes_faults.py" "$tmp"

@@ -9,7 +9,8 @@ int main() {
   auto lcm = takt::open_lcm("");  // LCM_DEFAULT_URL, else LCM's default
   if (!lcm) return 3;
   takt::AxisGroup group{std::move(*lcm), {.bus = "demo", .sender = "example"}};
-  group.wait(1s);  // the layout: Input::restarted
+  while (group.wait(1s) != takt::Input::restarted) {  // until the layout has come
+  }
   takt::AxisControl& axes = group.axes();
   axes.set_goal(takt::DriveGoal::enabled);
   while (group.wait(1s) == takt::Input::fresh) {  // the newest image; none in 1 s, or stale: ends

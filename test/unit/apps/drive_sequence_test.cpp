@@ -39,6 +39,17 @@ TEST(DriveSequence, HoldsEachWordUntilTheStatuswordAcknowledges) {
   for (int i = 0; i < 50; ++i) EXPECT_EQ(drive.step(ready), 0x0007);
 }
 
+TEST(DriveSequence, IsNotEnabledWhileItWaitsButStaysEnabled) {
+  DriveSequence drive;
+  drive.set_goal(DriveGoal::enabled);
+
+  EXPECT_EQ(drive.step(switch_on_disabled, Enabling::waits), 0x0000);
+  EXPECT_EQ(drive.step(ready, Enabling::waits), 0x0000);
+  EXPECT_EQ(drive.step(switched_on, Enabling::waits), 0x0006);
+  EXPECT_EQ(drive.step(enabled, Enabling::waits), 0x000F);
+  EXPECT_EQ(drive.goal(), DriveGoal::enabled);
+}
+
 TEST(DriveSequence, DisablesInOrder) {
   DriveSequence drive = enabled_drive();
   drive.set_goal(DriveGoal::disabled);

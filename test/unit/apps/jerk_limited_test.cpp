@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <vector>
 
 #include "apps/move/synchronised_move.hpp"
 
@@ -98,7 +99,8 @@ TEST(JerkLimited, NeedsNoTimeForNoDistance) {
 TEST(SynchronisedMove, BringsAllAxesToTheirTargetsTogether) {
   const Eigen::Vector3d from{0.0, 1.0, -2.0};
   const Eigen::Vector3d to{10.0, -1.0, -2.0};
-  const SynchronisedMove move{from, to, {2.0, 4.0, 20.0}};
+  const std::vector<MotionLimits> limits(3, {2.0, 4.0, 20.0});
+  const SynchronisedMove move{from, to, limits};
 
   EXPECT_DOUBLE_EQ(move.duration(), 5.7);
   EXPECT_EQ(move.position(5.7), to);
@@ -110,9 +112,22 @@ TEST(SynchronisedMove, BringsAllAxesToTheirTargetsTogether) {
   EXPECT_NEAR(move.velocity(2.85)(1), -0.4, 1e-9);
 }
 
+// The second axis has 0.2 to go: ramps 0.04/0.08 + 0.08/0.4 = 0.7 s, cruise 0.172/0.04 = 4.3 s.
+TEST(SynchronisedMove, KeepsEachAxisWithinItsOwnLimits) {
+  const Eigen::Vector2d from{0.0, 0.0};
+  const Eigen::Vector2d to{1.0, -0.2};
+  const std::vector<MotionLimits> limits{{1.0, 2.0, 10.0}, {0.04, 0.08, 0.4}};
+  const SynchronisedMove move{from, to, limits};
+
+  EXPECT_NEAR(move.duration(), 5.7, 1e-9);
+  EXPECT_NEAR(move.velocity(2.85)(1), -0.04, 1e-9);
+  EXPECT_NEAR(move.velocity(2.85)(0), 0.2, 1e-9);
+}
+
 TEST(SynchronisedMove, MayStandStill) {
   const Eigen::Vector2d here{1.0, 2.0};
-  EXPECT_EQ((SynchronisedMove{here, here, {1.0, 1.0, 1.0}}.position(0.0)), here);
+  const std::vector<MotionLimits> limits(2, {1.0, 1.0, 1.0});
+  EXPECT_EQ((SynchronisedMove{here, here, limits}.position(0.0)), here);
 }
 
 }  // namespace

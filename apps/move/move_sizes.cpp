@@ -1,0 +1,27 @@
+#include "apps/move/move_sizes.hpp"
+
+namespace takt {
+namespace {
+
+/// A distance that looks like a motion and fits most machines.
+double default_distance(const std::string& unit) {
+  if (unit == "rad") return 1.5;
+  if (unit == "deg" || unit == "°") return 90.0;
+  if (unit == "m") return 0.1;
+  if (unit == "mm") return 100.0;
+  return 10000.0;  // raw counts
+}
+
+}  // namespace
+
+MoveSizes sizes_for(const MoveOptions& options, const std::string& unit) {
+  const double distance = default_distance(unit);
+  return {.distance = distance,
+          .amplitude = options.amplitude.value_or(distance / 6.0),
+          .following_limit = options.following_limit.value_or(distance / 30.0),
+          .limits = {.velocity = options.velocity.value_or(distance * 0.8),
+                     .acceleration = options.acceleration.value_or(distance * 2.0),
+                     .jerk = options.jerk.value_or(distance * 10.0)}};
+}
+
+}  // namespace takt
