@@ -150,34 +150,39 @@ bool BlackBox::finish_running(const std::string& reason, Time limit) {
 }
 
 void BlackBox::write(const Tape& tape) {
-  forget_oldest();
   head_.reason = std::exchange(reason_, {});
   head_.follows = tape.whole() ? previous_ : "";
-  const std::filesystem::path stem = next_stem();
-  previous_ = stem.filename().string();
   writing_.store(true);
-  writer_ = std::thread{[this, &tape, stem, head = head_] {
-    std::expected<void, std::string> result;
-    try {
-      result = write_recording(stem, plan_, head, tape.read());
-    } catch (const std::exception& error) {
-      result = std::unexpected{stem.string() + ": " + error.what()};
-    }
-    failed_ = !result;
-    written_ = result ? stem.string() + recording_format::log_ending : result.error();
+  writer_ = std::thread{[this, &tape, head = head_] {
+    write_files(tape, head);
     writing_.store(false, std::memory_order_release);
   }};
 }
 
+/// The writer's thread, with the folder to itself.
+void BlackBox::write_files(const Tape& tape, const RecordingHead& head) {
+  std::filesystem::path stem = options_.folder;
+  std::expected<void, std::string> result;
+  try {
+    forget_oldest(file_name(head.bus));
+    stem = next_stem(file_name(head.bus));
+    result = write_recording(stem, plan_, head, tape.read());
+  } catch (const std::exception& error) {
+    result = std::unexpected{stem.string() + ": " + error.what()};
+  }
+  failed_ = !result;
+  previous_ = result ? stem.filename().string() : "";
+  written_ = result ? stem.string() + recording_format::log_ending : result.error();
+}
+
 void BlackBox::end_writing() {
   writer_.join();
-  if (failed_) previous_.clear();
   if (failed_) return say_("black box: " + written_, {});
   say_("black box: " + written_ + " (" + head_.reason + "); takt replay " + written_, written_);
 }
 
-std::filesystem::path BlackBox::next_stem() {
-  const std::string name = time_name(file_name(head_.bus));
+std::filesystem::path BlackBox::next_stem(const std::string& bus) const {
+  const std::string name = time_name(bus);
   std::filesystem::path stem = options_.folder / name;
   std::error_code error;
   for (int again = 2; std::filesystem::exists(stem.string() + recording_format::log_ending, error);
@@ -188,10 +193,9 @@ std::filesystem::path BlackBox::next_stem() {
 }
 
 /// Leaves room for one more.
-void BlackBox::forget_oldest() {
+void BlackBox::forget_oldest(const std::string& bus) const {
   std::set<std::string> stems;
   std::error_code error;
-  const std::string bus = file_name(head_.bus);
   for (const auto& entry : std::filesystem::directory_iterator{options_.folder, error}) {
     const std::string name = entry.path().filename().string();
     if (is_recording_of(name, bus)) stems.insert(name.substr(0, name.find('.')));

@@ -56,8 +56,9 @@ class BlackBox {
 
   void ask(const std::string& reason, Time at);
   void write(const Tape& tape);
-  std::filesystem::path next_stem();
-  void forget_oldest();
+  void write_files(const Tape& tape, const RecordingHead& head);
+  std::filesystem::path next_stem(const std::string& bus) const;
+  void forget_oldest(const std::string& bus) const;
   void end_writing();
   bool await_writer(Time until) const;
 
@@ -73,9 +74,10 @@ class BlackBox {
   bool wanted_ = false;  // the bus thread was asked for its tape
   std::thread writer_;
   std::atomic<bool> writing_{false};
+  // The writer's, until writing_ is false:
   std::string previous_;  // recording that ends where the running tape begins
-  std::string written_;   // the writer's, until writing_ is false
-  bool failed_ = false;   // the same
+  std::string written_;
+  bool failed_ = false;
 };
 
 }  // namespace takt

@@ -54,6 +54,7 @@ struct Row {
   std::string_view word;  ///< the key itself, for the table of meanings
   std::set<SourcePos> places;
   bool leaf = true;
+  bool wrong_type = false;
 };
 
 /// The rows of a file: one a key that has a value, one an entry of a list.
@@ -134,16 +135,23 @@ KeyFate fate_of(const Finding& finding) {
   return ignored ? KeyFate::ignored : KeyFate::used;
 }
 
-/// The innermost row that a finding is about; nullptr: none.
-Row* row_at(std::vector<Row>& rows, SourcePos pos) {
-  const auto found = std::ranges::find_if(rows.rbegin(), rows.rend(),
-                                          [&](const Row& row) { return row.places.contains(pos); });
+/// The innermost row that a finding is about; nullptr: none. A map begins where its first key does:
+/// that a map stands there at all is said of the map.
+Row* row_of(std::vector<Row>& rows, const Finding& finding) {
+  const auto here = [&](const Row& row) { return row.places.contains(finding.pos); };
+  const auto map_here = [&](const Row& row) { return !row.leaf && here(row); };
+  auto found = std::ranges::find_if(rows.rbegin(), rows.rend(), here);
+  if (finding.rule == "wrong-type") {
+    const auto map = std::ranges::find_if(rows.rbegin(), rows.rend(), map_here);
+    if (map != rows.rend()) found = map;
+  }
   return found == rows.rend() ? nullptr : &*found;
 }
 
 void apply(Row& row, const Finding& finding) {
   const KeyFate fate = fate_of(finding);
   if (fate < row.key.fate) return;
+  row.wrong_type = row.wrong_type || finding.rule == "wrong-type";
   const std::string_view reason =
       fate == KeyFate::ignored ? why_ignored(row.word) : std::string_view{};
   const std::string text = reason.empty() ? finding.message : std::string{reason};
@@ -152,15 +160,67 @@ void apply(Row& row, const Finding& finding) {
   row.key.fate = fate;
 }
 
-/// A key whose parent is ignored is ignored with it.
+bool is_within(const Row& row, const std::string& path) {
+  return row.key.path.starts_with(path + '.') || row.key.path.starts_with(path + '[');
+}
+
+void ignore(Row& row, const std::string& why) {
+  if (row.key.fate != KeyFate::used) return;
+  row.key.fate = KeyFate::ignored;
+  row.key.why = why;
+}
+
+/// A key whose parent is ignored is ignored with it, and so is what stands in a wrong place.
 void ignore_children(std::vector<Row>& rows) {
   for (const Row& parent : rows) {
-    if (parent.leaf || parent.key.fate != KeyFate::ignored) continue;
+    if (parent.leaf) continue;
+    const bool wrong = parent.key.fate == KeyFate::wrong && parent.wrong_type;
+    if (parent.key.fate != KeyFate::ignored && !wrong) continue;
+    const std::string why = wrong ? "stands in `" + parent.key.path + "`" : parent.key.why;
     for (Row& row : rows) {
-      if (!row.key.path.starts_with(parent.key.path + '.')) continue;
-      if (row.key.fate != KeyFate::used) continue;
-      row.key.fate = KeyFate::ignored;
-      row.key.why = parent.key.why;
+      if (is_within(row, parent.key.path)) ignore(row, why);
+    }
+  }
+}
+
+std::vector<const YamlPair*> nodes_of(const YamlNode& root) {
+  std::vector<const YamlPair*> nodes;
+  const auto collect = [&](const YamlNode& map) {
+    for (const YamlPair& pair : map.pairs) {
+      const bool is_map = pair.value->kind == YamlNode::Kind::map;
+      if (is_map && pair.value->find("node_id") != nullptr) nodes.push_back(&pair);
+    }
+  };
+  collect(root);
+  std::erase_if(nodes, [](const YamlPair* pair) {
+    return pair->key == "master" || pair->key == "defaults" || pair->key.starts_with('.');
+  });
+  if (const YamlNode* listed = root.find("nodes")) collect(*listed);
+  return nodes;
+}
+
+/// A node takes a key of `defaults` as a whole or, where it has that key itself, not at all.
+void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
+  const YamlNode* defaults = root.find("defaults");
+  const std::vector<const YamlPair*> nodes = nodes_of(root);
+  if (defaults == nullptr || nodes.empty()) return;
+  for (const YamlPair& pair : defaults->pairs) {
+    std::string own;
+    std::size_t count = 0;
+    for (const YamlPair* node : nodes) {
+      if (node->value->find(pair.key) == nullptr) continue;
+      own += (own.empty() ? "`" : ", `") + node->key + '`';
+      ++count;
+    }
+    const std::string path = "defaults." + pair.key;
+    for (Row& row : rows) {
+      if (count == 0 || (row.key.path != path && !is_within(row, path))) continue;
+      if (count == nodes.size()) {
+        ignore(row, "each node has its own `" + pair.key + "`, which replaces this one as a whole");
+      } else if (row.leaf && row.key.fate == KeyFate::used) {
+        row.key.why = std::string{key_meaning(row.word)} + "; not of " + own + " with its own `" +
+                      pair.key + "`";
+      }
     }
   }
 }
@@ -195,15 +255,15 @@ ImportReport import_report(const std::filesystem::path& path) {
   ImportReport report;
   report.usable = !has_error(network.findings);
   for (const Finding& finding : network.findings) {
-    Row* row = finding.file == path.string() && finding.pos != SourcePos{}
-                   ? row_at(rows, finding.pos)
-                   : nullptr;
+    Row* row = finding.file == path.string() && finding.pos != SourcePos{} ? row_of(rows, finding)
+                                                                           : nullptr;
     if (row == nullptr) {
       report.others.push_back(finding);
     } else {
       apply(*row, finding);
     }
   }
+  if (tree.root() != nullptr) judge_defaults(*tree.root(), rows);
   ignore_children(rows);
   for (Row& row : rows) {
     if (!row.leaf && row.key.why.empty()) continue;

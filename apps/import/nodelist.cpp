@@ -280,10 +280,22 @@ class Importer {
     if (said.baudrate_kbit != 0) bitrates_.insert(said.baudrate_kbit);
   }
 
+  /// The manager of the project, else the highest id that no node has.
+  std::optional<unsigned> master_id() const {
+    if (master_) return master_;
+    for (unsigned id = 127; id > 0; --id) {
+      const auto node = nodes_.find(id);
+      if (node == nodes_.end() || !node->second.is_present) return id;
+    }
+    return std::nullopt;
+  }
+
   void write() {
+    const auto master = master_id();
+    if (!master) return wrong({}, "no-free-id", "all 127 ids are taken: none is left for takt");
     yaml_ = "# from " + cpj_.filename().string() + ", [" + to_utf8(title_) + "]\n";
     yaml_ += "bus:\n  name: " + plain_name(name_, "bus") + "\n" + bitrate_line();
-    yaml_ += "master:\n  node_id: " + std::to_string(master_) +
+    yaml_ += "master:\n  node_id: " + std::to_string(*master) +
              "\n  # sync_period: 10000  # us; without it there is no SYNC\n";
     yaml_ += "nodes:\n";
     bool any = false;
@@ -337,7 +349,7 @@ class Importer {
   std::map<unsigned, ListedNode> nodes_;
   std::set<std::string> labels_;
   std::set<std::uint16_t> bitrates_;
-  unsigned master_ = 127;
+  std::optional<unsigned> master_;
   bool wrong_ = false;
   std::string yaml_;
 };

@@ -54,8 +54,12 @@ SeenIdentity identity_of(const LearnedValues& values) {
 void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
   std::error_code error;
   std::vector<fs::path> paths;
-  for (fs::recursive_directory_iterator at{folder, error}, end; !error && at != end;
-       at.increment(error)) {
+  constexpr auto what_is_shut = fs::directory_options::skip_permission_denied;  // below `folder`
+  fs::recursive_directory_iterator at;
+  if (fs::directory_iterator{folder, error}; !error) {
+    at = fs::recursive_directory_iterator{folder, what_is_shut, error};
+  }
+  for (const fs::recursive_directory_iterator end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
     if (!at->is_regular_file(ignored) || !is_device_file(at->path())) continue;
     if (paths.size() >= most_files || at->file_size(ignored) > largest_file) continue;

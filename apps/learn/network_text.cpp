@@ -18,6 +18,10 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t makes_sync = 0x4000'0000;
 constexpr std::size_t most_unknown = 200;
+constexpr std::uint64_t shortest_sync_us = 200;
+constexpr std::uint64_t longest_sync_us = 60'000'000;
+constexpr std::uint8_t least_overflow = 2;  // 1 is reserved. CiA 301, 7.5.2.22
+constexpr std::uint8_t most_overflow = 240;
 
 /// What the SDO writes and the frames say of SYNC.
 struct SyncFacts {
@@ -39,6 +43,7 @@ class NetworkText {
     find_master();
     for (const LearnedNode* node : devices_) find_file(*node);
     learn_sync();
+    learn_time();
     header();
     master_section();
     out_.text += devices_.empty() ? "nodes: {}\n" : "nodes:\n";
@@ -149,16 +154,54 @@ class NetworkText {
     }
     const auto seen = bus_.sync.find(sync_.cob_id);
     if (seen == bus_.sync.end()) return;
-    const auto measured = seen->second.frames.median();
-    sync_.period_us = measured ? as_configured(*measured) : 0;
-    const auto told = static_cast<std::int64_t>(period.value_or(0));
-    if (measured && std::abs(told - *measured) * 20 <= *measured) sync_.period_us = told;
-    const std::uint8_t highest = seen->second.highest_counter;
-    if (highest != 0) sync_.overflow = highest;
-    for (const auto& [overflow, count] : overflows) {
-      if (overflow >= highest && overflow <= 240)
-        sync_.overflow = static_cast<std::uint8_t>(overflow);
+    learn_period(seen->second, period);
+    if (seen->second.highest_counter != 0) learn_counter(seen->second.highest_counter, overflows);
+  }
+
+  /// `told`: 0x1006.
+  void learn_period(const LearnedSync& seen, std::optional<std::uint64_t> told) {
+    const bool usable = told && *told >= shortest_sync_us && *told <= longest_sync_us;
+    const auto written = usable ? static_cast<std::int64_t>(*told) : 0;
+    if (const auto measured = seen.frames.median()) {
+      const bool same = std::abs(written - *measured) * 20 <= *measured;
+      sync_.period_us = same ? written : as_configured(*measured);
+      return;
     }
+    const auto shortest = seen.frames.shortest();
+    sync_.period_us = written != 0 ? written : as_configured(shortest.value_or(0));
+    const std::string few =
+        fmt::format("{} frames of SYNC do not show `sync_period`", seen.frames.count());
+    if (sync_.period_us == 0) {
+      tell(Severity::warning, "few-frames", 0, few + ": it is left out");
+    } else {
+      tell(Severity::note, "few-frames", 0,
+           few + (written != 0 ? ": it is what was written to 0x1006"
+                               : ": it is the shortest time between two"));
+    }
+  }
+
+  /// `overflows`: how many devices got which 0x1019.
+  void learn_counter(std::uint8_t highest, const std::map<std::uint64_t, std::size_t>& overflows) {
+    const std::uint8_t seen = std::clamp(highest, least_overflow, most_overflow);
+    sync_.overflow = seen;
+    std::size_t most = 0;
+    for (const auto& [overflow, count] : overflows) {
+      if (overflow < seen || overflow > most_overflow || count <= most) continue;
+      most = count;
+      sync_.overflow = static_cast<std::uint8_t>(overflow);
+    }
+  }
+
+  void learn_time() {
+    const auto period = bus_.time.median();
+    const auto shortest = bus_.time.shortest();
+    if (!shortest) return;
+    time_ms_ = std::max<std::int64_t>(1, as_configured(period.value_or(*shortest)) / 1000);
+    if (period) return;
+    tell(Severity::note, "few-frames", 0,
+         fmt::format(
+             "{} frames of TIME do not show `time_period`: it is the shortest time between two",
+             bus_.time.count()));
   }
 
   void header() {
@@ -183,10 +226,7 @@ class NetworkText {
       if (sync_.window_us) text += fmt::format("  sync_window: {}\n", *sync_.window_us);
       if (sync_.producer) text += fmt::format("  sync_source: {}\n", node_name(*sync_.producer));
     }
-    if (const auto period = bus_.time.median()) {
-      text += fmt::format("  time_period: {}\n",
-                          std::max<std::int64_t>(1, as_configured(*period) / 1000));
-    }
+    if (time_ms_ != 0) text += fmt::format("  time_period: {}\n", time_ms_);
     const bool one_by_one =
         std::ranges::any_of(devices_, [](const LearnedNode* node) { return node->started; });
     if (bus_.started_all && !one_by_one) text += "  start_all_nodes: true\n";
@@ -205,7 +245,8 @@ class NetworkText {
   }
 
   std::set<CobId> claimed() const {
-    std::set<CobId> ids{CobId::base(sync_.cob_id)};
+    std::set<CobId> ids;
+    if (sync_.period_us != 0) ids.insert(CobId::base(sync_.cob_id));
     for (const LearnedNode* node : devices_) {
       for (const LearnedPdo& pdo : learned_pdos(node->values())) {
         if (pdo.identifier() && pdo.enabled()) ids.insert(*pdo.identifier());
@@ -234,6 +275,10 @@ class NetworkText {
            fmt::format("frames of {} identifiers are explained by nothing in the recording; the "
                        "network file lists them",
                        listed));
+    }
+    if (bus_.time.count() != 0 && time_ms_ == 0) {
+      out_.text += fmt::format("# {} frames of TIME (0x100), which do not show `time_period`.\n",
+                               bus_.time.count());
     }
     if (bus_.lss != 0) out_.text += fmt::format("# {} frames of LSS (0x7E5, 0x7E4).\n", bus_.lss);
     if (bus_.more_traffic != 0) {
@@ -280,6 +325,7 @@ class NetworkText {
   std::uint8_t master_id_ = 127;
   std::int64_t heartbeat_ms_ = 0;
   SyncFacts sync_;
+  std::int64_t time_ms_ = 0;  ///< 0: there is none
   std::map<std::uint8_t, DeviceFiles::Match> matches_;
   std::map<std::uint8_t, std::string> names_;
   LearnedNetwork out_;

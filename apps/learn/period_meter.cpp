@@ -24,6 +24,11 @@ std::optional<std::int64_t> PeriodMeter::median() const {
   return *middle;
 }
 
+std::optional<std::int64_t> PeriodMeter::shortest() const {
+  if (used_ == 0) return {};
+  return *std::min_element(intervals_.begin(), intervals_.begin() + used_);
+}
+
 std::optional<std::int64_t> PeriodMeter::steady() const {
   const auto usual = median();
   if (!usual) return {};

@@ -12,7 +12,9 @@ class PeriodMeter {
   void add(std::optional<std::int64_t> us) noexcept;
   /// Microseconds; none: fewer than three intervals.
   std::optional<std::int64_t> median() const;
-  /// The same where three of four intervals are within 2 % of it: somebody's timer.
+  /// Of however few; none: there is no interval.
+  std::optional<std::int64_t> shortest() const;
+  /// The median where three of four intervals are within 2 % of it: somebody's timer.
   std::optional<std::int64_t> steady() const;
   std::uint64_t count() const noexcept { return count_; }
 

@@ -77,6 +77,7 @@ LearnedNode& Recording::node(std::uint8_t id) {
   if (node.id == 0) {
     node.id = id;
     node.first_line = line_;
+    node.reset_node = all_reset_;
   }
   return node;
 }
@@ -139,8 +140,10 @@ void Recording::nmt(const Frame& frame) {
     one.addressed = true;
     return apply(one);
   }
-  bus_.started_all =
-      bus_.started_all || static_cast<NmtCommand>(frame.data[0]) == NmtCommand::start;
+  const auto command = static_cast<NmtCommand>(frame.data[0]);
+  bus_.started_all = bus_.started_all || command == NmtCommand::start;
+  if (command == NmtCommand::reset_node) all_reset_ = true;
+  if (command == NmtCommand::reset_communication) all_reset_ = false;
   for (auto& [id, each] : bus_.nodes) apply(each);
 }
 

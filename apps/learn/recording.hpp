@@ -34,6 +34,7 @@ class Recording {
 
   LearnedBus bus_;
   std::uint32_t line_ = 0;
+  bool all_reset_ = false;  // newest reset of all was by NMT reset node
   std::uint64_t strange_ = 0;
   std::uint64_t foreign_ = 0;  // frames of other interfaces
   std::string foreign_name_;

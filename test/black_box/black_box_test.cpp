@@ -5,8 +5,21 @@
 #include <gtest/gtest.h>
 #include <set>
 #include <thread>
+#include <unistd.h>
 
 #include "test/black_box/recorded_run.hpp"
+
+namespace {
+
+std::atomic<int> remover{0};  // thread that removed a file last
+
+}  // namespace
+
+/// In the place of the C library's, for this program.
+extern "C" int remove(const char* path) noexcept {
+  remover = ::gettid();
+  return ::unlink(path) == 0 ? 0 : ::rmdir(path);
+}
 
 namespace takt {
 namespace {
@@ -118,6 +131,19 @@ TEST_F(BlackBoxTest, RemovesTheOldestRecordingsOfItsBusOnly) {
   EXPECT_TRUE(names.contains("lift-notes.log"));
   EXPECT_TRUE(names.contains("lift-a20200101T000000.log"));
   EXPECT_TRUE(names.contains("pump-20200101T000000.log"));
+}
+
+TEST_F(BlackBoxTest, LeavesTheWorkInTheFolderToItsWriter) {
+  open(1);
+  std::ofstream{folder / "box/lift-20200101T000000.log"} << "x";
+  remover = 0;
+  box->on_request("asked for", now);
+  pass(200ms);
+  await_files();
+
+  EXPECT_FALSE(files().contains("lift-20200101T000000.log"));
+  EXPECT_NE(remover, 0);
+  EXPECT_NE(remover, ::gettid());
 }
 
 TEST_F(BlackBoxTest, WritesTheEndOfARunThatFailed) {

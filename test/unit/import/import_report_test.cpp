@@ -35,6 +35,37 @@ class Import : public testing::Test {
   }
 };
 
+TEST_F(Import, ADefaultThatEachNodeReplacesIsIgnored) {
+  const auto bus = report(
+      "defaults:\n"
+      "  dcf: drive.eds\n"
+      "  sdo: [{index: 0x6081, value: 1}]\n"
+      "  tpdo: {2: {enabled: false}}\n"
+      "nodes:\n"
+      "  arm: {node_id: 2, sdo: [{index: 0x6083, value: 2}], tpdo: {1: {transmission: 1}}}\n"
+      "  leg: {node_id: 3, sdo: [{index: 0x6083, value: 2}]}\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "defaults.sdo[1]").fate, KeyFate::ignored);
+  EXPECT_THAT(key(bus, "defaults.sdo[1]").why, HasSubstr("each node has its own `sdo`"));
+  EXPECT_EQ(key(bus, "defaults.tpdo.2.enabled").fate, KeyFate::used);
+  EXPECT_THAT(key(bus, "defaults.tpdo.2.enabled").why, HasSubstr("not of `arm`"));
+  EXPECT_EQ(key(bus, "defaults.dcf").fate, KeyFate::used);
+}
+
+TEST_F(Import, AMapWhereAWordBelongsIsWrongAsAWhole) {
+  const auto bus = report(
+      "master:\n"
+      "  heartbeat_consumer:\n"
+      "    arm: 250\n"
+      "    leg: 250\n"
+      "arm: {node_id: 2, dcf: drive.eds}\n");
+
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer.arm").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "master.heartbeat_consumer.leg").fate, KeyFate::ignored);
+}
+
 TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
   const auto bus = report(
       "options: {dcf_path: \"@BUS_CONFIG_PATH@\"}\n"
@@ -218,6 +249,22 @@ TEST_F(Nodelist, SaysWhatIsWrongAndWritesNothing) {
     EXPECT_NE(std::ranges::count(imported.report.others, rule, &Finding::rule), 0) << text;
   }
   EXPECT_FALSE(import(lift, 3).report.usable);
+}
+
+TEST_F(Nodelist, WithoutAManagerTheMasterHasTheHighestFreeId) {
+  std::string two = "[Topology]\nNodes=2\n";
+  for (const char* id : {"127", "126"}) {
+    two += "Node" + std::string{id} + "Present=1\nNode" + id + "DCFName=eds/pump.dcf\n";
+  }
+  std::string all = "[Topology]\nNodes=127\n";
+  for (int id = 1; id <= 127; ++id) {
+    const auto key = "Node" + std::to_string(id);
+    all += key + "Present=1\n" + key + "DCFName=eds/pump.dcf\n";
+  }
+
+  EXPECT_THAT(import(two).yaml, HasSubstr("master:\n  node_id: 125\n"));
+  EXPECT_FALSE(import(all).report.usable);
+  EXPECT_NE(std::ranges::count(import(all).report.others, "no-free-id", &Finding::rule), 0);
 }
 
 TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreTold) {

@@ -207,6 +207,86 @@ TEST(Learn, LearnsTheSyncCounterAndAnotherProducer) {
   EXPECT_THAT(network.text, HasSubstr("  sync_source: node_4\n"));
 }
 
+TEST(Learn, ThreeSyncsAreEnoughForAPeriodWithANote) {
+  const LearnedNetwork network =
+      learned("(2.000) can0 080#\n(2.005) can0 080#\n(2.010) can0 080#\n");
+
+  EXPECT_THAT(network.text, HasSubstr("  sync_period: 5000\n"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("3 frames of SYNC do not show"));
+}
+
+TEST(Learn, WhereSyncsAreTooFewThePeriodIsThatOfAnSdoWrite) {
+  const LearnedNetwork network = learned(
+      "(1.000) can0 604#23061000D0070000\n(1.001) can0 584#6006100000000000\n"
+      "(2.000) can0 080#\n");
+
+  EXPECT_THAT(network.text, HasSubstr("  sync_period: 2000\n"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("what was written to 0x1006"));
+}
+
+TEST(Learn, OneSyncAloneIsListed) {
+  const LearnedNetwork network = learned("(2.000) can0 080#\n");
+
+  EXPECT_THAT(network.text, Not(HasSubstr("sync_period")));
+  EXPECT_THAT(network.text, HasSubstr("#   0x080: 1 frames of 0 bytes"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("warning: 1 frames of SYNC do not show"));
+}
+
+TEST(Learn, FewFramesOfTimeAreAPeriodOrListed) {
+  const LearnedNetwork two = learned("(1.0) can0 100#FF5B26054D39\n(2.0) can0 100#FF5B26054D39\n");
+  const LearnedNetwork one = learned("(1.0) can0 100#FF5B26054D39\n");
+
+  EXPECT_THAT(two.text, HasSubstr("  time_period: 1000\n"));
+  EXPECT_THAT(rules(two.findings), HasSubstr("2 frames of TIME do not show"));
+  EXPECT_THAT(one.text, Not(HasSubstr("  time_period:")));
+  EXPECT_THAT(one.text, HasSubstr("# 1 frames of TIME (0x100)"));
+}
+
+std::string syncs(const std::vector<std::string>& counters) {
+  std::string log;
+  for (std::size_t i = 0; i < counters.size(); ++i) {
+    log += "(2." + std::to_string(100 + 5 * i) + ") can0 080#" + counters[i] + '\n';
+  }
+  return log;
+}
+
+/// 0x1019 of a node.
+std::string counter_of(unsigned node, const std::string& overflow) {
+  const std::string id = std::to_string(node);
+  return "(1.0) can0 60" + id + "#2F191000" + overflow + "000000\n(1.1) can0 58" + id +
+         "#6019100000000000\n";
+}
+
+TEST(Learn, ASyncWithoutCounterHasNoneWhateverADeviceWasTold) {
+  const LearnedNetwork network = learned(counter_of(4, "0A") + syncs({"", "", "", "", ""}));
+
+  EXPECT_THAT(network.text, HasSubstr("  sync_period: 5000\n"));
+  EXPECT_THAT(network.text, Not(HasSubstr("sync_overflow")));
+}
+
+TEST(Learn, TheCounterTurnsOverWhereMostDevicesWereToldOfThoseItReached) {
+  const LearnedNetwork network = learned(
+      counter_of(4, "0A") + counter_of(5, "0A") + counter_of(6, "F0") + counter_of(7, "02") +
+      counter_of(8, "02") + counter_of(9, "02") + syncs({"01", "02", "03", "04", "05"}));
+
+  EXPECT_THAT(network.text, HasSubstr("  sync_overflow: 10\n"));
+}
+
+TEST(Learn, ACounterThatNoNetworkFileMayHaveIsNotLearned) {
+  const LearnedNetwork network = learned(syncs({"01", "01", "01", "01", "01"}));
+
+  EXPECT_THAT(network.text, HasSubstr("  sync_overflow: 2\n"));
+}
+
+TEST(Learn, AResetOfAllCountsForNodesThatAreMetLater) {
+  const std::string boot =
+      "(1.1) can0 705#00\n(1.2) can0 605#2B17100064000000\n(1.3) can0 585#6017100000000000\n";
+
+  EXPECT_THAT(learned("(1.0) can0 000#8100\n" + boot).text, HasSubstr("    reset: node\n"));
+  EXPECT_THAT(learned("(0.9) can0 000#8100\n(1.0) can0 000#8200\n" + boot).text,
+              Not(HasSubstr("    reset: node\n")));
+}
+
 TEST(Learn, LearnsHowOftenTheMasterRepeatsAnRpdo) {
   std::string log =
       "(1.0) can0 603#2300140103020000\n(1.1) can0 583#6000140100000000\n"

@@ -1,0 +1,54 @@
+#include "apps/learn/device_files.hpp"
+
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of somebody without rights, with an EDS and a folder that is shut.
+class DeviceFolder : public testing::Test {
+ protected:
+  DeviceFolder() {
+    char name[] = "/tmp/takt-eds-XXXXXX";
+    folder = ::mkdtemp(name);
+    fs::create_directories(folder / "shut");
+    fs::copy_file(TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", folder / "takt_drive402.eds");
+    fs::permissions(folder, fs::perms{0755});
+    fs::permissions(folder / "takt_drive402.eds", fs::perms{0644});
+    fs::permissions(folder / "shut", fs::perms::none);
+    is_root = ::geteuid() == 0 && ::seteuid(nobody) == 0;
+  }
+  ~DeviceFolder() override {
+    EXPECT_TRUE(!is_root || ::seteuid(0) == 0);
+    fs::permissions(folder / "shut", fs::perms::owner_all);
+    fs::remove_all(folder);
+  }
+  static constexpr uid_t nobody = 65534;
+  static constexpr SeenIdentity drive{.vendor_id = 0xABCD, .product_code = 0x402};
+
+  bool is_root = false;
+  fs::path folder;
+  DeviceFiles files;
+  Findings findings;
+};
+
+TEST_F(DeviceFolder, PassesOverAFolderThatIsShut) {
+  files.add_folder(folder, findings);
+
+  EXPECT_TRUE(findings.empty()) << findings[0].message;
+  EXPECT_FALSE(files.find(1, drive).path.empty());
+}
+
+TEST_F(DeviceFolder, TellsThatItIsShutItself) {
+  files.add_folder(folder / "shut", findings);
+
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].message, "Permission denied");
+}
+
+}  // namespace
+}  // namespace takt
