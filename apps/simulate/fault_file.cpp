@@ -6,7 +6,7 @@
 #include <string_view>
 #include <yaml-cpp/yaml.h>
 
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/suggest.hpp"
 
@@ -183,7 +183,8 @@ class Reader {
 
   void read_time(Time& time, const std::string& text, const YAML::Mark& mark) {
     const auto parsed = parse_duration(text);
-    if (!parsed) return refuse(mark, text, "a time like 500ms, 2s or 100us");
+    const bool has_unit = text.find_first_not_of("0123456789.") != std::string::npos;
+    if (!parsed || !has_unit) return refuse(mark, text, "a time like 500ms, 2s or 100us");
     time = *parsed;
   }
 
@@ -220,6 +221,11 @@ class Reader {
 
 FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan) {
   Reader reader{path.string(), plan};
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {  // yaml-cpp loses memory over it
+    reader.error(YAML::Mark::null_mark(), "fault-file", "is a folder");
+    return reader.take();
+  }
   try {
     reader.read(YAML::LoadFile(path.string()));
   } catch (const YAML::BadFile&) {

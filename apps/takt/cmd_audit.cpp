@@ -7,6 +7,7 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
 #include "apps/takt/sdo_direct.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {
@@ -116,7 +117,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   command->add_option("--bus", arguments->bus, "ask the devices on this bus; no daemon runs there")
       ->type_name("IFACE");
   command->add_flag("--live", arguments->through_daemon, "ask the devices through the daemon");
-  command->add_option("--timeout", arguments->timeout_ms, "ms for each answer")
+  add_number(*command, "--timeout", arguments->timeout_ms, "ms for each answer")
       ->check(CLI::Range(1, 60'000));
   add_live_options(*command, arguments->live);
   command->footer(

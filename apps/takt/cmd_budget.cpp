@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
+#include "eds_parser/budget/left_out.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
 #include "eds_parser/print/budget.hpp"
 
@@ -36,7 +39,8 @@ bool write_svg(const std::string& path, const BusPlan& plan, const BusBudget& bu
 int report(const Options& options, const LoadedNetwork& network, const WhatIf& changes,
            const BudgetOptions& how) {
   const BusPlan& plan = network.plan;
-  const BusBudget budget = bus_budget(plan, how);
+  BusBudget budget = bus_budget(plan, how);
+  std::ranges::copy(left_out_tpdos(network.findings), std::back_inserter(budget.assumptions));
   if (!options.svg.empty() && !write_svg(options.svg, plan, budget)) {
     return complain("can't write " + options.svg, wrong_use);
   }

@@ -7,6 +7,7 @@
 #include "apps/doctor/checkup.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/screen.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "master/gateway/lcm_url.hpp"
 
 namespace takt {
@@ -98,10 +99,10 @@ void add_doctor(CLI::App& app, int& exit_code) {
       "Examples:\n  takt doctor\n  takt doctor --bus can0 --bitrate 500");
   auto options = std::make_shared<DoctorOptions>();
   verb->add_option("--bus", options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
-  verb->add_option("--bitrate", options->bitrate_kbit, "that the interface ought to have, kbit/s")
+  add_number(*verb, "--bitrate", options->bitrate_kbit, "that the interface ought to have, kbit/s")
       ->check(CLI::Range(10, 1000))
       ->type_name("KBIT");
-  verb->add_option("--priority", options->priority, "of the bus thread")
+  add_number(*verb, "--priority", options->priority, "of the bus thread")
       ->check(CLI::Range(1, 99))
       ->type_name("N");
   verb->add_option("--lcm-url", options->lcm_url, "else LCM_DEFAULT_URL, else LCM's default")

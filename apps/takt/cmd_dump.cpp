@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <csignal>
+#include <cstring>
+#include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -15,6 +19,7 @@
 #include "apps/frame_text/value_text.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
@@ -35,6 +40,10 @@ constexpr const char* example = R"(Examples:
 Services: NMT, SYNC, TIME, EMCY, TPDO, RPDO, SDO, BOOTUP, HEARTBEAT, GUARD, LSS, MASTER, GFC, ERROR
 and ? for what is none of them.)";
 
+constexpr std::array<std::string_view, 15> services{
+    "NMT",       "SYNC",  "TIME", "EMCY",   "TPDO", "RPDO",  "SDO", "BOOTUP",
+    "HEARTBEAT", "GUARD", "LSS",  "MASTER", "GFC",  "ERROR", "?"};
+
 struct Options {
   std::vector<std::string> files;
   std::string bus;
@@ -48,6 +57,12 @@ std::string in_capitals(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
+}
+
+/// Empty: there is such a service.
+std::string service_trouble(const std::string& text) {
+  if (std::ranges::find(services, text) != services.end()) return {};
+  return fmt::format("no service '{}'; there are {}", text, fmt::join(services, ", "));
 }
 
 /// Id of a node of the network, or of any; none: no such node.
@@ -142,8 +157,8 @@ int dump_log(std::istream& in, const std::string& name, Printer& printer) {
 int dump_file(const std::string& name, Printer& printer) {
   if (name == "-") return dump_log(std::cin, "stdin", printer);
   std::ifstream file{name};
-  if (!file) {
-    fmt::print(stderr, "{}: cannot be read: {}\n", name, std::strerror(errno));
+  if (!file || std::filesystem::is_directory(name)) {
+    fmt::print(stderr, "{}: cannot be read: {}\n", name, std::strerror(file ? EISDIR : errno));
     return usage;
   }
   return dump_log(file, name, printer);
@@ -255,11 +270,12 @@ void add_dump(CLI::App& app, int& exit_code) {
   dump->add_option("files", options->files, "network file (.yaml), recording of candump or -")
       ->type_name("[NET.yaml] [FILE]");
   dump->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
-  dump->add_option("-n,--count", options->count, "end after so many frames");
+  add_number(*dump, "-n,--count", options->count, "end after so many frames");
   dump->add_flag("--json", options->json, "one JSON object a frame");
   dump->add_option("--only", options->only, "these services: SDO,EMCY")
       ->delimiter(',')
       ->transform([](std::string text) { return in_capitals(std::move(text)); })
+      ->check(service_trouble)
       ->type_name("SERVICE,...");
   dump->add_option("--node", options->node, "frames of this node, by id or name")
       ->type_name("NODE");

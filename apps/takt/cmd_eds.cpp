@@ -4,6 +4,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/eds_commands.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/eds.hpp"
@@ -83,7 +84,7 @@ void add_show(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<ShowOptions>();
   auto* command = eds.add_subcommand("show", "object dictionary and PDO tables of a file");
   command->add_option("FILE", options->file, "EDS or DCF")->required();
-  command->add_option("--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
       ->check(CLI::Range(1U, 127U));
   command->add_flag("--json", options->json, "one JSON document");
   command->footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
@@ -96,7 +97,7 @@ void add_check(CLI::App& eds, int& exit_code) {
   auto* rules = command->add_flag("--rules", options->rules, "list the rules, with examples");
   auto* files = command->add_option("FILE", options->files, "EDS or DCF");
   files->excludes(rules);
-  command->add_option("--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
       ->check(CLI::Range(1U, 127U));
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->add_flag("--json", options->json, "one JSON document")->excludes(rules);

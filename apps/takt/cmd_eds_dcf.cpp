@@ -4,6 +4,7 @@
 #include "apps/takt/eds_commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/write/dcf_writer.hpp"
 
 namespace takt {
@@ -50,8 +51,8 @@ void add_eds_dcf(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = eds.add_subcommand("dcf", "write the DCF of one device");
   command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
-  command->add_option("--node", options->node, "node id")->check(CLI::Range(1U, 127U));
-  command->add_option("--bitrate", options->bitrate, "kbit/s of the network")
+  add_number(*command, "--node", options->node, "node id")->check(CLI::Range(1U, 127U));
+  add_number(*command, "--bitrate", options->bitrate, "kbit/s of the network")
       ->check(CLI::Range(1U, 1000U));
   command->add_option("--name", options->name, "name of the device in the network");
   command->add_option("--set", options->values,

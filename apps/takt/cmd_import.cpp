@@ -10,6 +10,7 @@
 #include "apps/import/nodelist.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {
@@ -55,7 +56,25 @@ void print_json(const Options& options, const ImportReport& report) {
   fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_text(const Options& options, const ImportReport& report) {
+struct Imported {
+  ImportReport report;
+  bool written = false;  ///< the network file of a nodelist
+};
+
+/// What has become of a nodelist.
+std::string last_line(const Options& options, const Imported& imported) {
+  if (!imported.report.usable) {
+    return imported.written ? options.out +
+                                  " is written, but taktd does not run it: mend what is "
+                                  "wrong."
+                            : "there is no network file for it: mend what is wrong.";
+  }
+  return imported.written ? options.out + " is written; `takt plan` shows what it does."
+                          : "`-o NET.yaml` writes the network file.";
+}
+
+void print_text(const Options& options, const Imported& imported) {
+  const ImportReport& report = imported.report;
   fmt::print("{}: {} keys: {} used, {} ignored, {} suspicious, {} wrong\n", options.file,
              report.keys.size(), report.count(KeyFate::used), report.count(KeyFate::ignored),
              report.count(KeyFate::suspicious), report.count(KeyFate::wrong));
@@ -67,10 +86,7 @@ void print_text(const Options& options, const ImportReport& report) {
   }
   for (const Finding& finding : report.others) fmt::print("{}\n", to_string(finding));
   if (is_nodelist(options)) {
-    fmt::print("{}\n", !report.usable ? "there is no network file for it: mend what is wrong."
-                       : options.out.empty()
-                           ? "`-o NET.yaml` writes the network file."
-                           : options.out + " is written; `takt plan` shows what it does.");
+    fmt::print("{}\n", last_line(options, imported));
     return;
   }
   fmt::print("{}\n", report.usable ? "taktd runs it as it is; `takt plan` shows what it does."
@@ -78,38 +94,46 @@ void print_text(const Options& options, const ImportReport& report) {
 }
 
 /// With the network file, where one is wanted; what is wrong with that is told, too.
-ImportReport import_project(const Options& options) {
+Imported import_project(const Options& options) {
   const std::filesystem::path out{options.out};
   auto imported = import_nodelist(
       options.file, options.network,
       options.out.empty() ? std::filesystem::path{options.file}.parent_path() : out.parent_path());
-  if (options.out.empty() || !imported.report.usable) return std::move(imported.report);
+  if (options.out.empty() || !imported.report.usable) return {std::move(imported.report)};
   std::ofstream file{out};
   file << imported.yaml;
   file.close();
+  const bool written = file.good();
   Findings findings;
-  if (file.good()) {
+  if (written) {
     findings = load_network(out).findings;
   } else {
     findings.push_back({options.out, {}, Severity::error, "no-file", "can't be written"});
   }
   imported.report.usable = !has_error(findings);
   std::ranges::move(findings, std::back_inserter(imported.report.others));
-  return std::move(imported.report);
+  return {std::move(imported.report), written};
+}
+
+/// Else there is nothing to report on.
+bool can_be_read(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error) && std::ifstream{file}.is_open();
 }
 
 int run(const Options& options) {
   if (!is_nodelist(options) && !options.out.empty()) {
     return complain("-o is for a nodelist.cpj: taktd runs a bus.yml as it is", 2);
   }
-  const ImportReport report =
-      is_nodelist(options) ? import_project(options) : import_report(options.file);
+  const Imported imported =
+      is_nodelist(options) ? import_project(options) : Imported{import_report(options.file)};
   if (options.json) {
-    print_json(options, report);
+    print_json(options, imported.report);
   } else {
-    print_text(options, report);
+    print_text(options, imported);
   }
-  return report.usable ? 0 : 1;
+  if (imported.report.usable) return 0;
+  return can_be_read(options.file) ? 1 : 2;
 }
 
 }  // namespace
@@ -123,7 +147,7 @@ void add_import(CLI::App& app, int& exit_code) {
                    "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
       ->required();
   command->add_option("-o,--output", options->out, "of a nodelist.cpj: network file to be written");
-  command->add_option("--network", options->network, "of a nodelist.cpj: 2 for [Topology2]")
+  add_number(*command, "--network", options->network, "of a nodelist.cpj: 2 for [Topology2]")
       ->check(CLI::Range(1U, 99U))
       ->capture_default_str();
   command->add_flag("--json", options->json, "one JSON document");
@@ -132,7 +156,7 @@ void add_import(CLI::App& app, int& exit_code) {
       "A bus.yml has not to be converted: taktd and all commands read it as it is. A nodelist.cpj\n"
       "with its DCFs becomes a network file (-o): nodes, names, device files, bit rate. Each key\n"
       "is used, ignored (and why), suspicious (used, but hardly what was meant), or wrong (the\n"
-      "file can't run with it; exit code 1).\n\n"
+      "file can't run with it; exit code 1). A file that can't be read is exit code 2.\n\n"
       "Examples:\n  takt import bus.yml --brief\n  takt import nodelist.cpj -o lift.yaml");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -9,6 +9,7 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 
@@ -113,7 +114,7 @@ void add_learn(CLI::App& app, int& exit_code) {
   command->add_option("--eds-dir", options->folders, "folder with such files, searched whole")
       ->type_name("DIR");
   command->add_option("--bus", options->interface, "only this interface of the recording");
-  command->add_option("--bitrate", options->bitrate_kbit, "kbit/s: a recording does not say it")
+  add_number(*command, "--bitrate", options->bitrate_kbit, "kbit/s: a recording does not say it")
       ->check(CLI::Range(10U, 1000U))
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "leave out notes");

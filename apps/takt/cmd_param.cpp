@@ -8,6 +8,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "master/wire/parameter_channel.hpp"
 
 namespace takt {
@@ -117,10 +118,10 @@ void add_param(CLI::App& app, int& exit_code) {
     way->add_option("NODE", options->node, "node id or name")->required();
     way->add_option("PARAM", options->parameter, "P15.13, or its address 0x0F0D")->required();
     if (writes) way->add_option("VALUE", options->value, "number")->required();
-    way->add_option("--pdo", options->pdo, "number of the pair of PDOs")
+    add_number(*way, "--pdo", options->pdo, "number of the pair of PDOs")
         ->check(CLI::Range(1, 512))
         ->capture_default_str();
-    way->add_option("--timeout", options->timeout_ms, "ms to wait for the answer")
+    add_number(*way, "--timeout", options->timeout_ms, "ms to wait for the answer")
         ->check(CLI::Range(1, 60'000))
         ->capture_default_str();
     add_live_options(*way, options->live);

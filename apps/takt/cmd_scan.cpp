@@ -12,6 +12,7 @@
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
 
@@ -189,10 +190,10 @@ void add_scan(CLI::App& app, int& exit_code) {
   verb->add_option("--eds-dir", options->folders,
                    "folder of EDS and DCF files, to find those that fit")
       ->type_name("DIR");
-  verb->add_option("--timeout", options->timeout_ms, "longest silence of a node, ms")
+  add_number(*verb, "--timeout", options->timeout_ms, "longest silence of a node, ms")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
-  verb->add_option("--listen", options->listen_ms, "listen to heartbeats at least so long, ms")
+  add_number(*verb, "--listen", options->listen_ms, "listen to heartbeats at least so long, ms")
       ->check(CLI::Range(0, 600000))
       ->type_name("MS");
   verb->add_flag("--json", options->json, "as one JSON document");

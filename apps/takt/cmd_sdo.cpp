@@ -1,7 +1,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,7 +10,9 @@
 #include "apps/takt/file_transfer.hpp"
 #include "apps/takt/interrupt.hpp"
 #include "apps/takt/sdo_direct.hpp"
+#include "apps/takt/text_file.hpp"
 #include "apps/takt/transfer_progress.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "master/core/request.hpp"
 #include "master/gateway/value_text.hpp"
 
@@ -205,10 +206,9 @@ int upload_file(const SdoOptions& options) {
 int download_file(const SdoOptions& options) {
   const auto object = parse_object(options.object);
   if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
-  std::ifstream file{options.file, std::ios::binary};
-  const std::string content{std::istreambuf_iterator<char>{file}, {}};
-  if (!file.good() && content.empty()) return complain(options.file + ": can't be read", 2);
-  const auto bytes = std::as_bytes(std::span{content});
+  const auto content = read_whole_file(options.file);
+  if (!content) return complain(content.error(), 2);
+  const auto bytes = std::as_bytes(std::span{*content});
   auto access = SdoAccess::open(options);
   if (!access) return complain(access.error().sentence, access.error().code);
   const Interrupt interrupt;
@@ -228,7 +228,7 @@ CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
   verb->add_option("OBJ", options->object, "6041, 1018:1; index and sub-index in hex")->required();
   verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
       ->type_name("IFACE");
-  verb->add_option("--timeout", options->timeout_ms, "longest silence of the device, ms")
+  add_number(*verb, "--timeout", options->timeout_ms, "longest silence of the device, ms")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
   add_live_options(*verb, options->live);
@@ -260,6 +260,7 @@ void add_sdo(CLI::App& app, int& exit_code) {
       ->add_option("--limit", options->limit,
                    "most bytes: a device that sends more is aborted; 64K, 2M (16M)")
       ->transform(CLI::AsSizeValue(false))
+      ->transform(CLI::Validator{[](std::string& text) { return octal_trouble(text); }, ""})
       ->check(CLI::Range(std::size_t{1}, most_file_bytes))
       ->type_name("BYTES");
   uploading->callback([options, &exit_code] { exit_code = upload_file(*options); });

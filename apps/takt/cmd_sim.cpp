@@ -4,10 +4,11 @@
 #include <iostream>
 #include <thread>
 
+#include "apps/duration/duration.hpp"
 #include "apps/simulate/device_channel.hpp"
-#include "apps/simulate/duration.hpp"
 #include "apps/simulate/fault_file.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/sim/realtime_world.hpp"
 
@@ -105,7 +106,7 @@ void add_sim(CLI::App& app, int& exit_code) {
         return parse_duration(text) ? "" : "'" + text + "' is not a time like 10s";
       });
   command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
-  command->add_option("--seed", arguments->seed, "of the random parts")->capture_default_str();
+  add_number(*command, "--seed", arguments->seed, "of the random parts")->capture_default_str();
   command->footer("Example:\n  takt sim lift.yaml --bus vcan0 --only shoulder,elbow");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -2,11 +2,12 @@
 #include <chrono>
 #include <iostream>
 
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 #include "apps/simulate/fault_file.hpp"
 #include "apps/simulate/outcome_report.hpp"
 #include "apps/simulate/simulation.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/whole_number.hpp"
 
 namespace takt {
 namespace {
@@ -64,7 +65,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
       ->check(check_duration)
       ->capture_default_str();
-  command->add_option("--seed", arguments->simulation.seed, "same seed, same run")
+  add_number(*command, "--seed", arguments->simulation.seed, "same seed, same run")
       ->capture_default_str();
   command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
   command->add_flag("--move", arguments->simulation.move,

@@ -5,9 +5,10 @@
 #include <csignal>
 #include <iostream>
 
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 #include "apps/soak/soak_jobs.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/whole_number.hpp"
 
 namespace takt {
 namespace {
@@ -122,7 +123,7 @@ void add_soak(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--hours", arguments->hours, "as many seeds as make so many hours of bus")
       ->check(CLI::PositiveNumber);
-  command->add_option("--jobs", arguments->plan.jobs, "processes")
+  add_number(*command, "--jobs", arguments->plan.jobs, "processes")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command->add_option("--candump", arguments->plan.run.candump, "all frames (for one seed)");

@@ -98,17 +98,6 @@ nlohmann::json to_json(const status_t& status) {
           {"nodes", std::move(nodes)}};
 }
 
-std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
-  std::vector<const BusView*> buses;
-  for (const auto& [bus, view] : views.buses()) {
-    if (!view.status()) continue;
-    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) {
-      buses.push_back(&view);
-    }
-  }
-  return buses;
-}
-
 struct StatusOptions {
   LiveOptions live;
   bool pdos = false;
@@ -126,7 +115,6 @@ void print(const std::vector<const BusView*>& buses) {
         std::printf("%s\n", line.c_str());
       }
     }
-    if (bus->two_daemons()) complain("two daemons run a bus of this name; stop one of them", 3);
   }
 }
 
@@ -151,7 +139,7 @@ int run(const StatusOptions& all) {
   listen(*lcm, views, monotonic_now() + first_limit,
          [&] { return !chosen(views, options.bus_name).empty(); });
   if (chosen(views, options.bus_name).empty()) {
-    const LiveError error = no_daemon(*lcm, options.bus_name);
+    const LiveError error = no_bus(views, *lcm, options.bus_name);
     return complain(error.sentence, error.code);
   }
   listen(*lcm, views, monotonic_now() + settle, [] { return false; });
@@ -163,7 +151,9 @@ int run(const StatusOptions& all) {
   }
   const auto buses = chosen(views, options.bus_name);
   options.json ? print_json(buses) : print(buses);
-  return 0;
+  std::fflush(stdout);
+  const auto two = two_daemons(buses);
+  return two ? complain(two->sentence, two->code) : 0;
 }
 
 }  // namespace

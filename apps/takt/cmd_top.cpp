@@ -25,12 +25,10 @@ struct TopArguments {
 
 std::atomic<bool> interrupted{false};
 
-const BusView* chosen(const BusViews& views, const std::string& bus_name) {
-  for (const auto& [bus, view] : views.buses()) {
-    if (!view.status()) continue;
-    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) return &view;
-  }
-  return nullptr;
+/// Of several the first.
+const BusView* shown(const BusViews& views, const std::string& bus_name) {
+  const auto buses = chosen(views, bus_name);
+  return buses.empty() ? nullptr : buses.front();
 }
 
 void print(const std::vector<Line>& lines) {
@@ -42,13 +40,18 @@ void print(const std::vector<Line>& lines) {
 int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
   const Time limit = monotonic_now() + first_limit;
   listen(lcm, views, limit, [&] {
-    const BusView* const bus = chosen(views, bus_name);
+    const BusView* const bus = shown(views, bus_name);
     return bus != nullptr && !bus->values().empty() && bus->timing();
   });
-  const BusView* const bus = chosen(views, bus_name);
-  if (bus == nullptr) return complain(no_daemon(lcm, bus_name).sentence, 3);
+  const BusView* const bus = shown(views, bus_name);
+  if (bus == nullptr) {
+    const LiveError error = no_bus(views, lcm, bus_name);
+    return complain(error.sentence, error.code);
+  }
   print(top_frame(*bus, {.rows = 0}).lines);
-  return 0;
+  std::fflush(stdout);
+  const auto two = two_daemons({bus});
+  return two ? complain(two->sentence, two->code) : 0;
 }
 
 /// False: quit.
@@ -72,13 +75,15 @@ void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
     next_frame = monotonic_now() + frame_period;
     listen(lcm, views, next_frame, [] { return interrupted.load(); });
     options.rows = Screen::size().rows;
-    const BusView* const bus = chosen(views, bus_name);
+    const BusView* const bus = shown(views, bus_name);
     if (bus != nullptr) {
       const TopFrame frame = top_frame(*bus, options);
       options.first_signal = frame.first_signal;
       screen.show(frame.lines);
     } else {
-      screen.show({Line{}.add("no daemon answers on " + lcm.where() + " (q quits)", Paint::dim)});
+      const std::string why = views.buses().empty() ? "no daemon answers on " + lcm.where()
+                                                    : no_bus(views, lcm, bus_name).sentence;
+      screen.show({Line{}.add(why + " (q quits)", Paint::dim)});
     }
   }
 }

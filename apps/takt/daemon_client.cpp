@@ -1,5 +1,6 @@
 #include "apps/takt/daemon_client.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -25,27 +26,14 @@ std::string names_of(const BusViews& views) {
 
 std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient& lcm,
                                           const std::string& bus_name) {
-  const status_t* chosen = nullptr;
-  for (const auto& [bus, view] : views.buses()) {
-    if (!view.status()) continue;
-    const bool wanted = bus_name.empty() || view.status()->bus == bus_name || bus == bus_name;
-    if (!wanted) continue;
-    if (view.two_daemons()) {
-      return std::unexpected{LiveError{
-          "two daemons run a bus named '" + view.status()->bus + "'; stop one of them", 3}};
-    }
-    if (chosen != nullptr) {
-      return std::unexpected{
-          LiveError{"several buses are there: " + names_of(views) + "; choose with --bus-name", 2}};
-    }
-    chosen = &*view.status();
+  const auto buses = chosen(views, bus_name);
+  if (buses.empty()) return std::unexpected{no_bus(views, lcm, bus_name)};
+  if (auto two = two_daemons(buses)) return std::unexpected{std::move(*two)};
+  if (buses.size() > 1) {
+    return std::unexpected{
+        LiveError{"several buses are there: " + names_of(views) + "; choose with --bus-name", 2}};
   }
-  if (chosen != nullptr) return *chosen;
-  const std::string others = names_of(views);
-  if (!others.empty()) {
-    return std::unexpected{LiveError{"no bus '" + bus_name + "', there are: " + others, 2}};
-  }
-  return std::unexpected{no_daemon(lcm, bus_name)};
+  return *buses.front()->status();
 }
 
 /// Unique among all that may ask at the same time.
@@ -53,7 +41,27 @@ std::int64_t new_request_id() { return realtime_now().count(); }
 
 }  // namespace
 
-LiveError no_daemon(const LcmClient& lcm, const std::string& bus_name) {
+std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
+  std::vector<const BusView*> buses;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!view.status()) continue;
+    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) {
+      buses.push_back(&view);
+    }
+  }
+  return buses;
+}
+
+std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses) {
+  const auto found = std::ranges::find_if(buses, &BusView::two_daemons);
+  if (found == buses.end()) return std::nullopt;
+  return LiveError{
+      "two daemons run a bus named '" + (*found)->status()->bus + "'; stop one of them", 3};
+}
+
+LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {
+  const std::string others = names_of(views);
+  if (!others.empty()) return {"no bus '" + bus_name + "', there are: " + others, 2};
   const std::string which = bus_name.empty() ? std::string{} : " for bus '" + bus_name + "'";
   return {"no daemon" + which + " answers on " + lcm.where() +
               ". Is taktd running? It says at its start which LCM_DEFAULT_URL to set",
@@ -79,13 +87,7 @@ std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& opt
                              {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
   if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
   BusViews views;
-  const auto found = [&] {
-    for (const auto& [bus, view] : views.buses()) {
-      if (!view.status()) continue;
-      if (options.bus_name.empty() || view.status()->bus == options.bus_name) return true;
-    }
-    return false;
-  };
+  const auto found = [&] { return !chosen(views, options.bus_name).empty(); };
   listen(*lcm, views, monotonic_now() + find_limit, found);
   if (found()) listen(*lcm, views, monotonic_now() + settle, [] { return false; });
   auto status = choose(views, *lcm, options.bus_name);

@@ -1,11 +1,13 @@
 #pragma once
 #include <expected>
 #include <functional>
+#include <optional>
 #include <string>
 #include <takt/reply_t.hpp>
 #include <takt/request_t.hpp>
 #include <takt/status_t.hpp>
 #include <utility>
+#include <vector>
 
 #include "apps/takt/live_arguments.hpp"
 #include "master/gateway/bus_view.hpp"
@@ -44,8 +46,14 @@ class DaemonClient {
   status_t status_;
 };
 
-/// "no daemon answers on ...", with what to try.
-LiveError no_daemon(const LcmClient& lcm, const std::string& bus_name);
+/// The buses of which status has come: the one that is called so, also in capitals, or all.
+std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name);
+
+/// Why there is none of them: what others there are, or where no daemon answers and what to try.
+LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name);
+
+/// None: each bus has one.
+std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses);
 
 /// Feeds `views` until `enough` says so, at the latest until `until` (monotonic).
 void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough);

@@ -1,7 +1,14 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <exception>
+#include <iostream>
 #include <string>
+#include <tuple>
+#include <unistd.h>
 
 #include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
 
 namespace {
 
@@ -32,9 +39,19 @@ bool commands_known(const CLI::App& app, int argc, char** argv) {
   return true;
 }
 
-}  // namespace
+/// Why not all of stdout has been written; empty: it has. The reason of a write that failed long
+/// ago is that of one more.
+std::string output_trouble() {
+  const bool before = std::cout.good() && std::ferror(stdout) == 0;
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && before && std::cout.good()) return {};
+  if (errno == 0) std::ignore = ::write(STDOUT_FILENO, "\n", 1);
+  const std::string reason = errno == 0 ? "" : std::string{": "} + std::strerror(errno);
+  return "can't write to stdout" + reason;
+}
 
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"takt - CANopen from the command line", "takt"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "takt " TAKT_VERSION);
@@ -76,4 +93,18 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int exit_code = 2;
+  std::string trouble;
+  try {
+    exit_code = run(argc, argv);
+  } catch (const std::exception& error) {
+    trouble = error.what();
+  }
+  if (const std::string lost = output_trouble(); !lost.empty()) return takt::complain(lost, 1);
+  return trouble.empty() ? exit_code : takt::complain(trouble, exit_code);
 }

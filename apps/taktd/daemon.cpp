@@ -17,6 +17,7 @@ namespace {
 
 constexpr Time patience = std::chrono::seconds{1};        // beyond the limit of the ordered stop
 constexpr Time last_recording = std::chrono::seconds{2};  // of a stop that is not in order
+constexpr Time last_events = std::chrono::seconds{2};
 constexpr std::size_t heap_bytes = 8 << 20;
 
 /// Not 0, and another one each time.
@@ -49,6 +50,7 @@ Exit Daemon::run() {
                                      : "the ordered stop did not end in time");
     recorder_.finish_running(why_.empty() ? "stopped at once" : why_ + "; it did not end in order",
                              last_recording);
+    reporter_.finish(last_events);
     std::_Exit(static_cast<int>(exit_ == Exit::good ? Exit::bus_trouble : exit_));
   }
   master_->join();
@@ -56,6 +58,7 @@ Exit Daemon::run() {
   recorder_.finish(exit_ == Exit::good ? "" : why_);
   reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),
                                           reporter_.told(Weight::warning)));
+  if (!reporter_.finish(last_events)) std::_Exit(static_cast<int>(exit_));
   return exit_;
 }
 
@@ -185,8 +188,27 @@ void Daemon::watch_conditions(Time now) {
   if (now - bus.when < std::chrono::seconds{1}) service_.alive(now);
   if (stopping_) return;
   if (StopSignal::count() > 0) return stop(Exit::good, "told to stop");
-  if (now >= end_) return stop(Exit::good, "the time of --for is over");
+  if (now >= end_) return end_of_time();
   watch_lateness();
+}
+
+/// Good, unless a mandatory node that was waited for all the time never was ready.
+void Daemon::end_of_time() {
+  const std::string why = "the time of --for is over";
+  const std::string missing = options_.observe ? "" : never_ready();
+  if (missing.empty()) return stop(Exit::good, why);
+  stop(Exit::node_missing, why + ", and mandatory nodes never were ready: " + missing);
+}
+
+std::string Daemon::never_ready() const {
+  std::string names;
+  const std::vector<NodeStatus>& statuses = bridge_->status().nodes;
+  for (std::size_t i = 0; i < statuses.size(); ++i) {
+    const NodePlan& node = network_.plan.nodes[i];
+    if (!node.mandatory || !node.boot || statuses[i].boot_count != 0) continue;
+    names += (names.empty() ? "" : ", ") + std::to_string(node.id.value()) + " " + node.name;
+  }
+  return names;
 }
 
 void Daemon::watch_lateness() {

@@ -49,6 +49,8 @@ class Daemon {
   void watch_conditions(Time now);
   void watch_lateness();
   void on_notice(const Notice& notice);
+  void end_of_time();
+  std::string never_ready() const;
   void stop(Exit reason, const std::string& why);
   bool stop_takes_too_long(Time now) const;
   std::thread start_bus_thread(std::function<void()> body);

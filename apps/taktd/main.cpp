@@ -1,4 +1,6 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <utility>
@@ -21,7 +23,10 @@ int run(const DaemonOptions& options) {
   if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
   if (options.check) {
     choose_bus(options, network);
-    std::fputs(plan_summary(network).c_str(), stdout);
+    if (std::fputs(plan_summary(network).c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+      std::fprintf(stderr, "taktd: can't write to stdout: %s\n", std::strerror(errno));
+      return static_cast<int>(Exit::refused);
+    }
     return static_cast<int>(Exit::good);
   }
   start_log();

@@ -1,11 +1,9 @@
 #include "apps/taktd/options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <chrono>
-#include <cmath>
 #include <map>
 
+#include "apps/duration/duration.hpp"
 #include "eds_parser/table/lcm_url.hpp"
 
 namespace takt {
@@ -25,8 +23,8 @@ Examples:
   taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
   taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
 
-Live views: takt top, takt status. SIGTERM or SIGINT (Ctrl-C) stops in order: axes to rest, nodes to
-pre-operational, SYNC off. A second one stops at once.
+Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes) stops in order:
+axes to rest, nodes to pre-operational, SYNC off. A second one stops at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
 3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken.)";
@@ -34,27 +32,7 @@ Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or net
 const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
 
-std::optional<double> seconds_in(std::string_view unit) noexcept {
-  if (unit.empty() || unit == "s") return 1.0;
-  if (unit == "ms") return 1e-3;
-  if (unit == "min" || unit == "m") return 60.0;
-  if (unit == "h") return 3600.0;
-  return std::nullopt;
-}
-
 }  // namespace
-
-std::optional<Time> parse_duration(const std::string& text) {
-  constexpr double longest = 1e9;  // 30 years
-  double number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  const auto factor = seconds_in({rest, static_cast<std::size_t>(end - rest)});
-  if (error != std::errc{} || !factor || !(number >= 0) || number * *factor > longest) {
-    return std::nullopt;
-  }
-  return Time{std::llround(number * *factor * 1e9)};
-}
 
 std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   CLI::App app{description, "taktd"};

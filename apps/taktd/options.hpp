@@ -26,7 +26,4 @@ struct DaemonOptions {
 /// The options, or the exit code when the command line asks for help or is wrong (told already).
 std::expected<DaemonOptions, int> read_command_line(int argc, char** argv);
 
-/// `10s`, `500ms`, `2min`, `1h`, `10` (seconds); none: not a time.
-std::optional<Time> parse_duration(const std::string& text);
-
 }  // namespace takt

@@ -29,8 +29,8 @@ void start_log() {
 }
 
 bool Reporter::open_events(const std::string& path) {
-  events_.open(path, std::ios::app);
-  return events_.good();
+  events_ = EventFile::open(path);
+  return events_ != nullptr;
 }
 
 void Reporter::say(Weight weight, const std::string& sentence) {
@@ -40,7 +40,31 @@ void Reporter::say(Weight weight, const std::string& sentence) {
 void Reporter::tell(const Notice& notice) {
   ++told_[static_cast<std::size_t>(notice.weight)];
   say(notice.weight, notice.text);
-  if (events_.is_open()) write(notice);
+  if (!events_) return;
+  tell_lost();
+  write(notice);
+}
+
+/// In the file too, where the gap is.
+void Reporter::tell_lost() {
+  const std::uint64_t lost = events_->take_lost();
+  if (lost == 0) return;
+  const Notice gap{
+      .when = monotonic_now(),
+      .kind = "events_lost",
+      .weight = Weight::warning,
+      .text = "--events: " + std::to_string(lost) + " lines could not be written and are lost"};
+  ++told_[static_cast<std::size_t>(gap.weight)];
+  say(gap.weight, gap.text);
+  write(gap);
+}
+
+bool Reporter::finish(Time limit) {
+  if (!events_) return true;
+  const bool through = events_->flush(limit);
+  if (!through) say(Weight::warning, "--events: the file takes no more lines; the last are lost");
+  tell_lost();
+  return through;
 }
 
 void Reporter::write(const Notice& notice) {
@@ -53,8 +77,7 @@ void Reporter::write(const Notice& notice) {
                             {"kind", notice.kind},
                             {"severity", std::string{name(notice.weight)}},
                             {"text", notice.text}};
-  events_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n'
-          << std::flush;
+  events_->add(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #include "apps/taktd/stop_signal.hpp"
 
+#include <array>
 #include <atomic>
 
 namespace takt {
@@ -10,8 +11,16 @@ static_assert(std::atomic<int>::is_always_lock_free);
 
 std::atomic<bool> recording_wished{false};
 
+constexpr std::array stop_numbers{SIGTERM, SIGINT, SIGHUP};
+
 void wish_recording(int) { recording_wished.store(true, std::memory_order_relaxed); }
 void count_signal(int) { stop_signals.fetch_add(1, std::memory_order_relaxed); }
+
+/// nohup: the terminal may close.
+bool is_ignored(int number) noexcept {
+  struct sigaction now{};
+  return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
 
 }  // namespace
 
@@ -21,7 +30,8 @@ StopSignal::StopSignal() {
   sigemptyset(&action.sa_mask);
   sigset_t stops;
   sigemptyset(&stops);
-  for (const int number : {SIGTERM, SIGINT}) {
+  for (const int number : stop_numbers) {
+    if (number == SIGHUP && is_ignored(number)) continue;
     sigaction(number, &action, nullptr);
     sigaddset(&stops, number);
   }
@@ -29,8 +39,7 @@ StopSignal::StopSignal() {
   sigaction(SIGUSR1, &action, nullptr);
   sigaddset(&stops, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &stops, &wait_mask_);
-  sigdelset(&wait_mask_, SIGTERM);
-  sigdelset(&wait_mask_, SIGINT);
+  for (const int number : stop_numbers) sigdelset(&wait_mask_, number);
   sigdelset(&wait_mask_, SIGUSR1);
   std::signal(SIGPIPE, SIG_IGN);
 }

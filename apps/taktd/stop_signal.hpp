@@ -3,9 +3,9 @@
 
 namespace takt {
 
-/// SIGTERM and SIGINT as a counter, and SIGUSR1, which asks for a recording. Blocked in all threads
-/// from here on, except while the front thread waits with wait_mask(), so none is ever lost between
-/// a look and a wait.
+/// SIGTERM, SIGINT and SIGHUP as a counter, and SIGUSR1, which asks for a recording. Blocked in all
+/// threads from here on, except while the front thread waits with wait_mask(), so none is ever lost
+/// between a look and a wait. A SIGHUP that is ignored already (nohup) stays so.
 class StopSignal {
  public:
   StopSignal();

@@ -33,7 +33,7 @@ NOT_KEPT = {
     "PdoOutputs": {PLAN: "plan_ inputs_count_ fields_", SHARED: "image_ inputs_ events_",
                    ANEW: "frames_ packed_ packed_count_ fresh_commands_"},
     "PdoOutputs::Row": {ANEW: "first_fallen first_risen fallen risen"},
-    "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_"},
+    "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ owed_until_ owed_"},
     "PortWatch": {SHARED: "events_"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
     "SdoClient": {PLAN: "channel_ block_use_", IDLE: "state_ to_send_ result_",
@@ -44,7 +44,7 @@ NOT_KEPT = {
     "SyncGate": {PLAN: "tolerance_"},
     "SyncHold": {PLAN: "steps_"},
     "TimeProducer": {PLAN: "plan_"},
-    "TwinWatch": {PLAN: "period_"},
+    "TwinWatch": {PLAN: "period_ sdo_request_"},
 }
 
 STATEMENTS_OF_OTHER_KINDS = re.compile(

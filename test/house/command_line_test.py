@@ -51,6 +51,45 @@ def wrong_use(tools):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
 
 
+def numbers_are_decimal_or_hex(tools):
+    eds = ROOT / "share/eds/takt_drive402.eds"
+    tools.says("010 is no number", ["takt", "eds", "show", eds, "--node", "010"], 2, "--node", "'010' begins with a zero: write 10 or 0x8")
+    tools.says("nor is 08", ["takt", "eds", "show", eds, "--node", "08"], 2, "'08' begins with a zero: write 8\n")
+    for number in ("10", "0xA"):
+        shown = tools.run(["takt", "eds", "show", eds, "--node", number, "--json"]).stdout
+        check(f"{number} is ten", '"node_id":10' in shown.replace(" ", ""), shown[:300])
+    for command in (["lss", "set-id", "010"], ["lss", "set-bitrate", "0125"], ["simulate", DEMO, "--seed", "017"],
+                    ["sdo", "upload", 5, 1021, "f", "--limit", "010K"], ["dump", "-n", "010"], ["scan", "--bus", "x", "--timeout", "0100"]):
+        tools.says(f"takt {command[0]} takes no octal number", ["takt", *command], 2, "begins with a zero: write 1")
+
+
+def times(tools):
+    for time in ("1", "1s", "1000ms", "1000000us"):
+        tools.says(f"takt simulate --for {time}", ["takt", "simulate", DEMO, "--for", time], 0, "simulated 1")
+    for time in ("2", "2m", "2min", "1h", "10us"):
+        tools.says(f"taktd --for {time}", ["taktd", DEMO, "--check", "--for", time], 0)
+    for time in ("10 s", "10x", "-1s", "s"):
+        tools.says(f"taktd --for '{time}'", ["taktd", DEMO, "--check", "--for=" + time], 2, "is not a time like 10s")
+        tools.says(f"takt simulate --for '{time}'", ["takt", "simulate", DEMO, "--for=" + time], 2, "is not a time like")
+
+
+def full_disk(tools):
+    """/dev/full refuses each byte, as a full disk does."""
+    told = "takt: can't write to stdout: No space left on device\n"
+    for command in (["plan", DEMO], ["import", DEMO], ["import", DEMO, "--json"], ["budget", DEMO], ["--help"],
+                    ["simulate", DEMO, "--for", "1s"], ["eds", "show", ROOT / "share/eds/takt_drive402.eds", "--json"]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([tools.binaries / "takt", *command], stdout=full, stderr=subprocess.PIPE, text=True)
+        check(f"takt {command[0]} onto a full disk", done.returncode == 1 and done.stderr.endswith(told),
+              f"exit code {done.returncode}: {done.stderr}")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([tools.binaries / "taktd", DEMO, "--check"], stdout=full, stderr=subprocess.PIPE, text=True)
+    check("taktd --check onto a full disk", done.returncode == 1 and "can't write to stdout" in done.stderr, done.stderr)
+    reader = subprocess.run(f"{tools.binaries}/takt eds show {ROOT}/share/eds/takt_drive402.eds --json | head -n 1",
+                            shell=True, capture_output=True, text=True)
+    check("a reader that has enough is no trouble", reader.stderr == "" and reader.stdout != "", reader.stderr)
+
+
 def dump_chooses(tools, folder):
     log = folder / "trace.log"
     log.write_text("(1.0) can0 601#4000100000000000\n(1.1) can0 581#4300100092010200\n(1.2) can0 000#0100\n"
@@ -60,7 +99,30 @@ def dump_chooses(tools, folder):
     check("--only EMCY,ERROR shows two", len(lines("--only", "emcy,ERROR")) == 2, str(lines("--only", "emcy,ERROR")))
     check("--node by name shows its frames and commands to all", len(lines("--node", "shoulder")) == 3, str(lines("--node", "shoulder")))
     check("--node by id", len(lines("--node", "2", "--only", "SDO")) == 1, str(lines("--node", "2", "--only", "SDO")))
+    tools.says("--only wants services", ["takt", "dump", log, "--only", "SDOO"], 2, "no service 'SDOO'; there are NMT, ", ", GFC, ERROR, ?")
+    tools.says("a folder is no recording", ["takt", "dump", folder], 2, f"{folder}: cannot be read: Is a directory")
     tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is no node id 1..127")
+
+
+def folders_for_files(tools, folder):
+    bus = ["--bus", f"unix:{folder}/nobody"]
+    tools.says("a folder is nothing to download", ["takt", "sdo", "download", 5, "1F50:1", folder, *bus], 2, f"{folder}: is a directory")
+    tools.says("nor what there is not", ["takt", "sdo", "download", 5, "1F50:1", folder / "none", *bus], 2, "none: cannot be read")
+    tools.says("a folder of faults", ["takt", "sim", DEMO, "--faults", folder, *bus], 2, "can't be read")
+    tools.says("a file of faults for takt simulate", ["takt", "simulate", DEMO, "--faults", folder], 2, "can't be read")
+
+
+def imports(tools, folder):
+    tools.says("nothing to import", ["takt", "import", "/nonexist.yml"], 2, "there is no such file")
+    tools.says("a folder to import", ["takt", "import", folder], 2, "is a folder")
+    tools.says("a nodelist that there is not", ["takt", "import", folder / "none.cpj"], 2, "can't be read")
+    wrong = folder / "wrong.yml"
+    wrong.write_text("master: {node_id: 127}\nnodes:\n  a: {nod_id: 5}\n")
+    tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not run it")
+    nodes = folder / "nodelist.cpj"
+    nodes.write_text(f"[Topology]\nNodes=1\nNode5Present=1\nNode5DCFName={ROOT}/share/eds/takt_io401.eds\n")
+    tools.says("a network file that is written and does not load", ["takt", "import", nodes, "-o", "/dev/null"], 1,
+               "/dev/null is written, but taktd does not run it")
 
 
 def budget(tools):
@@ -109,7 +171,12 @@ def main(binaries):
     tools = Tools(binaries)
     with tempfile.TemporaryDirectory() as folder:
         wrong_use(tools)
+        numbers_are_decimal_or_hex(tools)
+        times(tools)
+        full_disk(tools)
         dump_chooses(tools, pathlib.Path(folder))
+        folders_for_files(tools, pathlib.Path(folder))
+        imports(tools, pathlib.Path(folder))
         budget(tools)
         sdo_without_daemon(tools, pathlib.Path(folder))
     print(f"{len(failures)} checks failed" if failures else "all checks passed")

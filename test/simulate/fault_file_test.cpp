@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 
 namespace takt {
 namespace {
@@ -110,15 +110,20 @@ TEST_F(FaultFileTest, SurvivesWhatIsNoFaultFile) {
        {"", "[]", "faults: 3", "faults: [[1]]", "a: [", "faults: [{kind: [1]}]", "\xFF\xFE\x00"}) {
     EXPECT_TRUE(has_error(read(text).findings)) << text;
   }
-  EXPECT_TRUE(has_error(read_fault_file("/nonexistent/faults.yaml", plan_).findings));
+  for (const char* path : {"/nonexistent/faults.yaml", "/tmp"}) {
+    EXPECT_TRUE(has_error(read_fault_file(path, plan_).findings)) << path;
+  }
 }
 
-TEST(Duration, WantsAUnit) {
+TEST(Duration, IsOfSecondsWithoutAUnit) {
   EXPECT_EQ(parse_duration("10s"), 10s);
   EXPECT_EQ(parse_duration("1.5ms"), 1500us);
   EXPECT_EQ(parse_duration("2min"), 120s);
+  EXPECT_EQ(parse_duration("2m"), 120s);
   EXPECT_EQ(parse_duration("1h"), 3600s);
-  for (const char* text : {"", "10", "s", "-1s", "10 s", "10s ", "1e99h", "nans", "infs"}) {
+  EXPECT_EQ(parse_duration("10"), 10s);
+  EXPECT_EQ(parse_duration("0.25"), 250ms);
+  for (const char* text : {"", "ms", "s", "-1s", "10 s", "10s ", "1e99h", "nans", "infs"}) {
     EXPECT_EQ(parse_duration(text), std::nullopt) << text;
   }
 }

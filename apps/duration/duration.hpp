@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// `10s`, `500ms`, `250us`, `1.5min`, `2h`; at most 10,000 hours. A number alone is none.
+/// `10s`, `500ms`, `250us`, `1.5min` or `1.5m`, `2h`, and `10`, which is seconds; at most 30 years.
 std::optional<Time> parse_duration(std::string_view text) noexcept;
 
 }  // namespace takt

@@ -1,4 +1,4 @@
-#include "apps/simulate/duration.hpp"
+#include "apps/duration/duration.hpp"
 
 #include <array>
 #include <charconv>
@@ -7,9 +7,15 @@
 namespace takt {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, double>, 6> units{
-    {{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}}};
-constexpr double longest = 10'000 * 3600e9;
+constexpr std::array<std::pair<std::string_view, double>, 8> units{{{"", 1e9},
+                                                                    {"ns", 1.0},
+                                                                    {"us", 1e3},
+                                                                    {"ms", 1e6},
+                                                                    {"s", 1e9},
+                                                                    {"min", 60e9},
+                                                                    {"m", 60e9},
+                                                                    {"h", 3600e9}}};
+constexpr double longest = 1e18;
 
 }  // namespace
 
