@@ -1,8 +1,10 @@
 #include <chrono>
 #include <gtest/gtest.h>
+#include <optional>
 #include <regex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
@@ -101,6 +103,80 @@ TEST(MovingApplication, DoesNotRunAwayFromADaemonThatStandsStill) {
 
   EXPECT_EQ(move.wait(), 0) << move.output();
   EXPECT_NE(move.output().find("The axes followed."), std::string::npos) << move.output();
+}
+
+TEST(MovingApplication, HoldsWhileNoImageComesAndGoesOn) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path())};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                     folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();
+
+  daemon.signal(SIGSTOP);
+  EXPECT_TRUE(move.says("cycles: holding")) << move.output();
+
+  daemon.signal(SIGCONT);
+  EXPECT_TRUE(move.says("fresh again: going on")) << move.output();
+}
+
+TEST(MovingApplication, EndsOnASecondSignalWhereNoAxisAnswers) {
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path());
+  std::optional<Process> devices;
+  devices.emplace(std::vector<std::string>{TAKT, "sim", network.string(), "--bus", bus},
+                  folder / "devices");
+  ASSERT_TRUE(devices->says("3 devices on"));
+  DaemonProcess daemon{network, {"--bus", bus}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+               folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();
+  devices.reset();
+  ASSERT_TRUE(move.says("holding")) << move.output();
+
+  move.signal(SIGINT);
+  ASSERT_TRUE(move.says("disabling the axes")) << move.output();
+  move.signal(SIGINT);
+
+  EXPECT_EQ(move.wait(), 1) << move.output();
+  EXPECT_NE(move.output().find("a second signal"), std::string::npos) << move.output();
+}
+
+TEST(MovingApplication, DisablesItsAxesWhenItsTerminalIsGone) {
+  const Folder folder;
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+               folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();
+
+  move.signal(SIGHUP);
+  move.signal(SIGHUP);
+
+  EXPECT_EQ(move.wait(), 0) << move.output();
+  EXPECT_NE(move.output().find("disabling the axes"), std::string::npos) << move.output();
+}
+
+TEST(MovingApplication, NamesABusWithoutAxes) {
+  const Folder folder;
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/beckhoff.yaml", {"--bus", "sim"}};
+
+  const Ended move = run({TAKT_MOVE, "--lcm-url", daemon.lcm_url()}, folder.path());
+
+  EXPECT_EQ(move.exit_code, 2) << move.output;
+  EXPECT_NE(move.output.find("no axis with profile cia402 on bus"), std::string::npos)
+      << move.output;
+}
+
+TEST(MovingApplication, RefusesWhatIsNoFiniteNumber) {
+  const Folder folder;
+  for (const char* option : {"--to", "--amplitude", "--velocity", "--for"}) {
+    const Ended move = run({TAKT_MOVE, option, "nan"}, folder.path());
+    EXPECT_EQ(move.exit_code, 2) << option << ": " << move.output;
+  }
+  EXPECT_EQ(run({TAKT_MOVE, "--to", "1.0,inf"}, folder.path()).exit_code, 2);
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST_F(Taktd, StopsInOrderOnSigterm) {
 }
 
 TEST_F(Taktd, EndsAfterTheTimeOfFor) {
-  DaemonProcess daemon{slow_network(folder_.path()), {"--bus", "sim", "--for", "500ms"}};
+  DaemonProcess daemon{slow_network(folder_.path()), {"--bus", "sim", "--for", "2s"}};
 
   EXPECT_EQ(daemon.wait(), 0);
 }

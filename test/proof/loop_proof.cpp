@@ -1,18 +1,31 @@
-// The real bus loop on a real thread over a socket pair: 500 cycles with four nodes that answer,
-// one of which falls silent half-way, recorded for the black box. Its thread may not allocate, free
-// or make any system call but sleep, receive, send and poll.
+// The real bus loop on a real thread: 500 cycles with four nodes that answer, one of which falls
+// silent half-way, recorded for the black box. Its thread may not allocate, free or make any system
+// call but sleep, receive, send and poll.
 //
-//   loop_proof                 exits 0
-//   loop_proof --break WHAT    new, delete, malloc, yield, open: breaks the rule inside the cycle;
-//                              has to exit 97 (allocation) or 98 (system call)
+//   loop_proof                 over a socket pair; exits 0
+//   loop_proof --can IFACE     on SocketCAN; the interface goes down and up in between, and the
+//                              calls that find it again are allowed, too
+//   ... --break WHAT           new, delete, malloc, yield, open, write: breaks the rule inside the
+//                              cycle; has to exit 97 (allocation) or 98 (system call)
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
+#include <functional>
+#include <linux/can/raw.h>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
 #include <thread>
+#include <unistd.h>
 #include <utility>
 
+#include "master/linux/socket_can.hpp"
 #include "master/linux/unix_bus.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/rt/recorded_port.hpp"
@@ -39,7 +52,9 @@ class Breaker final : public Controller {
     if (what_ == "delete") delete before_;
     if (what_ == "malloc") kept_ = static_cast<int*>(std::malloc(16));
     if (what_ == "yield") std::this_thread::yield();
-    if (what_ == "open") std::fclose(std::fopen("/dev/null", "r"));
+    if (what_ == "open") ::close(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    if (what_ == "write") [[maybe_unused]]
+      const ssize_t written = ::write(STDOUT_FILENO, "\n", 1);
   }
 
  private:
@@ -49,11 +64,24 @@ class Breaker final : public Controller {
   int* before_ = new int{3};
 };
 
+/// What happens to the bus before the cycles that count; on the devices' thread.
+using Mishap = std::function<void()>;
+
+constexpr std::uint64_t beats_before_mishap = 50;
+constexpr std::uint64_t most_cycles = 20 * cycles;  // where it does not end
+
+/// Between the threads.
+struct Course {
+  std::atomic<bool> mishap_over{false};
+  std::atomic<bool> done{false};
+};
+
 /// Boot-up and heartbeats of all nodes, and a TPDO of each after every SYNC.
-void run_devices(UnixBusPort& port, const std::atomic<bool>& done) {
+template <class P>
+void run_devices(P& port, const Mishap& mishap, Course& course) {
   std::vector<StampedFrame> in(256);
   std::uint64_t beats = 0;
-  while (!done) {
+  while (!course.done) {
     port.wait_frame(port.now() + 5ms);
     const std::size_t count = port.receive(in);
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,59 +94,143 @@ void run_devices(UnixBusPort& port, const std::atomic<bool>& done) {
         out.push_back(make_frame(CobId::base(0x180 + node), {0x37, 0x02, 1, 2, 3, 4}));
       }
       port.send(out);
+      if (beats != beats_before_mishap) continue;
+      mishap();
+      course.mishap_over = true;
     }
   }
+}
+
+/// The bus thread: everything is trapped from here.
+template <class P>
+void run_trapped(BusLoop<P>& loop, std::span<const proof::SystemCall> allowed, Course& course) {
+  proof::trap_system_calls(allowed);
+  proof::trap_allocations(true);
+  loop.start();
+  std::uint64_t left = cycles;
+  for (std::uint64_t all = 0; left > 0 && all < most_cycles; ++all) {
+    loop.cycle();
+    left -= course.mishap_over;
+  }
+  proof::trap_allocations(false);
+  course.done = true;
+  for (;;) takt::sleep_until(monotonic_now() + 1s);  // ending a thread takes system calls
+}
+
+BusPlan small_plan() {
+  BusPlan plan = test::axes({.nodes = nodes, .period = 4ms});
+  for (NodePlan& node : plan.nodes) node.boot_plan.steps.clear();
+  return plan;
 }
 
 bool is_checkpoint(std::uint64_t word) {
   return journal::mark_of(word) == Mark::checkpoint && journal::payload_of(word) < 4096;
 }
 
-int prove(std::string_view to_break) {
-  BusPlan plan = test::axes({.nodes = nodes, .period = 4ms});
-  for (NodePlan& node : plan.nodes) node.boot_plan.steps.clear();
-  auto [master_port, device_port] = make_socket_pair_bus();
-  const auto exchange = std::make_unique<Exchange>(plan);
-  Breaker breaker{to_break};
-  Journal journal{256 << 10};  // begins anew now and then
-  journal.want();
-  RecordedPort<UnixBusPort> port{master_port, &journal};
-  const auto loop = std::make_unique<BusLoop<RecordedPort<UnixBusPort>>>(
-      plan, port, *exchange, BusLoopOptions{.controller = &breaker});
+bool recorded(const Journal& journal) {
+  return journal.wanted() != nullptr && !journal.wanted()->read().empty() &&
+         std::ranges::any_of(journal.last().read(), is_checkpoint);
+}
 
-  std::atomic<bool> done{false};
-  std::thread devices{[&, &port = device_port] { run_devices(port, done); }};
-  std::thread bus{[&] {
-    proof::trap_system_calls();
-    proof::trap_allocations(true);
-    loop->start();
-    for (std::uint64_t i = 0; i < cycles; ++i) loop->cycle();
-    proof::trap_allocations(false);
-    done = true;
-    for (;;) takt::sleep_until(monotonic_now() + 1s);  // ending a thread takes system calls
-  }};
-  devices.join();
-
+/// A loaded machine leaves out periods and outputs; the bus has to have lived all the same.
+bool lively(const Exchange& exchange) {
   StatusSnapshot status;
-  exchange->status.read(status);
+  exchange.status.read(status);
   std::printf("%llu cycles, %llu frames received, %llu sent, %llu images with a missing PDO\n",
               static_cast<unsigned long long>(status.bus.beats),
               static_cast<unsigned long long>(status.bus.frames_received),
               static_cast<unsigned long long>(status.bus.frames_sent),
               static_cast<unsigned long long>(status.bus.images_incomplete));
-  const bool recorded = journal.wanted() != nullptr && !journal.wanted()->read().empty() &&
-                        std::ranges::any_of(journal.last().read(), is_checkpoint);
-  // A loaded machine leaves out periods and outputs; the bus has to have lived all the same.
-  const bool lively = status.bus.frames_received > cycles && status.bus.frames_sent > cycles / 2;
+  return status.bus.frames_received > cycles && status.bus.frames_sent > cycles / 2;
+}
+
+/// How often the interface went down and came up, as the loop has told it.
+std::pair<int, int> interface_events(Exchange& exchange) {
+  std::pair<int, int> told{};
+  for (Event event; exchange.events.pop(event);) {
+    told.first += event.kind == EventKind::interface_down;
+    told.second += event.kind == EventKind::interface_up;
+  }
+  std::printf("interface down %d times, up %d times\n", told.first, told.second);
+  return told;
+}
+
+struct Circumstances {
+  std::string_view to_break;
+  Mishap mishap = [] {};
+  std::span<const proof::SystemCall> allowed{};
+  std::pair<int, int> interface_events{};
+};
+
+template <class P>
+int prove(const BusPlan& plan, P& master_port, P& device_port, const Circumstances& given) {
+  const auto exchange = std::make_unique<Exchange>(plan);
+  Breaker breaker{given.to_break};
+  Journal journal{256 << 10};  // begins anew now and then
+  journal.want();
+  RecordedPort<P> port{master_port, &journal};
+  const auto loop = std::make_unique<BusLoop<RecordedPort<P>>>(
+      plan, port, *exchange, BusLoopOptions{.controller = &breaker});
+
+  Course course;
+  std::thread devices{[&] { run_devices(device_port, given.mishap, course); }};
+  std::thread bus{[&] { run_trapped(*loop, given.allowed, course); }};
+  devices.join();
+
+  const bool as_told = interface_events(*exchange) == given.interface_events;
+  const bool good = lively(*exchange) && recorded(journal) && as_told;
   std::fflush(stdout);
-  std::_Exit(lively && recorded ? 0 : 1);  // the bus thread sleeps on
+  std::_Exit(good ? 0 : 1);  // the bus thread sleeps on
+}
+
+int prove_on_socket_pair(std::string_view to_break) {
+  auto [master_port, device_port] = make_socket_pair_bus();
+  return prove(small_plan(), master_port, device_port, {.to_break = to_break});
+}
+
+/// Looking for an interface that is gone: its flags, its index, filters, binding, the old error.
+constexpr std::array<proof::SystemCall, 5> search{{
+    {SYS_ioctl, 1, SIOCGIFFLAGS},
+    {SYS_ioctl, 1, SIOCGIFINDEX},
+    {SYS_setsockopt, 1, SOL_CAN_RAW},
+    {SYS_bind},
+    {SYS_getsockopt, 2, SO_ERROR},
+}};
+
+int prove_on_can(const std::string& interface, std::string_view to_break) {
+  const BusPlan plan = small_plan();
+  auto master_port = SocketCanPort::open(interface, plan, 0ns);
+  auto device_port = SocketCanPort::open(
+      {.interface = interface, .filters = {{.can_id = 0x080, .can_mask = CAN_SFF_MASK}}});
+  if (!master_port || !device_port) {
+    std::fprintf(stderr, "loop_proof: %s\n",
+                 (master_port ? device_port : master_port).error().message.c_str());
+    return 1;
+  }
+  const std::string link = "ip link set " + interface;
+  const Mishap mishap = [command = link + " down && sleep 0.2 && " + link + " up"] {
+    if (std::system(command.c_str()) != 0) std::_Exit(1);
+  };
+  return prove(
+      plan, *master_port, *device_port,
+      {.to_break = to_break, .mishap = mishap, .allowed = search, .interface_events = {1, 1}});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 3 && std::string_view{argv[1]} == "--break") return prove(argv[2]);
-  if (argc == 1) return prove("");
-  std::fprintf(stderr, "usage: loop_proof [--break new|delete|malloc|yield|open]\n");
+  std::string_view to_break;
+  std::string interface;
+  int i = 1;
+  for (; i + 1 < argc; i += 2) {
+    const std::string_view option = argv[i];
+    if (option == "--break") to_break = argv[i + 1];
+    if (option == "--can") interface = argv[i + 1];
+  }
+  if (i == argc) {
+    return interface.empty() ? prove_on_socket_pair(to_break) : prove_on_can(interface, to_break);
+  }
+  std::fprintf(stderr,
+               "usage: loop_proof [--can IFACE] [--break new|delete|malloc|yield|open|write]\n");
   return 2;
 }

@@ -13,6 +13,7 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+#include <vector>
 
 namespace takt::proof {
 namespace {
@@ -23,10 +24,17 @@ constexpr unsigned architecture = AUDIT_ARCH_X86_64;
 constexpr unsigned architecture = AUDIT_ARCH_AARCH64;
 #endif
 
-// exit_group and rt_sigreturn let the report below end the process; clock_gettime is a vDSO read
+// write and exit_group let the reports of the traps end the process; clock_gettime is a vDSO read
 // on most kernels and a system call on a few.
-constexpr std::array<int, 7> allowed{SYS_clock_nanosleep, SYS_recvmmsg, SYS_sendmmsg,  SYS_ppoll,
-                                     SYS_clock_gettime,   SYS_write,    SYS_exit_group};
+constexpr std::array<SystemCall, 7> allowed{{
+    {SYS_clock_nanosleep},
+    {SYS_recvmmsg},
+    {SYS_sendmmsg},
+    {SYS_ppoll},
+    {SYS_clock_gettime},
+    {SYS_write, 0, STDERR_FILENO},
+    {SYS_exit_group},
+}};
 
 void report(int, siginfo_t* info, void*) {
   std::array<char, 64> text{};
@@ -50,28 +58,40 @@ sock_filter jump_if_equal(unsigned value, std::uint8_t yes, std::uint8_t no) {
   return {.code = BPF_JMP | BPF_JEQ | BPF_K, .jt = yes, .jf = no, .k = value};
 }
 
+sock_filter load(std::size_t offset) {
+  return statement(BPF_LD | BPF_W | BPF_ABS, static_cast<unsigned>(offset));
+}
+
+/// Allows this call, or goes on behind these statements.
+void append(std::vector<sock_filter>& program, const SystemCall& call) {
+  const bool any = call.argument < 0;
+  program.push_back(load(offsetof(seccomp_data, nr)));
+  program.push_back(jump_if_equal(static_cast<unsigned>(call.number), 0, any ? 1 : 3));
+  if (!any) {  // the lower half comes first
+    const auto i = static_cast<std::size_t>(call.argument);
+    program.push_back(load(offsetof(seccomp_data, args) + i * sizeof(seccomp_data::args[0])));
+    program.push_back(jump_if_equal(call.value, 0, 1));
+  }
+  program.push_back(statement(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+}
+
 }  // namespace
 
-void trap_system_calls() {
+void trap_system_calls(std::span<const SystemCall> also) {
   struct sigaction action{};
   action.sa_sigaction = report;
   action.sa_flags = SA_SIGINFO;
   if (sigaction(SIGSYS, &action, nullptr) != 0) give_up("sigaction");
 
-  std::array<sock_filter, allowed.size() + 6> program{};
-  std::size_t n = 0;
-  program[n++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch));
-  program[n++] = jump_if_equal(architecture, 1, 0);
-  program[n++] = statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS);
-  program[n++] = statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
-  for (std::size_t i = 0; i < allowed.size(); ++i) {
-    const auto to_allow = static_cast<std::uint8_t>(allowed.size() - i);
-    program[n++] = jump_if_equal(static_cast<unsigned>(allowed[i]), to_allow, 0);
-  }
-  program[n++] = statement(BPF_RET | BPF_K, SECCOMP_RET_TRAP);
-  program[n++] = statement(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  std::vector<sock_filter> program{load(offsetof(seccomp_data, arch)),
+                                   jump_if_equal(architecture, 1, 0),
+                                   statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS)};
+  for (const SystemCall& call : allowed) append(program, call);
+  for (const SystemCall& call : also) append(program, call);
+  program.push_back(statement(BPF_RET | BPF_K, SECCOMP_RET_TRAP));
 
-  const sock_fprog filter{.len = static_cast<unsigned short>(n), .filter = program.data()};
+  const sock_fprog filter{.len = static_cast<unsigned short>(program.size()),
+                          .filter = program.data()};
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) give_up("PR_SET_NO_NEW_PRIVS");
   if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) != 0) give_up("PR_SET_SECCOMP");
 }

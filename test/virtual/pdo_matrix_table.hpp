@@ -1,161 +1,61 @@
 #pragma once
-// When PDOs are sent, worked out by hand from CiA 301 and from four manuals:
-//   Lenze     8400 HighLine reference manual, DMS 12.0, p. 731
-//   Beckhoff  FC5101 manual, p. 45
-//   ars       ars-informatica, TPDO Communication Parameters
-//   Astraada  DRV-28 communication card, p. 30
+// When simulated devices send PDOs, worked out by hand from CiA 301 and from four manuals.
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "test/virtual/pdo_matrix_301.hpp"
+#include "test/virtual/pdo_matrix_families.hpp"
 
 namespace takt::test {
 
 // clang-format off
 
-/// A TPDO of a device and what happens to it, in ms after NMT start; then the frames that must
-/// come.
-struct TpdoRow {
+/// How a device reads its transmission types.
+struct Reading {
   const char* name;
   const char* model;  ///< of the simulated device; "": CiA 301
   const char* quirk;
-  std::uint8_t type;
-  std::uint16_t inhibit;     ///< sub 3 as it is written: 100 us, of the DRV-28 ms
-  std::uint16_t timer;       ///< ms
-  std::vector<int> changes;  ///< another value each time
-  std::vector<int> back;     ///< the first value again
-  std::vector<int> syncs;
-  std::vector<int> remote;  ///< remote requests
-  std::vector<int> rpdos;   ///< the RPDO of the same number comes
-  std::vector<int> frames;  ///< sent within 200 ms
+  std::span<const TpdoRow> rows;
 };
 
-inline const std::vector<int> each_10{10, 20, 30, 40, 50};
+inline const std::vector<Reading> readings{
+    {"301", "", "", rows_301},
+    {"plain 301", "plain301", "", rows_301},
+    {"Lenze", "lenze8400", "", rows_lenze},
+    {"Beckhoff", "beckhoff", "", rows_beckhoff},
+    {"ars", "plain301", "event_timer_raster", rows_ars},
+    {"DRV-28", "astraada_drv28", "", rows_drv28},
+};
 
-inline const std::vector<TpdoRow> tpdo_rows{
-    // type 0. 301: an event, then the next SYNC. The state on entering OPERATIONAL is an event.
-    {"301, type 0: two events, one frame", "", "", 0, 0, 0, {12, 14, 33}, {}, each_10, {}, {}, {10,
-      20, 40}},
-    {"301, type 0: a pulse between two SYNCs is an event", "", "", 0, 0, 0, {12}, {15}, each_10, {},
-      {}, {10, 20}},
-    {"301, type 0: inhibit time and event timer mean nothing", "", "", 0, 500, 25, {12}, {},
-      each_10, {}, {}, {10, 20}},
-    {"301, type 0: no answer to remote requests", "", "", 0, 0, 0, {}, {}, each_10, {5, 15}, {},
-      {10}},
-    {"Lenze, type 0: SYNC and event", "lenze8400", "", 0, 0, 0, {12, 33}, {}, each_10, {}, {}, {10,
-      20, 40}},
-    {"Lenze, type 0: a cycle time that has elapsed is an event", "lenze8400", "", 0, 0, 24, {}, {},
-      {10, 20, 30, 40, 50, 60, 70, 80}, {}, {}, {10, 30, 50, 80}},
-    {"Beckhoff, type 0: sampled at SYNC, sent if the sample has changed", "beckhoff", "", 0, 0, 0,
-      {12, 33}, {}, each_10, {}, {}, {10, 20, 40}},
-    {"Beckhoff, type 0: a pulse between two SYNCs is not seen", "beckhoff", "", 0, 0, 0, {12}, {15},
-      each_10, {}, {}, {10}},
-    {"ars, type 0: after the event", "plain301", "event_timer_raster", 0, 0, 0, {12}, {}, each_10,
-      {}, {}, {10, 20}},
+/// Of the types 0..255 of a TPDO, those that a device refuses besides 241..251.
+struct TypesRow {
+  const char* name;
+  const char* model;
+  std::vector<int> refused;
+};
 
-    // types 1..240: after each n-th SYNC, changed or not
-    {"301, type 1", "", "", 1, 0, 0, {12}, {}, each_10, {}, {}, {10, 20, 30, 40, 50}},
-    {"301, type 1: inhibit time and event timer mean nothing", "", "", 1, 500, 25, {12}, {},
-      each_10, {}, {}, {10, 20, 30, 40, 50}},
-    {"301, type 2", "", "", 2, 0, 0, {}, {}, each_10, {}, {}, {20, 40}},
-    {"301, type 5", "", "", 5, 0, 0, {}, {}, each_10, {}, {}, {50}},
-    {"Lenze, type 1", "lenze8400", "", 1, 0, 0, {}, {}, each_10, {}, {}, {10, 20, 30, 40, 50}},
-    {"Lenze, type 3", "lenze8400", "", 3, 0, 0, {}, {}, each_10, {}, {}, {30}},
-    {"Beckhoff, digital inputs, type 1", "beckhoff", "", 1, 0, 0, {}, {}, each_10, {}, {}, {10, 20,
-      30, 40, 50}},
-    {"Beckhoff, analogue inputs, type 10", "beckhoff", "", 10, 0, 0, {}, {}, {10, 20, 30, 40, 50,
-      60, 70, 80, 90, 100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200}, {}, {}, {100, 200}},
-    {"ars, type 4", "plain301", "event_timer_raster", 4, 0, 0, {}, {}, each_10, {}, {}, {40}},
-    {"DRV-28, type 2", "astraada_drv28", "", 2, 500, 0, {}, {}, each_10, {}, {}, {20, 40}},
+inline const std::vector<TypesRow> types_rows{
+    {"301", "", {}},
+    {"Lenze: reserved are 241 to 251", "lenze8400", {}},
+    {"Beckhoff: reserved are 241 to 251", "beckhoff", {}},
+    {"ars: not used are 241 to 251", "plain301", {}},
+    {"DRV-28: its table 3-11 has 1 to 240, 254 and 255", "astraada_drv28", {0, 252, 253}},
+};
 
-    // 252: sampled at SYNC, sent on request; before the first SYNC there is nothing
-    {"301, type 252", "", "", 252, 0, 0, {12}, {}, {10, 20}, {5, 15, 17, 25}, {}, {15, 17, 25}},
-    {"301, type 252: no event, no timer", "", "", 252, 0, 20, {12, 33}, {}, each_10, {}, {}, {}},
-    {"Lenze, type 252", "lenze8400", "", 252, 0, 0, {}, {}, {10}, {5, 15}, {}, {15}},
-    // 253: sampled and sent on request
-    {"301, type 253", "", "", 253, 0, 20, {12}, {}, each_10, {5, 15}, {}, {5, 15}},
-    {"Lenze, type 253", "lenze8400", "", 253, 0, 0, {12}, {}, each_10, {5, 15}, {}, {5, 15}},
-    {"ars, type 253", "plain301", "event_timer_raster", 253, 0, 0, {}, {}, {}, {7}, {}, {7}},
+/// A TPDO of this type is switched on, and its COB-ID has bit 30: no remote requests.
+struct Bit30Row {
+  const char* name;
+  std::uint8_t type;
+  bool refused;
+};
 
-    // 254, 255 of CiA 301: by event, by timer, by request; SYNC means nothing
-    {"301, type 254: each change", "", "", 254, 0, 0, {12, 14, 33}, {}, each_10, {}, {}, {0, 12, 14,
-      33}},
-    {"301, type 255: each change", "", "", 255, 0, 0, {12, 14, 33}, {}, each_10, {}, {}, {0, 12, 14,
-      33}},
-    {"301, type 255: remote requests are answered", "", "", 255, 0, 0, {}, {}, {}, {5, 9}, {}, {0,
-      5, 9}},
-    {"301, type 254: inhibit and timer, the timeline of 5.3", "", "", 254, 100, 50, {3, 7, 12, 80},
-      {}, {}, {}, {}, {0, 10, 20, 70, 80, 130, 180}},
-    {"301, type 255: inhibit and timer, the timeline of 5.3", "", "", 255, 100, 50, {3, 7, 12, 80},
-      {}, {}, {}, {}, {0, 10, 20, 70, 80, 130, 180}},
-    {"301, type 255: an event inside the inhibit time is put off, not lost", "", "", 255, 100, 0,
-      {3}, {5}, {}, {}, {}, {0, 10}},
-    {"301, type 255: the inhibit time ends and the next event goes at once", "", "", 255, 100, 0,
-      {30, 31, 45}, {}, {}, {}, {}, {0, 30, 40, 50}},
-    {"301, type 255: only the timer", "", "", 255, 0, 50, {}, {}, {}, {}, {}, {0, 50, 100, 150,
-      200}},
-    {"301, type 255: the timer begins anew with each frame", "", "", 255, 0, 50, {20}, {}, {}, {},
-      {}, {0, 20, 70, 120, 170}},
-    {"301, type 255: a timer shorter than the inhibit time", "", "", 255, 400, 15, {}, {}, {}, {},
-      {}, {0, 40, 80, 120, 160, 200}},
-    {"ars, type 255: the timer begins anew only when it has run out", "plain301",
-      "event_timer_raster", 255, 0, 50, {20}, {}, {}, {}, {}, {0, 20, 50, 100, 150, 200}},
-    {"plain 301, type 255: the timer begins anew with each frame", "plain301", "", 255, 0, 50, {20},
-      {}, {}, {}, {}, {0, 20, 70, 120, 170}},
-    {"Lenze, type 254: cyclic in addition to events", "lenze8400", "", 254, 0, 50, {20}, {}, {}, {},
-      {}, {0, 20, 50, 100, 150, 200}},
-    {"Lenze, type 255 means the same", "lenze8400", "", 255, 0, 50, {20}, {}, {}, {}, {}, {0, 20,
-      50, 100, 150, 200}},
-    {"Beckhoff, type 255: the timer is an extra event", "beckhoff", "", 255, 0, 50, {20}, {}, {},
-      {}, {}, {0, 20, 70, 120, 170}},
-
-    // 254, 255 of the DRV-28; its state is not told at the start
-    {"DRV-28, type 254 with timer: periodic, changes send nothing", "astraada_drv28", "", 254, 500,
-      60, {20, 70}, {}, {}, {}, {}, {60, 120, 180}},
-    {"DRV-28, type 254 without: once in the disabled time, in ms", "astraada_drv28", "", 254, 100,
-      0, {10, 20, 30}, {}, {}, {}, {}, {10, 110}},
-    {"DRV-28, type 254: less than 50 ms is taken as 50", "astraada_drv28", "", 254, 20, 0, {10, 30},
-      {}, {}, {}, {}, {10, 60}},
-    {"DRV-28, type 255 with timer: periodic", "astraada_drv28", "", 255, 500, 60, {20}, {}, {}, {},
-      {30}, {60, 120, 180}},
-    {"DRV-28, type 255 without: each time the RPDO comes", "astraada_drv28", "", 255, 500, 0, {20},
-      {}, {}, {}, {10, 35}, {10, 35}},
-
-    // Seams between the rows above, worked out again from the manuals alone.
-    {"301, type 255: an answer to a remote request is a transmission: the timer begins anew", "",
-      "", 255, 0, 50, {}, {}, {}, {20}, {}, {0, 20, 70, 120, 170}},
-    {"Lenze, type 0: a pulse between two SYNCs is an event", "lenze8400", "", 0, 0, 0, {12}, {15},
-      each_10, {}, {}, {10, 20}},
-    {"Lenze, type 254: a cycle that ends inside the inhibit time", "lenze8400", "", 254, 100, 50,
-      {45}, {}, {}, {}, {}, {0, 45, 55, 100, 150, 200}},
-    {"Lenze, type 255: polled besides", "lenze8400", "", 255, 0, 0, {7}, {}, each_10, {5, 9}, {},
-      {0, 5, 7, 9}},
-    {"Beckhoff, type 0: there and back over a SYNC", "beckhoff", "", 0, 0, 0, {12}, {25}, each_10,
-      {}, {}, {10, 20, 30}},
-    {"Beckhoff, type 0: two changes, one sample", "beckhoff", "", 0, 0, 0, {11, 13}, {}, each_10,
-      {}, {}, {10, 20}},
-    {"Beckhoff, type 252: nothing before the first SYNC", "beckhoff", "", 252, 0, 0, {}, {}, {10},
-      {5, 15}, {}, {15}},
-    {"Beckhoff, type 253", "beckhoff", "", 253, 0, 0, {3}, {}, each_10, {5}, {}, {5}},
-    {"ars, type 34: each 34th SYNC", "plain301", "event_timer_raster", 34, 0, 0, {}, {}, {5, 10, 15,
-      20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100, 105, 110, 115, 120, 125,
-      130, 135, 140, 145, 150, 155, 160, 165, 170, 175, 180, 185, 190, 195, 200}, {}, {}, {170}},
-    {"ars, type 252: SYNC updates, a request sends", "plain301", "event_timer_raster", 252, 0, 0,
-      {}, {}, {10, 20}, {25}, {}, {25}},
-    {"ars, type 255: a window of inhibit time and timer", "plain301", "event_timer_raster", 255,
-      100, 50, {3, 7, 12, 80}, {}, {}, {}, {}, {0, 10, 20, 50, 80, 100, 150, 200}},
-    {"ars, type 255: a timer shorter than the inhibit time", "plain301", "event_timer_raster", 255,
-      400, 25, {}, {}, {}, {}, {}, {0, 40, 80, 120, 160, 200}},
-    {"ars, type 255: put off by the inhibit time, the timer's own raster stays", "plain301",
-      "event_timer_raster", 255, 100, 50, {45}, {}, {}, {}, {}, {0, 45, 55, 100, 150, 200}},
-    {"DRV-28, type 1: the disabled time means nothing", "astraada_drv28", "", 1, 500, 0, {12}, {},
-      each_10, {}, {}, {10, 20, 30, 40, 50}},
-    {"DRV-28, type 254: there and back is two changes", "astraada_drv28", "", 254, 50, 0, {10},
-      {15}, {}, {}, {}, {10, 60}},
-    {"DRV-28, type 254: SYNC and RPDO send nothing", "astraada_drv28", "", 254, 50, 0, {}, {},
-      each_10, {}, {15, 25}, {}},
-    {"DRV-28, type 255: each RPDO is answered, the disabled time is of 254", "astraada_drv28", "",
-      255, 500, 0, {}, {}, {}, {}, {10, 11, 12}, {10, 11, 12}},
-    {"DRV-28, type 255 with timer: an RPDO sends nothing", "astraada_drv28", "", 255, 0, 80, {}, {},
-      {}, {}, {10, 30}, {80, 160}},
+inline const std::vector<Bit30Row> bit30_rows{
+    {"1: never asked for", 1, false},
+    {"252: nobody could ask for it", 252, true},
+    {"253: nobody could ask for it", 253, true},
+    {"254: sent by events", 254, false},
+    {"255: sent by events", 255, false},
 };
 
 /// SYNC start value: SYNC number k (at 10 k ms) carries the counter (k - 1) mod overflow + 1.
@@ -176,38 +76,84 @@ inline const std::vector<StartRow> start_rows{
     {"start 0: any", 3, 0, 10, {3, 6, 9, 12, 15, 18, 21}},
 };
 
-/// Whole master and one device that gives back in TPDO1 what RPDO1 brings. Cycles of 10 ms, counted
-/// from the first command; the value is new in cycles 0, 3 and 4, in cycle 6 the same is commanded
-/// again. Outputs of cycle k are sent at its end, before SYNC k + 1.
-struct LoopRow {
+/// The device is told to make SYNC itself, each 20 ms. Lenze: "from version 16.00.00 onwards, the
+/// transmit PDOs are also sent when the sync telegram is generated. Precondition: the sync Tx
+/// identifier and sync Rx identifier have the same value".
+struct OwnSyncRow {
   const char* name;
-  std::uint8_t rpdo;
-  std::uint8_t tpdo;
-  int inhibit_ms;             ///< of the RPDO
-  int repeat_ms;              ///< event timer of the RPDO
-  int poll_ms;                ///< remote requests for the TPDO
-  std::vector<int> rpdos;     ///< cycles in which RPDO1 goes out, of 0..9
-  std::vector<int> arrivals;  ///< cycles in whose image TPDO1 has arrived, of 1..10
+  const char* model;
+  const char* firmware;
+  std::uint16_t transmit_id;
+  std::uint8_t type;
+  std::vector<int> syncs;   ///< sent within 100 ms
+  std::vector<int> frames;  ///< likewise
 };
 
-inline const std::vector<LoopRow> loop_rows{
-    {"255 and 255: at once", 255, 255, 0, 0, 0, {0, 3, 4}, {1, 4, 5}},
-    {"254 and 254: at once", 254, 254, 0, 0, 0, {0, 3, 4}, {1, 4, 5}},
-    {"255 and 0: event, then SYNC", 255, 0, 0, 0, 0, {0, 3, 4}, {1, 4, 5}},
-    // Acts at SYNC k + 1, after the inputs were sampled; TPDO1 of type 0 follows at SYNC k + 2.
-    {"0 and 0: each waits for a SYNC", 0, 0, 0, 0, 0, {0, 3, 4}, {2, 5, 6}},
-    {"0 and 255: sent when it acts", 0, 255, 0, 0, 0, {0, 3, 4}, {1, 4, 5}},
-    {"1 and 1", 1, 1, 0, 0, 0, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
-    {"0 and 1", 0, 1, 0, 0, 0, {0, 3, 4}, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
-    // 30 ms: 0, the change of cycle 3, that of cycle 4 put off to cycle 6
-    {"255 with inhibit time: put off, not lost", 255, 255, 30, 0, 0, {0, 3, 6}, {1, 4, 7}},
-    // 20 ms after the last frame: 2 by the timer, 3 and 4 by change, 6 and 8 by the timer
-    {"255 with event timer", 255, 255, 0, 20, 0, {0, 2, 3, 4, 6, 8}, {1, 4, 5}},
-    // Asked for in the slack of cycle k, there in image k + 1.
-    {"255 and 253, polled each 10 ms", 255, 253, 0, 0, 10, {0, 3, 4}, {1, 2, 3, 4, 5, 6, 7, 8, 9,
-      10}},
-    {"255 and 252, polled each 10 ms", 255, 252, 0, 0, 10, {0, 3, 4}, {1, 2, 3, 4, 5, 6, 7, 8, 9,
-      10}},
+inline const std::vector<int> each_20{20, 40, 60, 80, 100};
+
+inline const std::vector<OwnSyncRow> own_sync_rows{
+    {"Lenze, type 1", "lenze8400", "16.00.00", 0x080, 1, each_20, each_20},
+    {"Lenze, type 2", "lenze8400", "16.00.00", 0x080, 2, each_20, {40, 80}},
+    {"Lenze, type 255: not by SYNC", "lenze8400", "16.00.00", 0x080, 255, each_20, {0}},
+    {"Lenze, newer firmware", "lenze8400", "17.01.00", 0x080, 1, each_20, each_20},
+    {"Lenze, older firmware", "lenze8400", "15.02.00", 0x080, 1, each_20, {}},
+    {"Lenze, another identifier", "lenze8400", "16.00.00", 0x090, 1, each_20, {}},
+    {"301: who makes no SYNC refuses bit 30 of 0x1005", "", "", 0x080, 1, {}, {}},
+};
+
+/// A frame of higher priority is on the wire all the time from `from` to `until`, in ms; the bus is
+/// free where both are 0. ars: "the inhibit time is measured from the time when the node first
+/// attempts to send", "after every nth SYNC Object within the Synchronous Window Length".
+struct BlockedRow {
+  std::uint8_t type;
+  const char* name;
+  int from;
+  int until;
+  Course course;
+  std::vector<int> frames;  ///< begin on the wire
+  int window = 0;           ///< ms, 0x1007; 0: none
+};
+
+inline const std::vector<BlockedRow> blocked_rows{
+    {255, "I+E: attempts at 20 and 30", 0, 0, {.inhibit = 100, .changes = {20, 22}}, {0, 20, 30}},
+    {255, "I+E: 'the delay is included in the inhibit time'", 15, 28,
+      {.inhibit = 100, .changes = {20, 22}}, {0, 28, 30}},
+    {255, "I+E: blocked for longer than that, so one right after the other", 15, 34,
+      {.inhibit = 100, .changes = {20, 22}}, {0, 34, 34}},
+    {255, "I+T: attempts at 50 and 100", 49, 70, {.inhibit = 400, .timer = 50},
+      {0, 70, 100, 150, 200}},
+    {255, "I+T: blocked for two event times", 49, 101, {.inhibit = 400, .timer = 50},
+      {0, 101, 101, 150, 200}},
+    {1, "S: on a free bus", 0, 0, {.syncs = {20, 40}}, {20, 40}, 5},
+    {1, "S: no window, late", 19, 28, {.syncs = {20, 40}}, {28, 40}},
+    {1, "S: late, but within the window", 19, 28, {.syncs = {20, 40}}, {28, 40}, 10},
+    {1, "S: after the window not at all", 19, 28, {.syncs = {20, 40}}, {40}, 5},
+};
+
+/// RPDO2 and SYNCs come, in ms after NMT start, and then its value acts. Beckhoff: "RxPDOs do not
+/// generally distinguish between transmission types 0...240: a PDO that has been received is set to
+/// valid when the next SYNC is received".
+struct RpdoRow {
+  std::uint8_t type;
+  const char* name;
+  std::vector<int> rpdos;
+  std::vector<int> syncs;
+  std::vector<int> acts;
+};
+
+inline const std::vector<RpdoRow> rpdo_rows{
+    {0, "without SYNC never", {12}, {}, {}},
+    {0, "at the next SYNC", {12, 33}, each_10, {20, 40}},
+    {0, "two before a SYNC: the later one", {12, 14}, each_10, {20}},
+    {1, "without SYNC never", {12}, {}, {}},
+    {1, "at the next SYNC", {12, 33}, each_10, {20, 40}},
+    {1, "two before a SYNC: the later one", {12, 14}, each_10, {20}},
+    {17, "at the next SYNC, not at the 17th", {12, 33}, each_10, {20, 40}},
+    {240, "at the next SYNC, not at the 240th", {12, 33}, each_10, {20, 40}},
+    {254, "at once, without SYNC", {12, 14, 33}, {}, {12, 14, 33}},
+    {254, "at once", {12, 14, 33}, each_10, {12, 14, 33}},
+    {255, "at once, without SYNC", {12, 14, 33}, {}, {12, 14, 33}},
+    {255, "at once", {12, 14, 33}, each_10, {12, 14, 33}},
 };
 
 // clang-format on

@@ -1,11 +1,13 @@
-// Every row of the table of the four manuals against the simulated devices, and the master's own
-// part of it against a device in virtual time.
+// Every row of the tables of CiA 301 and of four manuals against the simulated devices.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "master/sim/device.hpp"
+#include "master/sim/world.hpp"
+#include "test/virtual/pdo_matrix_preset.hpp"
 #include "test/virtual/pdo_matrix_table.hpp"
 #include "test/virtual/rig.hpp"
 
@@ -18,24 +20,34 @@ using sim::Device;
 using sim::SampleDevice;
 
 constexpr Time started = 200ms;  ///< NMT start of the device
+constexpr std::uint32_t refused = 0x0609'0030;
 
 /// The second pair of PDOs: the first of a DRV-28 is its parameter channel.
-SampleDevice with_pdos(std::uint8_t type) {
+SampleDevice with_pdos(std::uint8_t type, std::uint32_t cob = 0x285) {
   return communicating(5_node)
       .pdo(0x1401, 0x305, 255, {0x2010'0020})
-      .pdo(0x1801, 0x285, type, {0x2011'0020});
+      .pdo(0x1801, cob, type, {0x2011'0020});
 }
 
-/// A device that is stepped through the events of a row; the times of the frames of its TPDO2.
+/// Expedited download to node 5.
+Frame download(ObjectKey key, std::uint32_t value, unsigned bytes) {
+  const auto byte = [](std::uint32_t bits) { return static_cast<std::uint8_t>(bits & 0xFF); };
+  return make_frame(CobId::base(0x605), {byte(0x23u | (4 - bytes) << 2), byte(key.index),
+                                         byte(std::uint32_t{key.index} >> 8), key.sub, byte(value),
+                                         byte(value >> 8), byte(value >> 16), byte(value >> 24)});
+}
+
+int ms_after_start(Time when) { return static_cast<int>((when - started + 500us) / 1ms); }
+
+/// A device that is stepped through the events of a row, and when it has sent what.
 class Stepper {
  public:
-  explicit Stepper(const SampleDevice& table)
-      : table_{table}, device_{table_.build(), sim::Random{1}, {.pdo = 0ns}} {
+  explicit Stepper(DeviceTable table)
+      : table_{std::move(table)}, device_{table_, sim::Random{1}, {.pdo = 0ns}} {
     device_.power_on(0ns);
     run_to(started - 1ms);
   }
 
-  Device* operator->() { return &device_; }
   void start() {
     run_to(started);
     receive(make_frame(CobId::base(0), {1, 5}));
@@ -53,22 +65,26 @@ class Stepper {
     collect();
   }
   /// By SDO, so that the device notices at once.
-  void change(std::uint8_t value) {
-    receive(make_frame(CobId::base(0x605), {0x23, 0x11, 0x20, 0x00, value, 0, 0, 0}));
+  void change(std::uint8_t value) { receive(download({0x2011, 0}, value, 4)); }
+  /// In ms after the start.
+  std::vector<int> frames(std::uint32_t id = 0x285) const {
+    std::vector<int> times;
+    for (const sim::Transmission& item : sent_) {
+      if (item.frame.id == CobId::base(id)) times.push_back(ms_after_start(item.ready));
+    }
+    return times;
   }
-  std::vector<int> frames;  ///< ms after the start
 
  private:
   void collect() {
-    for (const sim::Transmission& item : device_.out().pending()) {
-      if (item.frame.id != CobId::base(0x285)) continue;
-      frames.push_back(static_cast<int>((item.ready - started + 500us) / 1ms));
-    }
+    const auto pending = device_.out().pending();
+    sent_.insert(sent_.end(), pending.begin(), pending.end());
     device_.out().clear();
   }
 
-  SampleDevice table_;
+  DeviceTable table_;
   Device device_;
+  std::vector<sim::Transmission> sent_;
   Time now_{};
 };
 
@@ -77,26 +93,31 @@ struct Moment {
   bool change = false, back = false, sync = false, remote = false, rpdo = false;
 };
 
-std::map<int, Moment> moments_of(const test::TpdoRow& row) {
+std::map<int, Moment> moments_of(const test::Course& course) {
   std::map<int, Moment> moments;
-  for (const int ms : row.changes) moments[ms].change = true;
-  for (const int ms : row.back) moments[ms].back = true;
-  for (const int ms : row.syncs) moments[ms].sync = true;
-  for (const int ms : row.remote) moments[ms].remote = true;
-  for (const int ms : row.rpdos) moments[ms].rpdo = true;
+  for (const int ms : course.changes) moments[ms].change = true;
+  for (const int ms : course.back) moments[ms].back = true;
+  for (const int ms : course.syncs) moments[ms].sync = true;
+  for (const int ms : course.remote) moments[ms].remote = true;
+  for (const int ms : course.rpdos) moments[ms].rpdo = true;
   return moments;
 }
 
-std::vector<int> run(const test::TpdoRow& row) {
-  SampleDevice table = with_pdos(row.type);
-  table.model(row.model);
-  if (*row.quirk != 0) table.quirk(row.quirk);
-  Stepper device{table};
-  device->objects().find({0x1801, 3})->set(row.inhibit);
-  device->objects().find({0x1801, 5})->set(row.timer);
+DeviceTable device_of(const test::Reading& reading, const test::TpdoRow& row) {
+  SampleDevice sample = with_pdos(row.type, row.course.no_rtr ? 0x4000'0285 : 0x285);
+  sample.model(reading.model);
+  if (*reading.quirk != 0) sample.quirk(reading.quirk);
+  DeviceTable table = sample.build();
+  test::preset(table, {0x1801, 3}, row.course.inhibit);
+  test::preset(table, {0x1801, 5}, row.course.timer);
+  return table;
+}
+
+std::vector<int> run(const test::Reading& reading, const test::TpdoRow& row) {
+  Stepper device{device_of(reading, row)};
   device.start();
   std::uint8_t value = 0;
-  for (const auto& [ms, moment] : moments_of(row)) {
+  for (const auto& [ms, moment] : moments_of(row.course)) {
     device.run_to(started + 1ms * ms);
     if (moment.change) device.change(++value);
     if (moment.back) device.change(0);
@@ -105,30 +126,36 @@ std::vector<int> run(const test::TpdoRow& row) {
     if (moment.rpdo) device.receive(make_frame(CobId::base(0x305), {1, 2, 3, 4}));
   }
   device.run_to(started + 200ms);
-  return device.frames;
+  return device.frames();
 }
 
 TEST(PdoMatrix, DevicesSendAsTheirManualsSay) {
-  for (const test::TpdoRow& row : test::tpdo_rows) EXPECT_EQ(run(row), row.frames) << row.name;
+  for (const test::Reading& reading : test::readings) {
+    for (const test::TpdoRow& row : reading.rows) {
+      EXPECT_EQ(run(reading, row), row.frames)
+          << reading.name << ", type " << int{row.type} << ", " << row.name;
+    }
+  }
 }
 
 TEST(PdoMatrix, EachNthSyncForEveryN) {
   for (int n = 1; n <= 240; ++n) {
-    Stepper device{with_pdos(static_cast<std::uint8_t>(n))};
+    Stepper device{with_pdos(static_cast<std::uint8_t>(n)).build()};
     device.start();
     for (int sync = 1; sync <= 2 * n; ++sync) {
       device.run_to(started + 1ms * sync);
       device.receive({.id = CobId::base(0x080)});
     }
-    EXPECT_EQ(device.frames, (std::vector{n, 2 * n}));
+    EXPECT_EQ(device.frames(), (std::vector{n, 2 * n}));
   }
 }
 
 TEST(PdoMatrix, TheSyncStartValueIsTheFirst) {
   for (const test::StartRow& row : test::start_rows) {
-    Stepper device{with_pdos(row.type)};
-    device->objects().find({0x1801, 6})->set(row.start);
-    device->objects().find({0x1019, 0})->set(row.overflow);
+    DeviceTable table = with_pdos(row.type).build();
+    test::preset(table, {0x1801, 6}, row.start);
+    test::preset(table, {0x1019, 0}, row.overflow);
+    Stepper device{table};
     device.start();
     for (int k = 1; k <= 21; ++k) {
       device.run_to(started + 10ms * k);
@@ -140,21 +167,113 @@ TEST(PdoMatrix, TheSyncStartValueIsTheFirst) {
       device.receive(sync);
     }
     std::vector<int> syncs;
-    for (const int ms : device.frames) syncs.push_back(ms / 10);
+    for (const int ms : device.frames()) syncs.push_back(ms / 10);
     EXPECT_EQ(syncs, row.syncs) << row.name;
   }
 }
 
-/// The answer of a device to a write of TPDO2's transmission type.
-std::uint32_t abort_of_type(const char* model, std::uint8_t type) {
-  SampleDevice table = with_pdos(255);
-  table.model(model);
-  DeviceTable built = table.build();
-  Device device{built, sim::Random{1}};
+TEST(PdoMatrix, TheirOwnSyncTriggersThemWhereTheManualSaysSo) {
+  for (const test::OwnSyncRow& row : test::own_sync_rows) {
+    SampleDevice sample = with_pdos(row.type);
+    sample.model(row.model)
+        .object(0x5E8F, 0, DataType::unsigned16, Access::rw, 0x080)   // C00368, Tx identifier
+        .object(0x5E90, 0, DataType::unsigned16, Access::rw, 0x080);  // C00367, Rx identifier
+    DeviceTable table = sample.build();
+    table.firmware = row.firmware;
+    Stepper device{table};
+    device.run_to(started);
+    device.receive(download({0x1006, 0}, 20'000, 4));
+    device.receive(download({0x1005, 0}, 0x4000'0080, 4));
+    device.receive(download({0x5E8F, 0}, row.transmit_id, 2));
+    device.start();
+    device.run_to(started + 100ms);
+    EXPECT_EQ(device.frames(row.transmit_id), row.syncs) << row.name;
+    EXPECT_EQ(device.frames(), row.frames) << row.name;
+  }
+}
+
+/// SYNC and RPDO2 win against the frame that blocks the bus, TPDO2 does not.
+std::vector<int> run(const test::BlockedRow& row) {
+  DeviceTable table = communicating(5_node)
+                          .model("plain301")
+                          .quirk("event_timer_raster")
+                          .pdo(0x1401, 0x181, 255, {0x2011'0020})
+                          .pdo(0x1801, 0x285, row.type, {0x2011'0020})
+                          .build();
+  test::preset(table, {0x1801, 3}, row.course.inhibit);
+  test::preset(table, {0x1801, 5}, row.course.timer);
+  test::preset(table, {0x1007, 0}, static_cast<std::uint64_t>(row.window) * 1000);
+  sim::World world{std::span{&table, 1}, {}};
+  test::Recorder recorder;
+  world.observe(&recorder);
+  sim::RemotePort& port = world.attach();
+  if (row.until != 0) {
+    world.add({.kind = sim::FaultKind::babble,
+               .at = started + 1ms * row.from,
+               .until = started + 1ms * row.until,
+               .cob_id = CobId::base(0x182),
+               .value = std::vector<std::byte>(8)});
+  }
+  const auto send_at = [&](int ms, const Frame& frame) {
+    world.advance_to(started + 1ms * ms);
+    port.send(std::span{&frame, 1}, world.now());
+  };
+  send_at(0, make_frame(CobId::base(0), {1, 5}));
+  std::uint8_t value = 0;
+  for (const auto& [ms, moment] : moments_of(row.course)) {
+    if (moment.change) send_at(ms, make_frame(CobId::base(0x181), {++value, 0, 0, 0}));
+    if (moment.sync) send_at(ms, {.id = CobId::base(0x080)});
+  }
+  world.advance_to(started + 201ms);
+  std::vector<int> frames;
+  for (const sim::WireFrame& wire : recorder.with(0x285)) {
+    frames.push_back(ms_after_start(wire.start));
+  }
+  return frames;
+}
+
+TEST(PdoMatrix, OnABlockedBusTheFirstAttemptCounts) {
+  for (const test::BlockedRow& row : test::blocked_rows) {
+    EXPECT_EQ(run(row), row.frames) << "type " << int{row.type} << ", " << row.name;
+  }
+}
+
+/// What RPDO2 brings goes out by TPDO2, by event.
+std::vector<int> run(const char* model, const test::RpdoRow& row) {
+  Stepper device{communicating(5_node)
+                     .model(model)
+                     .pdo(0x1401, 0x305, row.type, {0x2011'0020})
+                     .pdo(0x1801, 0x285, 255, {0x2011'0020})
+                     .build()};
+  device.start();
+  std::uint8_t value = 0;
+  for (const auto& [ms, moment] : moments_of({.syncs = row.syncs, .rpdos = row.rpdos})) {
+    device.run_to(started + 1ms * ms);
+    if (moment.sync) device.receive({.id = CobId::base(0x080)});
+    if (moment.rpdo) device.receive(make_frame(CobId::base(0x305), {++value, 0, 0, 0}));
+  }
+  device.run_to(started + 200ms);
+  std::vector<int> acts = device.frames();
+  std::erase(acts, 0);  // the state at the start
+  return acts;
+}
+
+TEST(PdoMatrix, RpdosActAtTheNextSyncOrAtOnce) {
+  for (const char* model : {"", "plain301", "lenze8400", "beckhoff"}) {
+    for (const test::RpdoRow& row : test::rpdo_rows) {
+      EXPECT_EQ(run(model, row), row.acts)
+          << model << ", type " << int{row.type} << ", " << row.name;
+    }
+  }
+}
+
+/// The answer of a device to a write to this object, 0: it is taken.
+std::uint32_t abort_of(const DeviceTable& table, ObjectKey key, std::uint32_t value) {
+  Device device{table, sim::Random{1}};
   device.power_on(0ns);
   device.on_time(device.deadline());
   device.out().clear();
-  device.on_frame(make_frame(CobId::base(0x605), {0x2F, 0x01, 0x18, 0x02, type, 0, 0, 0}), 300ms);
+  device.on_frame(download(key, value, key.sub == 1 ? 4 : 1), 300ms);
   device.on_time(400ms);
   for (const sim::Transmission& item : device.out().pending()) {
     if (item.frame.id != CobId::base(0x585)) continue;
@@ -166,150 +285,28 @@ std::uint32_t abort_of_type(const char* model, std::uint8_t type) {
   return 1;
 }
 
-TEST(PdoMatrix, ReservedTypesAreRefused) {
-  for (const char* model : {"", "plain301", "lenze8400", "beckhoff", "astraada_drv28"}) {
-    for (int type = 241; type <= 251; ++type) {
-      EXPECT_EQ(abort_of_type(model, static_cast<std::uint8_t>(type)), 0x0609'0030U)
-          << model << " " << type;
+TEST(PdoMatrix, TypesThatAManualLacksAreRefused) {
+  for (const test::TypesRow& row : test::types_rows) {
+    const DeviceTable table = with_pdos(255).model(row.model).build();
+    for (int type = 0; type <= 255; ++type) {
+      const bool reserved = type >= 241 && type <= 251;
+      const bool lacking = reserved || std::ranges::count(row.refused, type) != 0;
+      const auto value = static_cast<std::uint32_t>(type);
+      EXPECT_EQ(abort_of(table, {0x1801, 2}, value), lacking ? refused : 0U)
+          << row.name << ", type " << type;
+      // 252 and 253 are of TPDOs.
+      EXPECT_EQ(abort_of(table, {0x1401, 2}, value), type >= 241 && type <= 253 ? refused : 0U)
+          << row.name << ", RPDO, type " << type;
     }
-    EXPECT_EQ(abort_of_type(model, 1), 0U) << model;
-    EXPECT_EQ(abort_of_type(model, 240), 0U) << model;
-    EXPECT_EQ(abort_of_type(model, 254), 0U) << model;
-  }
-  for (const std::uint8_t type : std::vector<std::uint8_t>{0, 252, 253}) {
-    EXPECT_EQ(abort_of_type("astraada_drv28", type), 0x0609'0030U) << int{type};
-    EXPECT_EQ(abort_of_type("lenze8400", type), 0U) << int{type};
   }
 }
 
-/// The whole master and one device that gives back what it gets.
-class Loop {
- public:
-  explicit Loop(const test::LoopRow& row) : rig_{plan_of(row)} {}
-
-  bool boot() { return rig_.boot(); }
-  /// One cycle, before whose end the value is commanded.
-  void cycle(std::int64_t value) {
-    rig_.command(0, 0x000F, value, 1000);
-    rig_.recorder.frames.clear();
-    rig_.cycle();
+TEST(PdoMatrix, TypesOfRemoteRequestsOnlyAreRefusedWithoutThem) {
+  for (const test::Bit30Row& row : test::bit30_rows) {
+    const DeviceTable table = with_pdos(row.type, 0x8000'0285).build();
+    EXPECT_EQ(abort_of(table, {0x1801, 1}, 0x4000'0285), row.refused ? refused : 0U) << row.name;
+    EXPECT_EQ(abort_of(table, {0x1801, 1}, 0x0000'0285), 0U) << row.name;
   }
-  void cycle() {
-    rig_.recorder.frames.clear();
-    rig_.cycle();
-  }
-  /// By the outputs of the cycle before: they are on the wire when this one begins.
-  bool rpdo_sent() const { return !data_frames(0x201).empty(); }
-  bool tpdo_arrived() const { return arrived_; }
-
- private:
-  static BusPlan plan_of(const test::LoopRow& row) {
-    BusPlan plan = test::axes({.nodes = 1,
-                               .tpdo_type = row.tpdo,
-                               .rpdo_type = row.rpdo,
-                               .period = 10ms,
-                               .fallback_cycles = 0});
-    plan.layout.signals[3].seeded_from.reset();
-    plan.pdos.rpdos[0].inhibit = 1ms * row.inhibit_ms;
-    plan.pdos.rpdos[0].event_timer = 1ms * row.repeat_ms;
-    plan.pdos.tpdos[0].poll = 1ms * row.poll_ms;
-    return plan;
-  }
-  std::vector<sim::WireFrame> data_frames(std::uint32_t id) const {
-    std::vector<sim::WireFrame> found = rig_.recorder.with(id);
-    std::erase_if(found, [](const sim::WireFrame& wire) { return wire.frame.rtr; });
-    return found;
-  }
-
-  test::Rig rig_;
-  bool arrived_ = false;
-
- public:
-  void watch() {
-    rig_.on_image = [this](const ImageView& image) {
-      arrived_ = image.pdos[0].is(PdoMark::arrived);
-    };
-  }
-};
-
-TEST(PdoMatrix, MasterSendsAndTakesEachType) {
-  for (const test::LoopRow& row : test::loop_rows) {
-    Loop loop{row};
-    ASSERT_TRUE(loop.boot()) << row.name;
-    loop.watch();
-    for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start are over
-    std::vector<int> rpdos;
-    std::vector<int> arrivals;
-    std::int64_t value = 0;
-    for (int k = 0; k <= 10; ++k) {
-      if (k == 0 || k == 3 || k == 4) ++value;
-      k <= 6 ? loop.cycle(value) : loop.cycle();
-      if (k >= 1 && loop.rpdo_sent()) rpdos.push_back(k - 1);
-      if (k >= 1 && loop.tpdo_arrived()) arrivals.push_back(k);
-    }
-    EXPECT_EQ(rpdos, row.rpdos) << row.name;
-    EXPECT_EQ(arrivals, row.arrivals) << row.name;
-  }
-}
-
-TEST(PdoMatrix, MasterSendsEachNthCycleForEveryN) {
-  for (const std::uint8_t n : std::vector<std::uint8_t>{2, 3, 7, 16, 100, 240}) {
-    Loop loop{{"", n, 1, 0, 0, 0, {}, {}}};
-    ASSERT_TRUE(loop.boot());
-    loop.cycle();  // PDOs are exchanged from here on
-    std::vector<int> sent;
-    for (int k = 0; k <= 3 * n; ++k) {
-      loop.cycle(5);
-      if (loop.rpdo_sent()) sent.push_back(k - 1);
-    }
-    ASSERT_GE(sent.size(), 3U) << int{n};
-    // The first at once, then by the raster.
-    EXPECT_EQ(sent[0], 0) << int{n};
-    for (std::size_t i = 2; i < sent.size(); ++i) EXPECT_EQ(sent[i] - sent[i - 1], n) << int{n};
-  }
-}
-
-/// Three axes of different types; now and then a stall leaves no room for the frames of all three.
-TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
-  BusPlan plan = test::axes({.nodes = 3, .rpdo_type = 0, .period = 4ms});
-  plan.pdos.rpdos[1].transmission = 5;
-  plan.pdos.rpdos[2].transmission = 1;
-  test::Rig rig{plan};
-  ASSERT_TRUE(rig.boot());
-  rig.command_all(0x000F, 1, 10'000);
-  rig.run(10);
-  const auto target = [&](NodeId node) {
-    return rig.world->device(node)->objects().find({0x607A, 0})->value;
-  };
-  for (int round = 2; round < 60; ++round) {
-    if (round % 3 == 0) {  // the bus thread sleeps almost to the next SYNC
-      sim::Fault stall;
-      stall.kind = sim::FaultKind::stall_master;
-      stall.at = rig.world->now() + 900us;
-      stall.until = rig.world->now() + 4700us;
-      rig.world->add(stall);
-    }
-    std::vector<Master::Command> commands;
-    for (SignalIndex axis = 0; axis < 3; ++axis) {
-      commands.push_back({static_cast<SignalIndex>(6 + axis), 0x000F});
-      commands.push_back({static_cast<SignalIndex>(9 + axis), round});
-    }
-    ASSERT_TRUE(rig.master->set_group(commands, rig.world->now(), 10'000));
-    for (int cycle = 0; cycle < 6; ++cycle) {
-      rig.cycle();
-      const auto first = target(1_node);
-      EXPECT_EQ(target(2_node), first) << "round " << round << " cycle " << cycle;
-      EXPECT_EQ(target(3_node), first) << "round " << round << " cycle " << cycle;
-    }
-    EXPECT_EQ(target(1_node), static_cast<std::uint64_t>(round));
-  }
-  EXPECT_GT(rig.status().outputs_skipped, 0U) << "no slack was too short";
-}
-
-TEST(PdoGroup, WithASignalThatIsNoOutputIsRefusedWhole) {
-  test::Rig rig{test::axes()};
-  const std::vector<Master::Command> commands{{6, 5}, {0, 5}};
-  EXPECT_FALSE(rig.master->set_group(commands, 0ns));
 }
 
 }  // namespace

@@ -35,6 +35,31 @@ BusPlan pair_plan(std::uint8_t tpdo_type) {
   return plan;
 }
 
+class RpdoTimes : public testing::TestWithParam<bool> {};
+
+TEST_P(RpdoTimes, AreKeptByAMachineThatWakesUpLate) {
+  constexpr Time jitter = 300us;
+  BusPlan plan = test::axes({.nodes = 1, .rpdo_type = 255, .period = 10ms, .fallback_cycles = 0});
+  (GetParam() ? plan.pdos.rpdos[0].event_timer : plan.pdos.rpdos[0].inhibit) = 20ms;
+  Rig rig{plan, {.port = {.wake_jitter = jitter, .spin_jitter = 5us}}};
+  ASSERT_TRUE(rig.boot());
+  rig.run(5);
+
+  for (int i = 0; i < 200; ++i) {
+    if (!GetParam() || i == 0) rig.command(0, 0x0F, i);
+    rig.cycle();
+  }
+
+  const auto sent = rig.recorder.with(0x201);
+  ASSERT_GE(sent.size(), 99U);
+  for (std::size_t i = 2; i < sent.size(); ++i) {
+    EXPECT_GE(sent[i].start - sent[i - 1].start, 20ms - jitter) << i;
+    EXPECT_LE(sent[i].start - sent[i - 1].start, 20ms + jitter) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EventTimerAndInhibitTime, RpdoTimes, testing::Bool());
+
 TEST(PdoPair, IsAnsweredWithTheBytesOfTheTpdo) {
   Rig rig{pair_plan(255)};
   ASSERT_TRUE(rig.boot());
@@ -69,7 +94,7 @@ TEST(PdoPair, WithANodeThatIsNotOperationalIsRefused) {
   rig.world->power(1_node, false);
   rig.run(100);
 
-  const auto reply = ask(rig, pdo_request(RequestKind::pdo_exchange, {1}));
+  const auto reply = ask(rig, pdo_request(RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0}));
 
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->fault, SdoFault::not_exchanging);
@@ -183,6 +208,62 @@ TEST(ManyPdos, All512WithOneSyncAreInOneImage) {
   rig.run(1);
   EXPECT_EQ(arrived, 512U);
   EXPECT_EQ(rig.last_image[0], 0x1234);
+}
+
+TEST(ManyPdos, All512OfOneSetOfCommandsActWithOneSync) {
+  BusPlan plan = test::axes({.nodes = 1, .period = 400ms});
+  plan.nodes[0].cia402 = false;
+  plan.pdos.tpdos.clear();
+  plan.pdos.route[0x181] = PdoTable::no_row;
+  plan.pdos.fields.clear();
+  plan.layout = {};
+  PdoRow row = plan.pdos.rpdos[0];
+  plan.pdos.rpdos.clear();
+  row.field_count = 1;
+  row.length = 2;
+  sim::SampleDevice device = sim::communicating(1_node);
+  for (std::uint16_t i = 0; i < 512; ++i) {
+    const auto object = static_cast<std::uint16_t>(0x2100 + i);
+    plan.layout.signals.push_back(test::make_signal(1_node, 0, {object, 0}));
+    plan.layout.signals.back().output = true;
+    plan.pdos.fields.push_back({.signal = i, .bit_offset = 0, .bits = 16});
+    row.number = static_cast<std::uint16_t>(i + 1);
+    row.first_field = i;
+    row.cob_id = CobId::extended(0x10000u + i);
+    plan.pdos.rpdos.push_back(row);
+    const auto communication = static_cast<std::uint16_t>(0x1400 + i);
+    const auto mapping = static_cast<std::uint16_t>(communication + 0x200);
+    using enum DataType;
+    device.object(object, 0, unsigned16, Access::rww, 0, true)
+        .object(communication, 0, unsigned8, Access::constant, 2)
+        .object(communication, 1, unsigned32, Access::rw, 0x2001'0000u + i)
+        .object(communication, 2, unsigned8, Access::rw, 1)
+        .object(mapping, 0, unsigned8, Access::rw, 1)
+        .object(mapping, 1, unsigned32, Access::rw, std::uint32_t{object} << 16U | 0x10U);
+  }
+  Rig rig{plan, {.devices = {device.build()}, .heartbeat_timeout = 2s, .port = {.tx_queue = 600}}};
+  ASSERT_TRUE(rig.boot());
+  rig.run(2);
+  const auto acted = [&] {
+    int count = 0;
+    for (std::uint16_t i = 0; i < 512; ++i) {
+      const ObjectKey object{static_cast<std::uint16_t>(0x2100 + i), 0};
+      count += rig.world->device(1_node)->objects().number(object) == i + 1;
+    }
+    return count;
+  };
+
+  for (SignalIndex i = 0; i < 512; ++i) rig.master->set(i, i + 1, 0);
+  rig.master->publish_outputs(rig.world->now());
+  std::vector<int> after_each_sync;
+  for (int i = 0; i < 4; ++i) {
+    rig.cycle();
+    after_each_sync.push_back(acted());
+  }
+
+  EXPECT_EQ(std::ranges::count(after_each_sync, 0) + std::ranges::count(after_each_sync, 512), 4)
+      << "all or none";
+  EXPECT_EQ(after_each_sync.back(), 512);
 }
 
 TEST(SynchronousWindow, FramesOfASlowDeviceAreToldAndUsedOrDropped) {

@@ -1,0 +1,68 @@
+#include <csignal>
+#include <gtest/gtest.h>
+
+#include "test/e2e/daemon_process.hpp"
+
+namespace takt::test {
+namespace {
+
+/// A bus of its own that no device is on.
+std::string empty_bus(const Folder& folder) { return "unix:" + (folder / "bus").string(); }
+
+TEST(EndOfTaktd, WithoutAMandatoryNodeIs4AfterTheTimeOfFor) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path()), {"--bus", empty_bus(folder), "--for", "500ms"}};
+
+  EXPECT_EQ(daemon.wait(), 4);
+  EXPECT_NE(daemon.log().find("the time of --for is over, and mandatory nodes never were ready: "
+                              "1 shoulder, 2 elbow"),
+            std::string::npos);
+}
+
+TEST(EndOfTaktd, OnASignalWhileAMandatoryNodeIsWaitedForIsGood) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path()), {"--bus", empty_bus(folder)}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.bus().images() > 10; }));
+
+  daemon.signal(SIGTERM);
+
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(EndOfTaktd, IsInOrderWhenItsTerminalCloses) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path())};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+
+  daemon.signal(SIGHUP);
+
+  EXPECT_EQ(daemon.wait(), 0);
+  EXPECT_NE(daemon.log().find("told to stop; stopping in order"), std::string::npos);
+}
+
+/// A program inherits what its parent ignores.
+TEST(EndOfTaktd, IsNotBroughtByASighupUnderNohup) {
+  const Folder folder;
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  DaemonProcess daemon{slow_network(folder.path())};
+  std::signal(SIGHUP, before);
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+
+  daemon.signal(SIGHUP);
+
+  const std::int64_t cycle = daemon.bus().cycle();
+  EXPECT_TRUE(daemon.hear([&] { return daemon.bus().cycle() > cycle + 50; }));
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(EndOfTaktd, OfOneThatOnlyObservesIsGood) {
+  const Folder folder;
+  DaemonProcess daemon{slow_network(folder.path()),
+                       {"--bus", empty_bus(folder), "--for", "500ms", "--observe"}};
+
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+}  // namespace
+}  // namespace takt::test

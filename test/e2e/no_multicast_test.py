@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""no_multicast_test.py BIN: on a machine whose only interface is `lo`, taktd and takt find each other without a URL.
+
+LCM's multicast has no route there: taktd says so and serves tcpq on loopback, where takt looks by itself. Runs in
+a network namespace of its own; where none can be had, in one of with-vcan's guest.
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+NETWORK = ROOT / "share/demo/two_axes.yaml"
+PATIENCE = 60  # s
+NAMESPACES = (["unshare", "--net"], ["unshare", "--net", "--map-root-user"])
+GUEST = [ROOT / "test/support/with-vcan", "-m", "uml", "-t", "180", *NAMESPACES[0]]
+failures = []
+
+
+def check(good, what):
+    print(("ok    " if good else "FAIL  ") + what, flush=True)
+    if not good:
+        failures.append(what)
+
+
+def enter_namespace(arguments):
+    """Becomes this test, alone with a loopback."""
+    again = [sys.executable, os.path.abspath(__file__), *arguments, "--inside"]
+    for way in NAMESPACES:
+        if subprocess.run([*way, "true"], stderr=subprocess.DEVNULL).returncode == 0:
+            os.execvp(way[0], [*way, *again])
+    os.execv(GUEST[0], [*GUEST, *again])
+
+
+def takt_status(binaries):
+    """As somebody types it who knows of no URL."""
+    return subprocess.run([binaries / "takt", "status", "--json"], capture_output=True, text=True)
+
+
+def await_status(binaries, daemon):
+    """The first answer; a busy machine may need more than one call."""
+    until = time.monotonic() + PATIENCE
+    while True:
+        status = takt_status(binaries)
+        if status.returncode == 0 or daemon.poll() is not None or time.monotonic() > until:
+            return status
+
+
+def judge_status(status):
+    check(status.returncode == 0, f"takt status without a URL: exit {status.returncode} {status.stderr.strip()}")
+    buses = json.loads(status.stdout)["buses"] if status.returncode == 0 else []
+    names = [node["name"] for bus in buses for node in bus["nodes"]]
+    check(names == ["shoulder", "elbow", "io"], f"and it tells of the nodes: {names}")
+
+
+def judge_daemon(said):
+    told = [line for line in said.splitlines() if "LCM: " in line]
+    check(len(told) == 1, f"taktd speaks of LCM once: {told}")
+    wanted = ("no multicast route", "tcpq protocol on loopback", "LCM_DEFAULT_URL=tcpq://127.0.0.1:7700")
+    missing = [words for words in wanted if words not in "".join(told)]
+    check(not missing, f"and says why, what and where: {missing} is missing")
+
+
+def main(binaries):
+    binaries = pathlib.Path(binaries).resolve()
+    os.environ.pop("LCM_DEFAULT_URL", None)
+    subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+    nobody = takt_status(binaries)
+    alone = nobody.returncode == 3 and "is taktd running?" in nobody.stderr
+    check(alone, f"before taktd nobody answers: exit {nobody.returncode} {nobody.stderr.strip()}")
+    with tempfile.TemporaryFile("w+") as said:
+        daemon = subprocess.Popen([binaries / "taktd", NETWORK, "--bus", "sim", "--rt", "off"], stderr=said)
+        try:
+            judge_status(await_status(binaries, daemon))
+            daemon.send_signal(signal.SIGTERM)
+            check(daemon.wait(PATIENCE) == 0, f"taktd ended with exit code {daemon.returncode}")
+        finally:
+            daemon.kill()
+        said.seek(0)
+        judge_daemon(said.read())
+    print(f"{len(failures)} checks failed" if failures else "all checks passed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    if sys.argv[-1] != "--inside":
+        enter_namespace(sys.argv[1:])
+    sys.exit(main(sys.argv[1]))

@@ -1,0 +1,164 @@
+#pragma once
+// The master's own part of the PDO matrix, worked out by hand like that of the devices.
+#include <cstdint>
+#include <vector>
+
+namespace takt::test {
+
+// clang-format off
+
+/// How a pair of PDOs is set up, times in ms.
+struct Pair {
+  int inhibit = 0;     ///< of the RPDO
+  int repeat = 0;      ///< event timer of the RPDO
+  int poll = 0;        ///< remote requests for the TPDO
+  int poll_syncs = 0;  ///< the same, each so many SYNCs
+  int deadline = 0;    ///< of the TPDO
+  int timer = 0;       ///< event timer of the TPDO, in the device
+  /// Cycles count from one after an arrival: for TPDOs with a phase of their own.
+  bool after_arrival = false;
+  const char* model = "";  ///< of the device
+  const char* quirk = "";
+};
+
+/// Whole master and one device that gives back in TPDO1 what RPDO1 brings. Cycles of 10 ms, counted
+/// from the first command; the value is new in cycles 0, 3 and 4, in cycle 6 the same is commanded
+/// again. Outputs of cycle k are sent at its end, 8 ms after SYNC k and before SYNC k + 1.
+struct LoopRow {
+  const char* name;
+  std::uint8_t rpdo;
+  std::uint8_t tpdo;
+  Pair pair;
+  std::vector<int> rpdos;      ///< cycles in which RPDO1 goes out, of 0..9
+  std::vector<int> arrivals;   ///< cycles in whose image TPDO1 has arrived, of 1..10
+  std::vector<int> missing{};  ///< cycles in whose image it is missing, of 1..10
+};
+
+inline const std::vector<int> all_sent{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+inline const std::vector<int> all_there{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+
+inline const std::vector<LoopRow> loop_rows{
+    {"at once", 255, 255, {}, {0, 3, 4}, {1, 4, 5}},
+    {"at once", 254, 254, {}, {0, 3, 4}, {1, 4, 5}},
+    {"event, then SYNC", 255, 0, {}, {0, 3, 4}, {1, 4, 5}},
+    // Acts at SYNC k + 1, after the inputs were sampled; TPDO1 of type 0 follows at SYNC k + 2.
+    {"each waits for a SYNC", 0, 0, {}, {0, 3, 4}, {2, 5, 6}},
+    {"sent when it acts", 0, 255, {}, {0, 3, 4}, {1, 4, 5}},
+    {"each SYNC", 1, 1, {}, all_sent, all_there},
+    {"event, and each SYNC", 0, 1, {}, {0, 3, 4}, all_there},
+    {"each second SYNC", 255, 2, {.after_arrival = true}, {0, 3, 4}, {1, 3, 5, 7, 9}},
+    {"each third SYNC", 255, 3, {.after_arrival = true}, {0, 3, 4}, {2, 5, 8}},
+    {"each third SYNC", 0, 3, {.after_arrival = true}, {0, 3, 4}, {2, 5, 8}},
+    {"each third SYNC", 1, 3, {.after_arrival = true}, all_sent, {2, 5, 8}},
+
+    // Inhibit 30 ms: 0, the change of cycle 3, that of cycle 4 put off to cycle 6.
+    {"inhibit time: put off, not lost", 255, 255, {.inhibit = 30}, {0, 3, 6}, {1, 4, 7}},
+    {"inhibit time: put off, not lost", 254, 255, {.inhibit = 30}, {0, 3, 6}, {1, 4, 7}},
+    // 20 ms after the last frame: 2 by the timer, 3 and 4 by change, 6 and 8 by the timer.
+    {"event timer", 255, 255, {.repeat = 20}, {0, 2, 3, 4, 6, 8}, {1, 4, 5}},
+    {"event timer", 254, 255, {.repeat = 20}, {0, 2, 3, 4, 6, 8}, {1, 4, 5}},
+    // 3 by change and timer, 4 put off to 5, 8 by the timer.
+    {"inhibit time and event timer", 255, 255, {.inhibit = 20, .repeat = 30}, {0, 3, 5, 8},
+      {1, 4, 6}},
+    {"an event timer shorter than the inhibit time", 255, 255, {.inhibit = 30, .repeat = 20},
+      {0, 3, 6, 9}, {1, 4, 7}},
+    {"neither is of type 0", 0, 255, {.inhibit = 30, .repeat = 20}, {0, 3, 4}, {1, 4, 5}},
+    {"neither is of type 1", 1, 1, {.inhibit = 30, .repeat = 20}, all_sent, all_there},
+
+    // Asked for in the slack of cycle k, there in image k + 1.
+    {"polled each 10 ms", 255, 252, {.poll = 10}, {0, 3, 4}, all_there},
+    {"polled each 10 ms", 255, 253, {.poll = 10}, {0, 3, 4}, all_there},
+    {"polled each 10 ms, events besides", 255, 254, {.poll = 10}, {0, 3, 4}, all_there},
+    {"polled each 10 ms, events besides", 255, 255, {.poll = 10}, {0, 3, 4}, all_there},
+    {"polled each 30 ms", 255, 253, {.poll = 30, .after_arrival = true}, {0, 3, 4}, {2, 5, 8}},
+    {"polled each 3rd SYNC", 255, 252, {.poll_syncs = 3, .after_arrival = true}, {0, 3, 4},
+      {2, 5, 8}},
+    {"polled each 3rd SYNC", 255, 253, {.poll_syncs = 3, .after_arrival = true}, {0, 3, 4},
+      {2, 5, 8}},
+    {"not polled", 255, 253, {}, {0, 3, 4}, {}},
+
+    // Sent at 8, 38 and 48 ms; 20 ms later, at 28 and 68, it is missing, and told once.
+    {"deadline", 255, 255, {.deadline = 20}, {0, 3, 4}, {1, 4, 5}, {3, 7}},
+    {"deadline", 255, 254, {.deadline = 20}, {0, 3, 4}, {1, 4, 5}, {3, 7}},
+    {"deadline, kept by the device's timer", 255, 255, {.deadline = 50, .timer = 40,
+      .after_arrival = true}, {0, 3, 4}, {1, 4, 5, 9}},
+
+    // A device with an event timer of 40 ms, that ran out in the cycle before 0.
+    {"301: begins anew with each frame", 255, 255, {.timer = 40, .after_arrival = true}, {0, 3, 4},
+      {1, 4, 5, 9}},
+    {"Lenze: cyclic in addition", 255, 254, {.timer = 40, .after_arrival = true,
+      .model = "lenze8400"}, {0, 3, 4}, {1, 3, 4, 5, 7}},
+    {"Lenze: 255 means the same", 255, 255, {.timer = 40, .after_arrival = true,
+      .model = "lenze8400"}, {0, 3, 4}, {1, 3, 4, 5, 7}},
+    {"Beckhoff: reset by the event", 255, 255, {.timer = 40, .after_arrival = true,
+      .model = "beckhoff"}, {0, 3, 4}, {1, 4, 5, 9}},
+    {"ars: reset by its expiry only", 255, 255, {.timer = 40, .after_arrival = true,
+      .model = "plain301", .quirk = "event_timer_raster"}, {0, 3, 4}, {1, 3, 4, 5, 7}},
+    {"DRV-28: periodic, changes send nothing", 255, 254, {.timer = 40, .after_arrival = true,
+      .model = "astraada_drv28"}, {0, 3, 4}, {3, 7}},
+    {"DRV-28: periodic, the RPDO sends nothing", 255, 255, {.timer = 40, .after_arrival = true,
+      .model = "astraada_drv28"}, {0, 3, 4}, {3, 7}},
+
+    // What else the families do their own way.
+    {"DRV-28: each RPDO is answered, changed or not", 255, 255, {.repeat = 20,
+      .model = "astraada_drv28"}, {0, 2, 3, 4, 6, 8}, {1, 3, 4, 5, 7, 9}},
+    // Changes at 8, 38 and 48 ms: the second and the third at 58 together.
+    {"DRV-28: once in the disabled time of 50 ms", 255, 254, {.model = "astraada_drv28"}, {0, 3, 4},
+      {1, 6}},
+    {"DRV-28: no answer to remote requests", 255, 254, {.poll = 10, .model = "astraada_drv28"},
+      {0, 3, 4}, {1, 6}},
+    {"DRV-28: each second SYNC", 255, 2, {.after_arrival = true, .model = "astraada_drv28"},
+      {0, 3, 4}, {1, 3, 5, 7, 9}},
+    {"Lenze: SYNC AND event", 255, 0, {.model = "lenze8400"}, {0, 3, 4}, {1, 4, 5}},
+    {"Lenze: polled via RTR, synchronous", 255, 252, {.poll = 10, .model = "lenze8400"}, {0, 3, 4},
+      all_there},
+    {"Lenze: polled via RTR, asynchronous", 255, 253, {.poll = 10, .model = "lenze8400"}, {0, 3, 4},
+      all_there},
+    {"Lenze: every sync", 1, 1, {.model = "lenze8400"}, all_sent, all_there},
+    {"Beckhoff: the sample has changed", 255, 0, {.model = "beckhoff"}, {0, 3, 4}, {1, 4, 5}},
+    {"Beckhoff: evaluated after the next SYNC", 0, 0, {.model = "beckhoff"}, {0, 3, 4}, {2, 5, 6}},
+    {"Beckhoff: set to valid when the next SYNC is received", 1, 255, {.model = "beckhoff"},
+      all_sent, {1, 4, 5}},
+    {"ars: every SYNC", 1, 1, {.model = "plain301", .quirk = "event_timer_raster"}, all_sent,
+      all_there},
+    {"ars: on request", 255, 253, {.poll = 10, .model = "plain301", .quirk = "event_timer_raster"},
+      {0, 3, 4}, all_there},
+};
+
+/// A pair of PDOs of types n > 1: the distances of their frames, in SYNCs.
+struct RasterRow {
+  const char* name;
+  const char* model;
+  std::uint8_t rpdo;
+  std::uint8_t tpdo;
+};
+
+inline const std::vector<RasterRow> raster_rows{
+    {"301", "", 2, 3},
+    {"Lenze: every n-th sync", "lenze8400", 3, 2},
+    {"Beckhoff: digital inputs and analogue outputs", "beckhoff", 10, 1},
+    {"Beckhoff: analogue inputs", "beckhoff", 2, 10},
+    {"ars: every 34th SYNC", "plain301", 34, 34},
+    {"DRV-28", "astraada_drv28", 5, 4},
+};
+
+/// SYNC start value of a TPDO; the master's SYNC carries a counter.
+struct MasterStartRow {
+  const char* name;
+  std::uint8_t type;
+  std::uint8_t start;
+  std::uint8_t overflow;
+  std::vector<int> counters;  ///< of the first SYNCs that a frame follows
+};
+
+inline const std::vector<MasterStartRow> master_start_rows{
+    {"each third, from 2", 3, 2, 10, {2, 5, 8, 1, 4, 7, 10, 3, 6, 9, 2}},
+    {"each fourth, from 3", 4, 3, 8, {3, 7, 3, 7}},
+    {"each, from 5", 1, 5, 10, {5, 6, 7, 8, 9, 10, 1, 2}},
+    {"each, from 9: not before", 1, 9, 10, {9, 10, 1, 2}},
+    {"each seventh, from 7", 7, 7, 7, {7, 7, 7}},
+};
+
+// clang-format on
+
+}  // namespace takt::test
