@@ -4,8 +4,13 @@
 #   DEMO_NETWORK  another network file        DEMO_SECONDS  how long the axes move (15)
 #   TAKT_DEMO_BIN  programs that have been built already
 set -eu
+from_here() {
+  case $1 in '' | /*) printf %s "$1" ;; *) printf %s "$PWD/$1" ;; esac
+}
+network=$(from_here "${DEMO_NETWORK:-}")
+TAKT_DEMO_BIN=$(from_here "${TAKT_DEMO_BIN:-}")
 cd "$(dirname "$0")/.."
-network=${DEMO_NETWORK:-share/demo/two_axes.yaml}
+network=${network:-share/demo/two_axes.yaml}
 seconds=${DEMO_SECONDS:-15}
 build=build/release
 say() { printf '\n== %s\n' "$*"; }
@@ -29,7 +34,7 @@ build_programs() {
   echo "built in $(($(date +%s) - started)) s"
 }
 
-[ -n "${TAKT_DEMO_BIN:-}" ] || build_programs
+[ -n "$TAKT_DEMO_BIN" ] || build_programs
 PATH=${TAKT_DEMO_BIN:-$PWD/$build/bin}:$PATH
 
 tmp=$(mktemp -d)

@@ -34,7 +34,7 @@ void receive_pdo(benchmark::State& state) {
   const BusPlan plan = bench::eight_u8({});
   const auto events = std::make_unique<EventQueue>();
   PdoExchange pdos{plan, *events};
-  pdos.inputs().set_reception(0, Reception::full, 0ms);
+  pdos.inputs().set_reception(0, Reception::full);
   pdos.inputs().begin(1, 1ms);
   StampedFrame stamped{.frame = frame, .when = 2ms};
   for (auto _ : state) {
@@ -63,7 +63,7 @@ void send_pdo(benchmark::State& state) {
     }
     const auto frames = pdos.outputs().pack(points, moment);
     benchmark::DoNotOptimize(frames.data());
-    pdos.outputs().sent(frames.size(), moment.now);
+    pdos.outputs().sent(frames.size(), moment);
     benchmark::ClobberMemory();
   }
   state.counters["ns_per_pdo"] =

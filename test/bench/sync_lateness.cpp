@@ -1,5 +1,6 @@
-// How late SYNC is handed over, against a bare clock_nanosleep loop that sends one frame: the same
-// thread, the same kind of socket, in turns. Microseconds.
+// How late SYNC is handed over, against a bare clock_nanosleep loop that sends one frame and throws
+// away what comes: the same thread, the same kind of socket, the same devices, in turns.
+// Microseconds.
 //
 //   sync_lateness [BLOCKS [CYCLES]]     5 blocks of 1000 cycles of 1 ms for each of the four
 #include <algorithm>
@@ -54,7 +55,8 @@ class Devices {
 
 void bare_block(int cycles, Time spin, Histogram& lateness) {
   auto [port, other] = make_socket_pair_bus({}, spin);
-  std::vector<StampedFrame> in(8);
+  const Devices devices{other};
+  std::vector<StampedFrame> in(64);
   const Frame sync{.id = CobId::base(0x080)};
   Time deadline = port.now();
   for (int i = 0; i < cycles; ++i) {
@@ -62,7 +64,7 @@ void bare_block(int cycles, Time spin, Histogram& lateness) {
     port.sleep_precisely_until(deadline);
     lateness.record(port.now() - deadline);
     port.send({&sync, 1});
-    while (other.receive(in) == in.size()) {
+    while (port.receive(in) == in.size()) {
     }
   }
 }
