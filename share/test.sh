@@ -16,19 +16,29 @@ export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 mkdir -p $logs
 passed=0
 failed=0
+failed_logs=
 
 sources() { find eds_parser master apps test \( -name '*.hpp' -o -name '*.cpp' \) -print; }
 
 # A line of ctest's summary: "98% tests passed, 2 tests failed out of 100" -> "100 2"
 ctest_counts() { sed -n 's/.* passed, \([0-9]*\) tests failed out of \([0-9]*\)$/\2 \1/p' "$1" | tail -n 1; }
 
+# What the tests that failed have said, without their checks that were good; at most 100 lines of each.
+failed_tests() {
+  awk '/^ *[0-9]+\/[0-9]+ Test +#/ { left = /\*\*\*/ ? 100 : 0 }
+       /^ +Start +[0-9]+: / || /^[0-9]+% tests passed/ { left = 0 }
+       /^(ok |\[ RUN |\[ +OK )/ { next }
+       left > 0 { print; left-- }' "$1"
+}
+
 # Shows what matters of a log that ended badly.
 explain() {
   echo "--- $1"
-  grep -nE 'error:|FAILED|Failure|\*\*\*|ERROR: |SUMMARY: |WARNING: ThreadSanitizer' "$1" | head -n 40
+  grep -nE 'error:|Failure|\*\*\*|ERROR: |SUMMARY: |WARNING: ThreadSanitizer' "$1" | head -n 40
+  echo "--- its failed tests"
+  failed_tests "$1"
   echo "--- its end"
-  tail -n 30 "$1"
-  echo "---"
+  tail -n 20 "$1"
 }
 
 # stage NAME COMMAND... - counts as one test, or as its tests where the command is ctest.
@@ -50,7 +60,7 @@ stage() {
   failed=$((failed + bad))
   [ "$verdict" -eq 0 ] && word=good || word=FAILED
   printf '%-7s %4d s   %d passed, %d failed\n' $word $(($(date +%s) - started)) "$good" "$bad"
-  [ "$verdict" -eq 0 ] || explain "$log"
+  [ "$verdict" -eq 0 ] || failed_logs="$failed_logs $log"
   return "$verdict"
 }
 
@@ -105,5 +115,6 @@ for wanted in $stages; do
     *) echo "no stage $wanted" >&2 && exit 2 ;;
   esac
 done
+for log in $failed_logs; do explain "$log"; done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
