@@ -108,8 +108,8 @@ def folders_for_files(tools, folder):
     bus = ["--bus", f"unix:{folder}/nobody"]
     tools.says("a folder is nothing to download", ["takt", "sdo", "download", 5, "1F50:1", folder, *bus], 2, f"{folder}: is a directory")
     tools.says("nor what there is not", ["takt", "sdo", "download", 5, "1F50:1", folder / "none", *bus], 2, "none: cannot be read")
-    tools.says("a folder of faults", ["takt", "sim", DEMO, "--faults", folder, *bus], 2, "can't be read")
-    tools.says("a file of faults for takt simulate", ["takt", "simulate", DEMO, "--faults", folder], 2, "can't be read")
+    tools.says("a folder of faults", ["takt", "sim", DEMO, "--faults", folder, *bus], 2, "is a folder")
+    tools.says("and for takt simulate", ["takt", "simulate", DEMO, "--faults", folder], 2, "is a folder")
 
 
 def imports(tools, folder):
