@@ -69,6 +69,11 @@ std::string DeviceData::place(SourcePos at) const {
   return file.substr(slash == std::string::npos ? 0 : slash + 1) + ":" + std::to_string(at.line);
 }
 
+std::string DeviceData::cite(const DeviceFact& fact) const {
+  return (fact.reason.empty() ? "" : ": " + fact.reason) + " (" + place(fact.pos) +
+         (manual.empty() ? "" : ", after " + manual) + ")";
+}
+
 DeviceIdentity identity_of(const NodeSpec& node, const ObjectDictionary& dictionary) noexcept {
   const DeviceInfo& info = dictionary.device;
   return {
@@ -85,8 +90,8 @@ const DeviceData* find_device_data(std::span<const DeviceData> entries, const No
   const DeviceIdentity identity = identity_of(node, dictionary);
   if (identity.vendor == 0) return nullptr;
   const auto found = std::ranges::find_if(entries, [&](const DeviceData& entry) {
-    return entry.vendor == identity.vendor && entry.product.contains(identity.product) &&
-           entry.revision.contains(identity.revision);
+    return std::ranges::any_of(entry.matches,
+                               [&](const DeviceMatch& match) { return match.contains(identity); });
   });
   return found == entries.end() ? nullptr : &*found;
 }

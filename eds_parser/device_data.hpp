@@ -24,6 +24,25 @@ struct NumberRange {
   }
 };
 
+/// What is known of the identity of a node before it is asked.
+struct DeviceIdentity {
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::uint32_t revision = 0;
+};
+
+/// Devices of one family, told by their identity.
+struct DeviceMatch {
+  std::uint32_t vendor = 0;  ///< never 0
+  NumberRange product;
+  NumberRange revision;
+
+  constexpr bool contains(DeviceIdentity identity) const noexcept {
+    return vendor == identity.vendor && product.contains(identity.product) &&
+           revision.contains(identity.revision);
+  }
+};
+
 /// Where an entry says something, and why: the maker's manual in our words.
 struct DeviceFact {
   SourcePos pos;
@@ -63,6 +82,12 @@ struct TimerRule {
   TimerMeaning meaning = TimerMeaning::restarts;
 };
 
+/// Node ids that its switches can have.
+struct NodeIdRule {
+  DeviceFact fact;
+  NumberRange ids{1, 127};
+};
+
 /// As SYNC producer.
 struct SyncRule {
   DeviceFact fact;
@@ -100,10 +125,9 @@ struct DeviceData {
   std::string name;    ///< "Lenze 8400 HighLine"
   std::string manual;  ///< where its facts come from
   SourcePos pos;
-  std::uint32_t vendor = 0;  ///< 0: only `device:` of a node chooses the entry
-  NumberRange product;
-  NumberRange revision;
+  std::vector<DeviceMatch> matches;   ///< none: only `device:` of a node chooses the entry
   bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half
+  NodeIdRule node_ids;
   std::vector<PdoRule> pdos;
   InhibitRule inhibit;
   TimerRule timer;
@@ -117,13 +141,8 @@ struct DeviceData {
   const PdoRule* rule(bool is_tpdo, std::uint16_t number) const noexcept;
   /// "astraada_drv28.yaml:12".
   std::string place(SourcePos at) const;
-};
-
-/// What is known of the identity of a node before it is asked.
-struct DeviceIdentity {
-  std::uint32_t vendor = 0;
-  std::uint32_t product = 0;
-  std::uint32_t revision = 0;
+  /// ": reason (astraada_drv28.yaml:12, after its manual)", the end of a message.
+  std::string cite(const DeviceFact& fact) const;
 };
 
 /// By the network file; else by 0x1018 of the device file, else by its [DeviceInfo].

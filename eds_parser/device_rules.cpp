@@ -4,25 +4,13 @@
 #include <optional>
 
 #include "eds_parser/device_data.hpp"
+#include "eds_parser/device_node_rules.hpp"
+#include "eds_parser/device_notes.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::int64_t produce_bit = 0x4000'0000;
-
-std::string list_of(const std::vector<NumberRange>& ranges) {
-  std::string text;
-  for (const NumberRange& range : ranges) {
-    text += (text.empty() ? "" : ", ") + std::to_string(range.low);
-    if (range.high != range.low) text += ".." + std::to_string(range.high);
-  }
-  return text;
-}
-
-std::string time_text(std::uint64_t us) {
-  if (us % 1000 == 0) return std::to_string(us / 1000) + " ms";
-  return std::to_string(us) + " us";
-}
 
 const PdoSpec* spec_of(const NodeSpec& node, const EffectivePdo& pdo) {
   const auto& list = pdo.is_tpdo ? node.tpdos : node.rpdos;
@@ -48,17 +36,13 @@ class Judge {
       if (pdo.is_tpdo && is_set(pdo, 3)) inhibit(pdo);
     }
     sync_producer();
-    reset();
   }
 
  private:
   std::string label(const EffectivePdo& pdo) const {
     return pdo.label() + " of node `" + spec_.name + "`";
   }
-  std::string source(const DeviceFact& fact) const {
-    return (fact.reason.empty() ? "" : ": " + fact.reason) + " (" + data_.place(fact.pos) +
-           (data_.manual.empty() ? "" : ", after " + data_.manual) + ")";
-  }
+  std::string source(const DeviceFact& fact) const { return data_.cite(fact); }
   /// The PDO is used, or its parameter written although it is not.
   bool is_set(const EffectivePdo& pdo, std::uint8_t sub) const {
     const bool used = pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked;
@@ -145,18 +129,6 @@ class Judge {
     return std::nullopt;
   }
 
-  /// The network file decides, though it may not know.
-  void reset() {
-    const auto& wanted = data_.boot.reset;
-    if (!wanted || !spec_.reset.given || data_.boot.fact.reason.empty()) return;
-    const bool whole = *spec_.reset == ResetPolicy::node;
-    const bool whole_wanted = *wanted == ResetPolicy::node;
-    if (whole == whole_wanted || *spec_.reset == ResetPolicy::none) return;
-    report_.warning(spec_.reset.pos, "device-data",
-                    "node `" + spec_.name + "` is better reset by `reset: " +
-                        (whole_wanted ? "node" : "communication") + '`' + source(data_.boot.fact));
-  }
-
   void sync_producer() {
     const std::optional<SourcePos> request = producer_request();
     if (!request || !data_.sync.own_tpdos_from) return;
@@ -208,54 +180,12 @@ class Judge {
   NetworkReport& report_;
 };
 
-std::string numbers_text(const PdoRule& rule) {
-  const std::string kind = rule.is_tpdo ? "TPDO" : "RPDO";
-  if (rule.numbers.low == rule.numbers.high) return kind + std::to_string(rule.numbers.low);
-  if (rule.numbers.high >= 512) return kind + "s";
-  return kind + std::to_string(rule.numbers.low) + ".." + std::to_string(rule.numbers.high);
-}
-
-std::string rule_text(const PdoRule& rule) {
-  std::string text = numbers_text(rule) + ":";
-  if (!rule.types.empty()) text += " types " + list_of(rule.types);
-  if (rule.without_timer) text += ", no event timer";
-  if (rule.without_rtr) text += ", no remote requests";
-  if (rule.function == PdoFunction::parameter_channel) text += ", the parameter channel";
-  return text;
-}
-
 }  // namespace
 
 void judge_by_device_data(const NodePdos& node, const MasterSpec& master, NetworkReport& report) {
-  if (node.node.data != nullptr) Judge{node, master, report}.run();
-}
-
-std::vector<std::string> device_notes(const NodePdos& node) {
-  std::vector<std::string> notes;
-  if (node.node.data == nullptr) return notes;
-  const DeviceData& data = *node.node.data;
-  for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
-  if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {
-    notes.push_back(
-        "inhibit times in " + time_text(data.inhibit.unit_us) + ", at least " +
-        time_text(std::uint64_t{data.inhibit.least} * data.inhibit.unit_us) +
-        (data.inhibit.factory == 0
-             ? ""
-             : ", " + time_text(std::uint64_t{data.inhibit.factory} * data.inhibit.unit_us) +
-                   " by default"));
-  }
-  if (data.inhibit.unit_us == 100 && data.inhibit.least == 0 && data.inhibit.factory != 0) {
-    notes.push_back("inhibit times of " + time_text(std::uint64_t{data.inhibit.factory} * 100) +
-                    " by default");
-  }
-  if (data.timer.meaning == TimerMeaning::additional) {
-    notes.emplace_back("event timers send besides changes, which do not shift them");
-  }
-  if (data.timer.meaning == TimerMeaning::alone) {
-    notes.emplace_back("with an event timer, changes send nothing");
-  }
-  if (node.node.firmware) notes.push_back("firmware " + to_string(*node.node.firmware));
-  return notes;
+  if (node.node.data == nullptr) return;
+  judge_node_by_device_data(node.node, report);
+  Judge{node, master, report}.run();
 }
 
 }  // namespace takt

@@ -1,18 +1,12 @@
 #pragma once
-#include <string>
-#include <vector>
-
 #include "eds_parser/cob_ids.hpp"
 #include "eds_parser/network_report.hpp"
 
 namespace takt {
 
-/// Refuses what the device of a node can't do by its device data: transmission types, event timers,
-/// remote requests, inhibit times, its part as SYNC producer (`sync_source` of the network file, or
-/// an `sdo` entry). Each error names the entry and its reason.
+/// Refuses what the device of a node can't do by its device data: its node id, transmission types,
+/// event timers, remote requests, inhibit times, its part as SYNC producer (`sync_source` of the
+/// network file, or an `sdo` entry). Each error names the entry and its reason.
 void judge_by_device_data(const NodePdos& node, const MasterSpec& master, NetworkReport& report);
-
-/// What the entry of a node says, a line each, for people; empty where there is no entry.
-std::vector<std::string> device_notes(const NodePdos& node);
 
 }  // namespace takt

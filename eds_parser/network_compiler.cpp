@@ -9,6 +9,7 @@
 #include "eds_parser/boot_compiler.hpp"
 #include "eds_parser/cycle_compiler.hpp"
 #include "eds_parser/device_compiler.hpp"
+#include "eds_parser/device_notes.hpp"
 #include "eds_parser/device_rules.hpp"
 #include "eds_parser/device_watch.hpp"
 #include "eds_parser/error_control.hpp"

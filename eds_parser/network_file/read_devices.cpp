@@ -21,6 +21,7 @@ class DeviceReader {
     data_.name = text(reader, "name");
     data_.manual = text(reader, "manual");
     identity(reader);
+    section(reader, "node_ids", [&](MapReader& map) { node_ids(map); });
     list(reader, "tpdo", [&](const YamlNode& item) { pdo(item, true); });
     list(reader, "rpdo", [&](const YamlNode& item) { pdo(item, false); });
     section(reader, "inhibit_time", [&](MapReader& map) { inhibit(map); });
@@ -60,6 +61,12 @@ class DeviceReader {
       return;
     }
     for (const YamlNode* item : node->items) read(*item);
+  }
+
+  void need(MapReader& reader, std::string_view key) {
+    if (reader.take(key) != nullptr) return;
+    report_.error(reader.key_pos(key), "missing-key",
+                  reader.what() + " lacks `" + std::string{key} + "`");
   }
 
   DeviceFact fact(MapReader& reader, SourcePos pos) { return {pos, text(reader, "reason")}; }
@@ -107,30 +114,48 @@ class DeviceReader {
   }
 
   void identity(MapReader& outer) {
+    firmware_in_revision(outer);
     const YamlNode* node = outer.take("match");
     if (node == nullptr) {
       report_.error(root_.pos, "missing-key",
-                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}`, "
-                    "or `match: none` where only `device:` of a node shall choose it");
+                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}` "
+                    "or a list of them, or `match: none` where only `device:` of a node shall "
+                    "choose it");
       return;
     }
-    firmware_in_revision(outer);
     if (node->kind == YamlNode::Kind::scalar && node->text == "none") return;
+    if (node->kind != YamlNode::Kind::sequence) return match(*node);
+    if (node->items.empty() || node->items.size() > max_items) {
+      report_.error(node->pos, "wrong-type", "`match` is one identity, a list of them, or `none`");
+      return;
+    }
+    for (const YamlNode* item : node->items) match(*item);
+  }
+
+  void match(const YamlNode& node) {
     constexpr IntegerRange any{0, 0xFFFF'FFFF};
-    MapReader reader{*node, "`match`", report_};
+    MapReader reader{node, "`match`", report_};
+    DeviceMatch out;
     Sourced<std::uint32_t> vendor;
     reader.integer("vendor_id", vendor, {1, 0xFFFF'FFFF});
-    take_range(reader, "product_code", data_.product, any);
-    take_range(reader, "revision", data_.revision, any);
+    take_range(reader, "product_code", out.product, any);
+    take_range(reader, "revision", out.revision, any);
     reader.finish();
-    if (!vendor.given) report_.error(node->pos, "missing-key", "`match` lacks `vendor_id`");
-    data_.vendor = *vendor;
+    if (!vendor.given) report_.error(node.pos, "missing-key", "`match` lacks `vendor_id`");
+    out.vendor = *vendor;
+    data_.matches.push_back(out);
   }
 
   void firmware_in_revision(MapReader& outer) {
     Sourced<bool> is_firmware;
     outer.boolean("revision_is_firmware", is_firmware);
     data_.revision_is_firmware = *is_firmware;
+  }
+
+  void node_ids(MapReader& reader) {
+    take_range(reader, "range", data_.node_ids.ids, {1, 127});
+    need(reader, "range");
+    data_.node_ids.fact = fact(reader, reader.key_pos("range"));
   }
 
   void pdo(const YamlNode& item, bool is_tpdo) {

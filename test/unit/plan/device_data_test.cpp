@@ -23,9 +23,9 @@ TEST(DeviceData, HasAnEntryForEachFamily) {
   std::vector<std::string> ids;
   for (const DeviceData& entry : shipped_device_data()) ids.push_back(entry.id);
 
-  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_io", "delta_asda", "elmo",
-                                           "kostal_inveor", "lenze8400", "plain301", "schunk",
-                                           "technosoft", "toshiba_vfs15"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_box", "beckhoff_io",
+                                           "delta_asda", "elmo", "kostal_inveor", "lenze8400",
+                                           "plain301", "schunk", "technosoft", "toshiba_vfs15"}));
 }
 
 TEST(DeviceData, ReadsAnEntry) {
@@ -47,8 +47,9 @@ TEST(DeviceData, ReadsAnEntry) {
   ASSERT_TRUE(entry);
   EXPECT_TRUE(findings.empty());
   EXPECT_EQ(entry->id, "my_drive");
-  EXPECT_EQ(entry->revision.low, 2u);
-  EXPECT_EQ(entry->revision.high, 2u);
+  ASSERT_EQ(entry->matches.size(), 1u);
+  EXPECT_EQ(entry->matches[0].revision.low, 2u);
+  EXPECT_EQ(entry->matches[0].revision.high, 2u);
   ASSERT_NE(entry->rule(true, 3), nullptr);
   EXPECT_EQ(entry->rule(true, 3)->types.size(), 2u);
   EXPECT_EQ(entry->rule(true, 3)->fact.pos.line, 5u);

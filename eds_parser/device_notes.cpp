@@ -1,0 +1,71 @@
+#include "eds_parser/device_notes.hpp"
+
+#include "eds_parser/device_data.hpp"
+
+namespace takt {
+namespace {
+
+std::string numbers_text(const PdoRule& rule) {
+  const std::string kind = rule.is_tpdo ? "TPDO" : "RPDO";
+  if (rule.numbers.low == rule.numbers.high) return kind + std::to_string(rule.numbers.low);
+  if (rule.numbers.high >= 512) return kind + "s";
+  return kind + std::to_string(rule.numbers.low) + ".." + std::to_string(rule.numbers.high);
+}
+
+std::string rule_text(const PdoRule& rule) {
+  std::string text = numbers_text(rule) + ":";
+  if (!rule.types.empty()) text += " types " + list_of(rule.types);
+  if (rule.without_timer) text += ", no event timer";
+  if (rule.without_rtr) text += ", no remote requests";
+  if (rule.function == PdoFunction::parameter_channel) text += ", the parameter channel";
+  return text;
+}
+
+}  // namespace
+
+std::string list_of(const std::vector<NumberRange>& ranges) {
+  std::string text;
+  for (const NumberRange& range : ranges) {
+    text += (text.empty() ? "" : ", ") + std::to_string(range.low);
+    if (range.high != range.low) text += ".." + std::to_string(range.high);
+  }
+  return text;
+}
+
+std::string time_text(std::uint64_t us) {
+  if (us % 1000 == 0) return std::to_string(us / 1000) + " ms";
+  return std::to_string(us) + " us";
+}
+
+std::vector<std::string> device_notes(const NodePdos& node) {
+  std::vector<std::string> notes;
+  if (node.node.data == nullptr) return notes;
+  const DeviceData& data = *node.node.data;
+  if (data.node_ids.fact.pos != SourcePos{}) {
+    notes.push_back("node ids " + list_of({data.node_ids.ids}));
+  }
+  for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
+  if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {
+    notes.push_back(
+        "inhibit times in " + time_text(data.inhibit.unit_us) + ", at least " +
+        time_text(std::uint64_t{data.inhibit.least} * data.inhibit.unit_us) +
+        (data.inhibit.factory == 0
+             ? ""
+             : ", " + time_text(std::uint64_t{data.inhibit.factory} * data.inhibit.unit_us) +
+                   " by default"));
+  }
+  if (data.inhibit.unit_us == 100 && data.inhibit.least == 0 && data.inhibit.factory != 0) {
+    notes.push_back("inhibit times of " + time_text(std::uint64_t{data.inhibit.factory} * 100) +
+                    " by default");
+  }
+  if (data.timer.meaning == TimerMeaning::additional) {
+    notes.emplace_back("event timers send besides changes, which do not shift them");
+  }
+  if (data.timer.meaning == TimerMeaning::alone) {
+    notes.emplace_back("with an event timer, changes send nothing");
+  }
+  if (node.node.firmware) notes.push_back("firmware " + to_string(*node.node.firmware));
+  return notes;
+}
+
+}  // namespace takt
