@@ -88,6 +88,14 @@ struct NodeIdRule {
   NumberRange ids{1, 127};
 };
 
+/// How 0x1016 and 0x1017 count: the device rounds down.
+struct HeartbeatRule {
+  DeviceFact fact;
+  std::uint16_t multiple_of_ms = 1;
+
+  constexpr std::uint32_t kept(std::uint32_t ms) const noexcept { return ms - ms % multiple_of_ms; }
+};
+
 /// As SYNC producer.
 struct SyncRule {
   DeviceFact fact;
@@ -128,6 +136,7 @@ struct DeviceData {
   std::vector<DeviceMatch> matches;   ///< none: only `device:` of a node chooses the entry
   bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half
   NodeIdRule node_ids;
+  HeartbeatRule heartbeat;
   std::vector<PdoRule> pdos;
   InhibitRule inhibit;
   TimerRule timer;

@@ -12,6 +12,8 @@ class NodeJudge {
 
   void run() {
     node_id();
+    heartbeat();
+    for (const SdoSpec& sdo : spec_.sdo) heartbeat_by_sdo(sdo);
     reset();
   }
 
@@ -23,6 +25,34 @@ class NodeJudge {
                   "node `" + spec_.name + "` can't have node id " + std::to_string(*spec_.id) +
                       " as " + data_.name + ", only " + std::to_string(ids.low) + ".." +
                       std::to_string(ids.high) + data_.cite(data_.node_ids.fact));
+  }
+
+  void heartbeat() {
+    const Sourced<std::uint16_t>& ms = spec_.heartbeat_producer;
+    if (ms.given) rounded(ms.pos, "`heartbeat_producer` of node `" + spec_.name + "`", *ms);
+  }
+
+  void heartbeat_by_sdo(const SdoSpec& sdo) {
+    const auto* value = std::get_if<std::int64_t>(&sdo.value);
+    const bool consumer = sdo.object.index == 0x1016 && sdo.object.sub != 0;
+    const bool producer = sdo.object == ObjectKey{0x1017, 0};
+    if (value == nullptr || (!consumer && !producer)) return;
+    rounded(sdo.value_pos, "`sdo` of node `" + spec_.name + "`: " + to_string(sdo.object),
+            static_cast<std::uint32_t>(*value & 0xFFFF));
+  }
+
+  void rounded(SourcePos pos, const std::string& what, std::uint32_t ms) {
+    const HeartbeatRule& rule = data_.heartbeat;
+    const std::uint32_t kept = rule.kept(ms);
+    if (kept == ms) return;
+    const std::string text = what + " is " + std::to_string(ms) + " ms; " + data_.name +
+                             " counts in " + std::to_string(rule.multiple_of_ms) + " ms and ";
+    if (kept == 0) {
+      report_.error(pos, "device-data", text + "takes it for 0, none" + data_.cite(rule.fact));
+    } else {
+      report_.warning(pos, "device-data",
+                      text + "keeps " + std::to_string(kept) + " ms" + data_.cite(rule.fact));
+    }
   }
 
   /// The network file decides, though it may not know.

@@ -13,12 +13,15 @@ std::string numbers_text(const PdoRule& rule) {
 }
 
 std::string rule_text(const PdoRule& rule) {
-  std::string text = numbers_text(rule) + ":";
-  if (!rule.types.empty()) text += " types " + list_of(rule.types);
-  if (rule.without_timer) text += ", no event timer";
-  if (rule.without_rtr) text += ", no remote requests";
-  if (rule.function == PdoFunction::parameter_channel) text += ", the parameter channel";
-  return text;
+  std::string text;
+  const auto add = [&](bool says, const std::string& what) {
+    if (says) text += (text.empty() ? ": " : ", ") + what;
+  };
+  add(!rule.types.empty(), "types " + list_of(rule.types));
+  add(rule.without_timer, "no event timer");
+  add(rule.without_rtr, "no remote requests");
+  add(rule.function == PdoFunction::parameter_channel, "the parameter channel");
+  return numbers_text(rule) + text;
 }
 
 }  // namespace
@@ -43,6 +46,10 @@ std::vector<std::string> device_notes(const NodePdos& node) {
   const DeviceData& data = *node.node.data;
   if (data.node_ids.fact.pos != SourcePos{}) {
     notes.push_back("node ids " + list_of({data.node_ids.ids}));
+  }
+  if (data.heartbeat.multiple_of_ms != 1) {
+    notes.push_back("heartbeat times in steps of " + std::to_string(data.heartbeat.multiple_of_ms) +
+                    " ms, rounded down");
   }
   for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
   if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {

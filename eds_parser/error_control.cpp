@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "eds_parser/boot_compiler.hpp"
+#include "eds_parser/device_data.hpp"
 #include "eds_parser/frame_time.hpp"
 #include "eds_parser/integer_of.hpp"
 
@@ -23,6 +24,20 @@ double ErrorControl::multiplier(const NodeSpec& node) const {
 }
 
 std::uint16_t ErrorControl::producer_ms(const NodeSource& node) const {
+  const std::uint16_t ms = wanted_producer_ms(node);
+  return node.data == nullptr ? ms : static_cast<std::uint16_t>(node.data->heartbeat.kept(ms));
+}
+
+std::uint16_t ErrorControl::master_consumer_ms(const NodeSource& node) const {
+  const double accepted = *spec_.master.heartbeat_producer * multiplier(*node.spec);
+  const auto ms = static_cast<std::uint32_t>(std::min(65535.0, std::ceil(accepted)));
+  if (node.data == nullptr) return static_cast<std::uint16_t>(ms);
+  const HeartbeatRule& rule = node.data->heartbeat;
+  const std::uint32_t rounded_up = rule.kept(ms + rule.multiple_of_ms - 1U);
+  return static_cast<std::uint16_t>(rounded_up > 65535 ? rule.kept(ms) : rounded_up);
+}
+
+std::uint16_t ErrorControl::wanted_producer_ms(const NodeSource& node) const {
   if (node.spec->heartbeat_producer.given) return *node.spec->heartbeat_producer;
   const std::int64_t own = integer_of(*node.dictionary, {0x1017, 0}).value_or(0);
   if (own > 0 && own <= 0xFFFF) return static_cast<std::uint16_t>(own);

@@ -11,8 +11,10 @@ class ErrorControl {
   ErrorControl(const NetworkSpec& spec, NetworkReport& report) : spec_{spec}, report_{report} {}
 
   /// 0x1017 of a node in ms: of the network file; else of the device file; else, where the device
-  /// can, 100 ms or as much as keeps all heartbeats below 2 % of the bus.
+  /// can, 100 ms or as much as keeps all heartbeats below 2 % of the bus. As the device keeps it.
   std::uint16_t producer_ms(const NodeSource& node) const;
+  /// For how long a device is to take the silence of the master, in ms of 0x1016; 0: no heartbeat.
+  std::uint16_t master_consumer_ms(const NodeSource& node) const;
   /// Of how many heartbeat periods the silence ends a node's life; at least 1.5.
   double multiplier(const NodeSpec& node) const;
   /// Zero: no heartbeat is expected.
@@ -21,6 +23,8 @@ class ErrorControl {
   GuardPlan guard(const NodeSource& node) const;
 
  private:
+  std::uint16_t wanted_producer_ms(const NodeSource& node) const;
+
   const NetworkSpec& spec_;
   NetworkReport& report_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <deque>
 #include <map>
 
@@ -272,11 +271,10 @@ class NetworkCompiler {
   void compile_boot_of(const NodePdos& source, NodePlan& node) {
     const MasterSpec& master = spec_.master;
     const std::uint16_t master_ms = *master.heartbeat_producer;
-    const double accepted = master_ms * error_control_.multiplier(*source.node.spec);
     const BootContext context{
         .master_id = out_.plan.master_id,
         .master_heartbeat_ms = master_ms,
-        .master_consumer_ms = static_cast<std::uint16_t>(std::min(65535.0, std::ceil(accepted))),
+        .master_consumer_ms = error_control_.master_consumer_ms(source.node),
         .producer_ms = error_control_.producer_ms(source.node),
         .heartbeat_timeout = node.heartbeat_timeout,
         .guard = node.guard,

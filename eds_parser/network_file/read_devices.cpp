@@ -22,6 +22,7 @@ class DeviceReader {
     data_.manual = text(reader, "manual");
     identity(reader);
     section(reader, "node_ids", [&](MapReader& map) { node_ids(map); });
+    section(reader, "heartbeat", [&](MapReader& map) { heartbeat(map); });
     list(reader, "tpdo", [&](const YamlNode& item) { pdo(item, true); });
     list(reader, "rpdo", [&](const YamlNode& item) { pdo(item, false); });
     section(reader, "inhibit_time", [&](MapReader& map) { inhibit(map); });
@@ -156,6 +157,14 @@ class DeviceReader {
     take_range(reader, "range", data_.node_ids.ids, {1, 127});
     need(reader, "range");
     data_.node_ids.fact = fact(reader, reader.key_pos("range"));
+  }
+
+  void heartbeat(MapReader& reader) {
+    need(reader, "multiple_of_ms");
+    Sourced<std::uint16_t> multiple;
+    reader.integer("multiple_of_ms", multiple, {1, 1000, " ms"});
+    data_.heartbeat = {.fact = fact(reader, reader.key_pos("multiple_of_ms")),
+                       .multiple_of_ms = multiple.value_or(1)};
   }
 
   void pdo(const YamlNode& item, bool is_tpdo) {

@@ -42,6 +42,11 @@ Compiled compile_device_file(const std::string& yaml, const std::string& eds,
   });
 }
 
+Compiled compile_with_shipped(const std::string& yaml, const std::string& eds) {
+  return compile_files(yaml, shipped_device_data(),
+                       [&](NodeId id) { return read_eds(eds, "tiny.eds", id); });
+}
+
 Compiled drv28(const std::string& rest) {
   return compile_device_file(
       "master: {sync_period: 10000}\npump: {node_id: 4, dcf: x, " + rest + "}\n",
@@ -57,13 +62,13 @@ std::optional<DeviceData> read_entry(const std::string& text, Findings& findings
 }
 
 Compiled compile_with_entry(const std::string& entry, const std::string& yaml,
-                            const std::string& eds) {
+                            const std::string& eds, const std::string& file) {
   Findings findings;
   const auto data = read_entry(entry, findings);
   for (const Finding& finding : findings) ADD_FAILURE() << to_string(finding);
   if (!data) return {};
   return compile_files(yaml, std::span{&*data, 1},
-                       [&](NodeId id) { return read_eds(eds, "tiny.eds", id); });
+                       [&](NodeId id) { return read_eds(eds, file, id); });
 }
 
 std::vector<std::string> errors_of_entry(const std::string& text) {

@@ -16,6 +16,9 @@ const std::vector<DeviceData>& shipped_device_data();
 Compiled compile_device_file(const std::string& yaml, const std::string& eds,
                              std::span<const DeviceData> entries = shipped_device_data());
 
+/// The same with the text of a device file.
+Compiled compile_with_shipped(const std::string& yaml, const std::string& eds = tiny_eds());
+
 /// One node each, with `rest` among its keys.
 Compiled drv28(const std::string& rest);
 Compiled lenze8400(const std::string& rest);
@@ -24,7 +27,8 @@ Compiled lenze8400(const std::string& rest);
 std::optional<DeviceData> read_entry(const std::string& text, Findings& findings);
 /// What an entry without errors does to a network of devices of `eds`.
 Compiled compile_with_entry(const std::string& entry, const std::string& yaml,
-                            const std::string& eds = tiny_eds());
+                            const std::string& eds = tiny_eds(),
+                            const std::string& file = "tiny.eds");
 /// `line rule` of each finding of an entry that can't be used.
 std::vector<std::string> errors_of_entry(const std::string& text);
 
