@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "eds_parser/device_data.hpp"
 #include "eds_parser/integer_of.hpp"
 #include "eds_parser/object_units.hpp"
 #include "eds_parser/pdo_compiler.hpp"
@@ -58,6 +59,7 @@ class ValueSteps {
              NetworkReport& report)
       : spec_{*node.spec},
         dictionary_{*node.dictionary},
+        data_{node.data},
         context_{context},
         steps_{steps},
         report_{report} {
@@ -69,6 +71,9 @@ class ValueSteps {
   void run() {
     if (context_.cia402 && context_.sync) interpolation_periods();
     if (dictionary_.is_dcf) device_values();
+    if (data_ != nullptr) {
+      for (const ValueEdit& edit : data_->values) of_device_data(edit);
+    }
     for (const SdoSpec& sdo : spec_.sdo) configured(sdo);
   }
 
@@ -176,6 +181,29 @@ class ValueSteps {
                         "the entry out and takt sets it)");
   }
 
+  /// A value of the network file or of a DCF comes before that of the device data.
+  void of_device_data(const ValueEdit& edit) {
+    const SubObject* sub = dictionary_.find(edit.object);
+    if (configured_value(edit.object) || (sub != nullptr && in_dcf(*sub))) return;
+    if (sub == nullptr || !steps_.writable(edit.object)) {
+      report_.warning(spec_.pos, "device-data",
+                      "node `" + spec_.name + "`: " + to_string(edit.object) + ", which " +
+                          data_->name + " needs written, " +
+                          (sub == nullptr ? "is not in " : "can only be read by ") +
+                          dictionary_.file + data_->cite(edit.fact));
+      return;
+    }
+    const SdoSpec sdo{
+        .object = edit.object, .value = edit.value, .pos = spec_.pos, .value_pos = spec_.pos};
+    auto value = bytes_of(sdo, *sub);
+    if (value)
+      write(edit.object, std::move(*value), "device data: " + label(dictionary_, edit.object));
+  }
+
+  bool in_dcf(const SubObject& sub) const {
+    return dictionary_.is_dcf && sub.parameter_value.has_value();
+  }
+
   void configured(const SdoSpec& sdo) {
     if (is_pdo_parameter(sdo.object.index)) {
       if (dictionary_.find(sdo.object) == nullptr) missing(sdo);
@@ -281,6 +309,7 @@ class ValueSteps {
 
   const NodeSpec& spec_;
   const ObjectDictionary& dictionary_;
+  const DeviceData* data_;  ///< nullptr: there is no entry
   const BootContext& context_;
   BootSteps& steps_;
   NetworkReport& report_;

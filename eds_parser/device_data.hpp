@@ -96,6 +96,19 @@ struct HeartbeatRule {
   constexpr std::uint32_t kept(std::uint32_t ms) const noexcept { return ms - ms % multiple_of_ms; }
 };
 
+/// Written at boot, before what the network file asks for.
+struct ValueEdit {
+  DeviceFact fact;
+  ObjectKey object;
+  std::int64_t value = 0;
+};
+
+/// An object that takes its time.
+struct TimeoutEdit {
+  DeviceFact fact;
+  SdoObjectTimeout timeout;
+};
+
 /// As SYNC producer.
 struct SyncRule {
   DeviceFact fact;
@@ -137,6 +150,8 @@ struct DeviceData {
   bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half
   NodeIdRule node_ids;
   HeartbeatRule heartbeat;
+  std::vector<ValueEdit> values;
+  std::vector<TimeoutEdit> timeouts;
   std::vector<PdoRule> pdos;
   InhibitRule inhibit;
   TimerRule timer;

@@ -5,6 +5,8 @@
 namespace takt {
 namespace {
 
+using namespace std::chrono_literals;
+
 std::string numbers_text(const PdoRule& rule) {
   const std::string kind = rule.is_tpdo ? "TPDO" : "RPDO";
   if (rule.numbers.low == rule.numbers.high) return kind + std::to_string(rule.numbers.low);
@@ -50,6 +52,14 @@ std::vector<std::string> device_notes(const NodePdos& node) {
   if (data.heartbeat.multiple_of_ms != 1) {
     notes.push_back("heartbeat times in steps of " + std::to_string(data.heartbeat.multiple_of_ms) +
                     " ms, rounded down");
+  }
+  for (const ValueEdit& edit : data.values) {
+    notes.push_back("needs " + to_string(edit.object) + " = " + std::to_string(edit.value));
+  }
+  for (const TimeoutEdit& edit : data.timeouts) {
+    const SdoObjectTimeout& slow = edit.timeout;
+    notes.push_back((slow.sub ? to_string(ObjectKey{slow.index, *slow.sub}) : hex(slow.index)) +
+                    " may take " + time_text(static_cast<std::uint64_t>(slow.timeout / 1us)));
   }
   for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
   if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {

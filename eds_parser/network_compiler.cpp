@@ -201,7 +201,7 @@ class NetworkCompiler {
     check_keep_alive(spec, node, report_);
     node.lss = compile_lss(spec, dictionary, plan().nodes, report_);
     add_device_data(source, node);
-    node.sdo = sdo_access(spec);
+    node.sdo = sdo_access(source.node);
     check_fallback(source.node, node.cia402, report_);
     check_node_values(source, report_);
     check_bit_rate(source.node);
@@ -227,10 +227,23 @@ class NetworkCompiler {
     return static_cast<std::uint8_t>(found - groups.begin() + 1);
   }
 
+  /// Of the network file, then of the device data where they are longer than that of all objects.
+  static std::vector<SdoObjectTimeout> stated_timeouts(const NodeSource& node) {
+    std::vector<SdoObjectTimeout> list = node.spec->sdo_timeouts;
+    if (node.data == nullptr) return list;
+    const Time own = milliseconds(node.spec->sdo_timeout_ms.value_or(default_sdo_timeout_ms));
+    for (const TimeoutEdit& edit : node.data->timeouts) {
+      list.push_back(edit.timeout);
+      list.back().timeout = std::max(own, edit.timeout.timeout);
+    }
+    return list;
+  }
+
   /// Parameters that are stored or restored take their time wherever nobody says how long.
-  static SdoAccess sdo_access(const NodeSpec& spec) {
+  static SdoAccess sdo_access(const NodeSource& node) {
+    const NodeSpec& spec = *node.spec;
     SdoAccess access{.block = spec.sdo_block.value_or(SdoBlockUse::automatic),
-                     .timeouts = spec.sdo_timeouts};
+                     .timeouts = stated_timeouts(node)};
     if (spec.sdo_channel.given) access.channel = *spec.sdo_channel;
     for (const std::uint16_t index : {std::uint16_t{0x1010}, std::uint16_t{0x1011}}) {
       const Time own = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms));
@@ -292,10 +305,10 @@ class NetworkCompiler {
         .boot_timeout =
             milliseconds(source.node.spec->boot_timeout_ms.value_or(default_boot_timeout_ms))};
     node.boot_plan = compile_boot(source, context, report_);
-    const SdoAccess of_file{.timeouts = source.node.spec->sdo_timeouts};
+    const SdoAccess stated{.timeouts = stated_timeouts(source.node)};
     for (BootStep& step : node.boot_plan.steps) {
       const bool waits_only = step.object == ObjectKey{} || step.action == BootAction::probe;
-      if (!waits_only) step.timeout = of_file.timeout_of(step.object, step.timeout);
+      if (!waits_only) step.timeout = stated.timeout_of(step.object, step.timeout);
     }
   }
 

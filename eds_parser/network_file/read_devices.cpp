@@ -4,6 +4,7 @@
 
 #include "eds_parser/network_file/map_reader.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/pdo_compiler.hpp"
 
 namespace takt {
 namespace {
@@ -23,6 +24,8 @@ class DeviceReader {
     identity(reader);
     section(reader, "node_ids", [&](MapReader& map) { node_ids(map); });
     section(reader, "heartbeat", [&](MapReader& map) { heartbeat(map); });
+    list(reader, "sdo", [&](const YamlNode& item) { value(item); });
+    list(reader, "sdo_timeouts", [&](const YamlNode& item) { timeout(item); });
     list(reader, "tpdo", [&](const YamlNode& item) { pdo(item, true); });
     list(reader, "rpdo", [&](const YamlNode& item) { pdo(item, false); });
     section(reader, "inhibit_time", [&](MapReader& map) { inhibit(map); });
@@ -165,6 +168,44 @@ class DeviceReader {
     reader.integer("multiple_of_ms", multiple, {1, 1000, " ms"});
     data_.heartbeat = {.fact = fact(reader, reader.key_pos("multiple_of_ms")),
                        .multiple_of_ms = multiple.value_or(1)};
+  }
+
+  void value(const YamlNode& item) {
+    MapReader reader{item, "`sdo`", report_};
+    need(reader, "index");
+    need(reader, "value");
+    Sourced<std::uint16_t> index;
+    Sourced<std::uint8_t> sub;
+    Sourced<std::int64_t> number;
+    reader.integer("index", index, {0x1000, 0xFFFF});
+    reader.integer("sub_index", sub);
+    reader.integer("value", number, {-0x8000'0000LL, 0xFFFF'FFFFLL});
+    ValueEdit edit{.fact = fact(reader, item.pos), .object = {*index, *sub}, .value = *number};
+    reader.finish();
+    if (is_pdo_parameter(*index)) {
+      report_.error(index.pos, "wrong-object",
+                    "`sdo` is not for PDO parameters (0x1400..0x1BFF); rules of `tpdo` and "
+                    "`rpdo` are");
+      return;
+    }
+    data_.values.push_back(std::move(edit));
+  }
+
+  void timeout(const YamlNode& item) {
+    MapReader reader{item, "`sdo_timeouts`", report_};
+    need(reader, "index");
+    need(reader, "timeout_ms");
+    Sourced<std::uint16_t> index;
+    Sourced<std::uint8_t> sub;
+    Sourced<std::uint32_t> ms;
+    reader.integer("index", index, {0x1000, 0xFFFF});
+    reader.integer("sub_index", sub);
+    reader.integer("timeout_ms", ms, {1, 600'000, " ms"});
+    TimeoutEdit edit{.fact = fact(reader, item.pos), .timeout = {.index = *index}};
+    reader.finish();
+    if (sub.given) edit.timeout.sub = *sub;
+    edit.timeout.timeout = std::chrono::milliseconds{*ms};
+    data_.timeouts.push_back(std::move(edit));
   }
 
   void pdo(const YamlNode& item, bool is_tpdo) {
