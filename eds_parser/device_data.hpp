@@ -66,6 +66,8 @@ struct PdoRule {
   std::vector<NumberRange> types;  ///< transmission types; empty: those of CiA 301
   bool without_timer = false;      ///< the event timer has to be 0
   bool without_rtr = false;        ///< no remote requests
+  bool no_more_entries = false;    ///< the mapping takes no more objects than by default
+  bool no_gaps = false;            ///< used only together with the one before
   PdoFunction function = PdoFunction::process_data;
 };
 

@@ -22,6 +22,8 @@ std::string rule_text(const PdoRule& rule) {
   add(!rule.types.empty(), "types " + list_of(rule.types));
   add(rule.without_timer, "no event timer");
   add(rule.without_rtr, "no remote requests");
+  add(rule.no_more_entries, "no more objects than its default mapping has");
+  add(rule.no_gaps, "only together with the one before");
   add(rule.function == PdoFunction::parameter_channel, "the parameter channel");
   return numbers_text(rule) + text;
 }

@@ -6,6 +6,7 @@
 #include "eds_parser/device_data.hpp"
 #include "eds_parser/device_node_rules.hpp"
 #include "eds_parser/device_notes.hpp"
+#include "eds_parser/integer_of.hpp"
 
 namespace takt {
 namespace {
@@ -33,6 +34,8 @@ class Judge {
       if (rule != nullptr && is_set(pdo, 2)) type(pdo, *rule);
       if (rule != nullptr && is_set(pdo, 5)) timer(pdo, *rule);
       if (rule != nullptr) remote_requests(pdo, *rule);
+      if (rule != nullptr && is_used(pdo)) entries(pdo, *rule);
+      if (rule != nullptr && is_used(pdo)) gap(pdo, *rule);
       if (pdo.is_tpdo && is_set(pdo, 3)) inhibit(pdo);
     }
     sync_producer();
@@ -43,10 +46,12 @@ class Judge {
     return pdo.label() + " of node `" + spec_.name + "`";
   }
   std::string source(const DeviceFact& fact) const { return data_.cite(fact); }
+  static bool is_used(const EffectivePdo& pdo) {
+    return pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked;
+  }
   /// The PDO is used, or its parameter written although it is not.
   bool is_set(const EffectivePdo& pdo, std::uint8_t sub) const {
-    const bool used = pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked;
-    return used || written({pdo.communication_index(), sub}) != nullptr;
+    return is_used(pdo) || written({pdo.communication_index(), sub}) != nullptr;
   }
   const SdoSpec* written(ObjectKey key) const {
     const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
@@ -88,6 +93,30 @@ class Judge {
     report_.error(pos, "device-data",
                   label(pdo) + " can't be polled: " + data_.name + " answers no remote request" +
                       source(rule.fact));
+  }
+
+  void entries(const EffectivePdo& pdo, const PdoRule& rule) {
+    const SubObject* count = node_.node.dictionary->find(ObjectKey{pdo.mapping_index(), 0});
+    if (!rule.no_more_entries || count == nullptr || pdo.mpdo != Mpdo::none) return;
+    const auto most = integer_of(count->default_value);
+    if (!most || std::ssize(pdo.mapping) <= *most) return;
+    const PdoSpec* spec = spec_of(spec_, pdo);
+    const bool given = spec != nullptr && spec->mapping.given;
+    report_.error(given ? spec->mapping.pos : sdo_pos({pdo.mapping_index(), 0}, pdo.pos),
+                  "device-data",
+                  label(pdo) + " can't map " + std::to_string(pdo.mapping.size()) + " objects on " +
+                      data_.name + ", only the " + std::to_string(*most) +
+                      " of its default mapping" + source(rule.fact));
+  }
+
+  void gap(const EffectivePdo& pdo, const PdoRule& rule) {
+    const auto is_before = [&](const EffectivePdo& other) {
+      return other.is_tpdo == pdo.is_tpdo && other.number + 1 == pdo.number && is_used(other);
+    };
+    if (!rule.no_gaps || pdo.number == 1 || std::ranges::any_of(node_.pdos, is_before)) return;
+    report_.error(pdo.pos, "device-data",
+                  label(pdo) + " can't be used without " + (pdo.is_tpdo ? "TPDO" : "RPDO") +
+                      std::to_string(pdo.number - 1) + " on " + data_.name + source(rule.fact));
   }
 
   /// The network file counts in 100 us, as CiA 301 does; the device in its own unit.

@@ -219,6 +219,12 @@ class DeviceReader {
     Sourced<bool> without_rtr;
     reader.boolean("without_rtr", without_rtr);
     rule.without_rtr = *without_rtr;
+    Sourced<bool> no_more_entries;
+    reader.boolean("no_more_entries", no_more_entries);
+    rule.no_more_entries = *no_more_entries;
+    Sourced<bool> no_gaps;
+    reader.boolean("no_gaps", no_gaps);
+    rule.no_gaps = *no_gaps;
     if (const YamlNode* function = reader.take("function")) {
       constexpr std::array<std::string_view, 2> names{"process_data", "parameter_channel"};
       if (const auto choice = read_choice(*function, "function", names, report_)) {

@@ -23,10 +23,10 @@ TEST(DeviceData, HasAnEntryForEachFamily) {
   std::vector<std::string> ids;
   for (const DeviceData& entry : shipped_device_data()) ids.push_back(entry.id);
 
-  EXPECT_EQ(ids, (std::vector<std::string>{"astraada_drv28", "beckhoff_box", "beckhoff_io",
-                                           "delta_asda", "elmo", "kostal_inveor", "lenze8400",
-                                           "lenze9400", "lexium32a", "nxp_lpc_boot", "plain301",
-                                           "schunk", "technosoft", "toshiba_vfs15"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{
+                     "astraada_drv28", "beckhoff_box", "beckhoff_io", "delta_asda", "elmo",
+                     "kostal_inveor", "lenze8400", "lenze9400", "lenze_plc_designer", "lexium32a",
+                     "nxp_lpc_boot", "plain301", "schunk", "technosoft", "toshiba_vfs15"}));
 }
 
 TEST(DeviceData, ReadsAnEntry) {
