@@ -1,6 +1,7 @@
 #include "eds_parser/device_node_rules.hpp"
 
 #include "eds_parser/device_data.hpp"
+#include "eds_parser/device_notes.hpp"
 
 namespace takt {
 namespace {
@@ -23,8 +24,8 @@ class NodeJudge {
     if (!spec_.id.given || ids.contains(*spec_.id)) return;
     report_.error(spec_.id.pos, "device-data",
                   "node `" + spec_.name + "` can't have node id " + std::to_string(*spec_.id) +
-                      " as " + data_.name + ", only " + std::to_string(ids.low) + ".." +
-                      std::to_string(ids.high) + data_.cite(data_.node_ids.fact));
+                      " as " + data_.name + ", only " + list_of({ids}) +
+                      data_.cite(data_.node_ids.fact));
   }
 
   void heartbeat() {

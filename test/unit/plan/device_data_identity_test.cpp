@@ -72,6 +72,19 @@ TEST(DeviceDataIdentity, LimitsTheNodeIdToThatOfItsSwitches) {
   EXPECT_THAT(said("100", "0x22301"), HasSubstr("only 1..99: its two rotary switches"));
 }
 
+TEST(DeviceDataIdentity, OfABootRomHasOneNodeId) {
+  const auto said = [](const std::string& id) {
+    return compile_device_file(
+               "rom: {dcf: x, boot: false, device: nxp_lpc_boot, node_id: " + id + "}\n",
+               "takt_drive402.eds")
+        .said("device-data");
+  };
+
+  EXPECT_EQ(said("125"), "");
+  EXPECT_THAT(said("5"),
+              HasSubstr("can't have node id 5 as NXP LPC boot ROM, only 125: the boot ROM"));
+}
+
 TEST(DeviceDataIdentity, OfNodeIdsNeedsItsRange) {
   const std::string entry = "name: x\nmatch: none\n";
   EXPECT_THAT(errors_of_entry(entry + "node_ids: {reason: switches}\n"),

@@ -121,11 +121,13 @@ TEST(DeviceDataTimeouts, GiveWayToTheNetworkFileButNeverShortenIt) {
 }
 
 TEST(DeviceDataTimeouts, OfAnNxpBootRomAreThoseOfErasing) {
-  const auto net = compile_with_shipped(arm(", boot: false, device: nxp_lpc_boot"));
+  const auto net =
+      compile_with_shipped("rom: {node_id: 125, dcf: x, boot: false, device: nxp_lpc_boot}\n");
 
   EXPECT_EQ(net.plan.nodes.at(0).sdo.timeout_of({0x5030, 0}, 500ms), 3s);
   EXPECT_EQ(net.plan.nodes.at(0).sdo.timeout_of({0x5020, 0}, 500ms), 500ms);
-  EXPECT_THAT(net.plan.nodes.at(0).device_notes, ElementsAre("0x5030 may take 3000 ms"));
+  EXPECT_THAT(net.plan.nodes.at(0).device_notes,
+              ElementsAre("node ids 125", "0x5030 may take 3000 ms"));
 }
 
 TEST(DeviceDataTimeouts, AreWrittenDownCompletely) {
