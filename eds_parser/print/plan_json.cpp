@@ -4,6 +4,7 @@
 #include "eds_parser/cycle_compiler.hpp"
 #include "eds_parser/print/plan.hpp"
 #include "eds_parser/print/plan_names.hpp"
+#include "eds_parser/print/plan_waits.hpp"
 
 namespace takt {
 namespace {
@@ -165,6 +166,14 @@ Json signal_json(const BusPlan& plan, std::size_t index) {
   return out;
 }
 
+Json waits_json(const BusPlan& plan) {
+  Json list = Json::array();
+  for (const PlanWait& wait : plan_waits(plan)) {
+    list.push_back({{"wait", wait.wait}, {"limit_us", us(wait.limit)}, {"what", wait.what}});
+  }
+  return list;
+}
+
 }  // namespace
 
 void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what) {
@@ -188,6 +197,7 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
                       {"master_heartbeat_us", us(plan.master_heartbeat)},
                       {"start_nodes", plan.start_nodes},
                       {"cycle", cycle_json(plan)},
+                      {"waits", waits_json(plan)},
                       {"nodes", std::move(nodes)},
                       {"image",
                        {{"inputs", plan.layout.inputs},

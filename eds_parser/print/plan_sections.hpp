@@ -30,6 +30,7 @@ class PlanLines {
 // The sections in their order. All but the first begin with an empty line.
 void add_bus(PlanLines& lines, const BusPlan& plan, const RealtimeOptions& realtime);
 void add_cycle(PlanLines& lines, const BusPlan& plan);
+void add_waits(PlanLines& lines, const BusPlan& plan);
 void add_node(PlanLines& lines, const BusPlan& plan, std::size_t index);
 void add_image(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
 void add_lcm(PlanLines& lines, const BusPlan& plan, const LcmOptions& options);

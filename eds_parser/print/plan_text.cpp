@@ -31,6 +31,7 @@ void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
   if (!what.node) {
     add_bus(lines, plan, what.realtime);
     add_cycle(lines, plan);
+    add_waits(lines, plan);
   }
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (wanted(plan.nodes[i].id)) add_node(lines, plan, i);

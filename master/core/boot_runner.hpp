@@ -7,6 +7,7 @@
 
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
+#include "eds_parser/table/waits.hpp"
 #include "master/core/event.hpp"
 #include "master/core/request.hpp"
 #include "master/core/sdo_client.hpp"
@@ -77,10 +78,6 @@ class BootRunner {
     confirm,
   };
   static constexpr std::uint8_t max_restarts = 5;
-  static constexpr std::uint8_t upload_attempts = 3;
-  static constexpr Time probe_attempt = std::chrono::milliseconds{500};
-  static constexpr Time probe_pause = std::chrono::milliseconds{50};
-  static constexpr Time poll_pause = std::chrono::milliseconds{100};  // CiA 302-3, flash status
   static constexpr Time default_timeout = std::chrono::seconds{1};
 
   const BootStep& current() const noexcept { return plan_->steps[step_]; }

@@ -25,7 +25,7 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
   const BootStep& step = current();
   Time timeout = step.timeout > Time{} ? step.timeout : default_timeout;
   if (polls()) {
-    timeout = std::max(Time{1}, std::min(probe_attempt, deadline_ - now));
+    timeout = std::max(Time{1}, std::min(waits::probe_try, deadline_ - now));
   }
   if (phase_ == Phase::download_next) {
     client.download(step.object, to_write_, timeout);
@@ -57,7 +57,7 @@ void BootRunner::on_polled(const SdoResult& result, Time now, const SdoClient& c
   if (reached || (refused && step.action == BootAction::probe)) return next();
   if (refused && may_be_missing(step, result.abort_code)) return next();
   if (now >= deadline_ || (refused && !step.may_restart)) return fail(result, now, client);
-  const Time pause = step.action == BootAction::probe ? probe_pause : poll_pause;
+  const Time pause = step.action == BootAction::probe ? waits::probe_pause : waits::poll_pause;
   phase_ = Phase::wait;
   wait_until_ = result.fault == SdoFault::timeout ? now : std::min(now + pause, deadline_);
 }
@@ -67,7 +67,7 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
   const bool silent = result.fault == SdoFault::timeout ||
                       result.fault == SdoFault::aborted_by_master ||
                       result.fault == SdoFault::cancelled;
-  if (silent && attempts_ < upload_attempts) {
+  if (silent && attempts_ < waits::upload_attempts) {
     phase_ = Phase::upload_next;
     return;
   }

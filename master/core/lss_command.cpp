@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eds_parser/table/waits.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
@@ -118,14 +119,14 @@ std::string nobody(LssOp op) {
 Time default_timeout(LssOp op) noexcept {
   switch (op) {
     case LssOp::store:
-      return std::chrono::seconds{5};  // flash
+      return waits::lss_store;
     case LssOp::identify:
     case LssOp::identify_unconfigured:
     case LssOp::fast_scan:
     case LssOp::slow_scan:
-      return std::chrono::milliseconds{100};  // waited for in full
+      return waits::lss_all;
     default:
-      return std::chrono::seconds{1};
+      return waits::lss_answer;
   }
 }
 

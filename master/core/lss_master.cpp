@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "eds_parser/table/waits.hpp"
+
 namespace takt {
 
 void LssMaster::begin(const LssCommand& command, Time timeout, Time now) noexcept {
@@ -140,7 +142,7 @@ void LssMaster::sent_all(Time now) noexcept {
 Time LssMaster::wait() const noexcept {
   const bool doubtful = command_.op == LssOp::fast_scan ? fast_.doubtful() : patient_;
   if (!scans() || slowest_ == Time{} || doubtful) return timeout_;
-  return std::min(timeout_, std::max(shortest_wait, 3 * slowest_));
+  return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
 }
 
 /// The time for answers is over, or the one that was awaited has come.

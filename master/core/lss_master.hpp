@@ -15,7 +15,6 @@ namespace takt {
 class LssMaster {
  public:
   static constexpr Time gap = std::chrono::milliseconds{1};  ///< between two frames of the master
-  static constexpr Time shortest_wait = std::chrono::milliseconds{10};
 
   /// Only when idle. `timeout` of each answer; 0: the default of the service.
   void begin(const LssCommand& command, Time timeout, Time now) noexcept;

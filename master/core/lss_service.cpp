@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "eds_parser/table/waits.hpp"
+
 namespace takt {
 namespace {
 
@@ -47,7 +49,7 @@ LssService::LssService(const BusPlan& plan, RequestTable& requests, EventQueue& 
 
 void LssService::start(Time now) noexcept {
   stopping_ = false;
-  for (Candidate& candidate : candidates_) candidate.next_look = now + look_again;
+  for (Candidate& candidate : candidates_) candidate.next_look = now + waits::lss_look_again;
 }
 
 void LssService::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
@@ -97,7 +99,7 @@ void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexc
     Candidate& candidate = candidates_[(turn_ + i) % candidates_.size()];
     if (now < candidate.next_look) continue;
     const NodeStatus& status = nodes[candidate.node];
-    candidate.next_look = now + look_again;
+    candidate.next_look = now + waits::lss_look_again;
     if (status.boot == BootState::ready || status.nmt != NmtState::unknown) continue;
     std::array<LssCommand, 4> commands;
     const std::size_t count = assignment(plan_.nodes[candidate.node], commands);
@@ -111,7 +113,7 @@ void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexc
 void LssService::conclude(Candidate& candidate, Time now) noexcept {
   const NodePlan& node = plan_.nodes[candidate.node];
   const auto results = runner_.results();
-  candidate.next_look = now + look_again;
+  candidate.next_look = now + waits::lss_look_again;
   if (results.empty() || results.front().outcome == LssOutcome::nobody) return;
   const LssResult& last = results.back();
   if (runner_.done()) {
@@ -129,7 +131,7 @@ void LssService::conclude(Candidate& candidate, Time now) noexcept {
   }
   const bool has_id = results.size() > 1 && results[1].outcome == LssOutcome::done;
   if (!has_id) return;
-  candidate.next_look = now + let_boot;
+  candidate.next_look = now + waits::lss_let_boot;
   events_.push({.when = now,
                 .kind = EventKind::lss_assigned,
                 .node = node.id.value(),

@@ -41,8 +41,6 @@ class LssService {
   }
 
  private:
-  static constexpr Time look_again = std::chrono::seconds{1};
-  static constexpr Time let_boot = std::chrono::seconds{5};
   static constexpr std::uint8_t nobody = 0xFF;
 
   struct Candidate {

@@ -24,7 +24,7 @@ std::optional<SignalIndex> find(const ImageLayout& layout, std::uint8_t node_ind
 }  // namespace
 
 OrderedStop::OrderedStop(const BusPlan& plan)
-    : timeout_{plan.stop_timeout}, period_{plan.cycle.period} {
+    : limits_{waits::stop_limits(plan.stop_timeout, plan.cycle.period)} {
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     if (!plan.nodes[node].cia402) continue;
     const auto node_index = static_cast<std::uint8_t>(node);
@@ -60,13 +60,13 @@ Time OrderedStop::limit() const noexcept {
     case StopStage::running:
       return never;
     case StopStage::fallback:
-      return begun_ + timeout_ / 10;
+      return begun_ + limits_.fallback;
     case StopStage::quick_stop:
-      return begun_ + timeout_ * 6 / 10;
+      return begun_ + limits_.quick_stop;
     case StopStage::disable:
-      return begun_ + timeout_ * 8 / 10;
+      return begun_ + limits_.disable;
     case StopStage::nmt:
-      return begun_ + timeout_ - std::min(timeout_ / 20, 2 * period_);
+      return begun_ + limits_.nmt;
     case StopStage::done:
       return never;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/waits.hpp"
 
 namespace takt {
 
@@ -63,8 +64,7 @@ class OrderedStop {
   Time limit() const noexcept;
   void advance() noexcept;
 
-  Time timeout_;
-  Time period_;
+  waits::StopLimits limits_;
   std::vector<StopAxis> axes_;
   StopStage stage_ = StopStage::running;
   Time begun_{};

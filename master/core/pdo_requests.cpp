@@ -59,11 +59,11 @@ bool PdoRequests::submit(const Request& request, Time now) noexcept {
   if (slot == slots_.end()) return false;
   *slot = Slot{.state = Slot::State::to_send, .id = request.id, .order = ++order_};
   ++used_;
-  slot->timeout = request.timeout > Time{} ? request.timeout : default_timeout;
+  slot->timeout = request.timeout > Time{} ? request.timeout : waits::pdo_answer;
   // Those before it may wait for the same PDO, one after another, an exchange with a rest behind
   // it.
   const Time::rep turns = request.kind == RequestKind::pdo_exchange ? 2 : 1;
-  slot->deadline = now + turns * static_cast<Time::rep>(capacity) * slot->timeout;
+  slot->deadline = now + turns * waits::pdo_turn(slot->timeout);
   const SdoFault fault = prepare(request, *slot);
   if (fault != SdoFault::none) answer(*slot, fault);
   return true;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/waits.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/request.hpp"
 
@@ -16,8 +17,7 @@ namespace takt {
 /// each wait has a deadline. Bus thread only; nothing allocates after construction.
 class PdoRequests {
  public:
-  static constexpr std::size_t capacity = 16;
-  static constexpr Time default_timeout = std::chrono::milliseconds{500};
+  static constexpr std::size_t capacity = waits::pdo_requests;
 
   explicit PdoRequests(const BusPlan& plan);
 

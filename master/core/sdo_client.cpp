@@ -3,6 +3,7 @@
 #include <cassert>
 #include <utility>
 
+#include "eds_parser/table/waits.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {
@@ -11,8 +12,6 @@ namespace {
 
 /// An object of no more bytes may come without block transfer: four segments are as quick.
 constexpr std::uint8_t switch_threshold = 28;
-/// Segments that were handed over when the server gave up have left the queue after this.
-constexpr Time settle_time = std::chrono::milliseconds{20};
 
 /// Codes by which servers say that they can't do block transfer, rather than that they can't do
 /// this transfer.
@@ -135,10 +134,9 @@ void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
   deadline_ = now + patience();
 }
 
-/// In a block upload the client speaks up before a server loses its own patience.
 Time SdoClient::patience() const noexcept {
   const bool may_ask_again = state_ == State::block_upload && block_upload_.in_sub_block();
-  return may_ask_again ? timeout_ * 7 / 10 : timeout_;
+  return may_ask_again ? waits::block_silence(timeout_) : timeout_;
 }
 
 void SdoClient::on_silence() noexcept {
@@ -209,7 +207,7 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   const bool burst = state_ == State::block_download && block_download_.accepted();
   if (!burst) return finish(settled_);
   state_ = State::settling;
-  deadline_ = now + settle_time;
+  deadline_ = now + waits::sdo_settle;
 }
 
 /// The server refuses block transfer before any data have moved: the same by segments.

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "eds_parser/table/waits.hpp"
 #include "master/wire/sdo_abort.hpp"
 #include "master/wire/sdo_crc.hpp"
 
 namespace takt {
-namespace {
-
-constexpr Time patience = std::chrono::seconds{1};
-
-}  // namespace
-
 std::optional<OwnDictionary::Order> SdoServer::take_order() noexcept {
   return std::exchange(order_, std::nullopt);
 }
@@ -33,13 +28,13 @@ void SdoServer::on_time(Time now, Outbox& out) noexcept {
   if (!to_send_ && sending_block() && out.room() != 0) to_send_ = next_block_segment();
   if (!to_send_ || !out.push(*to_send_, Answer::none)) return;
   to_send_.reset();
-  deadline_ = state_ == State::idle ? never : now + patience;
+  deadline_ = state_ == State::idle ? never : now + waits::own_server;
 }
 
 void SdoServer::on_frame(const Frame& frame, Time now, Orders orders) noexcept {
   if (frame.length < 8 || frame.rtr) return;
   orders_ = orders;
-  if (state_ != State::idle) deadline_ = now + patience;
+  if (state_ != State::idle) deadline_ = now + waits::own_server;
   if (frame.data[0] == 0x80 ||
       (state_ != State::block_download && sdo_request(frame) == SdoRequest::abort)) {
     state_ = State::idle;  // never answered

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "eds_parser/table/waits.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 /// Ids of these requests have this bit, those of Requests do not.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
-constexpr Time most_silence = std::chrono::seconds{10};
 
 }  // namespace
 
@@ -183,7 +183,7 @@ void Transfers::on_time(Time now) {
   for (Job& job : jobs_) {
     if (job.stage == Stage::free) continue;
     if (job.stage == Stage::running && !job.submitted) submit(job);
-    if (now - job.heard > most_silence) {
+    if (now - job.heard > waits::transfer_silence) {
       cancel(job, "whoever asked for it is gone");
       if (!job.submitted) forget(job);
       continue;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "eds_parser/table/waits.hpp"
+
 namespace takt {
 namespace {
 
@@ -10,7 +12,6 @@ constexpr int smoothing = 16;             // intervals
 constexpr std::uint8_t odd_limit = 8;     // intervals in a row until the period is told
 constexpr std::uint8_t calm_after = 100;  // SYNCs until an early one is told again
 constexpr Time longest_patience = std::chrono::milliseconds{20};
-constexpr Time first_limit = std::chrono::seconds{1};
 
 }  // namespace
 
@@ -110,7 +111,7 @@ void SyncFollower::on_silence(Time now, std::span<const NodeStatus> nodes) noexc
     const auto boots = [](const NodeStatus& node) { return node.boot == BootState::booting; };
     if (std::ranges::any_of(nodes, boots) || !idle_since_) idle_since_ = now;
   }
-  const Time limit = last_ ? timeout_ : std::max<Time>(timeout_, first_limit);
+  const Time limit = last_ ? timeout_ : std::max<Time>(timeout_, waits::first_sync);
   if (now - (last_ ? *last_ : *idle_since_) < limit) return;
   state_ = State::lost;
   tell(EventKind::sync_lost, now, last_ ? (now - *last_).count() : 0,

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "eds_parser/table/time.hpp"
+#include "eds_parser/table/waits.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {
@@ -25,7 +26,7 @@ class SyncGate {
     if (news.interface_down) last_sent_ = Time{0};
     if (news.interface_down || (!news.bus_off && !doubtful(news))) {
       holding_ = false;
-      pause_ = first_pause;
+      pause_ = waits::held_sync_first;
       return true;
     }
     if (!holding_) {
@@ -34,7 +35,7 @@ class SyncGate {
       return false;
     }
     if (news.bus_off || now < try_at_) return false;
-    pause_ = std::min(2 * pause_, longest_pause);
+    pause_ = std::min(2 * pause_, waits::held_sync_longest);
     try_at_ = now + pause_;
     return true;
   }
@@ -48,13 +49,10 @@ class SyncGate {
   }
 
  private:
-  static constexpr Time first_pause = std::chrono::milliseconds{100};
-  static constexpr Time longest_pause = std::chrono::seconds{30};
-
   Time tolerance_;  // of the kernel's stamps against our own clock reading
   Time last_sent_{};
   Time try_at_{};
-  Time pause_ = first_pause;
+  Time pause_ = waits::held_sync_first;
   bool holding_ = false;
 };
 

@@ -1,0 +1,60 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+
+/// How long the master waits where neither the network file nor a request says it, in one place:
+/// the plan prints them, the master keeps to them.
+namespace takt::waits {
+
+// SDO
+inline constexpr std::uint8_t upload_attempts = 3;  ///< of a boot; a download goes out once
+inline constexpr Time probe_try = std::chrono::milliseconds{500};
+inline constexpr Time probe_pause = std::chrono::milliseconds{50};
+inline constexpr Time poll_pause = std::chrono::milliseconds{100};  ///< CiA 302-3, flash status
+inline constexpr Time sdo_settle = std::chrono::milliseconds{20};
+inline constexpr Time own_server = std::chrono::seconds{1};
+/// In a block upload the client speaks up before a server loses its own patience.
+constexpr Time block_silence(Time sdo_timeout) noexcept { return sdo_timeout * 7 / 10; }
+
+// PDOs on request
+inline constexpr Time pdo_answer = std::chrono::milliseconds{500};
+inline constexpr std::size_t pdo_requests = 16;  ///< at once
+/// Those before it may wait for the same PDO, one after another.
+constexpr Time pdo_turn(Time timeout) noexcept {
+  return static_cast<Time::rep>(pdo_requests) * timeout;
+}
+
+// LSS
+inline constexpr Time lss_answer = std::chrono::seconds{1};
+inline constexpr Time lss_store = std::chrono::seconds{5};           ///< flash
+inline constexpr Time lss_all = std::chrono::milliseconds{100};      ///< waited for in full
+inline constexpr Time lss_shortest = std::chrono::milliseconds{10};  ///< within a scan
+inline constexpr Time lss_look_again = std::chrono::seconds{1};
+inline constexpr Time lss_let_boot = std::chrono::seconds{5};
+
+// SYNC
+inline constexpr Time first_sync = std::chrono::seconds{1};  ///< of another device
+inline constexpr Time held_sync_first = std::chrono::milliseconds{100};
+inline constexpr Time held_sync_longest = std::chrono::seconds{30};
+
+// applications
+inline constexpr Time transfer_silence = std::chrono::seconds{10};
+
+/// When each stage of the ordered stop ends at the latest, from its beginning on.
+struct StopLimits {
+  Time fallback{};
+  Time quick_stop{};
+  Time disable{};
+  Time nmt{};
+};
+constexpr StopLimits stop_limits(Time timeout, Time period) noexcept {
+  return {.fallback = timeout / 10,
+          .quick_stop = timeout * 6 / 10,
+          .disable = timeout * 8 / 10,
+          .nmt = timeout - std::min(timeout / 20, 2 * period)};
+}
+
+}  // namespace takt::waits
