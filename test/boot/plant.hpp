@@ -83,6 +83,7 @@ class Plant {
     request.command = command;
     exchange_->requests.push(request);
   }
+  void ask(const Request& request) { exchange_->requests.push(request); }
   /// A set-point of an application, from now on.
   void command(std::uint8_t node, std::uint16_t index, std::int64_t value) {
     const ImageLayout& layout = network_.plan.layout;
