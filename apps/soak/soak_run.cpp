@@ -100,6 +100,7 @@ class Run {
  private:
   void cycle() {
     loop_.cycle();
+    if (options_.meddle) options_.meddle(*exchange_, world_);
     const Time now = world_.now();
     exchange_->status.read(status_);
     verdict_.at(status_.bus.cycle, now);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -8,11 +9,18 @@
 
 namespace takt {
 
+struct Exchange;
+namespace sim {
+class World;
+}
+
 struct SoakOptions {
   std::uint64_t seed = 1;
   Time duration = std::chrono::seconds{20};  ///< of the walk; then all must come back
   std::string candump{};                     ///< file for all frames; empty: none
   bool verbose = false;                      ///< faults and events to stderr
+  /// Called after each cycle, before the judges look: what it breaks, they have to tell.
+  std::function<void(Exchange&, sim::World&)> meddle{};
 };
 
 /// What one run did, and what it did wrong.

@@ -1,9 +1,10 @@
+#include <array>
 #include <gtest/gtest.h>
 
 #include "apps/soak/image_judge.hpp"
 #include "apps/soak/node_judge.hpp"
 #include "apps/soak/output_judge.hpp"
-#include "apps/soak/soak_jobs.hpp"
+#include "apps/soak/restless_user.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {
@@ -100,28 +101,166 @@ TEST_F(Judges, BlameTwoSyncsAtOnce) {
   EXPECT_EQ(verdict.violation()->invariant, "no burst of SYNCs");
 }
 
-TEST(Soak, GivesTheSameRunForTheSameSeed) {
-  const LoadedNetwork network = load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml");
+TEST_F(Judges, BlameAnImageThatWasPublishedBeforeTheOneBefore) {
+  images.judge({.cycle = 1, .publish_time = 9ms, .values = values, .stale_bits = {}});
+  images.judge({.cycle = 2, .publish_time = 8ms, .values = values, .stale_bits = {}});
 
-  const SoakOutcome first = soak(network, {.seed = 5, .duration = 3s});
-  const SoakOutcome again = soak(network, {.seed = 5, .duration = 3s});
-  const SoakOutcome other = soak(network, {.seed = 6, .duration = 3s});
-
-  EXPECT_FALSE(first.violation);
-  EXPECT_EQ(first.frames, again.frames);
-  EXPECT_EQ(first.events, again.events);
-  EXPECT_EQ(first.simulated, again.simulated);
-  EXPECT_NE(first.frames, other.frames);
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "cycle numbers rise");
 }
 
-/// After a stall without SYNC a cycle was stamped with a beat that was still to come.
-TEST(Soak, HoldsWhereAnotherDeviceMakesTheSync) {
-  const LoadedNetwork network = load_network(TAKT_SOURCE_DIR "/share/demo/lenze8400_sync.yaml");
+TEST_F(Judges, BlameAnImageThatWasPublishedBeforeItsSync) {
+  images.judge(
+      {.cycle = 1, .sync_time = 9ms, .publish_time = 8ms, .values = values, .stale_bits = {}});
 
-  for (std::uint64_t seed = 7030; seed <= 7040; ++seed) {
-    const SoakOutcome outcome = soak(network, {.seed = seed, .duration = 20s});
-    EXPECT_FALSE(outcome.violation) << seed;
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "times of an image");
+}
+
+TEST_F(Judges, BlameAValueWithoutItsSign) {
+  hear({0x37, 0x02, 0xFF, 0xFF, 0xFF, 0xFF});
+
+  show(1, 0x0237, 0xFFFF'FFFF);
+
+  EXPECT_FALSE(verdict.good());
+}
+
+TEST_F(Judges, BlameASyncCounterWithAGap) {
+  plan.cycle.sync_overflow = 3;
+  Time now = 100ms;
+  for (const std::uint8_t counter : std::array<std::uint8_t, 4>{1, 2, 3, 1}) {
+    const Frame sync = make_frame(CobId::base(0x080), {counter});
+    outputs.sent({&sync, 1}, now += 2ms);
   }
+  EXPECT_TRUE(verdict.good());
+  const Frame third = make_frame(CobId::base(0x080), {3});
+  outputs.sent({&third, 1}, now + 2ms);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "the SYNC counter has no gap");
+}
+
+TEST_F(Judges, KeepTheFirstViolationAndItsCycle) {
+  verdict.at(7, 14ms);
+  show(7, 0, 0);
+  show(7, 0, 0);
+  verdict.at(8, 16ms);
+  show(9, 0x0237, 5);
+
+  EXPECT_EQ(verdict.violation()->cycle, 7U);
+  EXPECT_EQ(verdict.violation()->when, 14ms);
+  EXPECT_EQ(verdict.violation()->invariant, "cycle numbers rise");
+}
+
+/// Two nodes that are ready.
+class NodeJudges : public testing::Test {
+ protected:
+  NodeJudges() {
+    status.nodes.assign(2, {});
+    for (NodeStatus& node : status.nodes) {
+      node.boot = BootState::ready;
+      node.nmt = NmtState::operational;
+    }
+  }
+
+  BusPlan plan = test::axes({});
+  Verdict verdict;
+  NodeJudge nodes{plan, verdict};
+  StatusSnapshot status;
+};
+
+TEST_F(NodeJudges, BlameAnNmtStateThatNobodyKnows) {
+  nodes.judge(status, 1s);
+  EXPECT_TRUE(verdict.good());
+  status.nodes[1].nmt = static_cast<NmtState>(0x42);
+  nodes.judge(status, 1s);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "every node is in a named state");
+  EXPECT_EQ(verdict.violation()->what, "node 2 is ready, NMT state 66, boot step 1");
+}
+
+TEST_F(NodeJudges, BlameABootStateThatNobodyKnows) {
+  status.nodes[0].boot = static_cast<BootState>(5);
+  nodes.judge(status, 1s);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "every node is in a named state");
+}
+
+TEST_F(NodeJudges, BlameABootThatStaysAtOneStep) {
+  status.nodes[0].boot = BootState::booting;
+  nodes.judge(status, 1s);
+  status.nodes[0].boot_step = 4;
+  nodes.judge(status, 60s);
+  nodes.judge(status, 120s);
+  EXPECT_TRUE(verdict.good()) << "it went on at 60 s";
+  nodes.judge(status, 121s);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "every wait ends");
+}
+
+TEST_F(NodeJudges, BlameANodeThatIsNotReadyInTheEnd) {
+  EXPECT_TRUE(nodes.all_ready(status));
+  nodes.judge_end(status);
+  EXPECT_TRUE(verdict.good());
+  status.nodes[1].nmt = NmtState::preoperational;
+  EXPECT_FALSE(nodes.all_ready(status));
+  nodes.judge_end(status);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "every node comes back");
+}
+
+/// A user whose one request has gone out at 1 s.
+class Asked : public testing::Test {
+ protected:
+  Asked() {
+    while (user.asked() == 0) user.ask(1s);
+  }
+  void answer(std::uint64_t id) { exchange->replies.push({.id = id}); }
+
+  BusPlan plan = test::axes({});
+  Verdict verdict;
+  OutputJudge outputs{plan, verdict};
+  std::unique_ptr<Exchange> exchange = std::make_unique<Exchange>(plan);
+  RestlessUser user{plan, *exchange, outputs, verdict, sim::Random{1}};
+};
+
+TEST_F(Asked, IsContentWithOneAnswer) {
+  EXPECT_EQ(user.unanswered(), 1U);
+  answer(1);
+  user.take_replies(2s);
+  user.take_replies(1h);
+
+  EXPECT_EQ(user.unanswered(), 0U);
+  EXPECT_TRUE(verdict.good());
+}
+
+TEST_F(Asked, BlamesASecondAnswer) {
+  answer(1);
+  answer(1);
+  user.take_replies(2s);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->invariant, "every request is answered once");
+}
+
+TEST_F(Asked, BlamesAnAnswerThatNobodyAskedFor) {
+  answer(9);
+  user.take_replies(2s);
+
+  EXPECT_FALSE(verdict.good());
+}
+
+TEST_F(Asked, BlamesAnAnswerThatStaysAway) {
+  user.take_replies(121s);
+  EXPECT_TRUE(verdict.good());
+  user.take_replies(122s);
+
+  ASSERT_FALSE(verdict.good());
+  EXPECT_EQ(verdict.violation()->what, "request 1 has no answer after 120 s");
 }
 
 }  // namespace
