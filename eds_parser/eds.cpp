@@ -34,6 +34,7 @@ struct Outline {
   std::vector<ObjectSection> objects;        ///< ascending index and role, no duplicates
   std::vector<const IniSection*> tools;
   std::vector<ObjectSection> links;
+  std::vector<std::pair<std::uint16_t, const IniSection*>> modules;  ///< [MxModuleInfo] by x
 };
 
 class EdsReader {
@@ -133,6 +134,10 @@ class EdsReader {
       case SectionKind::connected_modules:
         return modules_.set_connected(section);
       case SectionKind::module:
+        if (same_word(name.module_part, "moduleinfo")) {
+          outline_.modules.emplace_back(name.module, &section);
+          return;
+        }
         if (!modules_.add(name, at, report_)) tell_unknown(section);
         return;
     }
@@ -169,6 +174,9 @@ class EdsReader {
 
   void read_headers(ObjectDictionary& dictionary, std::optional<NodeId> node) {
     ValueReader values{report_, std::nullopt};
+    if (outline_.commissioning != nullptr) {
+      dictionary.commissioning.pos = outline_.commissioning->pos;
+    }
     read_commissioning(dictionary.commissioning, entries(outline_.commissioning), values, report_);
     dictionary.node_id = node ? node : dictionary.commissioning.node_id;
     if (outline_.device_info != nullptr) {
@@ -207,6 +215,19 @@ class EdsReader {
       const auto& section = file_.sections[link.section];
       dictionary.links.push_back(read_links(link.index(), entries(&section), values));
     }
+    read_modules(dictionary);
+  }
+
+  void read_modules(ObjectDictionary& dictionary) {
+    std::ranges::stable_sort(outline_.modules, {}, [](const auto& module) { return module.first; });
+    for (std::size_t at = 0; at < outline_.modules.size(); ++at) {
+      const auto [number, section] = outline_.modules[at];
+      if (!dictionary.modules.empty() && dictionary.modules.back().number == number) {
+        tell_duplicate(*outline_.modules[at - 1].second, *section);
+      } else {
+        dictionary.modules.push_back(read_module_info(number, entries(section), report_));
+      }
+    }
   }
 
   void read_objects(ObjectDictionary& dictionary) {
@@ -241,8 +262,10 @@ class EdsReader {
       }
       at = end;
     }
-    dictionary.domain_files = reader.take_domain_files();
     modules_.expand(dictionary, reader, report_);
+    dictionary.domain_files = reader.take_domain_files();
+    dictionary.parameter_references = reader.take_references();
+    std::ranges::stable_sort(dictionary.parameter_references, {}, &ParameterReference::index);
   }
 
   const IniFile& file_;

@@ -99,7 +99,11 @@ void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
                         ValueReader& values, Report& report) {
   const SectionKeys keys{entries, report};
   commissioning.node_name = keys.text("nodename");
+  commissioning.node_refd = keys.text("noderefd");
   commissioning.network_name = keys.text("networkname");
+  commissioning.net_refd = keys.text("netrefd");
+  keys.number(commissioning.net_number, "netnumber", values);
+  keys.number(commissioning.serial_number, "lss_serialnumber", values);
   keys.flag(commissioning.manager, "canopenmanager", values);
   if (const auto* entry = keys.get("nodeid")) {
     const auto id = values.read_count(entry->value, 0xFFFF'FFFF, entry->key, entry->pos());
@@ -118,6 +122,12 @@ void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
     kbit = std::min(kbit / 1000, 0xFFFFU);
   }
   commissioning.baudrate_kbit = static_cast<std::uint16_t>(kbit);
+}
+
+ModuleInfo read_module_info(std::uint16_t number, const IniEntries& entries, Report& report) {
+  const SectionKeys keys{entries, report};
+  return {number, keys.text("productname"), keys.text("productversion"),
+          keys.text("productrevision"), keys.text("ordercode")};
 }
 
 void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values) {

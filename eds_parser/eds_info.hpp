@@ -23,6 +23,8 @@ void read_device_info(DeviceInfo& device, const IniSection& section, const IniEn
 /// [DeviceComissioning]. CiA 306, 5.3.
 void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
                         ValueReader& values, Report& report);
+/// [MxModuleInfo]. CiA 306, 6.
+ModuleInfo read_module_info(std::uint16_t number, const IniEntries& entries, Report& report);
 /// [DummyUsage]. CiA 306, 4.6.2.
 void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values);
 

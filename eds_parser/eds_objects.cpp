@@ -130,9 +130,11 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
       values_.read_count(fields.text(Keyword::compact_sub_obj), 0xFF, "CompactSubObj",
                          fields.pos(Keyword::compact_sub_obj, section.pos));
   if (compact.value_or(0) == 0 && !is_structured(object.type)) {
+    keep_reference(fields, object.index, 0);
     read_single(object, fields, section);
     return;
   }
+  keep_reference(fields, object.index, {});
   read_subs(object, parts);
   if (compact.value_or(0) != 0) {
     expand(object, fields, section, parts);
@@ -160,6 +162,7 @@ void ObjectReader::read_subs(Object& object, const Parts& parts) {
       report_.warning(section.pos, "parameter-name-missing",
                       section_text(section) + " has no ParameterName");
     }
+    keep_reference(fields, part.index(), part.sub());
     read_sub(object.subs.emplace_back(), fields, {part.index(), part.sub()}, section);
   }
 }
@@ -373,6 +376,12 @@ void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, Obje
   if (low && inverted(*sub.low_limit, *value)) {
     drop(sub.low_limit, Keyword::low_limit, "LowLimit");
   }
+}
+
+void ObjectReader::keep_reference(const ObjectFields& fields, std::uint16_t index,
+                                  std::optional<std::uint8_t> sub) {
+  const auto text = fields.text(Keyword::param_refd);
+  if (!text.empty()) references_.push_back({index, sub, to_utf8(text)});
 }
 
 void ObjectReader::apply_lists(Object& object, const Parts& parts) {

@@ -48,6 +48,8 @@ class ObjectReader {
   Object read(std::span<const ObjectSection> group);
   /// Those of the objects read so far.
   std::vector<DomainFiles> take_domain_files() noexcept { return std::move(domain_files_); }
+  /// Of the objects read so far.
+  std::vector<ParameterReference> take_references() noexcept { return std::move(references_); }
   SubExtension read_extension(const IniSection& section, std::uint16_t index);
 
  private:
@@ -74,12 +76,15 @@ class ObjectReader {
   void judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                     const IniSection& section);
   void apply_lists(Object& object, const Parts& parts);
+  void keep_reference(const ObjectFields& fields, std::uint16_t index,
+                      std::optional<std::uint8_t> sub);
 
   const IniFile& file_;
   ValueReader& values_;
   Report& report_;
   ExpansionBudget budget_;
   std::vector<DomainFiles> domain_files_;
+  std::vector<ParameterReference> references_;
 };
 
 }  // namespace takt

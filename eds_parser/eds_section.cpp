@@ -144,7 +144,7 @@ constexpr KnownKey known_keys[] = {
     {"downloadfile", Keyword::download_file},
     {"count", Keyword::module_count},
     {"objextend", Keyword::module_extend},
-    {"paramrefd", Keyword::other_known},
+    {"paramrefd", Keyword::param_refd},
     {"srdomapping", Keyword::other_known},
     {"invertedsrad", Keyword::other_known},
     {"description", Keyword::other_known},

@@ -71,9 +71,10 @@ enum class Keyword : std::uint8_t {
   denotation,
   upload_file,
   download_file,
+  param_refd,
   module_count,   ///< Count, of [MxSubExtxxxx]
   module_extend,  ///< ObjExtend, of [MxSubExtxxxx]
-  other_known,    ///< ParamRefd, SRDOMapping, Unit ...: allowed, not used
+  other_known,    ///< SRDOMapping, Unit ...: allowed, not used
   unknown,
 };
 

@@ -123,7 +123,8 @@ void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, 
 bool ModuleSections::add_modules(ObjectDictionary& dictionary, ObjectReader& reader,
                                  Report& report) {
   std::vector<bool> seen(65536);
-  for (const auto type : connected_types(report)) {
+  dictionary.connected_modules = connected_types(report);
+  for (const auto type : dictionary.connected_modules) {
     if (!seen[type]) add_fixed(type, dictionary, reader, report);
     seen[type] = true;
     for (const auto& section : sections_of(type, Part::extension)) {

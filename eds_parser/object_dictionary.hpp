@@ -96,9 +96,16 @@ struct DeviceInfo {
 struct Commissioning {
   std::optional<NodeId> node_id;
   std::string node_name;
+  std::string node_refd;  ///< NodeRefd: what the node is called elsewhere, in a drawing for example
   std::uint16_t baudrate_kbit = 0;
+  std::uint32_t net_number = 0;
   std::string network_name;
+  std::string net_refd;
   bool manager = false;  ///< CANopenManager: this is the master
+  /// LSS_SerialNumber, 0 where it is not known. Only shown: one DCF may serve several devices; the
+  /// boot compares what the network file says.
+  std::uint32_t serial_number = 0;
+  SourcePos pos;  ///< of the section, 0:0 where the file has none
 };
 
 /// [FileInfo], as written. CiA 306, 4.4.
@@ -139,6 +146,22 @@ struct DomainFiles {
   std::vector<std::byte> content{};  ///< of `download`, where a network is loaded
 };
 
+/// ParamRefd of a DCF: what an object is called elsewhere. CiA 306-1.
+struct ParameterReference {
+  std::uint16_t index = 0;
+  std::optional<std::uint8_t> sub;  ///< none: the ARRAY or RECORD as a whole
+  std::string text;
+};
+
+/// A type of module that a modular device takes. CiA 306, 6.
+struct ModuleInfo {
+  std::uint16_t number = 0;  ///< x of [MxModuleInfo]
+  std::string product_name;
+  std::string product_version;   ///< as written
+  std::string product_revision;  ///< as written
+  std::string order_code;
+};
+
 /// [xxxxObjectLinks]: objects that belong together. CiA 306, 4.6.4.
 struct ObjectLinks {
   std::uint16_t index = 0;
@@ -167,9 +190,12 @@ struct ObjectDictionary {
   std::array<bool, 8> dummy_usage{};  ///< [n]: data type n may be mapped as a dummy
   std::vector<Object> objects;        ///< ascending index
   FileNotes notes;
-  std::vector<DomainFiles> domain_files;  ///< in order of the file
-  std::vector<ObjectLinks> links;         ///< in order of the file
-  std::vector<DynamicChannel> channels;   ///< in order of the file
+  std::vector<DomainFiles> domain_files;                 ///< in order of the file
+  std::vector<ObjectLinks> links;                        ///< in order of the file
+  std::vector<DynamicChannel> channels;                  ///< in order of the file
+  std::vector<ParameterReference> parameter_references;  ///< ascending index
+  std::vector<ModuleInfo> modules;                       ///< ascending number
+  std::vector<std::uint16_t> connected_modules;  ///< numbers of those known, in order of places
 
   const Object* find(std::uint16_t index) const noexcept;
   const SubObject* find(ObjectKey key) const noexcept;

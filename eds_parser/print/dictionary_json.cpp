@@ -81,6 +81,32 @@ Json json_of(const DomainFiles& files) {
           {"download_file", files.download}};
 }
 
+Json json_of(const Commissioning& node) {
+  if (node.pos.line == 0) return nullptr;
+  return {{"node_id", node.node_id ? Json(node.node_id->value()) : Json(nullptr)},
+          {"node_name", node.node_name},
+          {"node_refd", node.node_refd},
+          {"baudrate_kbit", node.baudrate_kbit},
+          {"net_number", node.net_number},
+          {"network_name", node.network_name},
+          {"net_refd", node.net_refd},
+          {"canopen_manager", node.manager},
+          {"lss_serial_number", node.serial_number}};
+}
+
+Json json_of(const ParameterReference& reference) {
+  return {
+      {"index", reference.index}, {"sub", json_of(reference.sub)}, {"param_refd", reference.text}};
+}
+
+Json json_of(const ModuleInfo& module) {
+  return {{"number", module.number},
+          {"product_name", module.product_name},
+          {"product_version", module.product_version},
+          {"product_revision", module.product_revision},
+          {"order_code", module.order_code}};
+}
+
 Json json_of(const ObjectLinks& links) { return {{"index", links.index}, {"to", links.to}}; }
 
 Json json_of(const DynamicChannel& channel) {
@@ -186,6 +212,10 @@ void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Fin
   print_items(out, "domain_files", dictionary.domain_files, all);
   print_items(out, "object_links", dictionary.links, all);
   print_items(out, "dynamic_channels", dictionary.channels, all);
+  out << ",\n\"commissioning\":" << text_of(json_of(dictionary.commissioning));
+  print_items(out, "parameter_references", dictionary.parameter_references, all);
+  print_items(out, "modules", dictionary.modules, all);
+  out << ",\n\"connected_modules\":" << text_of(dictionary.connected_modules);
   print_items(out, "diagnostics", findings, all);
   out << "}\n";
 }

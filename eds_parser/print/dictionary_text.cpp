@@ -131,6 +131,46 @@ void print_notes(std::ostream& out, const FileNotes& notes) {
   }
 }
 
+/// `lift  number 1  reference +A1`, of what there is.
+void print_commissioning(std::ostream& out, const Commissioning& node) {
+  const auto reference = [](const std::string& text) {
+    return text.empty() ? text : "  reference " + text;
+  };
+  const auto fact = [&out](std::string_view label, std::string text) {
+    text.erase(0, text.find_first_not_of(' '));
+    print_fact(out, label, shortened(text, 100));
+  };
+  fact("node name", node.node_name + reference(node.node_refd));
+  fact("network", node.network_name +
+                      (node.net_number == 0 ? "" : "  number " + std::to_string(node.net_number)) +
+                      reference(node.net_refd));
+  if (node.serial_number != 0) print_fact(out, "LSS serial", hex(node.serial_number, 8));
+}
+
+/// `M2  Digital output  version 1.0  MOD-DO-8  (3 connected)`.
+std::string module_text(const ModuleInfo& module, const std::vector<std::uint16_t>& connected) {
+  auto text = 'M' + std::to_string(module.number) + "  " + module.product_name;
+  if (!module.product_version.empty()) text += "  version " + module.product_version;
+  if (!module.product_revision.empty()) text += '.' + module.product_revision;
+  if (!module.order_code.empty()) text += "  " + module.order_code;
+  const auto count = std::ranges::count(connected, module.number);
+  return count == 0 ? text : text + "  (" + std::to_string(count) + " connected)";
+}
+
+void print_modules(std::ostream& out, const ObjectDictionary& dictionary) {
+  for (const auto& module : dictionary.modules) {
+    print_fact(out, "module", shortened(module_text(module, dictionary.connected_modules), 100));
+  }
+}
+
+void print_references(std::ostream& out, const std::vector<ParameterReference>& references) {
+  for (const auto& reference : references) {
+    const auto object = reference.sub ? to_string(ObjectKey{reference.index, *reference.sub})
+                                      : hex(reference.index).substr(2);
+    print_fact(out, "reference", object + "  " + shortened(reference.text, 100));
+  }
+}
+
 void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   const auto& device = dictionary.device;
   out << dictionary.file << "  (" << (dictionary.is_dcf ? "DCF" : "EDS");
@@ -146,16 +186,16 @@ void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   print_fact(out, "PDOs",
              std::to_string(device.nr_rx_pdo) + " RPDOs, " + std::to_string(device.nr_tx_pdo) +
                  " TPDOs" + (device.granularity == 0 ? ", mapping is fixed" : ""));
-  if (!dictionary.commissioning.node_name.empty()) {
-    print_fact(out, "node name", dictionary.commissioning.node_name);
-  }
+  print_commissioning(out, dictionary.commissioning);
   for (const auto& channel : dictionary.channels) {
     print_fact(out, "channels",
                hex(channel.first) + "-" + hex(channel.last) + "  " +
                    std::string{name(channel.type)} + "  " +
                    std::string{access_name(channel.direction)});
   }
+  print_modules(out, dictionary);
   print_notes(out, dictionary.notes);
+  print_references(out, dictionary.parameter_references);
 }
 
 std::string cob_id_text(const PdoDescription& pdo) {

@@ -79,6 +79,50 @@ TEST(EdsJson, HasTheShapeOfTheContract) {
   EXPECT_EQ(json["diagnostics"].size(), 0U);
 }
 
+constexpr std::string_view in_plant = R"([DeviceComissioning]
+NodeID=5
+NodeName=hoist
+NodeRefd==A1-M3
+Baudrate=500
+NetNumber=2
+NetworkName=lift
+LSS_SerialNumber=0x12345678
+[M1ModuleInfo]
+ProductName=Digital input
+ProductVersion=1
+ProductRevision=0
+OrderCode=MOD-DI-8
+[M1SubExt6000]
+ParameterName=Input
+DataType=5
+AccessType=ro
+Count=1
+[ConnectedModules]
+NrOfEntries=2
+1=1
+2=1
+[1000]
+ParameterName=Device type
+DataType=7
+AccessType=ro
+ParamRefd=P1
+)";
+
+TEST(EdsJson, TellsWhatTheNodeIsCalledElsewhereAndItsModules) {
+  const auto json = json_of(read_eds(in_plant, "t.dcf"));
+
+  EXPECT_EQ(json["commissioning"].dump(),
+            R"({"baudrate_kbit":500,"canopen_manager":false,"lss_serial_number":305419896,)"
+            R"("net_number":2,"net_refd":"","network_name":"lift","node_id":5,)"
+            R"("node_name":"hoist","node_refd":"=A1-M3"})");
+  EXPECT_EQ(json["parameter_references"].dump(), R"([{"index":4096,"param_refd":"P1","sub":0}])");
+  EXPECT_EQ(json["modules"].dump(),
+            R"([{"number":1,"order_code":"MOD-DI-8","product_name":"Digital input",)"
+            R"("product_revision":"0","product_version":"1"}])");
+  EXPECT_EQ(json["connected_modules"], nlohmann::json({1, 1}));
+  EXPECT_TRUE(json_of(read_eds("[1000]\nDataType=7\n", "t.eds"))["commissioning"].is_null());
+}
+
 TEST(EdsJson, ListsFindingsWithTheirPlace) {
   const auto json =
       json_of(read_eds("[1000]\nDataType=7\nParameterName=x\nAccessType=ro\n"
@@ -92,6 +136,19 @@ TEST(EdsJson, ListsFindingsWithTheirPlace) {
   EXPECT_EQ((*it)["line"], 5);
   EXPECT_EQ((*it)["column"], 1);
   EXPECT_EQ((*it)["severity"], "warning");
+}
+
+TEST(EdsText, ShowsWhatTheNodeIsCalledElsewhereAndItsModules) {
+  std::ostringstream out;
+  print_text(out, read_eds(in_plant, "t.dcf").dictionary);
+
+  EXPECT_NE(out.str().find("\n  node name   hoist  reference =A1-M3\n"
+                           "  network     lift  number 2\n"
+                           "  LSS serial  0x12345678\n"
+                           "  module      M1  Digital input  version 1.0  MOD-DI-8  (2 connected)\n"
+                           "  reference   1000:00  P1\n"),
+            std::string::npos)
+      << out.str();
 }
 
 TEST(EdsText, ShowsPdosAndObjectsOnLinesOfTheirOwn) {

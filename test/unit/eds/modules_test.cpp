@@ -23,6 +23,42 @@ std::string connected(int modules) {
   return text;
 }
 
+TEST(Modules, SayWhatTheyAreAndWhichAreConnected) {
+  const auto file = read(
+      "[M10ModuleInfo]\nProductName=Analogue\n"
+      "[M2ModuleInfo]\nProductName=Digital\nProductVersion=1\nProductRevision=08\n"
+      "OrderCode=MOD-DI-8\n"
+      "[M2ModuleInfo]\nProductName=again\n"
+      "[M2SubExt6000]\nParameterName=Input\nDataType=5\nAccessType=ro\nCount=1\n"
+      "[M10SubExt6401]\nParameterName=Value\nDataType=3\nAccessType=ro\nCount=2\n"
+      "[ConnectedModules]\nNrOfEntries=3\n1=2\n2=10\n3=2\n");
+
+  const auto& modules = file.dictionary.modules;
+  ASSERT_EQ(modules.size(), 2U);
+  EXPECT_EQ(modules[0].number, 2);
+  EXPECT_EQ(modules[0].product_name, "Digital");
+  EXPECT_EQ(modules[0].product_version, "1");
+  EXPECT_EQ(modules[0].product_revision, "08");
+  EXPECT_EQ(modules[0].order_code, "MOD-DI-8");
+  EXPECT_EQ(modules[1].number, 10);
+  EXPECT_EQ(modules[1].product_name, "Analogue");
+  EXPECT_EQ(file.dictionary.connected_modules, (std::vector<std::uint16_t>{2, 10, 2}));
+  ASSERT_TRUE(test::has(file.findings, "duplicate-section"));
+  EXPECT_EQ(test::find(file.findings, "duplicate-section")->pos.line, test::line_of(8));
+}
+
+TEST(Modules, FixedObjectsMayHaveFiles) {
+  const auto file = read(
+      "[M1Fixed2F50]\nParameterName=Program\nObjectType=2\nDataType=0xF\nAccessType=rw\n"
+      "DownloadFile=app.bin\nParamRefd=K1\n" +
+      connected(1));
+
+  ASSERT_EQ(file.dictionary.domain_files.size(), 1U);
+  EXPECT_EQ(file.dictionary.domain_files[0].download, "app.bin");
+  ASSERT_EQ(file.dictionary.parameter_references.size(), 1U);
+  EXPECT_EQ(file.dictionary.parameter_references[0].index, 0x2F50);
+}
+
 // The vectors of CiA 306, 6.
 TEST(Modules, EachModuleBringsItsSubObjects) {
   const auto file = read(extension("4") + connected(2));
