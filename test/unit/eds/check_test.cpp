@@ -191,20 +191,76 @@ TEST(Check, ComparesValuesWithLimits) {
   EXPECT_TRUE(has(value, "parameter-value-in-eds"));
 }
 
-TEST(Check, DemandsTheObjectsOfTheProfile) {
-  const auto missing = [](std::string_view device_type, std::string_view objects) {
-    const auto text = "[1000]\nParameterName=t\nDataType=7\nAccessType=ro\nDefaultValue=" +
-                      std::string{device_type} + "\n" + std::string{objects};
-    const auto findings = check(read_eds(text, "t.eds").dictionary);
-    return std::ranges::count(findings, "profile-object-missing", &Finding::rule);
+/// Indices that the profile of a device type demands and `objects` have not.
+std::vector<std::string> missing(std::string_view device_type, const std::string& objects = "",
+                                 std::string_view rule = "profile-object-missing") {
+  const auto text = "[1000]\nParameterName=t\nDataType=7\nAccessType=ro\nDefaultValue=" +
+                    std::string{device_type} + "\n" + objects;
+  std::vector<std::string> indices;
+  for (const auto& finding : check(read_eds(text, "t.eds").dictionary)) {
+    if (finding.rule != rule) continue;
+    indices.push_back(finding.message.substr(finding.message.find("object 0x") + 9, 4));
+  }
+  return indices;
+}
+
+using Indices = std::vector<std::string>;
+
+/// A drive of these modes with the objects of every drive and some more.
+std::string drive(std::string_view modes, std::initializer_list<std::string_view> more = {}) {
+  std::string text = entry("6502", "7", modes);
+  for (const auto index : {"6040", "6041", "6060", "6061"}) text += entry(index, "6", "0");
+  for (const auto index : more) text += entry(index, "7", "0");
+  return text;
+}
+
+TEST(Check, DemandsTheChannelsThatAnIoModuleClaims) {
+  EXPECT_EQ(missing("0x00010191"), (Indices{"6000"}));
+  EXPECT_EQ(missing("0x00010191", entry("6000sub1", "5", "0")), Indices{});
+  EXPECT_EQ(missing("0x00010191", entry("6100sub1", "6", "0")), Indices{});
+  EXPECT_EQ(missing("0x000F0191"), (Indices{"6000", "6200", "6401", "6411"}));
+  EXPECT_EQ(missing("0x000C0191", entry("6403sub1", "8", "0")), (Indices{"6411"}));
+  EXPECT_EQ(missing("0x00000191"), Indices{});
+}
+
+TEST(Check, DemandsTheObjectsOfTheModesThatADriveClaims) {
+  EXPECT_EQ(missing("0x00020192"), (Indices{"6040", "6041", "6060", "6061"}));
+  EXPECT_EQ(missing("0x00020192", drive("0")), Indices{});
+  EXPECT_EQ(missing("0x00020192", drive("0x01")), (Indices{"607A", "6064", "6081", "6083"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x81", {"6064", "6081", "6083"})), (Indices{"607A"}));
+  EXPECT_EQ(missing("0x00010192", drive("0x02")),
+            (Indices{"6042", "6043", "6044", "6046", "6048", "6049"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x04")), (Indices{"60FF", "606C"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x08")), (Indices{"6071"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x20", {"6098"})), (Indices{"6099"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x40", {"60C2"})), (Indices{"60C1"}));
+  EXPECT_EQ(missing("0x00020192", drive("0x300", {"60FF", "6071"})), (Indices{"606C", "6077"}));
+}
+
+TEST(Check, AdvisesADriveToTellItsModesAndToTakeTheCycle) {
+  const auto advised = [](const std::string& objects) {
+    return missing("0x00020192", objects, "profile-object-advised");
   };
 
-  EXPECT_EQ(missing("0x00020192", ""), 4);
-  EXPECT_EQ(missing("0xFFFF0192", ""), 0);  // several axes: not at the usual indices
-  EXPECT_EQ(missing("0x00010191", ""), 1);
-  EXPECT_EQ(missing("0x00010191", entry("6000sub1", "5", "0")), 0);
-  EXPECT_EQ(missing("0x00010196", ""), 4);
-  EXPECT_EQ(missing("0", ""), 0);
+  EXPECT_EQ(advised(""), (Indices{"6502"}));
+  EXPECT_EQ(advised(drive("0x80", {"607A", "6064"})), (Indices{"60C2"}));
+  EXPECT_EQ(advised(drive("0x80", {"607A", "6064", "60C2"})), Indices{});
+  EXPECT_EQ(advised(drive("0x01", {"607A", "6064", "6081", "6083"})), Indices{});
+}
+
+TEST(Check, LooksAtEachModuleOfADeviceOfSeveral) {
+  EXPECT_EQ(missing("0xFFFF0192"), Indices{});  // what is where cannot be known
+  EXPECT_EQ(missing("0xFFFF0192", entry("67FF", "7", "0x00020192") +
+                                      entry("6FFF", "7", "0x00010191") + drive("0x08", {"6071"})),
+            (Indices{"6800"}));
+}
+
+TEST(Check, DemandsTheObjectsOfAnEncoder) {
+  EXPECT_EQ(missing("0x00010196"),
+            (Indices{"6000", "6500", "6501", "6503", "6504", "6507", "6004"}));
+  EXPECT_EQ(missing("0x00020196").back(), "6502");
+  EXPECT_EQ(missing("0x000A0196").back(), "6020");
+  EXPECT_EQ(missing("0"), Indices{});
 }
 
 TEST(Check, ComparesIdentityAndMandatoryObjects) {

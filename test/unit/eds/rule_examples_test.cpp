@@ -168,6 +168,7 @@ std::vector<Example> examples() {
        "1A00sub2]\nDataType=7\nDefaultValue=0x60640020\n[1A00sub3]\nDataType=7\nDefaultValue="
        "0x60640020\n[1800sub1]\nDataType=7\nDefaultValue=\n"},
       {"pdo-transmission-type", Kind::objects, "[1400sub2]\nDataType=5\nDefaultValue=253\n"},
+      {"profile-object-advised", Kind::whole, "[1000]\nDataType=7\nDefaultValue=0x00020192\n"},
       {"profile-object-missing", Kind::whole, "[1000]\nDataType=7\nDefaultValue=0x00020192\n"},
       {"real-bit-pattern", Kind::objects, "[2000]\nDataType=0x0008\nDefaultValue=0x3F800000\n"},
       {"sdo-default-channel", Kind::objects,

@@ -81,6 +81,26 @@ TEST(RulePlace, OfAJudgementIsThatOfTheValue) {
   }
 }
 
+TEST(RulePlace, OfAMissingObjectIsTheSectionBeforeItOrWhatDemandsIt) {
+  const auto number = [](const std::string& index, const std::string& value) {
+    return section(index, "DataType=7\nDefaultValue=" + value + "\n");
+  };
+  const auto late = check(read_eds(number("2000", "0"), "t.eds").dictionary);
+  EXPECT_EQ(test::find(late, "mandatory-object-missing")->pos, (SourcePos{2, 1}));
+  const auto first = number("1000", "0") + number("1001", "0");
+  const auto last = check(read_eds(first + number("2000", "0"), "t.eds").dictionary);
+  EXPECT_EQ(test::find(last, "mandatory-object-missing")->pos, (SourcePos{8, 1}));
+
+  const auto drive = number("1000", "0x00020192");
+  const auto bare = check(read_eds(drive, "t.eds").dictionary);
+  EXPECT_EQ(test::find(bare, "profile-object-missing")->pos, (SourcePos{6, 14}));
+  EXPECT_EQ(test::find(bare, "profile-object-advised")->pos, (SourcePos{6, 14}));
+  std::string homing = drive;
+  for (const auto* index : {"6040", "6041", "6060", "6061"}) homing += number(index, "0");
+  const auto claimed = check(read_eds(homing + number("6502", "0x20"), "t.eds").dictionary);
+  EXPECT_EQ(test::find(claimed, "profile-object-missing")->pos, (SourcePos{36, 14}));
+}
+
 TEST(RulePlace, OfWhatIsMissingIsTheFile) {
   const auto object = section("2000", "DataType=5\n");
   for (const auto& place :
@@ -92,6 +112,9 @@ TEST(RulePlace, OfWhatIsMissingIsTheFile) {
   }
   const Place place{"dcf-without-node-id", 0, 0, warning, object};
   expect(check(read_eds(object, "t.dcf").dictionary), place, 0);
+  const auto text = object + "[DeviceComissioning]\nNodeName=x\n";
+  expect(check(read_eds(text, "t.dcf").dictionary), {"dcf-without-node-id", 6, 1, warning, text},
+         0);
   EXPECT_FALSE(test::has(check(read_eds(object, "t.eds").dictionary), "dcf-without-node-id"));
   const auto missing = read_eds_file("no-such-file.eds").findings;
   expect(missing, {"file-unreadable", 0, 0, error, ""}, 0);
