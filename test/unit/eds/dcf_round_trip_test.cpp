@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
+#include "eds_parser/write/configured_values.hpp"
 #include "eds_parser/write/dcf_writer.hpp"
 #include "test/unit/eds/device_files.hpp"
 #include "test/unit/eds/eds_text.hpp"
@@ -53,6 +54,25 @@ void expect_same(const SubObject& before, const SubObject& after, const std::str
   EXPECT_EQ(before.default_text, after.default_text) << where;
 }
 
+/// The concise DCF of what was written holds each value of `before`'s objects that got one, and
+/// comes back from its bytes. PDOs are rewritten as a whole, 1010 and 1011 are commands.
+void expect_concise(const ObjectDictionary& before, const EdsFile& after,
+                    const std::string& where) {
+  Report report{where};
+  const auto entries = configured_values(after.dictionary, report);
+  const auto again = decode_concise_dcf(encode_concise_dcf(entries));
+  ASSERT_TRUE(again.has_value()) << where;
+  EXPECT_TRUE(*again == entries) << where;
+  for (const auto& value : values_for(before)) {
+    const auto index = value.object.index;
+    const bool other = (index >= 0x1400 && index < 0x1C00) || index == 0x1010 || index == 0x1011;
+    const auto* sub = after.dictionary.find(value.object);
+    if (other || sub == nullptr || sub->type == DataType::unknown) continue;
+    const ConciseEntry wanted{value.object, to_bytes(*sub->parameter_value, sub->type)};
+    EXPECT_EQ(std::ranges::count(entries, wanted), 1) << where << ' ' << to_string(value.object);
+  }
+}
+
 /// Number of objects that got a value, all of which read back.
 std::size_t round_trip(const std::filesystem::path& path) {
   const auto source = text_of(path);
@@ -82,6 +102,7 @@ std::size_t round_trip(const std::filesystem::path& path) {
       read_back += set;
     }
   }
+  expect_concise(before.dictionary, after, path.string());
   return read_back;
 }
 
