@@ -57,6 +57,11 @@ Decoded decode_utf8(std::string_view text, std::size_t at) noexcept {
 
 bool is_ascii(std::string_view text) noexcept {
   std::size_t i = 0;
+  for (; i + 32 <= text.size(); i += 32) {
+    std::array<std::uint64_t, 4> words;
+    std::memcpy(words.data(), text.data() + i, 32);
+    if (((words[0] | words[1] | words[2] | words[3]) & 0x8080'8080'8080'8080) != 0) return false;
+  }
   for (; i + 8 <= text.size(); i += 8) {
     std::uint64_t word = 0;
     std::memcpy(&word, text.data() + i, 8);
