@@ -255,13 +255,15 @@ IniFile read_ini(std::string_view text, Report& report) {
   IniFile file;
   const auto encoding = encoding_of(text);
   if (encoding != Encoding::bytes) {
-    report.warning({}, "utf-16", "the file is UTF-16, CiA 306 asks for ASCII; it was converted");
+    report.warning({1, 1}, "utf-16",
+                   "the file is UTF-16, CiA 306 asks for ASCII; it was converted");
     file.recoded =
         std::make_unique<std::string>(utf16_to_utf8(text, encoding == Encoding::utf16_be));
     text = *file.recoded;
   }
   if (text.starts_with("\xEF\xBB\xBF")) {
-    report.note({}, "byte-order-mark", "the file starts with a byte order mark; it was skipped");
+    report.note({1, 1}, "byte-order-mark",
+                "the file starts with a byte order mark; it was skipped");
     text.remove_prefix(3);
   }
   tell_assumed_encoding(text, report);

@@ -101,6 +101,13 @@ TEST(RulePlace, OfAMissingObjectIsTheSectionBeforeItOrWhatDemandsIt) {
   EXPECT_EQ(test::find(claimed, "profile-object-missing")->pos, (SourcePos{36, 14}));
 }
 
+TEST(RulePlace, OfTheEncodingIsTheFirstLine) {
+  expect(read_eds("\xEF\xBB\xBF[1000]\nDataType=7\n", "t.eds").findings,
+         {"byte-order-mark", 1, 1, note, ""}, 0);
+  const std::string wide{"\xFF\xFE[\0001\0000\0000\0000\0]\0", 14};
+  expect(read_eds(wide, "t.eds").findings, {"utf-16", 1, 1, warning, ""}, 0);
+}
+
 TEST(RulePlace, OfWhatIsMissingIsTheFile) {
   const auto object = section("2000", "DataType=5\n");
   for (const auto& place :
