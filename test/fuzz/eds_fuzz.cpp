@@ -1,19 +1,58 @@
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <sstream>
 #include <string_view>
 
 #include "eds_parser/check/check.hpp"
+#include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/write/configured_values.hpp"
 #include "eds_parser/write/dcf_writer.hpp"
+#include "eds_parser/write/eds_fix.hpp"
 
 namespace {
 
-/// Gives the last objects a value: the DCF must have the objects that the file had.
+void demand(bool holds) {
+  if (!holds) __builtin_trap();
+}
+
+/// A NaN equals nothing.
+bool same(const std::optional<takt::Value>& a, const std::optional<takt::Value>& b) {
+  return a == b || (a && b && std::holds_alternative<double>(*a));
+}
+
+bool is_set(const takt::DcfOptions& options, takt::ObjectKey key) {
+  return std::ranges::find(options.values, key, &takt::DcfValue::object) != options.values.end();
+}
+
+/// Each object that `before` has, with its values but for those that were set.
+void demand_objects(const takt::ObjectDictionary& before, const takt::ObjectDictionary& after,
+                    const takt::DcfOptions& options = {}) {
+  for (const auto& object : before.objects) {
+    demand(after.find(object.index) != nullptr);
+    for (const auto& sub : object.subs) {
+      if (before.find({object.index, sub.sub}) != &sub) continue;
+      const takt::ObjectKey key{object.index, sub.sub};
+      const auto* now = after.find(key);
+      demand(now != nullptr);
+      demand(now->access == sub.access);
+      if (sub.type == takt::DataType::unknown) continue;
+      demand(now->type == sub.type && same(now->default_value, sub.default_value));
+      demand(is_set(options, key) || same(now->parameter_value, sub.parameter_value));
+    }
+  }
+}
+
+/// Gives the last objects a value: the DCF has them, and the objects that the file had.
 void write_as_dcf(std::string_view text, const takt::EdsFile& file) {
-  takt::DcfOptions options{.node = file.dictionary.node_id};
+  takt::DcfOptions options{.node = file.dictionary.node_id,
+                           .baudrate_kbit = 500,
+                           .node_name = "axis",
+                           .out_name = "fuzz.dcf",
+                           .values = {}};
   for (auto object = file.dictionary.objects.rbegin();
        object != file.dictionary.objects.rend() && options.values.size() < 3; ++object) {
     if (object->subs.empty()) continue;
@@ -21,16 +60,56 @@ void write_as_dcf(std::string_view text, const takt::EdsFile& file) {
     if (sub.access == takt::Access::rw) options.values.push_back({{object->index, sub.sub}, "1"});
   }
   const auto dcf = takt::write_dcf(text, "fuzz.eds", options);
+  demand(dcf.text.empty() == takt::has_error(dcf.findings));
   if (takt::has_error(dcf.findings)) return;
   const auto again = takt::read_eds(dcf.text, "fuzz.dcf", options.node);
-  if (again.dictionary.objects.size() != file.dictionary.objects.size()) __builtin_trap();
+  demand(again.dictionary.objects.size() == file.dictionary.objects.size());
+  demand_objects(file.dictionary, again.dictionary, options);
+  for (const auto& value : options.values) {
+    demand(again.dictionary.find(value.object)->parameter_value.has_value());
+  }
+}
+
+/// Nothing set: the text stays to the byte, but for UTF-16.
+void write_unchanged(std::string_view text, const takt::EdsFile& file) {
+  const auto& findings = file.findings;
+  if (std::ranges::find(findings, "utf-16", &takt::Finding::rule) != findings.end()) return;
+  demand(takt::write_dcf(text, "fuzz.dcf", {}).text == text);
+}
+
+/// The configuration, as bytes and back.
+void write_concise(const takt::EdsFile& file) {
+  takt::Report report{"fuzz.eds"};
+  const auto entries = takt::configured_values(file.dictionary, report);
+  const auto bytes = takt::encode_concise_dcf(entries);
+  const auto again = takt::decode_concise_dcf(bytes);
+  demand(again.has_value() && *again == entries);
+}
+
+/// Any bytes as a concise DCF: what is read is what they begin with.
+void read_concise(std::span<const std::byte> bytes) {
+  const auto entries = takt::decode_concise_dcf(bytes);
+  if (!entries || bytes.empty()) return;
+  const auto again = takt::encode_concise_dcf(*entries);
+  demand(again.size() <= bytes.size() && std::ranges::equal(again, bytes.first(again.size())));
+}
+
+/// Mended once, a file has all that it had, and nothing is left to mend.
+void mend(std::string_view text, const takt::EdsFile& file) {
+  const auto fixed = takt::fix_eds(text, "fuzz.eds");
+  demand(fixed.readable == file.readable);
+  if (!fixed.readable) return;
+  const auto again = takt::read_eds(fixed.text, "fuzz.eds", file.dictionary.node_id);
+  demand_objects(file.dictionary, again.dictionary);
+  demand(takt::fix_eds(fixed.text, "fuzz.eds").text == fixed.text);
 }
 
 }  // namespace
 
-/// Any bytes as an EDS, through everything that looks at one.
+/// Any bytes as an EDS, through everything that looks at one or writes one.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};
+  read_concise(std::as_bytes(std::span{data, size}));
   const auto node = size % 2 == 0 ? takt::NodeId::from(5) : std::nullopt;
   const auto file = takt::read_eds(text, "fuzz.eds", node);
   const auto findings = takt::check(file.dictionary);
@@ -43,8 +122,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ostringstream out;
   takt::print_json(out, file.dictionary, findings);
   takt::print_text(out, file.dictionary);
-  takt::Report report{"fuzz.eds"};
-  static_cast<void>(takt::configured_values(file.dictionary, report));
-  if (file.readable) write_as_dcf(text, file);
+  write_concise(file);
+  mend(text, file);
+  if (!file.readable) return 0;
+  write_unchanged(text, file);
+  write_as_dcf(text, file);
   return 0;
 }
