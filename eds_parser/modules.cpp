@@ -180,12 +180,12 @@ std::vector<std::uint16_t> ModuleSections::connected_types(Report& report) const
       report.error(entry.pos(), "too-many-modules", "more than 254 modules; the rest is left out");
       break;
     }
-    if (known) {
-      types.push_back(type);
-    } else if (report.wants("unknown-module")) {
+    types.push_back(type);
+    if (!known && report.wants("unknown-module")) {
+      const auto type_text = std::to_string(type);
       report.warning(entry.pos(), "unknown-module",
-                     "module type " + quoted(entry.value) +
-                         " brings no objects: there is no [Mx...] section of it");
+                     "module type " + quoted(entry.value) + " brings no objects: there is no [M" +
+                         type_text + "Fixed...] or [M" + type_text + "SubExt...] section");
     }
   }
   return types;

@@ -195,7 +195,7 @@ struct ObjectDictionary {
   std::vector<DynamicChannel> channels;                  ///< in order of the file
   std::vector<ParameterReference> parameter_references;  ///< ascending index
   std::vector<ModuleInfo> modules;                       ///< ascending number
-  std::vector<std::uint16_t> connected_modules;  ///< numbers of those known, in order of places
+  std::vector<std::uint16_t> connected_modules;          ///< numbers, in order of places
 
   const Object* find(std::uint16_t index) const noexcept;
   const SubObject* find(ObjectKey key) const noexcept;

@@ -31,7 +31,7 @@ TEST(Modules, SayWhatTheyAreAndWhichAreConnected) {
       "[M2ModuleInfo]\nProductName=again\n"
       "[M2SubExt6000]\nParameterName=Input\nDataType=5\nAccessType=ro\nCount=1\n"
       "[M10SubExt6401]\nParameterName=Value\nDataType=3\nAccessType=ro\nCount=2\n"
-      "[ConnectedModules]\nNrOfEntries=3\n1=2\n2=10\n3=2\n");
+      "[ConnectedModules]\nNrOfEntries=4\n1=2\n2=10\n3=7\n4=2\n");
 
   const auto& modules = file.dictionary.modules;
   ASSERT_EQ(modules.size(), 2U);
@@ -42,7 +42,7 @@ TEST(Modules, SayWhatTheyAreAndWhichAreConnected) {
   EXPECT_EQ(modules[0].order_code, "MOD-DI-8");
   EXPECT_EQ(modules[1].number, 10);
   EXPECT_EQ(modules[1].product_name, "Analogue");
-  EXPECT_EQ(file.dictionary.connected_modules, (std::vector<std::uint16_t>{2, 10, 2}));
+  EXPECT_EQ(file.dictionary.connected_modules, (std::vector<std::uint16_t>{2, 10, 7, 2}));
   ASSERT_TRUE(test::has(file.findings, "duplicate-section"));
   EXPECT_EQ(test::find(file.findings, "duplicate-section")->pos.line, test::line_of(8));
 }
