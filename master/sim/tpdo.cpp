@@ -76,12 +76,16 @@ bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
   return true;
 }
 
-void Tpdo::on_request(Time now, Transmitter& out) noexcept {
+/// An event-driven PDO that is asked for keeps its inhibit time: the request is one more event.
+void Tpdo::on_request(Time ready, Transmitter& out) noexcept {
   if (!active() || !record_.rtr_allowed() || !traits_.answers_rtr) return;
   if (type_ == 252) {
-    if (sampled_) send(sample_, now, never, out);
-  } else if (type_ >= 253) {
-    send(mapping_.pack(), now, never, out);
+    if (sampled_) send(sample_, ready, never, out);
+  } else if (type_ == 253) {
+    send(mapping_.pack(), ready, never, out);
+  } else if (type_ >= 254) {
+    pending_ = true;
+    event(ready, out);
   }
 }
 
@@ -113,8 +117,8 @@ void Tpdo::on_time(Time now, Transmitter& out) noexcept {
 }
 
 /// Within the inhibit time an event is put off, not lost; several become one frame.
-void Tpdo::event(Time now, Transmitter& out) noexcept {
-  if (now >= allowed_from_) send(mapping_.pack(), now, never, out);
+void Tpdo::event(Time ready, Transmitter& out) noexcept {
+  if (ready >= allowed_from_) send(mapping_.pack(), ready, never, out);
   update_deadline();
 }
 

@@ -24,7 +24,7 @@ class Tpdo {
 
   /// `ready`: when the frame may be on the wire; `window_end`: dropped after it.
   void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
-  void on_request(Time now, Transmitter& out) noexcept;
+  void on_request(Time ready, Transmitter& out) noexcept;
   /// The RPDO of its number has come.
   void answer(Time ready, Transmitter& out) noexcept;
   /// Mapped values may have changed.
@@ -41,7 +41,7 @@ class Tpdo {
   }
   bool counts_to_its_turn(std::uint8_t counter) noexcept;
   void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
-  void event(Time now, Transmitter& out) noexcept;
+  void event(Time ready, Transmitter& out) noexcept;
   bool runs_by_timer() const noexcept;
   bool only_answers() const noexcept;
   Time inhibit() const noexcept;

@@ -78,7 +78,9 @@ inline const std::vector<StartRow> start_rows{
 
 /// The device is told to make SYNC itself, each 20 ms. Lenze: "from version 16.00.00 onwards, the
 /// transmit PDOs are also sent when the sync telegram is generated. Precondition: the sync Tx
-/// identifier and sync Rx identifier have the same value".
+/// identifier and sync Rx identifier have the same value". That stands at types 1 to 240; the
+/// condition makes the own SYNC one that is received, so for 0 and 252, of which nothing is said, it
+/// is a SYNC as CiA 301 knows it.
 struct OwnSyncRow {
   const char* name;
   const char* model;
@@ -87,6 +89,7 @@ struct OwnSyncRow {
   std::uint8_t type;
   std::vector<int> syncs;   ///< sent within 100 ms
   std::vector<int> frames;  ///< likewise
+  Course course{};          ///< changes and remote requests
 };
 
 inline const std::vector<int> each_20{20, 40, 60, 80, 100};
@@ -94,6 +97,19 @@ inline const std::vector<int> each_20{20, 40, 60, 80, 100};
 inline const std::vector<OwnSyncRow> own_sync_rows{
     {"Lenze, type 1", "lenze8400", "16.00.00", 0x080, 1, each_20, each_20},
     {"Lenze, type 2", "lenze8400", "16.00.00", 0x080, 2, each_20, {40, 80}},
+    {"Lenze, type 0: no event", "lenze8400", "16.00.00", 0x080, 0, each_20, {20}},
+    {"Lenze, type 0: the SYNC after the event", "lenze8400", "16.00.00", 0x080, 0, each_20,
+      {20, 60, 80}, {.changes = {45, 50, 65}}},
+    {"Lenze, type 0, older firmware", "lenze8400", "15.02.00", 0x080, 0, each_20, {},
+      {.changes = {45}}},
+    {"Lenze, type 0, another identifier", "lenze8400", "16.00.00", 0x090, 0, each_20, {},
+      {.changes = {45}}},
+    {"Lenze, type 252: sampled at the first", "lenze8400", "16.00.00", 0x080, 252, each_20, {25, 31},
+      {.remote = {5, 25, 31}}},
+    {"Lenze, type 252, older firmware: never sampled", "lenze8400", "15.02.00", 0x080, 252, each_20,
+      {}, {.remote = {5, 25}}},
+    {"Lenze, type 253: not by SYNC", "lenze8400", "16.00.00", 0x080, 253, each_20, {5, 25},
+      {.remote = {5, 25}}},
     {"Lenze, type 255: not by SYNC", "lenze8400", "16.00.00", 0x080, 255, each_20, {0}},
     {"Lenze, newer firmware", "lenze8400", "17.01.00", 0x080, 1, each_20, each_20},
     {"Lenze, older firmware", "lenze8400", "15.02.00", 0x080, 1, each_20, {}},

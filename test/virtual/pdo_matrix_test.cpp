@@ -1,14 +1,10 @@
 // Every row of the tables of CiA 301 and of four manuals against the simulated devices.
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <map>
-#include <utility>
 #include <vector>
 
-#include "master/sim/device.hpp"
 #include "master/sim/world.hpp"
-#include "test/virtual/pdo_matrix_preset.hpp"
-#include "test/virtual/pdo_matrix_table.hpp"
+#include "test/virtual/pdo_matrix_device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {
@@ -18,135 +14,36 @@ using namespace std::chrono_literals;
 using sim::communicating;
 using sim::Device;
 using sim::SampleDevice;
+using test::download;
+using test::frames_of;
+using test::moments_of;
+using test::ms_after_start;
+using test::started;
+using test::Stepper;
+using test::with_pdos;
 
-constexpr Time started = 200ms;  ///< NMT start of the device
 constexpr std::uint32_t refused = 0x0609'0030;
-
-/// The second pair of PDOs: the first of a DRV-28 is its parameter channel.
-SampleDevice with_pdos(std::uint8_t type, std::uint32_t cob = 0x285) {
-  return communicating(5_node)
-      .pdo(0x1401, 0x305, 255, {0x2010'0020})
-      .pdo(0x1801, cob, type, {0x2011'0020});
-}
-
-/// Expedited download to node 5.
-Frame download(ObjectKey key, std::uint32_t value, unsigned bytes) {
-  const auto byte = [](std::uint32_t bits) { return static_cast<std::uint8_t>(bits & 0xFF); };
-  return make_frame(CobId::base(0x605), {byte(0x23u | (4 - bytes) << 2), byte(key.index),
-                                         byte(std::uint32_t{key.index} >> 8), key.sub, byte(value),
-                                         byte(value >> 8), byte(value >> 16), byte(value >> 24)});
-}
-
-int ms_after_start(Time when) { return static_cast<int>((when - started + 500us) / 1ms); }
-
-/// A device that is stepped through the events of a row, and when it has sent what.
-class Stepper {
- public:
-  explicit Stepper(DeviceTable table)
-      : table_{std::move(table)}, device_{table_, sim::Random{1}, {.pdo = 0ns}} {
-    device_.power_on(0ns);
-    run_to(started - 1ms);
-  }
-
-  void start() {
-    run_to(started);
-    receive(make_frame(CobId::base(0), {1, 5}));
-  }
-  void run_to(Time end) {
-    while (device_.deadline() <= end) {
-      now_ = std::max(now_ + Time{1}, device_.deadline());
-      device_.on_time(now_);
-      collect();
-    }
-    now_ = end;
-  }
-  void receive(const Frame& frame) {
-    device_.on_frame(frame, now_);
-    collect();
-  }
-  /// By SDO, so that the device notices at once.
-  void change(std::uint8_t value) { receive(download({0x2011, 0}, value, 4)); }
-  /// In ms after the start.
-  std::vector<int> frames(std::uint32_t id = 0x285) const {
-    std::vector<int> times;
-    for (const sim::Transmission& item : sent_) {
-      if (item.frame.id == CobId::base(id)) times.push_back(ms_after_start(item.ready));
-    }
-    return times;
-  }
-
- private:
-  void collect() {
-    const auto pending = device_.out().pending();
-    sent_.insert(sent_.end(), pending.begin(), pending.end());
-    device_.out().clear();
-  }
-
-  DeviceTable table_;
-  Device device_;
-  std::vector<sim::Transmission> sent_;
-  Time now_{};
-};
-
-/// What happens at one moment, in this order.
-struct Moment {
-  bool change = false, back = false, sync = false, remote = false, rpdo = false;
-};
-
-std::map<int, Moment> moments_of(const test::Course& course) {
-  std::map<int, Moment> moments;
-  for (const int ms : course.changes) moments[ms].change = true;
-  for (const int ms : course.back) moments[ms].back = true;
-  for (const int ms : course.syncs) moments[ms].sync = true;
-  for (const int ms : course.remote) moments[ms].remote = true;
-  for (const int ms : course.rpdos) moments[ms].rpdo = true;
-  return moments;
-}
-
-DeviceTable device_of(const test::Reading& reading, const test::TpdoRow& row) {
-  SampleDevice sample = with_pdos(row.type, row.course.no_rtr ? 0x4000'0285 : 0x285);
-  sample.model(reading.model);
-  if (*reading.quirk != 0) sample.quirk(reading.quirk);
-  DeviceTable table = sample.build();
-  test::preset(table, {0x1801, 3}, row.course.inhibit);
-  test::preset(table, {0x1801, 5}, row.course.timer);
-  return table;
-}
-
-std::vector<int> run(const test::Reading& reading, const test::TpdoRow& row) {
-  Stepper device{device_of(reading, row)};
-  device.start();
-  std::uint8_t value = 0;
-  for (const auto& [ms, moment] : moments_of(row.course)) {
-    device.run_to(started + 1ms * ms);
-    if (moment.change) device.change(++value);
-    if (moment.back) device.change(0);
-    if (moment.sync) device.receive({.id = CobId::base(0x080)});
-    if (moment.remote) device.receive({.id = CobId::base(0x285), .length = 4, .rtr = true});
-    if (moment.rpdo) device.receive(make_frame(CobId::base(0x305), {1, 2, 3, 4}));
-  }
-  device.run_to(started + 200ms);
-  return device.frames();
-}
 
 TEST(PdoMatrix, DevicesSendAsTheirManualsSay) {
   for (const test::Reading& reading : test::readings) {
     for (const test::TpdoRow& row : reading.rows) {
-      EXPECT_EQ(run(reading, row), row.frames)
+      EXPECT_EQ(frames_of(reading, row, 200), row.frames)
           << reading.name << ", type " << int{row.type} << ", " << row.name;
     }
   }
 }
 
 TEST(PdoMatrix, EachNthSyncForEveryN) {
-  for (int n = 1; n <= 240; ++n) {
-    Stepper device{with_pdos(static_cast<std::uint8_t>(n)).build()};
-    device.start();
-    for (int sync = 1; sync <= 2 * n; ++sync) {
-      device.run_to(started + 1ms * sync);
-      device.receive({.id = CobId::base(0x080)});
+  for (const char* model : {"", "plain301", "lenze8400", "beckhoff", "astraada_drv28"}) {
+    for (int n = 1; n <= 240; ++n) {
+      Stepper device{with_pdos(static_cast<std::uint8_t>(n)).model(model).build()};
+      device.start();
+      for (int sync = 1; sync <= 2 * n; ++sync) {
+        device.run_to(started + 1ms * sync);
+        device.receive({.id = CobId::base(0x080)});
+      }
+      EXPECT_EQ(device.frames(), (std::vector{n, 2 * n})) << model;
     }
-    EXPECT_EQ(device.frames(), (std::vector{n, 2 * n}));
   }
 }
 
@@ -186,7 +83,7 @@ TEST(PdoMatrix, TheirOwnSyncTriggersThemWhereTheManualSaysSo) {
     device.receive(download({0x1005, 0}, 0x4000'0080, 4));
     device.receive(download({0x5E8F, 0}, row.transmit_id, 2));
     device.start();
-    device.run_to(started + 100ms);
+    test::follow(device, row.course, 100);
     EXPECT_EQ(device.frames(row.transmit_id), row.syncs) << row.name;
     EXPECT_EQ(device.frames(), row.frames) << row.name;
   }

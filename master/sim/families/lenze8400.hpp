@@ -7,8 +7,8 @@
 namespace takt::sim {
 
 /// A Lenze 8400 HighLine on its system bus: types 254 and 255 mean the same, a cycle time sends in
-/// addition to events, type 0 is SYNC AND event. As SYNC producer it obeys its own SYNC from
-/// firmware 16.00.00 on, where it sends and receives SYNC with one identifier.
+/// addition to events, type 0 is SYNC AND event. As SYNC producer it obeys its own SYNC, as if it
+/// were received, from firmware 16.00.00 on, where it sends and receives SYNC with one identifier.
 class Lenze8400 final : public Model {
  public:
   Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy);

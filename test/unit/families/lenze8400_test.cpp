@@ -141,6 +141,21 @@ TEST(Lenze8400, DoesNotObeyItsOwnSyncBeforeFirmware16) {
   EXPECT_EQ(device.times(0x185), Times{});
 }
 
+/// The word that RPDO1 of type 1 brings at 30 ms, as it comes back.
+std::uint8_t echoed_by(FamilyDevice device) {
+  device.write({0x1400, 2}, 1, 1);
+  device.start();
+  device.at(30);
+  device.words(0x205, {0, 0, 7, 0});
+  device.at(100);
+  return static_cast<std::uint8_t>(device.device().objects().find({0x5C9B, 3})->value);
+}
+
+TEST(Lenze8400, TakesOverRpdosAtTheSyncThatItMakesFromFirmware16On) {
+  EXPECT_EQ(echoed_by(producer("16.00.00")), 7);
+  EXPECT_EQ(echoed_by(producer("15.02")), 0);
+}
+
 TEST(Lenze8400, DoesNotObeyItsOwnSyncOnAnotherIdentifier) {
   FamilyDevice device = producer("16.00.00");
   EXPECT_EQ(device.write({0x5E8F, 0}, 0x090, 2), 0u);  // C00368
