@@ -15,6 +15,7 @@ struct Pair {
   int poll_syncs = 0;  ///< the same, each so many SYNCs
   int deadline = 0;    ///< of the TPDO
   int timer = 0;       ///< event timer of the TPDO, in the device
+  int silence = 0;     ///< inhibit time of the TPDO, in the device
   /// Cycles count from one after an arrival: for TPDOs with a phase of their own.
   bool after_arrival = false;
   const char* model = "";  ///< of the device
@@ -76,6 +77,18 @@ inline const std::vector<LoopRow> loop_rows{
     {"polled each 3rd SYNC", 255, 253, {.poll_syncs = 3, .after_arrival = true}, {0, 3, 4},
       {2, 5, 8}},
     {"not polled", 255, 253, {}, {0, 3, 4}, {}},
+    {"polled, but event, then SYNC", 255, 0, {.poll = 10}, {0, 3, 4}, {1, 4, 5}},
+    {"polled, but each third SYNC", 255, 3, {.poll = 10, .after_arrival = true}, {0, 3, 4},
+      {2, 5, 8}},
+    // Answers to the other requests, and the changes, wait for the end of the device's inhibit time.
+    {"polled within the inhibit time", 255, 254, {.poll = 10, .silence = 30, .after_arrival = true},
+      {0, 3, 4}, {2, 5, 8}},
+    {"polled within the inhibit time", 255, 255, {.poll = 10, .silence = 30, .after_arrival = true},
+      {0, 3, 4}, {2, 5, 8}},
+    {"polled, the inhibit time is of 254 and 255", 255, 252, {.poll = 10, .silence = 30}, {0, 3, 4},
+      all_there},
+    {"polled, the inhibit time is of 254 and 255", 255, 253, {.poll = 10, .silence = 30}, {0, 3, 4},
+      all_there},
 
     // Sent at 8, 38 and 48 ms; 20 ms later, at 28 and 68, it is missing, and told once.
     {"deadline", 255, 255, {.deadline = 20}, {0, 3, 4}, {1, 4, 5}, {3, 7}},
@@ -109,20 +122,60 @@ inline const std::vector<LoopRow> loop_rows{
       {0, 3, 4}, {1, 6}},
     {"DRV-28: each second SYNC", 255, 2, {.after_arrival = true, .model = "astraada_drv28"},
       {0, 3, 4}, {1, 3, 5, 7, 9}},
+    {"DRV-28: each SYNC", 1, 1, {.model = "astraada_drv28"}, all_sent, all_there},
     {"Lenze: SYNC AND event", 255, 0, {.model = "lenze8400"}, {0, 3, 4}, {1, 4, 5}},
+    {"Lenze: SYNC AND event, an elapsed cycle time is one", 255, 0, {.timer = 40,
+      .after_arrival = true, .model = "lenze8400"}, {0, 3, 4}, {1, 3, 4, 5, 7}},
+    {"Lenze: below 252 no answer", 255, 0, {.poll = 10, .model = "lenze8400"}, {0, 3, 4}, {1, 4, 5}},
+    {"Lenze: below 252 no answer", 255, 3, {.poll = 10, .after_arrival = true,
+      .model = "lenze8400"}, {0, 3, 4}, {2, 5, 8}},
+    {"Lenze: every third sync", 255, 3, {.after_arrival = true, .model = "lenze8400"}, {0, 3, 4},
+      {2, 5, 8}},
     {"Lenze: polled via RTR, synchronous", 255, 252, {.poll = 10, .model = "lenze8400"}, {0, 3, 4},
       all_there},
     {"Lenze: polled via RTR, asynchronous", 255, 253, {.poll = 10, .model = "lenze8400"}, {0, 3, 4},
       all_there},
     {"Lenze: every sync", 1, 1, {.model = "lenze8400"}, all_sent, all_there},
     {"Beckhoff: the sample has changed", 255, 0, {.model = "beckhoff"}, {0, 3, 4}, {1, 4, 5}},
+    {"Beckhoff: the event timer is of 254 and 255", 255, 0, {.timer = 40, .model = "beckhoff"},
+      {0, 3, 4}, {1, 4, 5}},
+    {"Beckhoff: synchronous, only RTR", 255, 252, {.poll = 10, .model = "beckhoff"}, {0, 3, 4},
+      all_there},
+    {"Beckhoff: asynchronous, only RTR", 255, 253, {.poll = 10, .model = "beckhoff"}, {0, 3, 4},
+      all_there},
     {"Beckhoff: evaluated after the next SYNC", 0, 0, {.model = "beckhoff"}, {0, 3, 4}, {2, 5, 6}},
     {"Beckhoff: set to valid when the next SYNC is received", 1, 255, {.model = "beckhoff"},
       all_sent, {1, 4, 5}},
     {"ars: every SYNC", 1, 1, {.model = "plain301", .quirk = "event_timer_raster"}, all_sent,
       all_there},
+    {"ars: after the event", 255, 0, {.model = "plain301", .quirk = "event_timer_raster"}, {0, 3, 4},
+      {1, 4, 5}},
+    {"ars: updated by SYNC, on request", 255, 252, {.poll = 10, .model = "plain301",
+      .quirk = "event_timer_raster"}, {0, 3, 4}, all_there},
     {"ars: on request", 255, 253, {.poll = 10, .model = "plain301", .quirk = "event_timer_raster"},
       {0, 3, 4}, all_there},
+};
+
+/// What the master sends of an RPDO in the same cycles. "ETI": the value is new in cycles 3 and 4
+/// as well, event timer of 20 ms, inhibit time of 30 ms; -: not so; a point: either.
+struct RpdoCell {
+  std::vector<std::uint8_t> types;
+  const char* pattern;
+  std::vector<int> rpdos;
+};
+
+inline const std::vector<RpdoCell> rpdo_cells{
+    {{0}, "-..", {0}},
+    {{0}, "E..", {0, 3, 4}},
+    {{1}, "...", all_sent},
+    {{254, 255}, "---", {0}},
+    {{254, 255}, "E--", {0, 3, 4}},
+    {{254, 255}, "-T-", {0, 2, 4, 6, 8}},
+    {{254, 255}, "--I", {0}},
+    {{254, 255}, "ET-", {0, 2, 3, 4, 6, 8}},
+    {{254, 255}, "E-I", {0, 3, 6}},        // 4 is put off
+    {{254, 255}, "-TI", {0, 3, 6, 9}},     // the inhibit time is the longer one
+    {{254, 255}, "ETI", {0, 3, 6, 9}},
 };
 
 /// A pair of PDOs of types n > 1: the distances of their frames, in SYNCs.

@@ -57,6 +57,7 @@ class Loop {
     DeviceTable table = test::loopback_device(1_node, pdos.tpdos[0], pdos.rpdos[0]);
     table.model = pair.model;
     if (*pair.quirk != 0) table.quirks.emplace_back(pair.quirk);
+    test::preset(table, {0x1800, 3}, static_cast<std::uint64_t>(pair.silence) * 10);
     test::preset(table, {0x1800, 5}, static_cast<std::uint64_t>(pair.timer));
     return table;
   }
@@ -103,6 +104,41 @@ TEST(PdoMatrix, MasterSendsAndTakesEachType) {
     EXPECT_EQ(arrivals, row.arrivals) << name;
     EXPECT_EQ(missing, row.missing) << name;
   }
+}
+
+std::vector<int> sent_by_master(std::uint8_t type, bool event, bool timer, bool inhibit) {
+  Loop loop{{"", type, 255, {.inhibit = inhibit ? 30 : 0, .repeat = timer ? 20 : 0}, {}, {}}};
+  EXPECT_TRUE(loop.boot());
+  for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start are over
+  std::vector<int> sent;
+  std::int64_t value = 0;
+  for (int k = 0; k <= 10; ++k) {
+    if (k == 0 || (event && (k == 3 || k == 4))) ++value;
+    k <= 6 ? loop.cycle(value) : loop.cycle();
+    if (k >= 1 && loop.rpdo_sent()) sent.push_back(k - 1);
+  }
+  return sent;
+}
+
+TEST(PdoMatrix, MasterSendsAsEachCellSays) {
+  int cells = 0;
+  for (const std::uint8_t type : std::vector<std::uint8_t>{0, 1, 254, 255}) {
+    for (unsigned combination = 0; combination < 8; ++combination) {
+      const bool has[] = {(combination & 1) != 0, (combination & 2) != 0, (combination & 4) != 0};
+      for (const test::RpdoCell& cell : test::rpdo_cells) {
+        if (std::ranges::count(cell.types, type) == 0) continue;
+        bool matches = true;
+        for (std::size_t i = 0; i < 3; ++i) {
+          matches = matches && (cell.pattern[i] == '.' || (cell.pattern[i] != '-') == has[i]);
+        }
+        if (!matches) continue;
+        ++cells;
+        EXPECT_EQ(sent_by_master(type, has[0], has[1], has[2]), cell.rpdos)
+            << "type " << int{type} << ", " << cell.pattern;
+      }
+    }
+  }
+  EXPECT_EQ(cells, 4 * 8) << "each combination once";
 }
 
 TEST(PdoMatrix, MasterAndDeviceKeepTheirRasters) {
@@ -162,7 +198,8 @@ TEST(PdoMatrix, TheSyncStartValueCountsInTheSyncOfTheMaster) {
 
 TEST(PdoMatrix, MasterSendsEachNthCycleForEveryN) {
   for (const std::uint8_t n : std::vector<std::uint8_t>{2, 3, 7, 16, 100, 240}) {
-    Loop loop{{"", n, 1, {}, {}, {}}};
+    // Neither inhibit time nor event timer is of type n.
+    Loop loop{{"", n, 1, {.inhibit = n % 2 * 30, .repeat = n % 2 * 20}, {}, {}}};
     ASSERT_TRUE(loop.boot());
     loop.cycle();  // PDOs are exchanged from here on
     std::vector<int> sent;
