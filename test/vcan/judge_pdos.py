@@ -2,7 +2,8 @@
 """judge_pdos.py BIN: a part of the PDO matrix on vcan0, by frames that this script writes itself.
 
 First it is the master of a simulated device (`takt sim`): each transmission type, inhibit time, event
-timer, remote requests, frames of wrong length. Then taktd is: remote requests and type 0 on the wire.
+timer, remote requests, frames of wrong length. Then taktd is: remote requests and type 0 on the wire. The families of
+devices: judge_families.py.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import pathlib
@@ -25,9 +26,11 @@ def check(good, what):
 
 
 class Bus:
-    """A CAN_RAW socket on vcan0."""
+    """A CAN_RAW socket on vcan0, and one TPDO of a device there."""
 
-    def __init__(self):
+    def __init__(self, node=NODE, number=1):
+        self.node, self.record = node, 0x1800 + number - 1
+        self.tpdo = 0x80 + 0x100 * number + node
         self.socket = socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
         self.socket.bind(("vcan0",))
 
@@ -35,28 +38,29 @@ class Bus:
         size = len(data) if length is None else length
         self.socket.send(struct.pack("<IB3x8s", identifier, size, data))
 
-    def take(self, seconds, identifier):
-        """[(time, payload)] of the data frames of this identifier that come within `seconds`."""
-        found, end = [], time.monotonic() + seconds
+    def frames(self, seconds):
+        """Yields (time, identifier, payload) of what comes within `seconds`."""
+        end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self.socket.settimeout(left)
             try:
                 raw = self.socket.recv(16)
             except TimeoutError:
-                break
+                return
             can_id, size = struct.unpack("<IB", raw[:5])
-            if can_id == identifier:
-                found.append((time.monotonic(), raw[8:8 + size]))
-        return found
+            yield time.monotonic(), can_id, raw[8:8 + size]
+
+    def take(self, seconds, identifier):
+        """[(time, payload)] of the data frames of this identifier that come within `seconds`."""
+        return [(when, data) for when, can_id, data in self.frames(seconds) if can_id == identifier]
 
     def sdo(self, index, sub, value, size):
         """Expedited download; the abort code, 0 where it was taken, None where nothing came."""
         command = 0x23 | (4 - size) << 2
-        self.send(0x600 + NODE, struct.pack("<BHBI", command, index, sub, value))
-        for _ in range(20):
-            for _, data in self.take(0.1, 0x580 + NODE):
-                if data[1:4] == struct.pack("<HB", index, sub):
-                    return struct.unpack("<I", data[4:])[0] if data[0] == 0x80 else 0
+        self.send(0x600 + self.node, struct.pack("<BHBI", command, index, sub, value))
+        for _, can_id, data in self.frames(2):
+            if can_id == 0x580 + self.node and data[1:4] == struct.pack("<HB", index, sub):
+                return struct.unpack("<I", data[4:])[0] if data[0] == 0x80 else 0
         return None
 
     def change(self, value):
@@ -64,15 +68,15 @@ class Bus:
         self.sdo(0x2001, 1, value, 4)
 
     def configure(self, kind, inhibit=0, timer=0):
-        self.send(0, bytes((0x80, NODE)))
-        self.sdo(0x1800, 1, 0x80000000 | TPDO, 4)
-        abort = self.sdo(0x1800, 2, kind, 1)
-        self.sdo(0x1800, 3, inhibit, 2)
-        self.sdo(0x1800, 5, timer, 2)
-        self.sdo(0x1800, 1, TPDO, 4)
-        self.sdo(0x2001, 1, 0, 4)
-        self.take(0.05, TPDO)
-        self.send(0, bytes((0x01, NODE)))
+        self.send(0, bytes((0x80, self.node)))
+        self.sdo(self.record, 1, 0x80000000 | self.tpdo, 4)
+        abort = self.sdo(self.record, 2, kind, 1)
+        self.sdo(self.record, 3, inhibit, 2)
+        self.sdo(self.record, 5, timer, 2)
+        self.sdo(self.record, 1, self.tpdo, 4)
+        self.change(0)
+        self.take(0.05, self.tpdo)
+        self.send(0, bytes((0x01, self.node)))
         return abort
 
     def sync(self, count=1):
@@ -80,12 +84,12 @@ class Bus:
         found = []
         for _ in range(count):
             self.send(0x080)
-            found += self.take(0.06, TPDO)
+            found += self.take(0.06, self.tpdo)
         return found
 
     def remote(self):
-        self.send(TPDO | RTR, length=8)
-        return self.take(0.15, TPDO)
+        self.send(self.tpdo | RTR, length=8)
+        return self.take(0.15, self.tpdo)
 
 
 def value(frames):
@@ -150,15 +154,8 @@ def judge_refusals(bus):
 def judge_master(bus, binaries):
     taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--for", "9s"])
     seen = {}
-    end = time.monotonic() + 8.5
-    while time.monotonic() < end:
-        bus.socket.settimeout(1)
-        try:
-            raw = bus.socket.recv(16)
-        except TimeoutError:
-            continue
-        can_id, size = struct.unpack("<IB", raw[:5])
-        seen.setdefault(can_id, []).append(raw[8:8 + size])
+    for _, can_id, data in bus.frames(8.5):
+        seen.setdefault(can_id, []).append(data)
     check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
     polls, answers = len(seen.get(TPDO | RTR, [])), len(seen.get(TPDO, []))
     check(polls >= 15, f"taktd asks for TPDO1 each 100 ms: {polls} remote requests")
