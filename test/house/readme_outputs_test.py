@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""readme_outputs_test.py BIN [--update]: what README.md shows of files and of commands is what they are.
+
+A block of README.md that begins with `$ takt simulate` (or another of COMMANDS) and names files of the tree has lines of
+that command's stdout; one that begins with `# share/...` has lines of that file. A line of three points stands for any
+number of lines. --update writes the numbers of today into README.md, where nothing but numbers changed.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+README = ROOT / "README.md"
+COMMANDS = ("simulate", "audit", "plan", "budget")
+BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+NUMBER = re.compile(r" *\d+(\.\d+)?")
+
+
+def parts_of(lines):
+    """Runs of lines between those of three points."""
+    parts = [[]]
+    for line in lines:
+        if line.strip() == "...":
+            parts.append([])
+        else:
+            parts[-1].append(line)
+    return parts
+
+
+def place(part, lines, start, same):
+    """Where `part` stands in `lines` from `start` on; None: nowhere."""
+    for i in range(start, len(lines) - len(part) + 1):
+        if all(same(a, b) for a, b in zip(part, lines[i:])):
+            return i
+    return None
+
+
+def compare(shown, real, same):
+    """The parts of `shown` as `real` has them, None; or None and the first part that is not there."""
+    real, found, at = [line.rstrip() for line in real], [], 0
+    parts = parts_of(shown)
+    for i, part in enumerate(parts):
+        where = place(part, real, at, same)
+        if where is None or (i == 0 and part and where != 0):
+            return None, part
+        found.append(real[where:where + len(part)])
+        at = where + len(part)
+    if parts[-1] and at < len(real):
+        return None, ["(the end: there is more, and no line of three points)"]
+    return found, None
+
+
+def real_lines(title, tools):
+    """What the block shows a part of; None: it is none of ours."""
+    if title.startswith("# share/"):
+        return (ROOT / title[2:].split()[0]).read_text().splitlines()
+    words = title.removeprefix("$ ").split()
+    if not title.startswith("$ takt ") or words[1] not in COMMANDS or "|" in words:
+        return None
+    if not all((ROOT / word).exists() for word in words if word.endswith(".yaml")):
+        return None
+    done = subprocess.run([tools / "takt", *words[1:]], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, text=True, timeout=60)
+    return done.stdout.rstrip("\n").split("\n")
+
+
+def equal(a, b):
+    return a == b
+
+
+def equal_but_numbers(a, b):
+    return NUMBER.sub("#", a) == NUMBER.sub("#", b)
+
+
+def join(title, shown, parts):
+    points = [line for line in shown if line.strip() == "..."]
+    lines = [title, *parts[0]]
+    for point, part in zip(points, parts[1:]):
+        lines += [point, *part]
+    return "\n".join(lines) + "\n"
+
+
+def main(binaries, update):
+    tools, text = pathlib.Path(binaries).resolve(), README.read_text()
+    judged, failed = [], 0
+    for block in BLOCK.findall(text):
+        title, *shown = block.rstrip("\n").split("\n")
+        real = real_lines(title, tools)
+        if real is None:
+            continue
+        judged.append(title)
+        shown = [line.rstrip() for line in shown]
+        if title.startswith("# share/"):
+            shown = ["...", *shown, "..."]
+        found, missing = compare(shown, real, equal)
+        if found is None and update and title.startswith("$"):
+            found, missing = compare(shown, real, equal_but_numbers)
+            if found is not None:
+                text = text.replace(block, join(title, shown, found))
+        print(("FAIL  " if found is None else "ok    ") + title)
+        if found is None:
+            failed += 1
+            print("      README.md has, but it is not so:\n      " + "\n      ".join(missing))
+    if update:
+        README.write_text(text)
+    families = [title for title in judged if title.startswith("$ takt simulate share/demo/")]
+    if len(families) < 5 or not any(title.startswith("# share/") for title in judged):
+        print(f"FAIL  too few blocks: {judged}")
+        failed += 1
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], "--update" in sys.argv[2:]))
