@@ -1,0 +1,28 @@
+#include <gtest/gtest.h>
+
+#include "master/wire/parameter_channel.hpp"
+
+namespace takt {
+namespace {
+
+/// The error codes of the card's manual: invalid command, address, value, operation failed,
+/// password, frame, read-only, while running, locked.
+TEST(ParameterChannel, TellsEachErrorCodeInWords) {
+  const char* const words[] = {"no error",
+                               "invalid command",
+                               "no such parameter address",
+                               "value out of range",
+                               "the operation failed",
+                               "wrong password",
+                               "the frame is not as it should be",
+                               "the parameter is read-only",
+                               "not while the drive is running",
+                               "the parameter is locked by a password"};
+  for (std::uint16_t code = 0; code < std::size(words); ++code) {
+    EXPECT_EQ(parameter_channel::error_text(code), words[code]) << code;
+  }
+  EXPECT_EQ(parameter_channel::error_text(10), "unknown error code");
+}
+
+}  // namespace
+}  // namespace takt
