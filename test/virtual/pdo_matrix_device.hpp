@@ -59,6 +59,7 @@ class Stepper {
   }
   /// By SDO, so that the device notices at once.
   void change(std::uint8_t value) { receive(download({0x2011, 0}, value, 4)); }
+  std::uint64_t value(ObjectKey key) { return device_.objects().find(key)->value; }
   /// In ms after the start.
   std::vector<int> frames(std::uint32_t id = 0x285) const {
     std::vector<int> times;
