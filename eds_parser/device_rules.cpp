@@ -164,7 +164,8 @@ class Judge {
     const Firmware needed = *data_.sync.own_tpdos_from;
     const auto firmware = node_.node.firmware;
     const auto synchronous = std::ranges::find_if(node_.pdos, [](const EffectivePdo& pdo) {
-      return pdo.is_tpdo && pdo.use == PdoUse::exchanged && pdo.synchronous();
+      const bool by_sync = pdo.synchronous() || pdo.transmission == 252;
+      return pdo.is_tpdo && pdo.use == PdoUse::exchanged && by_sync;
     });
     if (synchronous == node_.pdos.end()) return;
     const std::string what = label(*synchronous) + " is synchronous, and this node makes the SYNC";

@@ -20,6 +20,10 @@ TEST(DeviceDataFirmware, RefusesALenzeBeforeFirmware16AsProducerOfItsOwnSync) {
   EXPECT_TRUE(
       has_error(lenze8400(producer + "sim: {model: lenze8400, firmware: \"15.99\"}").findings));
   EXPECT_TRUE(has_error(lenze8400(producer + "revision_number: 0x000F0002").findings));
+  EXPECT_TRUE(has_error(lenze8400("tpdo: {1: {transmission: 252}}, firmware: \"15.02\", "
+                                  "sdo: [{index: 0x1005, value: 0x40000080}]")
+                            .findings))
+      << "sampled at SYNC";
   EXPECT_FALSE(has_error(lenze8400(producer + "firmware: \"16\"").findings));
   EXPECT_FALSE(has_error(lenze8400(producer + "revision_number: 0x00100000").findings));
 }
