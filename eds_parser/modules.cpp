@@ -182,10 +182,10 @@ std::vector<std::uint16_t> ModuleSections::connected_types(Report& report) const
     }
     types.push_back(type);
     if (!known && report.wants("unknown-module")) {
-      const auto type_text = std::to_string(type);
       report.warning(entry.pos(), "unknown-module",
-                     "module type " + quoted(entry.value) + " brings no objects: there is no [M" +
-                         type_text + "Fixed...] or [M" + type_text + "SubExt...] section");
+                     "module type " + quoted(entry.value) +
+                         " brings no objects: there is no [MxFixed...] or [MxSubExt...] section "
+                         "of it");
     }
   }
   return types;

@@ -67,7 +67,7 @@ std::string value_text(const SubObject& sub) {
   const auto& value = sub.value();
   const auto& text = sub.parameter_text.empty() ? sub.default_text : sub.parameter_text;
   if (!value) return text.empty() ? "-" : text;
-  const auto shown = text_of(*value, sub.type);
+  auto shown = text_of(*value, sub.type);
   if (std::holds_alternative<BoxedText>(*value) || text == shown) return shown;
   return shown + " (" + text + ')';
 }
