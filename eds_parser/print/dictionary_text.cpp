@@ -163,14 +163,6 @@ void print_modules(std::ostream& out, const ObjectDictionary& dictionary) {
   }
 }
 
-void print_references(std::ostream& out, const std::vector<ParameterReference>& references) {
-  for (const auto& reference : references) {
-    const auto object = reference.sub ? to_string(ObjectKey{reference.index, *reference.sub})
-                                      : hex(reference.index).substr(2);
-    print_fact(out, "reference", object + "  " + shortened(reference.text, 100));
-  }
-}
-
 void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   const auto& device = dictionary.device;
   out << dictionary.file << "  (" << (dictionary.is_dcf ? "DCF" : "EDS");
@@ -195,7 +187,6 @@ void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   }
   print_modules(out, dictionary);
   print_notes(out, dictionary.notes);
-  print_references(out, dictionary.parameter_references);
 }
 
 std::string cob_id_text(const PdoDescription& pdo) {
@@ -275,6 +266,16 @@ void print_object(std::ostream& out, const Object& object, std::size_t columns) 
   }
 }
 
+void print_references(std::ostream& out, const std::vector<ParameterReference>& references) {
+  if (references.empty()) return;
+  out << "\nReferences (" << references.size() << ")\n";
+  for (const auto& reference : references) {
+    const auto object = reference.sub ? to_string(ObjectKey{reference.index, *reference.sub})
+                                      : hex(reference.index).substr(2);
+    out << "  " << left(object, 10) << shortened(reference.text, 100) << '\n';
+  }
+}
+
 }  // namespace
 
 void print_text(std::ostream& out, const ObjectDictionary& dictionary) {
@@ -285,6 +286,7 @@ void print_text(std::ostream& out, const ObjectDictionary& dictionary) {
       << left("name", columns) << "  " << left("type", 16) << left("access", 7) << left("PDO", 5)
       << left("value (as written)", widest_value) << "  limits\n";
   for (const auto& object : dictionary.objects) print_object(out, object, columns);
+  print_references(out, dictionary.parameter_references);
 }
 
 }  // namespace takt

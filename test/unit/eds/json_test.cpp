@@ -142,13 +142,14 @@ TEST(EdsText, ShowsWhatTheNodeIsCalledElsewhereAndItsModules) {
   std::ostringstream out;
   print_text(out, read_eds(in_plant, "t.dcf").dictionary);
 
-  EXPECT_NE(out.str().find("\n  node name   hoist  reference =A1-M3\n"
-                           "  network     lift  number 2\n"
-                           "  LSS serial  0x12345678\n"
-                           "  module      M1  Digital input  version 1.0  MOD-DI-8  (2 connected)\n"
-                           "  reference   1000:00  P1\n"),
-            std::string::npos)
+  EXPECT_NE(
+      out.str().find("\n  node name   hoist  reference =A1-M3\n"
+                     "  network     lift  number 2\n"
+                     "  LSS serial  0x12345678\n"
+                     "  module      M1  Digital input  version 1.0  MOD-DI-8  (2 connected)\n"),
+      std::string::npos)
       << out.str();
+  EXPECT_TRUE(out.str().ends_with("\nReferences (1)\n  1000:00   P1\n")) << out.str();
 }
 
 TEST(EdsText, ShowsPdosAndObjectsOnLinesOfTheirOwn) {
