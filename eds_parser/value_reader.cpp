@@ -287,6 +287,7 @@ std::optional<Value> ValueReader::read_untyped(std::string_view text) {
 
 std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std::uint32_t highest,
                                                      std::string_view key, SourcePos pos) {
+  if (text.empty()) return std::nullopt;  // most keys are missing
   auto number = parse_number(text);
   if (!number && number.error() == NumberFault::empty) return std::nullopt;
   const bool good =
