@@ -96,9 +96,9 @@ class CycleAnalysis : CycleFrames {
   /// The bus has been busy since SYNC so many cycles ago, and the devices have computed since.
   Busy busy_since_sync(std::size_t at, int cycles) const {
     Busy busy{.at = at, .since = -cycles * plan_.cycle.period};
-    busy.work = sync_blocking_ + sync_frame() + options_.device_time;
+    busy.work = sync_blocking() + sync_frame() + options_.device_time;
     if (late_ == LateSync::at_any_time)
-      busy.work += std::max(sync_late() - sync_blocking_, Time{0});
+      busy.work += std::max(sync_late() - sync_blocking(), Time{0});
     if (cycles == 0) return busy;
     busy.since += sync_jitter_;
     busy.work += gap_blocking() + cycles * (sync_frame() + inputs_work_ + outputs_work_);
@@ -120,8 +120,15 @@ class CycleAnalysis : CycleFrames {
     return std::max(outputs_end_ - plan_.cycle.period, Time{0});
   }
 
+  /// What SYNC may wait for. A service frame that goes out right behind the SYNC before is still
+  /// there only if the period is that short.
+  Time sync_blocking() const noexcept {
+    const Time relieved = sync_late() + sync_blocking_ + sync_frame() + services_before_sync_;
+    return sync_blocking_ + (relieved > plan_.cycle.period ? services_before_sync_ : Time{0});
+  }
+
   bool inputs_may_follow_outputs() const noexcept {
-    return sync_late() + sync_blocking_ + sync_frame() + options_.device_time >
+    return sync_late() + sync_blocking() + sync_frame() + options_.device_time >
            plan_.cycle.output_deadline;
   }
 
@@ -149,8 +156,10 @@ class CycleAnalysis : CycleFrames {
   void bound_sync() {
     if (!sync_) return;
     const Time longest = frames_[*sync_].frame;
-    bounds_[*sync_] = later(end_of({.at = *sync_, .work = sync_blocking_, .own = longest}),
-                            end_of({.at = *sync_, .since = sync_late(), .own = longest}));
+    const Time relieved = sync_blocking() - sync_blocking_;
+    bounds_[*sync_] =
+        later(end_of({.at = *sync_, .work = sync_blocking(), .own = longest}),
+              end_of({.at = *sync_, .since = sync_late(), .work = relieved, .own = longest}));
   }
 
   void bound_inputs() {
@@ -230,7 +239,7 @@ class CycleAnalysis : CycleFrames {
   /// it are so much nearer. False: there is no end to it.
   bool find_sync_jitter() {
     if (!sync_ || plan_.cycle.makes_sync()) return true;
-    const auto wait = end_of({.at = *sync_, .work = sync_blocking_});
+    const auto wait = end_of({.at = *sync_, .work = sync_blocking()});
     sync_jitter_ = wait.value_or(Time{0});
     return wait.has_value();
   }

@@ -33,6 +33,7 @@ void CycleFrames::find_ends_of_cycle() {
     return by_itself(other) || (other.in_cycle && !plan_.cycle.makes_sync());
   };
   if (sync_) sync_blocking_ = blocking(*sync_, meets_sync);
+  if (sync_) services_before_sync_ = by_master(*sync_);
   outputs_blocking_ = blocking(lowest_output_, by_itself);
 }
 

@@ -67,6 +67,7 @@ class CycleFrames {
   Time outputs_work_{};
   Time outputs_blocking_{};
   Time sync_blocking_{};
+  Time services_before_sync_{};  ///< of the master, should one be there when SYNC comes
 
  private:
   /// SYNC, the queue of the outputs, and what may have begun when they are ready.

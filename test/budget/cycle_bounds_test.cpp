@@ -116,6 +116,17 @@ TEST(CycleBounds, ALateOutputMayHaveBegunBeforeTheSyncOfAnotherDevice) {
   EXPECT_EQ(latest_us(bus_budget(plan))[0], 160 + 55);
 }
 
+TEST(CycleBounds, AnNmtFrameRightBehindSyncMayMeetTheNextOneOnlyIfThePeriodIsThatShort) {
+  auto plan = hand_made_bus(1, 73us);
+  plan.pdos = {};
+  compile(plan);
+
+  EXPECT_EQ(latest_us(bus_budget(plan))[0], 135 + 75 + 55);
+  plan.cycle.period = 135us + 55us + 75us;
+  compile(plan);
+  EXPECT_EQ(latest_us(bus_budget(plan))[0], 135 + 55);
+}
+
 TEST(CycleBounds, ACycleThatNeedsMoreThanTheBusHasNoBounds) {
   const auto budget = bus_budget(hand_made_bus(8, 2ms));
 
