@@ -16,44 +16,98 @@ bool same_identifier(const TrafficFrame& a, const TrafficFrame& b) noexcept {
 }
 
 /// Frames that come whenever they may, and those of the cycle as they look to them.
-Bounds bounds_of_others(const BusTraffic& traffic, const Bounds& in_cycle, const BusPlan& plan,
-                        const BudgetOptions& options, Emcys emcys) {
-  const auto sync = std::ranges::find(traffic.frames, Traffic::sync, &TrafficFrame::kind);
-  std::optional<Time> sync_end{Time{0}};
-  Time sync_frame{};
-  if (sync != traffic.frames.end()) {
-    sync_end = in_cycle[static_cast<std::size_t>(sync - traffic.frames.begin())];
-    sync_frame = sync->frame;
+class Others {
+ public:
+  Others(const BusTraffic& traffic, const CycleBounds& cycle, const BusPlan& plan,
+         const BudgetOptions& options, Company company)
+      : traffic_{traffic}, cycle_{cycle}, plan_{plan}, options_{options}, company_{company} {}
+
+  Bounds run() {
+    const auto sync = std::ranges::find(traffic_.frames, Traffic::sync, &TrafficFrame::kind);
+    if (sync != traffic_.frames.end()) {
+      const auto end = cycle_.ends[static_cast<std::size_t>(sync - traffic_.frames.begin())];
+      // Behind a SYNC that comes at any time the TPDOs do, too.
+      if (!end) return Bounds(traffic_.frames.size());
+      sync_end_ = *end;
+      sync_frame_ = sync->frame;
+    }
+    make_streams();
+    const Time bit = wire_time(1, plan_.bitrate);
+    if (company_.services == Services::apart)
+      return worst_responses(streams_, bit, options_.errors);
+    // Those of one queue all wait for what goes before the lowest of them.
+    const auto services = with_services_together();
+    const Bounds together = worst_responses(services, bit, options_.errors);
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      if (!is_service(i)) continue;
+      if (!together[i]) return Bounds(streams_.size());
+      streams_[i].jitter = *together[i] - streams_[i].frame;
+    }
+    Bounds all = worst_responses(streams_, bit, options_.errors);
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      if (is_service(i)) all[i] = together[i];
+    }
+    return all;
   }
-  // Behind a SYNC that comes at any time the TPDOs do, too.
-  if (!sync_end) return Bounds(traffic.frames.size());
-  std::vector<FrameStream> streams;
-  std::size_t priority = 0;
-  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
-    const auto& frame = traffic.frames[i];
-    Time jitter = frame.jitter;
-    const bool with_sync = frame.in_cycle && frame.from_master && !plan.cycle.makes_sync();
-    if (frame.kind == Traffic::sync || with_sync) jitter = *sync_end - sync_frame;
-    if (frame.in_cycle && frame.kind == Traffic::tpdo) jitter = *sync_end + options.device_time;
-    if (i == 0 || !same_identifier(traffic.frames[i - 1], frame)) priority = i;
-    streams.push_back({.priority = priority,
-                       .frame = frame.frame,
-                       .period = frame.period,
-                       .jitter = jitter,
-                       .burst = frame.burst,
-                       .counts = frame.kind != Traffic::emcy || emcys == Emcys::one_of_each});
+
+ private:
+  bool is_service(std::size_t i) const {
+    return traffic_.frames[i].from_master && !traffic_.frames[i].in_cycle;
   }
-  return worst_responses(streams, wire_time(1, plan.bitrate), options.errors);
-}
+
+  void make_streams() {
+    std::size_t priority = 0;
+    for (std::size_t i = 0; i < traffic_.frames.size(); ++i) {
+      const auto& frame = traffic_.frames[i];
+      if (i == 0 || !same_identifier(traffic_.frames[i - 1], frame)) priority = i;
+      const bool counts = frame.kind != Traffic::emcy || company_.emcys == Emcys::one_of_each;
+      streams_.push_back({.priority = priority,
+                          .frame = frame.frame,
+                          .period = frame.period,
+                          .jitter = jitter_of(frame),
+                          .burst = frame.burst,
+                          .counts = counts});
+    }
+  }
+
+  Time jitter_of(const TrafficFrame& frame) const {
+    if (frame.kind == Traffic::sync) return sync_end_ - sync_frame_;
+    if (frame.in_cycle && frame.kind == Traffic::tpdo) return sync_end_ + options_.device_time;
+    const bool with_sync = frame.in_cycle && frame.from_master && !plan_.cycle.makes_sync();
+    const Time jitter = with_sync ? sync_end_ - sync_frame_ : frame.jitter;
+    return frame.in_cycle ? jitter + cycle_.outputs_wait : jitter;
+  }
+
+  std::vector<FrameStream> with_services_together() const {
+    std::vector<FrameStream> all = streams_;
+    std::size_t lowest = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (is_service(i)) lowest = all[i].priority;
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (is_service(i)) all[i].priority = lowest;
+    }
+    return all;
+  }
+
+  const BusTraffic& traffic_;
+  const CycleBounds& cycle_;
+  const BusPlan& plan_;
+  const BudgetOptions& options_;
+  Company company_;
+  Time sync_end_{};
+  Time sync_frame_{};
+  std::vector<FrameStream> streams_;
+};
 
 Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
-              Emcys emcys) {
-  Bounds all = cycle_bounds(traffic, plan, options, emcys);
-  const Bounds others = bounds_of_others(traffic, all, plan, options, emcys);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!traffic.frames[i].in_cycle) all[i] = others[i];
+              Company company) {
+  CycleBounds cycle = cycle_bounds(traffic, plan, options, company);
+  const Bounds others = Others{traffic, cycle, plan, options, company}.run();
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (!traffic.frames[i].in_cycle) cycle.ends[i] = others[i];
   }
-  return all;
+  return std::move(cycle.ends);
 }
 
 /// While no event-driven output changes. Those themselves end with the last that go out.
@@ -63,7 +117,7 @@ Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const Budge
   };
   BusTraffic steady = traffic;
   std::erase_if(steady.frames, changes);
-  const Bounds found = bounds(steady, plan, options, Emcys::none);
+  const Bounds found = bounds(steady, plan, options, {});
   Bounds all(traffic.frames.size());
   std::optional<Time> last{plan.cycle.output_deadline};
   for (std::size_t i = 0, k = 0; i < all.size(); ++i) {
@@ -150,10 +204,19 @@ Time BusBudget::sync_delay() const noexcept {
   return delay;
 }
 
+std::optional<Time> BusBudget::sync_delay_behind_services() const noexcept {
+  const auto sync =
+      std::ranges::find(rows, Traffic::sync, [](const BudgetRow& row) { return row.frame.kind; });
+  if (sync == rows.end()) return Time{0};
+  if (!sync->worst_behind_services || !sync->worst) return std::nullopt;
+  return *sync->worst_behind_services - *sync->worst;
+}
+
 BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options) {
   BusTraffic traffic = bus_traffic(plan, options);
-  const Bounds quiet = bounds(traffic, plan, options, Emcys::none);
-  const Bounds burst = bounds(traffic, plan, options, Emcys::one_of_each);
+  const Bounds quiet = bounds(traffic, plan, options, {});
+  const Bounds burst = bounds(traffic, plan, options, {.emcys = Emcys::one_of_each});
+  const Bounds queue = bounds(traffic, plan, options, {.services = Services::in_queue});
   const Bounds steady = steady_bounds(traffic, plan, options);
   BusBudget budget{.load = bus_load(traffic, plan.bitrate),
                    .rows = {},
@@ -170,6 +233,7 @@ BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options) {
     BudgetRow row{.frame = std::move(traffic.frames[i]),
                   .worst = quiet[i],
                   .worst_in_burst = burst[i],
+                  .worst_behind_services = queue[i],
                   .worst_steady = steady[i]};
     set_limits(row, plan, next_sync(plan, sync_end));
     budget.rows.push_back(std::move(row));

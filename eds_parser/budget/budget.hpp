@@ -14,9 +14,10 @@ struct BudgetRow {
   /// End of the frame at the latest: of those in the cycle after SYNC, of others after being
   /// queued. None: there is no bound.
   std::optional<Time> worst;
-  std::optional<Time> worst_in_burst;  ///< the same while every node sends an EMCY
-  std::optional<Time> worst_steady;    ///< the same while no event-driven output changes
-  Time limit{};                        ///< as `why` says
+  std::optional<Time> worst_in_burst;         ///< the same while every node sends an EMCY
+  std::optional<Time> worst_behind_services;  ///< the same while service frames wait in its queue
+  std::optional<Time> worst_steady;           ///< the same while no event-driven output changes
+  Time limit{};                               ///< as `why` says
   BudgetLimit why = BudgetLimit::none;
   Time cycle{};      ///< in the cycle: the next SYNC; 0: not in it
   Time tolerance{};  ///< outputs may delay SYNC by so much
@@ -55,6 +56,8 @@ struct BusBudget {
   bool fits_but_for_changes() const noexcept;
   /// By which the outputs can delay the next SYNC.
   Time sync_delay() const noexcept;
+  /// By which service frames, and outputs behind them, can delay the next SYNC. None: no bound.
+  std::optional<Time> sync_delay_behind_services() const noexcept;
 };
 
 BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options = {});

@@ -1,6 +1,7 @@
 #include "eds_parser/budget/cycle_bounds.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "eds_parser/budget/cycle_frames.hpp"
 #include "eds_parser/frame_time.hpp"
@@ -12,19 +13,20 @@ constexpr unsigned longest_data = 8;
 constexpr int most_rounds = 16;
 constexpr int longest_chain = 32;  // cycles
 
+using Bounds = std::vector<std::optional<Time>>;
+
 class CycleAnalysis : CycleFrames {
  public:
   CycleAnalysis(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
-                Emcys emcys)
-      : CycleFrames{traffic, plan, options, emcys}, bounds_(frames_.size()) {}
+                Company company)
+      : CycleFrames{traffic, plan, options, company}, bounds_(frames_.size()) {}
 
-  std::vector<std::optional<Time>> run() {
-    if (is_overloaded()) return std::move(bounds_);
-    if (!find_sync_jitter() || !find_outputs())
-      return std::vector<std::optional<Time>>(frames_.size());
+  CycleBounds run() {
+    if (is_overloaded()) return {.ends = std::move(bounds_)};
+    if (!find_sync_jitter() || !find_outputs()) return {.ends = Bounds(frames_.size())};
     bound_sync();
     bound_inputs();
-    return std::move(bounds_);
+    return {.ends = std::move(bounds_), .outputs_wait = outputs_wait()};
   }
 
  private:
@@ -37,19 +39,32 @@ class CycleAnalysis : CycleFrames {
     Time own{};
     std::optional<std::size_t> input{};  ///< of a TPDO: the SYNC that it follows
     bool output = false;
+    int rounds = 0;  ///< no more SDO answers than those to so many rounds of requests; 0: any
   };
 
   std::optional<Time> end_of(const Busy& busy) const {
     Time longest = busy.own;
     for (std::size_t k = 0; k < busy.at; ++k) longest = std::max(longest, frames_[k].frame);
     for (Time waited = busy.work;;) {
-      const Time next = busy.work + by_themselves(0, busy.at, waited) +
+      const Time next = busy.work + by_themselves(0, busy.at, waited) - no_answers(busy, waited) +
                         behind_next_sync(busy, waited) +
                         error_time(waited + busy.own, options_.errors, bit_, longest);
       if (next <= waited) return busy.since + waited + busy.own;
       if (next > (longest_chain + 3) * plan_.cycle.period) return std::nullopt;
       waited = next;
     }
+  }
+
+  /// A round is that of one cycle, or longer. A server is late by one of them at most, and has no
+  /// other request then.
+  Time no_answers(const Busy& busy, Time waited) const {
+    if (busy.rounds == 0) return Time{0};
+    Time sum{};
+    for (std::size_t k = 0; k < busy.at; ++k) {
+      if (!is_answer(frames_[k]) || frames_[k].period < plan_.cycle.period) continue;
+      sum += by_themselves(k, k + 1, waited) - answers_in(busy.rounds - 1) - late_answers();
+    }
+    return std::max(sum, Time{0});
   }
 
   /// What comes with the outputs and the next SYNC, and goes before a frame that is as late.
@@ -62,8 +77,10 @@ class CycleAnalysis : CycleFrames {
     for (std::size_t cycle = 0;; ++cycle) {
       const Time sync = static_cast<Time::rep>(cycle) * plan_.cycle.period;
       if (sync - origin() > until) return sum;
-      if (cycle != 0)
+      if (cycle != 0) {
         sum += sync_frame() + inputs_before(busy.at, busy.input.value_or(any_cycle) + cycle);
+        if (busy.output) sum += by_master(busy.at);
+      }
       if (busy.input && sync + plan_.cycle.output_deadline <= until) {
         sum += outputs_before(busy.at, cycle);
       }
@@ -81,6 +98,10 @@ class CycleAnalysis : CycleFrames {
     return a && b ? std::optional{std::max(*a, *b)} : std::nullopt;
   }
 
+  static std::optional<Time> sooner(std::optional<Time> a, std::optional<Time> b) {
+    return a && b ? std::optional{std::min(*a, *b)} : a ? a : b;
+  }
+
   /// The bus has been busy since the outputs so many cycles ago: with them, with SYNC, and with all
   /// of the cycles between.
   Busy busy_since_outputs(std::size_t at, int cycles) const {
@@ -89,6 +110,13 @@ class CycleAnalysis : CycleFrames {
               .since = plan_.cycle.output_deadline - cycles * plan_.cycle.period + sync_jitter_,
               .work = outputs_blocking_ + cycles * (outputs_work_ + sync_frame()) +
                       inputs * inputs_work_};
+    if (services_count(at)) {
+      busy.since -= 2 * services_in(1);
+      busy.work += services_in(cycles);
+      busy.rounds = cycles + 1;
+    } else {
+      busy.since += outputs_wait();
+    }
     if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
     return busy;
   }
@@ -102,22 +130,52 @@ class CycleAnalysis : CycleFrames {
     if (cycles == 0) return busy;
     busy.since += sync_jitter_;
     busy.work += gap_blocking() + cycles * (sync_frame() + inputs_work_ + outputs_work_);
+    if (services_count(at)) {
+      busy.work += 2 * services_behind_window() + services_in(cycles - 1);
+      busy.rounds = cycles;
+    }
     if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
     return busy;
   }
 
+  /// The bus has been busy since SYNC, too, but with no more service frames than fitted in before
+  /// those outputs with their answers.
+  Busy busy_until_outputs(std::size_t at, int cycles) const {
+    Busy busy = busy_since_outputs(at, cycles);
+    const Time since = -cycles * plan_.cycle.period;
+    busy.work += busy.since - since;
+    busy.since = since;
+    return busy;
+  }
+
   /// In each of the cycles the time that devices need, and what may begin in it, but for the last
-  /// beginning; and what goes before the lowest output, though not before `at`.
+  /// beginning; and what goes before the lowest of the master's queue, though not before `at`.
   Time follow_up(const Busy& busy, int cycles) const {
     const Time within = sync_late() - busy.since;
+    const auto lowest =
+        services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
     return cycles * options_.device_time + (cycles - 1) * gap_blocking() +
-           by_themselves(std::min(busy.at, lowest_output_), lowest_output_, within);
+           by_themselves(std::min(busy.at, lowest), lowest, within);
   }
 
   /// SYNC waits behind the outputs before it: they leave one queue.
   Time sync_late() const noexcept {
     if (!plan_.cycle.makes_sync()) return Time{0};
-    return std::max(outputs_end_ - plan_.cycle.period, Time{0});
+    return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
+  }
+
+  /// The frames of one queue go as far down as its lowest.
+  bool waits_for_services(std::size_t at) const noexcept {
+    return services_in_queue() && at >= lowest_service_;
+  }
+
+  /// Or what waits for SYNC, which leaves that queue.
+  bool services_count(std::size_t at) const noexcept {
+    return waits_for_services(at) || (services_in_queue() && late_ == LateSync::follows_up);
+  }
+
+  Time outputs_wait() const noexcept {
+    return std::max(services_end_ - plan_.cycle.output_deadline, Time{0});
   }
 
   /// What SYNC may wait for. A service frame that goes out right behind the SYNC before is still
@@ -146,7 +204,11 @@ class CycleAnalysis : CycleFrames {
       const Busy sync = busy_since_sync(at, cycles);
       all.push_back(outputs);
       all.push_back(sync);
-      const auto end = later(end_of(outputs), end_of(sync));
+      auto end = later(end_of(outputs), end_of(sync));
+      if (services_count(at)) {
+        all.push_back(busy_until_outputs(at, cycles));
+        end = later(end, end_of(all.back()));
+      }
       if (end && *end <= sync_frame()) return all;
     }
     return std::nullopt;
@@ -187,12 +249,14 @@ class CycleAnalysis : CycleFrames {
 
   /// TPDOs follow SYNC: each of higher priority goes before it once.
   std::optional<Time> input_end(std::size_t at, std::size_t cycle) const {
+    return end_of_input(at, cycle, input_work(at, cycle));
+  }
+
+  Time input_work(std::size_t at, std::size_t cycle) const {
     const auto& own = frames_[at];
     Time others = (own.burst - 1) * own.frame + begun_before_input(at, cycle);
-    for (std::size_t k = 0; k < at && !own.awaited; ++k) {
-      if (frames_[k].kind == Traffic::nmt) others += frames_[k].frame;
-    }
-    return end_of_input(at, cycle, others + inputs_before(at, cycle));
+    if (!own.awaited) others += by_master(at);
+    return others + inputs_before(at, cycle);
   }
 
   /// One frame of lower priority may have begun while the device computed; or the one that the
@@ -201,7 +265,7 @@ class CycleAnalysis : CycleFrames {
     const bool by_master = relieved_ || !frames_[at].awaited;
     Time begun{};
     for (std::size_t k = 0; k < at && relieved_; ++k) {
-      if (frames_[k].kind == Traffic::nmt) begun = frames_[k].frame;
+      if (is_service(frames_[k])) begun = std::max(begun, frames_[k].frame);
     }
     if (options_.device_time == Time{0}) return begun;
     const Time lower = blocking(at, [&](const TrafficFrame& other) {
@@ -248,7 +312,7 @@ class CycleAnalysis : CycleFrames {
   bool find_outputs() {
     for (const auto late : {LateSync::never, LateSync::follows_up, LateSync::at_any_time}) {
       late_ = late;
-      outputs_end_ = Time{0};
+      outputs_end_ = services_end_ = Time{0};
       if (settle_outputs()) return true;
     }
     return false;
@@ -257,12 +321,58 @@ class CycleAnalysis : CycleFrames {
   /// They may delay SYNC, and that those of the next cycle.
   bool settle_outputs() {
     for (int round = 0; round < most_rounds; ++round) {
-      const Time before = outputs_end_;
-      if (!bound_outputs()) return false;
+      const std::pair before{outputs_end_, services_end_};
+      find_late_inputs();
+      if (!bound_services() || !bound_outputs()) return false;
       if (late_ == LateSync::never && sync_late() > Time{0}) return false;
-      if (outputs_end_ == before) return true;
+      if (before == std::pair{outputs_end_, services_end_}) return true;
     }
     return false;
+  }
+
+  /// Those of the queue that the outputs find before them.
+  bool bound_services() {
+    if (!services_in_queue()) return true;
+    const auto end = end_in_queue(lowest_service_, Time{0}, Time{0});
+    if (!end) return false;
+    services_end_ = std::max(services_end_, *end);
+    return services_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
+  }
+
+  /// The end of an output, or of nothing, behind the service frames of its cycle. They and the
+  /// answers to them would be through before the outputs, were it not for what comes by itself
+  /// meanwhile.
+  std::optional<Time> end_in_queue(std::size_t lowest, Time before, Time own) const {
+    const std::size_t at = std::max(lowest, lowest_service_);
+    const Time inputs = inputs_around(at);
+    const auto chains = busy_before(at);
+    if (!chains) return std::nullopt;
+    const Time services = services_in(1);
+    const Time begun = inputs_may_follow_outputs() ? inputs : begun_before_output(at);
+    std::optional<Time> end = end_of({.at = at,
+                                      .since = plan_.cycle.output_deadline - 2 * services,
+                                      .work = before + services + begun,
+                                      .own = own,
+                                      .output = true,
+                                      .rounds = 2});
+    for (auto busy : *chains) {
+      busy.own = own;
+      busy.output = true;
+      busy.since -= origin();
+      const int rounds = std::max(busy.rounds, 1);
+      busy.rounds = rounds + 1;
+      Busy all = busy;
+      all.work += inputs + before + services;
+      Busy behind_window = busy;
+      behind_window.work += inputs + before + 2 * services_behind_window();
+      behind_window.rounds = rounds;
+      Busy until_outputs = busy;
+      until_outputs.work = plan_.cycle.output_deadline - busy.since - answers_in(1) + before;
+      const auto in_time =
+          has_room_for_services() ? sooner(end_of(all), end_of(until_outputs)) : end_of(all);
+      end = later(end, later(end_of(behind_window), in_time));
+    }
+    return end;
   }
 
   /// Outputs go out at the output deadline from one queue, in the order of their identifiers:
@@ -283,19 +393,14 @@ class CycleAnalysis : CycleFrames {
   }
 
   std::optional<Time> output_end(std::size_t lowest, Time before, Time own) const {
-    const auto may_begin = [this](const TrafficFrame& other) { return comes_by_itself(other); };
-    Time inputs = blocking(lowest, [&](const TrafficFrame& other) {
-      return comes_by_itself(other) || is_input(other);
-    });
-    for (std::size_t k = 0; k < lowest; ++k) {
-      if (is_input(frames_[k])) inputs += frames_[k].burst * frames_[k].frame;
-    }
-    const Time begun = inputs_may_follow_outputs() ? inputs : blocking(lowest, may_begin);
-    auto end = end_of({.at = lowest,
-                       .since = plan_.cycle.output_deadline,
-                       .work = before + begun,
-                       .own = own,
-                       .output = true});
+    const Time inputs = inputs_around(lowest);
+    auto end = end_of(
+        {.at = lowest,
+         .since = plan_.cycle.output_deadline,
+         .work = before + (inputs_may_follow_outputs() ? inputs : begun_before_output(lowest)),
+         .own = own,
+         .output = true});
+    if (services_in_queue()) return later(end, end_in_queue(lowest, before, own));
     const auto chains = busy_before(lowest);
     if (!chains) return std::nullopt;
     for (auto busy : *chains) {
@@ -308,18 +413,57 @@ class CycleAnalysis : CycleFrames {
     return end;
   }
 
+  Time begun_before_output(std::size_t lowest) const {
+    const Time begun =
+        blocking(lowest, [this](const TrafficFrame& other) { return comes_by_itself(other); });
+    return std::max(begun, longest_late_input(lowest));
+  }
+
+  /// TPDOs that need not have begun before the outputs.
+  void find_late_inputs() {
+    late_inputs_.assign(frames_.size(), false);
+    relieved_ = true;
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (!is_input(frames_[i])) continue;
+      const auto end = end_of_input(i, any_cycle, input_work(i, any_cycle));
+      late_inputs_[i] = !end || *end > plan_.cycle.output_deadline;
+    }
+    relieved_ = false;
+  }
+
+  Time longest_late_input(std::size_t lowest) const {
+    Time longest{};
+    for (std::size_t k = lowest + 1; k < frames_.size(); ++k) {
+      if (late_inputs_[k]) longest = std::max(longest, frames_[k].frame);
+    }
+    return longest;
+  }
+
+  /// TPDOs of its cycle that an output may meet.
+  Time inputs_around(std::size_t lowest) const {
+    Time inputs = blocking(lowest, [this](const TrafficFrame& other) {
+      return comes_by_itself(other) || is_input(other);
+    });
+    for (std::size_t k = 0; k < lowest; ++k) {
+      if (is_input(frames_[k])) inputs += frames_[k].burst * frames_[k].frame;
+    }
+    return inputs;
+  }
+
   std::vector<std::optional<Time>> bounds_;
   Time sync_jitter_{};  ///< of the arrival of another device's SYNC
   Time outputs_end_{};  ///< at the latest
+  Time services_end_{};
+  std::vector<bool> late_inputs_;  ///< before the outputs are
   LateSync late_ = LateSync::never;
   bool relieved_ = false;
 };
 
 }  // namespace
 
-std::vector<std::optional<Time>> cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
-                                              const BudgetOptions& options, Emcys emcys) {
-  return CycleAnalysis{traffic, plan, options, emcys}.run();
+CycleBounds cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
+                         const BudgetOptions& options, Company company) {
+  return CycleAnalysis{traffic, plan, options, company}.run();
 }
 
 }  // namespace takt

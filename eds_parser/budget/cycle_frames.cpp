@@ -6,13 +6,18 @@
 #include "eds_parser/frame_time.hpp"
 
 namespace takt {
+namespace {
+
+constexpr int cycles_to_relief = 3;
+
+}  // namespace
 
 CycleFrames::CycleFrames(const BusTraffic& traffic, const BusPlan& plan,
-                         const BudgetOptions& options, Emcys emcys)
+                         const BudgetOptions& options, Company company)
     : frames_{traffic.frames},
       plan_{plan},
       options_{options},
-      emcys_{emcys},
+      company_{company},
       bit_{wire_time(1, plan.bitrate)} {
   count_turns();
   find_ends_of_cycle();
@@ -24,6 +29,10 @@ void CycleFrames::find_ends_of_cycle() {
     if (is_output(frames_[i])) queue_.push_back(i);
     if (is_input(frames_[i])) inputs_work_ += frames_[i].burst * frames_[i].frame;
     if (is_output(frames_[i])) outputs_work_ += frames_[i].burst * frames_[i].frame;
+    if (!is_service(frames_[i])) continue;
+    services_work_ += frames_[i].burst * frames_[i].frame;
+    longest_service_ = std::max(longest_service_, frames_[i].frame);
+    lowest_service_ = i;
   }
   std::ranges::stable_sort(queue_, {}, [this](std::size_t i) { return frames_[i].cob_id; });
   for (const std::size_t i : queue_) lowest_output_ = std::max(lowest_output_, i);
@@ -80,6 +89,53 @@ Time CycleFrames::by_master(std::size_t at) const {
   for (std::size_t k = 0; k < at; ++k) {
     const auto& other = frames_[k];
     if (other.from_master && !other.in_cycle) sum += other.burst * other.frame;
+  }
+  return sum;
+}
+
+Time CycleFrames::room_for_services() const noexcept {
+  const Time inputs = sync_frame() + inputs_work_;
+  const Time from = std::min(inputs, plan_.cycle.receive_window);
+  return std::max((plan_.cycle.output_deadline - from) / 2, Time{0});
+}
+
+Time CycleFrames::services_in(int cycles) const noexcept {
+  if (has_room_for_services()) return std::min(services_due(cycles), cycles * room_for_services());
+  return (cycles + cycles_to_relief - 1) / cycles_to_relief * longest_service_;
+}
+
+/// Each kind once a cycle at most; what has a longer period comes once, and once each period.
+Time CycleFrames::services_due(int cycles) const noexcept {
+  Time sum{};
+  for (const auto& frame : frames_) {
+    if (!is_service(frame)) continue;
+    const auto periods = 2 + (cycles - 1) * plan_.cycle.period / frame.period;
+    const bool often = frame.period < plan_.cycle.period;
+    const auto times =
+        often ? cycles * (plan_.cycle.period / frame.period) : std::min<Time::rep>(periods, cycles);
+    sum += times * (frame.burst * frame.frame);
+  }
+  return sum;
+}
+
+Time CycleFrames::services_behind_window() const noexcept {
+  const Time room = (plan_.cycle.output_deadline - plan_.cycle.receive_window) / 2;
+  return std::min(services_in(1), std::max(room, Time{0}));
+}
+
+Time CycleFrames::answers_in(int rounds) const noexcept {
+  Time sum{};
+  for (const auto& frame : frames_) {
+    if (is_answer(frame)) sum += rounds * (frame.burst * frame.frame);
+  }
+  return sum;
+}
+
+Time CycleFrames::late_answers() const noexcept {
+  Time sum{};
+  for (const auto& frame : frames_) {
+    const auto nodes = std::min<std::size_t>(frame.burst, plan_.nodes.size());
+    if (is_answer(frame)) sum += static_cast<Time::rep>(nodes) * frame.frame;
   }
   return sum;
 }

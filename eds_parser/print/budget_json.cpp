@@ -50,6 +50,7 @@ Json row_json(const BudgetRow& row) {
             {"after_sync", row.cycle != Time{0}},
             {"worst_us", bound(row.worst)},
             {"worst_in_emcy_burst_us", bound(row.worst_in_burst)},
+            {"worst_behind_services_us", bound(row.worst_behind_services)},
             {"worst_without_changes_us", bound(row.worst_steady)},
             {"limit_us", row.why == BudgetLimit::none ? Json(nullptr) : Json(us(row.limit))},
             {"limit", name_of(row.why)},
@@ -86,6 +87,7 @@ void print_budget_json(std::ostream& out, const BusPlan& plan, const BusBudget& 
                       {"fits_in_emcy_burst", budget.fits_in_burst()},
                       {"fits_but_for_changes", budget.fits_but_for_changes()},
                       {"sync_delay_us", us(budget.sync_delay())},
+                      {"sync_delay_behind_services_us", bound(budget.sync_delay_behind_services())},
                       {"assumptions", budget.assumptions},
                       {"would_fit", std::move(would_fit)},
                       {"frames", std::move(rows)}};

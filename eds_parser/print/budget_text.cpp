@@ -86,9 +86,9 @@ class BudgetText {
     out_ << fmt::format(
         "\nthe cycle, in us after SYNC: TPDOs are awaited until {:.0f}, outputs go out at {:.0f}\n",
         us(std::min(cycle.receive_window, cycle.output_deadline)), us(cycle.output_deadline));
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11}\n", "COB-ID",
-                        "frame", width_, "bytes", "every", "on wire", "latest", "to window",
-                        "to SYNC", "with EMCYs");
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
+                        "COB-ID", "frame", width_, "bytes", "every", "on wire", "latest",
+                        "to window", "to SYNC", "with EMCYs", "behind SDO");
     std::vector<const BudgetRow*> rows;
     for (const auto& row : budget_.rows) {
       if (row.frame.in_cycle) rows.push_back(&row);
@@ -97,19 +97,20 @@ class BudgetText {
       return std::pair{row->frame.kind == Traffic::rpdo, row->worst.value_or(Time::max())};
     });
     for (const auto* row : rows) {
-      out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11}{}\n",
-                          to_string(row->frame.cob_id), row->frame.name, width_, row->frame.bytes,
-                          every(*row), us(row->frame.frame), bound(row->worst), to_limit(*row),
-                          to_cycle(*row), bound(row->worst_in_burst), mark(*row));
+      out_ << fmt::format(
+          "  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11} {:>10}{}\n",
+          to_string(row->frame.cob_id), row->frame.name, width_, row->frame.bytes, every(*row),
+          us(row->frame.frame), bound(row->worst), to_limit(*row), to_cycle(*row),
+          bound(row->worst_in_burst), bound(row->worst_behind_services), mark(*row));
     }
   }
 
   /// Many alike are one line: that of the worst.
   void other_frames() {
     out_ << "\nother frames, in us from being queued to their end\n";
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11}\n", "COB-ID",
-                        "frame", width_, "bytes", "every", "on wire", "worst", "margin", "limit",
-                        "with EMCYs");
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
+                        "COB-ID", "frame", width_, "bytes", "every", "on wire", "worst", "margin",
+                        "limit", "with EMCYs", "behind SDO");
     for (const auto& row : budget_.rows) {
       if (row.frame.in_cycle) continue;
       const std::size_t alike = count_alike(row);
@@ -122,10 +123,10 @@ class BudgetText {
   }
 
   void other_frame(const BudgetRow& row, const std::string& name) {
-    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11}{}\n",
+    out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8.0f} {:>8} {:>10} {:>9} {:>11} {:>10}{}\n",
                         to_string(row.frame.cob_id), name, width_, row.frame.bytes, every(row),
                         us(row.frame.frame), bound(row.worst), to_limit(row), limit(row),
-                        bound(row.worst_in_burst), mark(row));
+                        bound(row.worst_in_burst), bound(row.worst_behind_services), mark(row));
   }
 
   static bool alike(const BudgetRow& a, const BudgetRow& b) {
@@ -182,9 +183,22 @@ class BudgetText {
           "warning: behind the outputs SYNC can be {:.0f} us late, if all of that comes at once\n",
           us(budget_.sync_delay()));
     }
+    warn_of_services();
     if (budget_.fits_in_burst()) return;
     out_ << "warning: while every node sends an EMCY at once, these can be late:\n";
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
+  }
+
+  /// No verdict: for that a server must be late, and all that comes by itself come just then.
+  void warn_of_services() {
+    const Time tolerated = plan_.cycle.period / 10;
+    const auto delay = budget_.sync_delay_behind_services();
+    if (!plan_.cycle.makes_sync() || (delay && *delay <= tolerated)) return;
+    out_ << "warning: SDO and other service frames leave the queue of SYNC and the outputs; behind "
+            "some that wait in it\n";
+    out_ << (delay ? fmt::format("SYNC can be {:.0f} us late", us(*delay))
+                   : std::string{"SYNC can be late, and no bound was found for that"});
+    out_ << ": while servers answer late and all that comes by itself comes at once\n";
   }
 
   void refusal() {

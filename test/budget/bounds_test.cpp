@@ -16,6 +16,8 @@ unsigned networks() {
   return text == nullptr ? 100 : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 
+using Bound = std::optional<Time> BudgetRow::*;
+
 /// Nothing is left for a later cycle, and the outputs delay SYNC by no more than is tolerated.
 bool has_all_bounds(const BusBudget& budget) {
   return std::ranges::all_of(budget.rows, [](const BudgetRow& row) {
@@ -63,14 +65,13 @@ void take_worst(SeenBus& seen, const SeenBus& more) {
   }
 }
 
-void expect_within_bounds(const BusBudget& budget, const SeenBus& seen, bool burst,
+void expect_within_bounds(const BusBudget& budget, const SeenBus& seen, Bound bound,
                           unsigned network) {
   EXPECT_EQ(seen.not_in_budget, 0U) << "network " << network;
   for (std::size_t i = 0; i < seen.rows.size(); ++i) {
     const auto& row = budget.rows[i];
-    const auto& bound = burst ? row.worst_in_burst : row.worst;
-    if (!bound || seen.rows[i].frames == 0) continue;
-    EXPECT_LE(seen.rows[i].worst, *bound) << row.frame.name << " of network " << network;
+    if (!(row.*bound) || seen.rows[i].frames == 0) continue;
+    EXPECT_LE(seen.rows[i].worst, *(row.*bound)) << row.frame.name << " of network " << network;
   }
 }
 
@@ -93,7 +94,27 @@ TEST(Budget, NoFrameIsLaterThanItsBound) {
     const auto seen =
         run_worst_phase(plan, budget, {.device_time = device_time, .cycles = 60}, random);
 
-    expect_within_bounds(budget, seen, false, network);
+    expect_within_bounds(budget, seen, &BudgetRow::worst, network);
+  }
+  EXPECT_GT(bounded, networks() / 3);
+  std::printf("%u of %u networks have all bounds\n", bounded, networks());
+}
+
+TEST(Budget, NoFrameIsLaterThanItsBoundBehindServiceFramesInOneQueue) {
+  unsigned bounded = 0;
+  for (unsigned n = 0; n < networks(); ++n) {
+    const unsigned network = first_network() + n;
+    sim::Random random{network};
+    const BusPlan plan = random_bus(random);
+    const Time device_time = std::chrono::microseconds{random.below(100)};
+    const auto budget = bus_budget(plan, {.device_time = device_time});
+    bounded += std::ranges::all_of(
+        budget.rows, [](const BudgetRow& row) { return row.worst_behind_services.has_value(); });
+
+    const auto seen = run_worst_phase(
+        plan, budget, {.device_time = device_time, .cycles = 60, .one_queue = true}, random);
+
+    expect_within_bounds(budget, seen, &BudgetRow::worst_behind_services, network);
   }
   EXPECT_GT(bounded, networks() / 3);
   std::printf("%u of %u networks have all bounds\n", bounded, networks());
@@ -153,7 +174,7 @@ TEST(Budget, NoFrameIsLaterThanItsBoundInABurstOfEmcys) {
     const auto seen =
         run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 30, .emcys = true}, random);
 
-    expect_within_bounds(budget, seen, true, network);
+    expect_within_bounds(budget, seen, &BudgetRow::worst_in_burst, network);
   }
 }
 

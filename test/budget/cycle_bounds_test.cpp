@@ -116,6 +116,30 @@ TEST(CycleBounds, ALateOutputMayHaveBegunBeforeTheSyncOfAnotherDevice) {
   EXPECT_EQ(latest_us(bus_budget(plan))[0], 160 + 55);
 }
 
+TEST(CycleBounds, LateAnswersHoldUpServiceFramesAndTheOutputsBehindThem) {
+  auto plan = hand_made_bus(3, 4ms);  // outputs at 4000 - 135 - 80 - 405
+  plan.cycle.service_frames = 3;
+  const auto budget = bus_budget(plan, {.device_time = 30us});
+
+  // NMT (75) and three requests (405) are handed over so that on a free wire they end with as long
+  // for answers before 3380. Of each of three nodes an answer is late (405), a heartbeat has begun.
+  const auto services = 3380us - 480us + 2 * 405us + 65us;
+  EXPECT_EQ(budget.rows[10].frame.name, "RPDO1 n3");
+  EXPECT_EQ(budget.rows[10].worst, 3380us + 135us + 3 * 135us);
+  EXPECT_EQ(budget.rows[10].worst_behind_services, services + 3 * 135us);
+  EXPECT_EQ(budget.sync_delay_behind_services(), services + 3 * 135us + 55us - 4000us - 190us);
+}
+
+TEST(CycleBounds, OneNodeOwesOneAnswer) {
+  auto plan = hand_made_bus(1, 4ms);
+  plan.cycle.service_frames = 8;
+
+  const auto budget = bus_budget(plan, {.device_time = 30us});
+
+  EXPECT_EQ(budget.rows[4].frame.name, "RPDO1 n1");
+  EXPECT_EQ(budget.rows[4].worst_behind_services, budget.rows[4].worst);
+}
+
 TEST(CycleBounds, AnNmtFrameRightBehindSyncMayMeetTheNextOneOnlyIfThePeriodIsThatShort) {
   auto plan = hand_made_bus(1, 73us);
   plan.pdos = {};

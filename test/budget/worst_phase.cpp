@@ -55,6 +55,7 @@ class WorstPhase {
       stream.sender = sender_of(i);
       bus_.node(stream.sender).faults.error = options.wire_errors;
       stream.next = Time{random_.below(1'000'000)};
+      if (traffic_[i].kind == Traffic::sdo && traffic_[i].sent == Sent::by_itself) answers_ = i;
     }
   }
 
@@ -83,7 +84,7 @@ class WorstPhase {
   /// Of the devices one for each identifier: what counts is the bus.
   sim::BusNodeIndex sender_of(std::size_t i) {
     const PlanFrame& what = traffic_[i];
-    if (what.sent == Sent::in_slack) return services_;
+    if (what.sent == Sent::in_slack) return options_.one_queue ? master_ : services_;
     if (what.sent == Sent::outputs) return master_;
     if (what.sent == Sent::sync && plan_.cycle.makes_sync()) return master_;
     for (std::size_t k = 0; k < i; ++k) {
@@ -107,7 +108,8 @@ class WorstPhase {
 
   void queue(std::size_t i, Time ready, Time since) {
     auto& stream = streams_[i];
-    if (bus_.queue(stream.sender, stream.frame, ready)) stream.queued.push_back(since);
+    if (!bus_.queue(stream.sender, stream.frame, ready)) return;
+    stream.queued.insert(std::ranges::upper_bound(stream.queued, since), since);
   }
 
   void begin_cycle() {
@@ -116,6 +118,7 @@ class WorstPhase {
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       if (traffic_[i].sent == Sent::sync) queue(i, sync_, sync_);
     }
+    if (options_.one_queue) answer_at_last();
     hurt_at(sync_);
   }
 
@@ -149,7 +152,8 @@ class WorstPhase {
   void relieve(Time sync_end) {
     std::vector<std::size_t> due;
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
-      if (traffic_[i].sent == Sent::in_slack && sync_end >= streams_[i].next) due.push_back(i);
+      if (traffic_[i].sent != Sent::in_slack || sync_end < streams_[i].next) continue;
+      if (traffic_[i].kind != Traffic::sdo || may_request()) due.push_back(i);
     }
     if (due.empty()) return;
     const std::size_t i = due[random_.below(static_cast<std::uint32_t>(due.size()))];
@@ -181,6 +185,7 @@ class WorstPhase {
       auto& stream = streams_[i];
       const auto& frame = traffic_[i];
       if (frame.sent != Sent::in_slack || now < stream.next) continue;
+      if (frame.kind == Traffic::sdo && !may_request()) continue;
       if (room < dialogue) {
         starved_ += served == 0;
         return;
@@ -203,6 +208,10 @@ class WorstPhase {
       const auto& frame = traffic_[i];
       auto& stream = streams_[i];
       if (frame.sent != Sent::by_itself || random_.chance(flood ? 0.05 : 0.2)) continue;
+      if (options_.one_queue && answers_ == i) {
+        answer(when);
+        continue;
+      }
       if (frame.burst > 1 && !flood) {
         dribble(i, when);
         continue;
@@ -219,6 +228,39 @@ class WorstPhase {
         stream.next += frame.distance;
       } while (flood && ready < when + plan_.cycle.period);
     }
+  }
+
+  /// Servers are as late as they like, but not by more than a round.
+  void answer(Time when) {
+    const unsigned most = random_.chance(0.6) ? 1000 : random_.below(4);
+    for (unsigned n = 0; n < most && !owed_.empty(); ++n) {
+      if (owed_.front() > when) return;
+      answer_one(when - (random_.chance(0.7) ? moment : Time{}));
+    }
+  }
+
+  /// What is due in this cycle. Of a long one a round is but a part.
+  void answer_at_last() {
+    while (!owed_.empty()) {
+      const Time latest = owed_.front() + traffic_[*answers_].distance;
+      if (latest > sync_ + plan_.cycle.period) return;
+      answer_one(std::max(latest, sync_));
+    }
+  }
+
+  /// A server that has not answered gets no other request.
+  void requested(Time end) {
+    owed_.push_back(end);
+    ++unanswered_;
+    if (options_.one_queue && unanswered_ > plan_.nodes.size()) answer_one(end);
+  }
+
+  bool may_request() const { return !options_.one_queue || unanswered_ < plan_.nodes.size(); }
+
+  void answer_one(Time when) {
+    const Time ready = std::max(when, owed_.front());
+    owed_.pop_front();
+    queue(*answers_, ready, ready);
   }
 
   /// Some of what comes at once, and the others later in its period.
@@ -284,6 +326,8 @@ class WorstPhase {
   void follow(std::size_t i, Time end) {
     const auto& frame = traffic_[i];
     if (frame.sent == Sent::sync) sync_arrived(end);
+    if (options_.one_queue && i == answers_) --unanswered_;
+    if (frame.kind == Traffic::sdo && frame.sent == Sent::in_slack) requested(end);
     if (frame.answer) {
       const Time ready = end + Time{random_.below(longest_answer)};
       queue(*frame.answer, ready, ready);
@@ -302,6 +346,9 @@ class WorstPhase {
   sim::BusNodeIndex master_ = 0;    ///< SYNC and outputs
   sim::BusNodeIndex services_ = 0;  ///< the master's other frames
   std::vector<Stream> streams_;
+  std::optional<std::size_t> answers_{};  ///< SDO
+  std::size_t unanswered_ = 0;            ///< or answers that are not through
+  std::deque<Time> owed_;                 ///< SDO requests without an answer; when they ended
   SeenBus seen_;
   unsigned cycle_ = 0;
   Time sync_{};

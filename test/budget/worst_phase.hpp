@@ -10,7 +10,10 @@ namespace takt {
 struct PhaseOptions {
   Time device_time{};
   unsigned cycles = 100;
-  bool emcys = false;      ///< one of each node, all at once
+  bool emcys = false;  ///< one of each node, all at once
+  /// The master's other frames wait in the queue of SYNC and outputs, as with SocketCAN; else they
+  /// have one of their own.
+  bool one_queue = false;
   double wire_errors = 0;  ///< share of the frames that are destroyed
 };
 
@@ -29,7 +32,6 @@ struct SeenBus {
 /// Lets the frames of a network run over the bit-accurate bus, at the moments that hurt most: data
 /// that stuff most, what comes by itself just before SYNC, the TPDOs and the outputs. What is sent,
 /// and how often, is the network's word; of the budget only the number of SDO dialogues is taken.
-/// The master's frames beside SYNC and outputs have a queue of their own here.
 SeenBus run_worst_phase(const BusPlan& plan, const BusBudget& budget, const PhaseOptions& options,
                         sim::Random random);
 
