@@ -130,13 +130,11 @@ SeenBus seen_on(const BusPlan& plan, const BusBudget& budget, sim::Random& rando
   return seen;
 }
 
-TEST(Budget, TheBoundsOfAFullBusAreWithinFifteenPercentOfTheWorstSeen) {
+TEST(Budget, EachBoundOfAFullBusIsWithinFifteenPercentOfTheWorstSeen) {
   constexpr double most = 1.15;
-  constexpr double most_of_rare = 1.25;  // some of the first TPDOs: all of their chances at once
   unsigned full = 0;
-  unsigned each = 0;
+  double worst_of_last = 0;
   double worst = 0;
-  double worst_of_each = 0;
   for (unsigned n = 0; n < networks(); ++n) {
     const unsigned network = first_network() + n;
     sim::Random random{network};
@@ -147,21 +145,15 @@ TEST(Budget, TheBoundsOfAFullBusAreWithinFifteenPercentOfTheWorstSeen) {
 
     const auto seen = seen_on(plan, budget, random, most);
 
-    const double last = widest(budget, seen);
     const double any = widest_of_each(budget, seen);
-    EXPECT_LE(last, most) << "the last PDOs of network " << network;
-    EXPECT_LE(any, most_of_rare) << "a PDO of network " << network;
-    worst = std::max(worst, last);
-    worst_of_each = std::max(worst_of_each, any);
-    each += any <= most;
+    EXPECT_LE(any, most) << "SYNC or a PDO of network " << network;
+    worst_of_last = std::max(worst_of_last, widest(budget, seen));
+    worst = std::max(worst, any);
     ++full;
   }
   EXPECT_GT(full, networks() / 5);
-  EXPECT_GE(each * 10, full * 9);
-  std::printf(
-      "bound / worst seen of %u full buses: %.3f at most of the last PDOs, %.3f of any; "
-      "on %u buses each is within 15 %%\n",
-      full, worst, worst_of_each, each);
+  std::printf("bound / worst seen of %u full buses: %.3f at most, %.3f of the last PDOs\n", full,
+              worst, worst_of_last);
 }
 
 TEST(Budget, NoFrameIsLaterThanItsBoundInABurstOfEmcys) {

@@ -115,6 +115,7 @@ class WorstPhase {
   void begin_cycle() {
     served_ = put_out_ = !plan_.cycle.makes_sync();
     awaited_ = 0;
+    calm_ = random_.chance(0.4);
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       if (traffic_[i].sent == Sent::sync) queue(i, sync_, sync_);
     }
@@ -163,16 +164,31 @@ class WorstPhase {
   }
 
   void queue_inputs(Time sync_end) {
-    const bool all_late = random_.chance(0.5);
+    std::vector<std::size_t> due;
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       const auto& frame = traffic_[i];
-      if (frame.sent != Sent::after_sync || cycle_ % frame.every != frame.turn) continue;
+      if (frame.sent == Sent::after_sync && cycle_ % frame.every == frame.turn) due.push_back(i);
+    }
+    const bool all_late = random_.chance(0.6);
+    const auto first = all_late && random_.chance(0.8) ? hurting_first(due) : std::nullopt;
+    for (const std::size_t i : due) {
       const auto limit = static_cast<std::uint32_t>(options_.device_time.count()) + 1;
-      const Time own = all_late ? options_.device_time : Time{random_.below(limit)};
+      Time own = all_late ? options_.device_time : Time{random_.below(limit)};
+      if (first == i) own = Time{0};
       queue(i, sync_end + own, sync_);
-      awaited_ += frame.awaited;
+      awaited_ += traffic_[i].awaited;
     }
     hurt_at(sync_end + options_.device_time);
+  }
+
+  /// The longest below some priority: it has begun when the others are ready.
+  std::optional<std::size_t> hurting_first(std::vector<std::size_t> due) {
+    if (due.empty()) return std::nullopt;
+    const auto rank = [this](std::size_t i) { return sim::arbitration_rank(streams_[i].frame); };
+    const auto length = [this](std::size_t i) { return sim::frame_bits(streams_[i].frame).total; };
+    std::ranges::sort(due, {}, rank);
+    const auto from = random_.below(static_cast<std::uint32_t>(due.size()));
+    return *std::ranges::max_element(due.begin() + from, due.end(), {}, length);
   }
 
   /// What the master has to send beside the cycle, as much as ends before the outputs.
@@ -202,7 +218,7 @@ class WorstPhase {
   /// What comes by itself comes now, if it may: of higher priority at once, the others one moment
   /// before, so that one of them has begun. In a flood it goes on as often as it may.
   void hurt_at(Time when) {
-    if (random_.chance(0.1)) return;
+    if (calm_ || random_.chance(0.1)) return;
     const bool flood = random_.chance(0.3);
     for (std::size_t i = 0; i < traffic_.size(); ++i) {
       const auto& frame = traffic_[i];
@@ -356,6 +372,7 @@ class WorstPhase {
   unsigned starved_ = 0;  ///< cycles
   bool served_ = false;
   bool put_out_ = false;
+  bool calm_ = false;  ///< what may come by itself waits for another cycle
 };
 
 }  // namespace
