@@ -1,6 +1,7 @@
 #include "eds_parser/budget/budget.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "eds_parser/budget/cycle_bounds.hpp"
 #include "eds_parser/cycle_compiler.hpp"
@@ -181,6 +182,33 @@ void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
   }
 }
 
+/// All but the columns that are no verdict.
+BusBudget judged(BusTraffic traffic, const BusPlan& plan, const BudgetOptions& options) {
+  const Bounds quiet = bounds(traffic, plan, options, {});
+  const Bounds steady = steady_bounds(traffic, plan, options);
+  BusBudget budget{.load = bus_load(traffic, plan.bitrate),
+                   .rows = {},
+                   .service_dialogues = traffic.service_dialogues,
+                   .service_round = traffic.service_round,
+                   .assumptions = std::move(traffic.assumptions),
+                   .refused = !fits_period(plan)};
+  limit_answers(traffic.frames, quiet);
+  std::optional<Time> sync_end;
+  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
+    if (traffic.frames[i].kind == Traffic::sync) sync_end = quiet[i];
+  }
+  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
+    BudgetRow row{.frame = std::move(traffic.frames[i]),
+                  .worst = quiet[i],
+                  .worst_in_burst = {},
+                  .worst_behind_services = {},
+                  .worst_steady = steady[i]};
+    set_limits(row, plan, next_sync(plan, sync_end));
+    budget.rows.push_back(std::move(row));
+  }
+  return budget;
+}
+
 }  // namespace
 
 bool BusBudget::fits() const noexcept {
@@ -212,31 +240,18 @@ std::optional<Time> BusBudget::sync_delay_behind_services() const noexcept {
   return *sync->worst_behind_services - *sync->worst;
 }
 
+bool bus_fits(const BusPlan& plan, const BudgetOptions& options) {
+  return judged(bus_traffic(plan, options), plan, options).fits();
+}
+
 BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options) {
   BusTraffic traffic = bus_traffic(plan, options);
-  const Bounds quiet = bounds(traffic, plan, options, {});
   const Bounds burst = bounds(traffic, plan, options, {.emcys = Emcys::one_of_each});
   const Bounds queue = bounds(traffic, plan, options, {.services = Services::in_queue});
-  const Bounds steady = steady_bounds(traffic, plan, options);
-  BusBudget budget{.load = bus_load(traffic, plan.bitrate),
-                   .rows = {},
-                   .service_dialogues = traffic.service_dialogues,
-                   .service_round = traffic.service_round,
-                   .assumptions = std::move(traffic.assumptions),
-                   .refused = !fits_period(plan)};
-  limit_answers(traffic.frames, quiet);
-  std::optional<Time> sync_end;
-  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
-    if (traffic.frames[i].kind == Traffic::sync) sync_end = quiet[i];
-  }
-  for (std::size_t i = 0; i < traffic.frames.size(); ++i) {
-    BudgetRow row{.frame = std::move(traffic.frames[i]),
-                  .worst = quiet[i],
-                  .worst_in_burst = burst[i],
-                  .worst_behind_services = queue[i],
-                  .worst_steady = steady[i]};
-    set_limits(row, plan, next_sync(plan, sync_end));
-    budget.rows.push_back(std::move(row));
+  BusBudget budget = judged(std::move(traffic), plan, options);
+  for (std::size_t i = 0; i < budget.rows.size(); ++i) {
+    budget.rows[i].worst_in_burst = burst[i];
+    budget.rows[i].worst_behind_services = queue[i];
   }
   return budget;
 }

@@ -62,4 +62,7 @@ struct BusBudget {
 
 BusBudget bus_budget(const BusPlan& plan, const BudgetOptions& options = {});
 
+/// The verdict of bus_budget() alone, in less time.
+bool bus_fits(const BusPlan& plan, const BudgetOptions& options = {});
+
 }  // namespace takt

@@ -38,7 +38,7 @@ class Search {
  private:
   bool fits(const WhatIf& changes) const {
     const auto plan = try_network_(changes);
-    return plan && bus_budget(*plan, options_).fits();
+    return plan && bus_fits(*plan, options_);
   }
 
   std::string label(const PdoRow& row, bool tpdo) const {

@@ -90,6 +90,7 @@ TEST(Budget, NoFrameIsLaterThanItsBound) {
     const Time device_time = std::chrono::microseconds{random.below(100)};
     const auto budget = bus_budget(plan, {.device_time = device_time});
     bounded += has_all_bounds(budget);
+    EXPECT_EQ(bus_fits(plan, {.device_time = device_time}), budget.fits()) << network;
 
     const auto seen =
         run_worst_phase(plan, budget, {.device_time = device_time, .cycles = 60}, random);
