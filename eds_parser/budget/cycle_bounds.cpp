@@ -323,6 +323,8 @@ class CycleAnalysis : CycleFrames {
     for (int round = 0; round < most_rounds; ++round) {
       const std::pair before{outputs_end_, services_end_};
       find_late_inputs();
+      if (services_in_queue())
+        before_queue_ = busy_before(std::max(lowest_output_, lowest_service_));
       if (!bound_services() || !bound_outputs()) return false;
       if (late_ == LateSync::never && sync_late() > Time{0}) return false;
       if (before == std::pair{outputs_end_, services_end_}) return true;
@@ -333,7 +335,7 @@ class CycleAnalysis : CycleFrames {
   /// Those of the queue that the outputs find before them.
   bool bound_services() {
     if (!services_in_queue()) return true;
-    const auto end = end_in_queue(lowest_service_, Time{0}, Time{0});
+    const auto end = end_in_queue(Time{0}, Time{0});
     if (!end) return false;
     services_end_ = std::max(services_end_, *end);
     return services_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
@@ -342,11 +344,10 @@ class CycleAnalysis : CycleFrames {
   /// The end of an output, or of nothing, behind the service frames of its cycle. They and the
   /// answers to them would be through before the outputs, were it not for what comes by itself
   /// meanwhile.
-  std::optional<Time> end_in_queue(std::size_t lowest, Time before, Time own) const {
-    const std::size_t at = std::max(lowest, lowest_service_);
+  std::optional<Time> end_in_queue(Time before, Time own) const {
+    const std::size_t at = std::max(lowest_output_, lowest_service_);
     const Time inputs = inputs_around(at);
-    const auto chains = busy_before(at);
-    if (!chains) return std::nullopt;
+    if (!before_queue_) return std::nullopt;
     const Time services = services_in(1);
     const Time begun = inputs_may_follow_outputs() ? inputs : begun_before_output(at);
     std::optional<Time> end = end_of({.at = at,
@@ -355,7 +356,7 @@ class CycleAnalysis : CycleFrames {
                                       .own = own,
                                       .output = true,
                                       .rounds = 2});
-    for (auto busy : *chains) {
+    for (auto busy : *before_queue_) {
       busy.own = own;
       busy.output = true;
       busy.since -= origin();
@@ -400,7 +401,7 @@ class CycleAnalysis : CycleFrames {
          .work = before + (inputs_may_follow_outputs() ? inputs : begun_before_output(lowest)),
          .own = own,
          .output = true});
-    if (services_in_queue()) return later(end, end_in_queue(lowest, before, own));
+    if (services_in_queue()) return later(end, end_in_queue(before, own));
     const auto chains = busy_before(lowest);
     if (!chains) return std::nullopt;
     for (auto busy : *chains) {
@@ -454,7 +455,8 @@ class CycleAnalysis : CycleFrames {
   Time sync_jitter_{};  ///< of the arrival of another device's SYNC
   Time outputs_end_{};  ///< at the latest
   Time services_end_{};
-  std::vector<bool> late_inputs_;  ///< before the outputs are
+  std::vector<bool> late_inputs_;                  ///< before the outputs are
+  std::optional<std::vector<Busy>> before_queue_;  ///< that may be, as of this round
   LateSync late_ = LateSync::never;
   bool relieved_ = false;
 };
