@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "eds_parser/budget/cycle_frames.hpp"
+#include "eds_parser/budget/busy_chains.hpp"
 #include "eds_parser/frame_time.hpp"
 
 namespace takt {
@@ -11,15 +11,14 @@ namespace {
 
 constexpr unsigned longest_data = 8;
 constexpr int most_rounds = 16;
-constexpr int longest_chain = 32;  // cycles
 
 using Bounds = std::vector<std::optional<Time>>;
 
-class CycleAnalysis : CycleFrames {
+class CycleAnalysis : BusyChains {
  public:
   CycleAnalysis(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
                 Company company)
-      : CycleFrames{traffic, plan, options, company}, bounds_(frames_.size()) {}
+      : BusyChains{traffic, plan, options, company}, bounds_(frames_.size()) {}
 
   CycleBounds run() {
     if (is_overloaded()) return {.ends = std::move(bounds_)};
@@ -30,190 +29,6 @@ class CycleAnalysis : CycleFrames {
   }
 
  private:
-  /// Frames that come by themselves since then, up to a priority, delay one of the cycle. The bus
-  /// is busy with these and with what certainly goes before it all the time.
-  struct Busy {
-    std::size_t at = 0;  ///< what is before it in `frames_` goes first
-    Time since{};
-    Time work{};  ///< that certainly goes before it
-    Time own{};
-    std::optional<std::size_t> input{};  ///< of a TPDO: the SYNC that it follows
-    bool output = false;
-    int rounds = 0;  ///< no more SDO answers than those to so many rounds of requests; 0: any
-  };
-
-  std::optional<Time> end_of(const Busy& busy) const {
-    Time longest = busy.own;
-    for (std::size_t k = 0; k < busy.at; ++k) longest = std::max(longest, frames_[k].frame);
-    for (Time waited = busy.work;;) {
-      const Time next = busy.work + by_themselves(0, busy.at, waited) - no_answers(busy, waited) +
-                        behind_next_sync(busy, waited) +
-                        error_time(waited + busy.own, options_.errors, bit_, longest);
-      if (next <= waited) return busy.since + waited + busy.own;
-      if (next > (longest_chain + 3) * plan_.cycle.period) return std::nullopt;
-      waited = next;
-    }
-  }
-
-  /// A round is that of one cycle, or longer. A server is late by one of them at most, and has no
-  /// other request then.
-  Time no_answers(const Busy& busy, Time waited) const {
-    if (busy.rounds == 0) return Time{0};
-    Time sum{};
-    for (std::size_t k = 0; k < busy.at; ++k) {
-      if (!is_answer(frames_[k]) || frames_[k].period < plan_.cycle.period) continue;
-      sum += by_themselves(k, k + 1, waited) - answers_in(busy.rounds - 1) - late_answers();
-    }
-    return std::max(sum, Time{0});
-  }
-
-  /// What comes with the outputs and the next SYNC, and goes before a frame that is as late.
-  Time behind_next_sync(const Busy& busy, Time waited) const {
-    // Behind late outputs the master's own SYNC waits, too.
-    if (!busy.input && (!busy.output || plan_.cycle.makes_sync())) return Time{0};
-    const Time until = busy.since + waited + bit_ + sync_jitter_;
-    Time sum{};
-    if (busy.input && until > plan_.cycle.receive_window) sum += by_master(busy.at);
-    for (std::size_t cycle = 0;; ++cycle) {
-      const Time sync = static_cast<Time::rep>(cycle) * plan_.cycle.period;
-      if (sync - origin() > until) return sum;
-      if (cycle != 0) {
-        sum += sync_frame() + inputs_before(busy.at, busy.input.value_or(any_cycle) + cycle);
-        if (busy.output) sum += by_master(busy.at);
-      }
-      if (busy.input && sync + plan_.cycle.output_deadline <= until) {
-        sum += outputs_before(busy.at, cycle);
-      }
-    }
-  }
-
-  /// What to make of it that outputs may end behind the next SYNC, which leaves the same queue.
-  enum class LateSync : std::uint8_t {
-    never,        ///< they do not
-    follows_up,   ///< a chain of them, each with the time that the devices take to answer
-    at_any_time,  ///< each for itself is as late as it may
-  };
-
-  static std::optional<Time> later(std::optional<Time> a, std::optional<Time> b) {
-    return a && b ? std::optional{std::max(*a, *b)} : std::nullopt;
-  }
-
-  static std::optional<Time> sooner(std::optional<Time> a, std::optional<Time> b) {
-    return a && b ? std::optional{std::min(*a, *b)} : a ? a : b;
-  }
-
-  /// The bus has been busy since the outputs so many cycles ago: with them, with SYNC, and with all
-  /// of the cycles between.
-  Busy busy_since_outputs(std::size_t at, int cycles) const {
-    const int inputs = cycles - (inputs_may_follow_outputs() ? 0 : 1);
-    Busy busy{.at = at,
-              .since = plan_.cycle.output_deadline - cycles * plan_.cycle.period + sync_jitter_,
-              .work = outputs_blocking_ + cycles * (outputs_work_ + sync_frame()) +
-                      inputs * inputs_work_};
-    if (services_count(at)) {
-      busy.since -= 2 * services_in(1);
-      busy.work += services_in(cycles);
-      busy.rounds = cycles + 1;
-    } else {
-      busy.since += outputs_wait();
-    }
-    if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
-    return busy;
-  }
-
-  /// The bus has been busy since SYNC so many cycles ago, and the devices have computed since.
-  Busy busy_since_sync(std::size_t at, int cycles) const {
-    Busy busy{.at = at, .since = -cycles * plan_.cycle.period};
-    busy.work = sync_blocking() + sync_frame() + options_.device_time;
-    if (late_ == LateSync::at_any_time)
-      busy.work += std::max(sync_late() - sync_blocking(), Time{0});
-    if (cycles == 0) return busy;
-    busy.since += sync_jitter_;
-    busy.work += gap_blocking() + cycles * (sync_frame() + inputs_work_ + outputs_work_);
-    if (services_count(at)) {
-      busy.work += 2 * services_behind_window() + services_in(cycles - 1);
-      busy.rounds = cycles;
-    }
-    if (late_ == LateSync::follows_up) busy.work += follow_up(busy, cycles);
-    return busy;
-  }
-
-  /// The bus has been busy since SYNC, too, but with no more service frames than fitted in before
-  /// those outputs with their answers.
-  Busy busy_until_outputs(std::size_t at, int cycles) const {
-    Busy busy = busy_since_outputs(at, cycles);
-    const Time since = -cycles * plan_.cycle.period;
-    busy.work += busy.since - since;
-    busy.since = since;
-    return busy;
-  }
-
-  /// In each of the cycles the time that devices need, and what may begin in it, but for the last
-  /// beginning; and what goes before the lowest of the master's queue, though not before `at`.
-  Time follow_up(const Busy& busy, int cycles) const {
-    const Time within = sync_late() - busy.since;
-    const auto lowest =
-        services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
-    return cycles * options_.device_time + (cycles - 1) * gap_blocking() +
-           by_themselves(std::min(busy.at, lowest), lowest, within);
-  }
-
-  /// SYNC waits behind the outputs before it: they leave one queue.
-  Time sync_late() const noexcept {
-    if (!plan_.cycle.makes_sync()) return Time{0};
-    return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
-  }
-
-  /// The frames of one queue go as far down as its lowest.
-  bool waits_for_services(std::size_t at) const noexcept {
-    return services_in_queue() && at >= lowest_service_;
-  }
-
-  /// Or what waits for SYNC, which leaves that queue.
-  bool services_count(std::size_t at) const noexcept {
-    return waits_for_services(at) || (services_in_queue() && late_ == LateSync::follows_up);
-  }
-
-  Time outputs_wait() const noexcept {
-    return std::max(services_end_ - plan_.cycle.output_deadline, Time{0});
-  }
-
-  /// What SYNC may wait for. A service frame that goes out right behind the SYNC before is still
-  /// there only if the period is that short.
-  Time sync_blocking() const noexcept {
-    const Time relieved = sync_late() + sync_blocking_ + sync_frame() + services_before_sync_;
-    return sync_blocking_ + (relieved > plan_.cycle.period ? services_before_sync_ : Time{0});
-  }
-
-  bool inputs_may_follow_outputs() const noexcept {
-    return sync_late() + sync_blocking() + sync_frame() + options_.device_time >
-           plan_.cycle.output_deadline;
-  }
-
-  /// What may begin while devices compute.
-  Time gap_blocking() const noexcept {
-    return options_.device_time > Time{0} ? outputs_blocking_ : Time{0};
-  }
-
-  /// Where the bus is busy for longer than a cycle, the worst need not be in the first one.
-  /// None: it may be busy for ever.
-  std::optional<std::vector<Busy>> busy_before(std::size_t at) const {
-    std::vector<Busy> all{busy_since_sync(at, 0)};
-    for (int cycles = 1; cycles <= longest_chain; ++cycles) {
-      const Busy outputs = busy_since_outputs(at, cycles);
-      const Busy sync = busy_since_sync(at, cycles);
-      all.push_back(outputs);
-      all.push_back(sync);
-      auto end = later(end_of(outputs), end_of(sync));
-      if (services_count(at)) {
-        all.push_back(busy_until_outputs(at, cycles));
-        end = later(end, end_of(all.back()));
-      }
-      if (end && *end <= sync_frame()) return all;
-    }
-    return std::nullopt;
-  }
-
   /// The master's own frames leave one queue: outputs delay SYNC.
   void bound_sync() {
     if (!sync_) return;
@@ -310,7 +125,7 @@ class CycleAnalysis : CycleFrames {
 
   /// False: there is no end to it.
   bool find_outputs() {
-    for (const auto late : {LateSync::never, LateSync::follows_up, LateSync::at_any_time}) {
+    for (const auto late : {LateSync::in_time, LateSync::follows_up, LateSync::at_any_time}) {
       late_ = late;
       outputs_end_ = services_end_ = Time{0};
       if (settle_outputs()) return true;
@@ -326,7 +141,7 @@ class CycleAnalysis : CycleFrames {
       if (services_in_queue())
         before_queue_ = busy_before(std::max(lowest_output_, lowest_service_));
       if (!bound_services() || !bound_outputs()) return false;
-      if (late_ == LateSync::never && sync_late() > Time{0}) return false;
+      if (late_ == LateSync::in_time && sync_late() > Time{0}) return false;
       if (before == std::pair{outputs_end_, services_end_}) return true;
     }
     return false;
@@ -452,12 +267,8 @@ class CycleAnalysis : CycleFrames {
   }
 
   std::vector<std::optional<Time>> bounds_;
-  Time sync_jitter_{};  ///< of the arrival of another device's SYNC
-  Time outputs_end_{};  ///< at the latest
-  Time services_end_{};
   std::vector<bool> late_inputs_;                  ///< before the outputs are
   std::optional<std::vector<Busy>> before_queue_;  ///< that may be, as of this round
-  LateSync late_ = LateSync::never;
   bool relieved_ = false;
 };
 
