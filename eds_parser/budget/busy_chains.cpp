@@ -13,7 +13,7 @@ std::optional<Time> BusyChains::end_of(const Busy& busy) const {
   Time longest = busy.own;
   for (std::size_t k = 0; k < busy.at; ++k) longest = std::max(longest, frames_[k].frame);
   for (Time waited = busy.work;;) {
-    const Time next = busy.work + by_themselves(0, busy.at, waited) - no_answers(busy, waited) +
+    const Time next = busy.work + from_devices(0, busy.at, busy.rounds, waited) +
                       behind_next_sync(busy, waited) +
                       error_time(waited + busy.own, options_.errors, bit_, longest);
     if (next <= waited) return busy.since + waited + busy.own;
@@ -22,14 +22,15 @@ std::optional<Time> BusyChains::end_of(const Busy& busy) const {
   }
 }
 
-Time BusyChains::no_answers(const Busy& busy, Time waited) const {
-  if (busy.rounds == 0) return Time{0};
-  Time sum{};
-  for (std::size_t k = 0; k < busy.at; ++k) {
+Time BusyChains::from_devices(std::size_t first, std::size_t end, int rounds, Time within) const {
+  const Time all = by_themselves(first, end, within);
+  if (rounds == 0) return all;
+  Time too_many{};
+  for (std::size_t k = first; k < end; ++k) {
     if (!is_answer(frames_[k]) || frames_[k].period < plan_.cycle.period) continue;
-    sum += by_themselves(k, k + 1, waited) - answers_in(busy.rounds - 1) - late_answers();
+    too_many += by_themselves(k, k + 1, within) - answers_in(rounds - 1) - late_answers();
   }
-  return std::max(sum, Time{0});
+  return all - std::max(too_many, Time{0});
 }
 
 Time BusyChains::behind_next_sync(const Busy& busy, Time waited) const {
@@ -93,10 +94,9 @@ BusyChains::Busy BusyChains::busy_until_outputs(std::size_t at, int cycles) cons
 
 Time BusyChains::follow_up(const Busy& busy, int cycles) const {
   const Time within = sync_late() - busy.since;
-  const auto lowest =
-      services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
+  const std::size_t lowest = lowest_queued();
   return cycles * options_.device_time + (cycles - 1) * gap_blocking() +
-         by_themselves(std::min(busy.at, lowest), lowest, within);
+         from_devices(std::min(busy.at, lowest), lowest, busy.rounds, within);
 }
 
 std::optional<std::vector<BusyChains::Busy>> BusyChains::busy_before(std::size_t at) const {

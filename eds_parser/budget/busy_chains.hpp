@@ -35,9 +35,10 @@ class BusyChains : protected CycleFrames {
 
   std::optional<Time> end_of(const Busy& busy) const;
 
-  /// A round is that of one cycle, or longer. A server is late by one of them at most, and has no
-  /// other request then.
-  Time no_answers(const Busy& busy, Time waited) const;
+  /// What comes by itself, with no more SDO answers than those to so many rounds of requests (0:
+  /// any). A round is that of one cycle, or longer. A server is late by one of them at most, and
+  /// has no other request then.
+  Time from_devices(std::size_t first, std::size_t end, int rounds, Time within) const;
 
   /// What comes with the outputs and the next SYNC, and goes before a frame that is as late.
   Time behind_next_sync(const Busy& busy, Time waited) const;
@@ -97,9 +98,16 @@ class BusyChains : protected CycleFrames {
            plan_.cycle.output_deadline;
   }
 
-  /// What may begin while devices compute.
-  Time gap_blocking() const noexcept {
-    return options_.device_time > Time{0} ? outputs_blocking_ : Time{0};
+  /// The lowest of what leaves the master's queue.
+  std::size_t lowest_queued() const noexcept {
+    return services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
+  }
+
+  /// What may begin while devices compute; in a chain that is not counted anyway.
+  Time gap_blocking() const {
+    if (options_.device_time == Time{0}) return Time{0};
+    const bool counted = services_in_queue() && late_ == LateSync::follows_up;
+    return counted ? queue_blocking_ : outputs_blocking_;
   }
 
   /// Where the bus is busy for longer than a cycle, the worst need not be in the first one.

@@ -138,8 +138,7 @@ class CycleAnalysis : BusyChains {
     for (int round = 0; round < most_rounds; ++round) {
       const std::pair before{outputs_end_, services_end_};
       find_late_inputs();
-      if (services_in_queue())
-        before_queue_ = busy_before(std::max(lowest_output_, lowest_service_));
+      if (services_in_queue()) before_queue_ = busy_before(lowest_queued());
       if (!bound_services() || !bound_outputs()) return false;
       if (late_ == LateSync::in_time && sync_late() > Time{0}) return false;
       if (before == std::pair{outputs_end_, services_end_}) return true;
@@ -160,7 +159,7 @@ class CycleAnalysis : BusyChains {
   /// answers to them would be through before the outputs, were it not for what comes by itself
   /// meanwhile.
   std::optional<Time> end_in_queue(Time before, Time own) const {
-    const std::size_t at = std::max(lowest_output_, lowest_service_);
+    const std::size_t at = lowest_queued();
     const Time inputs = inputs_around(at);
     if (!before_queue_) return std::nullopt;
     const Time services = services_in(1);

@@ -44,6 +44,7 @@ void CycleFrames::find_ends_of_cycle() {
   if (sync_) sync_blocking_ = blocking(*sync_, meets_sync);
   if (sync_) services_before_sync_ = by_master(*sync_);
   outputs_blocking_ = blocking(lowest_output_, by_itself);
+  queue_blocking_ = blocking(std::max(lowest_output_, lowest_service_), by_itself);
 }
 
 bool CycleFrames::is_overloaded() const noexcept {

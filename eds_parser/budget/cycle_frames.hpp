@@ -88,6 +88,7 @@ class CycleFrames {
   Time inputs_work_{};
   Time outputs_work_{};
   Time outputs_blocking_{};
+  Time queue_blocking_{};  ///< services and outputs
   Time sync_blocking_{};
   Time services_work_{};  ///< all kinds, once
   Time longest_service_{};
