@@ -88,6 +88,7 @@ void SdoClient::drop() noexcept {
   state_ = State::idle;
   deadline_ = never;
   block_refused_ = false;
+  block_ended_ = false;
   late_segments_ = false;
   to_send_.reset();
   result_.reset();
@@ -149,6 +150,7 @@ void SdoClient::finish(SdoResult result) noexcept {
   state_ = State::idle;
   deadline_ = never;
   given_up_.reset();
+  block_ended_ = false;
   late_segments_ = false;
   result_ = result;
 }
@@ -167,6 +169,11 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
       state_ == State::block_upload && block_upload_.in_sub_block() && frame.data[0] != 0x80;
   if (segment) return frame.length == 8 || (frame.length > 1 && (frame.data[0] & 0x80) != 0);
   return frame.length >= sdo_answer_bytes(frame);
+}
+
+/// CAN repeats a frame now and then. The end of a block transfer, come once more, begins nothing.
+bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
+  return in_initiate() && !is_block_accept(frame) && !is_block_initiate(frame);
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
@@ -188,6 +195,8 @@ void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
       return on_download_segment_confirmed(frame);
     case SdoAnswer::block_download:
     case SdoAnswer::block_upload:
+      if (is_of_earlier_block(frame)) return;
+      [[fallthrough]];
     case SdoAnswer::reserved:
       last_received_ = frame;
       return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
@@ -199,6 +208,14 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   // was given up before this one.
   const ObjectKey object = sdo_object(frame);
   if (given_up_ == object && object != object_) return;
+  // The server heard our end of the block transfer before this one twice: an end without a
+  // transfer.
+  const bool of_end = block_ended_ && in_initiate() && object != object_ &&
+                      sdo_abort_code(frame) == abort_code::command_unknown;
+  if (of_end) {
+    block_ended_ = false;
+    return;
+  }
   last_received_ = frame;
   if (fall_back(sdo_abort_code(frame))) return;
   settled_ = {.fault = SdoFault::aborted_by_device,
@@ -243,10 +260,14 @@ void SdoClient::on_block(const Frame& frame, Time now) noexcept {
     case SdoBlockStep::Kind::done:
       break;
   }
-  if (!upload) return finish({.size = value_.size()});
-  to_send_ = block_upload_.to_send();
-  const std::size_t size = block_upload_.received();
-  finish({.size = size, .shortened = size < block_upload_.announced().value_or(0)});
+  if (upload) {
+    to_send_ = block_upload_.to_send();
+    const std::size_t size = block_upload_.received();
+    finish({.size = size, .shortened = size < block_upload_.announced().value_or(0)});
+  } else {
+    finish({.size = value_.size()});
+  }
+  block_ended_ = true;
 }
 
 void SdoClient::on_upload_initiate(const Frame& frame) noexcept {

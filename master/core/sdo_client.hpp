@@ -79,7 +79,7 @@ class SdoClient {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(block_refused_, late_segments_, object_, given_up_);
+    state(block_refused_, block_ended_, late_segments_, object_, given_up_);
   }
 
  private:
@@ -111,6 +111,7 @@ class SdoClient {
   void on_block(const Frame& frame, Time now) noexcept;
   bool fall_back(std::uint32_t code) noexcept;
   bool is_whole(const Frame& frame) const noexcept;
+  bool is_of_earlier_block(const Frame& frame) const noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
   void on_upload_segment(const Frame& frame) noexcept;
   void on_download_confirmed(const Frame& frame) noexcept;
@@ -124,6 +125,7 @@ class SdoClient {
   bool toggle_ = false;
   bool last_segment_sent_ = false;
   bool block_refused_ = false;  ///< the device knows no block transfer
+  bool block_ended_ = false;    ///< well, by the transfer before this one
   bool late_segments_ = false;  ///< of a block upload that was given up may still come
   ObjectKey object_;
   std::optional<ObjectKey> given_up_;  ///< object of a transfer whose answer may still come

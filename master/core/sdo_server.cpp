@@ -62,6 +62,9 @@ void SdoServer::on_frame(const Frame& frame, Time now, Orders orders) noexcept {
 }
 
 void SdoServer::on_initiate(const Frame& frame) noexcept {
+  // A block transfer that has ended already: CAN repeats a frame now and then. An abort would hit
+  // the next request of the client.
+  if (is_block_end(frame) || is_block_end_confirm(frame)) return;
   object_ = sdo_object(frame);
   toggle_ = false;
   in_block_ = 0;

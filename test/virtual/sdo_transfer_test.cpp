@@ -249,6 +249,21 @@ TEST_F(SdoTransfers, AreAbortedOnTheBusWhenTheyAreCalledOff) {
   expect_downloaded(500);
 }
 
+TEST_F(SdoTransfers, StandFramesOfTheDeviceThatComeTwice) {
+  start();
+  sim::Fault twice;
+  twice.kind = sim::FaultKind::duplicate;
+  twice.node = 1_node;
+  twice.probability = 1;
+  twice.at = rig->world->now();
+  rig->world->add(twice);
+  for (const std::size_t size : {4U, 300U, 4U, 1000U}) {
+    SCOPED_TRACE(size);
+    expect_downloaded(size);
+    expect_uploaded(size);
+  }
+}
+
 TEST_F(SdoTransfers, SurviveALossyWire) {
   start();
   for (const double probability : {0.001, 0.01}) {

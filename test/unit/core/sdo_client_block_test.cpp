@@ -242,5 +242,72 @@ TEST_F(SdoClientBlock, IgnoresLateSegmentsOfABlockThatWasGivenUp) {
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
 }
 
+TEST_F(SdoClientBlock, TheEndOfADownloadThatCanRepeatsEndsNothingElse) {
+  download(128);
+  sends_some(1);
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+  sends_some(19);
+  hears(rx({0xA2, 0x13, 0x7F}));
+  sends_some(1);
+  hears(rx({0xA1}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+
+  client.upload({0x1018, 1}, buffer, 500ms);
+  sends(tx({0x40, 0x18, 0x10, 0x01}));
+  hears(rx({0xA1}));
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));  // it heard our end twice
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+}
+
+TEST_F(SdoClientBlock, TheEndOfAnUploadThatCanRepeatsEndsNothingElse) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends_some(1);
+  hears(rx({0xC2, 0x21, 0x10, 0x00, 0x02}));
+  sends_some(1);
+  hears(segment(0x81, {1, 2}));
+  sends_some(1);
+  hears(rx({0xD5}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+  sends(tx({0xA1}));
+
+  value_.assign(4, std::byte{0x55});
+  client.download({0x6081, 0}, value_, 500ms);
+  sends_some(1);
+  hears(rx({0xD5}));
+  hears(rx({0x80, 0x21, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));  // it heard our end twice
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x60, 0x81, 0x60, 0x00}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+}
+
+TEST_F(SdoClientBlock, OnlyOneAbortIsTakenForThatOfARepeatedEnd) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends_some(1);
+  hears(rx({0xC2, 0x21, 0x10, 0x00, 0x02}));
+  sends_some(1);
+  hears(segment(0x81, {1, 2}));
+  sends_some(1);
+  hears(rx({0xD5}));
+  client.take_result();
+  sends_some(1);
+
+  client.upload({0x1018, 1}, buffer, 500ms);
+  sends_some(1);
+  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.take_result());
+  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_EQ(client.take_result()->abort_code, 0x05040001U);
+}
+
+TEST_F(SdoClientBlock, ABlockAnswerToAPlainRequestIsAFaultOfTheServer) {
+  client.upload({0x1018, 1}, buffer, 500ms);
+  sends_some(1);
+  hears(rx({0xC6, 0x18, 0x10, 0x01, 0x04}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::aborted_by_master);
+}
+
 }  // namespace
 }  // namespace takt

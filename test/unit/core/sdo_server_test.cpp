@@ -214,5 +214,19 @@ TEST_F(OwnServer, NeverAnswersAnAbort) {
   EXPECT_EQ(ask({0x40, 0x19, 0x10, 0x00}).size(), 1U);
 }
 
+TEST_F(OwnServer, DoesNotAnswerTheEndOfABlockTransferThatCanHasRepeated) {
+  ask({0xA4, 0x08, 0x10, 0x00, 0x7F});
+  ask({0xA3});
+  ask({0xA2, 0x03, 0x7F});
+  EXPECT_EQ(ask({0xA1}), Frames{});
+  EXPECT_EQ(ask({0xA1}), Frames{});
+
+  ask({0xC2, 0x82, 0x1F, 0x05, 0x01});
+  ask({0x81, 0x05});
+  server.on_frame(request({0xD9}), now, orders);
+  server.on_frame(request({0xD9}), now, orders);
+  EXPECT_EQ(answers(), Frames{answer({0xA1})});
+}
+
 }  // namespace
 }  // namespace takt
