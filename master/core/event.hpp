@@ -66,6 +66,8 @@ enum class EventKind : std::uint8_t {
   bootup_again,      ///< a boot-up message of a node that was ready
   node_replaced,     ///< another serial number than before; value: new, detail: old
   firmware_differs,  ///< from what the device data were taken for; value: Firmware::packed
+  no_sdo_block,      ///< its SDO server knows none: all goes by segments until it is reset; value:
+                     ///< abort code, 0: it gave no answer; detail: index << 8 | sub
   program_progress,  ///< value: bytes that the device has taken, detail: of how many
   lss_assigned,      ///< the node had no id and has got it; value: its serial number
   lss_not_assigned,  ///< it was found without id, but did not take it; bytes: op, outcome, error,

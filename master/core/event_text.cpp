@@ -110,6 +110,18 @@ std::string lss_trouble_text(const Event& event) {
          lss_failure_text(result);
 }
 
+std::string no_block_text(const Event& event) {
+  const auto object = to_string(ObjectKey{static_cast<std::uint16_t>(event.detail >> 8U),
+                                          static_cast<std::uint8_t>(event.detail)});
+  const std::string what = event.value == 0
+                               ? "gives no answer to SDO block transfer (" + object + ")"
+                               : "refuses SDO block transfer (" + object + ", " +
+                                     abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+  return what +
+         ": this transfer and all others go by segments until the node is reset; "
+         "`sdo_block: never` of this node saves the attempt";
+}
+
 std::string firmware_line(const BusPlan& plan, const Event& event) {
   const NodePlan* const node = plan.find(event.node);
   if (node == nullptr || !node->firmware) return "another firmware than planned";
@@ -147,6 +159,8 @@ std::string node_line(const BusPlan& plan, const Event& event) {
              "; `serial_number` in the network file would refuse it";
     case EventKind::firmware_differs:
       return firmware_line(plan, event);
+    case EventKind::no_sdo_block:
+      return no_block_text(event);
     case EventKind::program_progress:
       return "program download: " + std::to_string(event.value) + " of " +
              std::to_string(event.detail) + " bytes";

@@ -30,6 +30,8 @@ std::string_view name(EventKind kind) noexcept {
       return "firmware_differs";
     case EventKind::node_replaced:
       return "node_replaced";
+    case EventKind::no_sdo_block:
+      return "no_sdo_block";
     case EventKind::program_progress:
       return "program_progress";
     case EventKind::unlisted_node:

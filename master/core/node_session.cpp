@@ -36,6 +36,10 @@ void NodeSession::start(Time now) noexcept {
 }
 
 void NodeSession::advance(Time now) noexcept {
+  if (const auto none = client_.take_no_block()) {
+    tell(EventKind::no_sdo_block, now, none->abort_code,
+         std::uint32_t{none->object.index} << 8U | none->object.sub);
+  }
   if (booting()) follow_boot(now);
   if (booting()) return;
   follow_request(now);

@@ -37,6 +37,7 @@ bool refuses_block(std::uint32_t code) noexcept {
 void SdoClient::upload(ObjectKey object, std::span<std::byte> buffer, Time timeout,
                        SdoMode mode) noexcept {
   buffer_ = buffer;
+  uploads_ = true;
   const bool block = mode == SdoMode::block && blocks();
   begin(block ? State::block_upload : State::upload_initiate, object, timeout);
 }
@@ -44,6 +45,7 @@ void SdoClient::upload(ObjectKey object, std::span<std::byte> buffer, Time timeo
 void SdoClient::download(ObjectKey object, std::span<const std::byte> value,
                          Time timeout) noexcept {
   value_ = value;
+  uploads_ = false;
   const bool block = value.size() >= block_from && blocks();
   begin(block ? State::block_download : State::download_initiate, object, timeout);
 }
@@ -55,6 +57,7 @@ void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   last_sent_ = {};
   last_received_ = {};
   done_ = 0;
+  block_unheard_ = false;
   if (state != State::block_upload && state != State::block_download) return begin_plain(state);
   state_ = state;
   deadline_ = never;
@@ -92,10 +95,15 @@ void SdoClient::drop() noexcept {
   late_segments_ = false;
   to_send_.reset();
   result_.reset();
+  no_block_.reset();
 }
 
 std::optional<SdoResult> SdoClient::take_result() noexcept {
   return std::exchange(result_, std::nullopt);
+}
+
+std::optional<SdoClient::NoBlock> SdoClient::take_no_block() noexcept {
+  return std::exchange(no_block_, std::nullopt);
 }
 
 std::size_t SdoClient::progress() const noexcept {
@@ -112,7 +120,8 @@ std::optional<Frame> SdoClient::next_frame() const noexcept {
 }
 
 Answer SdoClient::answer_to_next() const noexcept {
-  if (state_ == State::idle) return Answer::none;  // an abort, or the end of a block upload
+  // An abort, or the end of a block upload.
+  if (state_ == State::idle || state_ == State::falling_back) return Answer::none;
   const bool burst = state_ == State::block_download && !block_download_.answered();
   return burst ? Answer::none : Answer::comes;
 }
@@ -131,6 +140,10 @@ void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
   if (from_block && state_ == State::block_upload) block_upload_.sent();
   if (from_block && state_ == State::block_download) block_download_.sent();
   if (state_ == State::idle) return;
+  if (state_ == State::falling_back) {
+    block_unheard_ = true;
+    return begin_plain(uploads_ ? State::upload_initiate : State::download_initiate);
+  }
   last_sent_ = frame;
   deadline_ = now + patience();
 }
@@ -143,6 +156,11 @@ Time SdoClient::patience() const noexcept {
 void SdoClient::on_silence() noexcept {
   if (state_ == State::settling) return finish(settled_);
   if (state_ == State::block_upload && block_upload_.confirm_after_silence()) return;
+  if (unanswered_block()) {
+    to_send_ = sdo_abort(channel_.request, object_, abort_code::timeout);
+    state_ = State::falling_back;
+    return;
+  }
   abort(SdoFault::timeout, abort_code::timeout);
 }
 
@@ -173,7 +191,8 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
 
 /// CAN repeats a frame now and then. The end of a block transfer, come once more, begins nothing.
 bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
-  return in_initiate() && !is_block_accept(frame) && !is_block_initiate(frame);
+  const bool begins = is_block_accept(frame) || is_block_initiate(frame);
+  return in_initiate() && (block_unheard_ || !begins);
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
@@ -216,7 +235,12 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
     block_ended_ = false;
     return;
   }
-  last_received_ = frame;
+  // It refuses the block transfer after all, and not what was asked for since.
+  if (block_unheard_ && sdo_abort_code(frame) == abort_code::command_unknown) {
+    block_unheard_ = false;
+    return learn_no_block(abort_code::command_unknown);
+  }
+  heard(frame);
   if (fall_back(sdo_abort_code(frame))) return;
   settled_ = {.fault = SdoFault::aborted_by_device,
               .abort_code = sdo_abort_code(frame),
@@ -227,14 +251,28 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   deadline_ = now + waits::sdo_settle;
 }
 
+/// No data have moved yet.
+bool SdoClient::unanswered_block() const noexcept {
+  return (state_ == State::block_upload && !block_upload_.accepted()) ||
+         (state_ == State::block_download && !block_download_.accepted());
+}
+
 /// The server refuses block transfer before any data have moved: the same by segments.
 bool SdoClient::fall_back(std::uint32_t code) noexcept {
-  const bool upload = state_ == State::block_upload && !block_upload_.accepted();
-  const bool download = state_ == State::block_download && !block_download_.accepted();
-  if ((!upload && !download) || !refuses_block(code)) return false;
-  block_refused_ = block_refused_ || code == abort_code::command_unknown;
-  begin_plain(upload ? State::upload_initiate : State::download_initiate);
+  if (!unanswered_block() || !refuses_block(code)) return false;
+  if (code == abort_code::command_unknown) learn_no_block(code);
+  begin_plain(uploads_ ? State::upload_initiate : State::download_initiate);
   return true;
+}
+
+void SdoClient::learn_no_block(std::uint32_t code) noexcept {
+  if (!std::exchange(block_refused_, true)) no_block_ = {.object = object_, .abort_code = code};
+}
+
+/// A server that is mute for block transfers alone answers here.
+void SdoClient::heard(const Frame& frame) noexcept {
+  last_received_ = frame;
+  if (std::exchange(block_unheard_, false)) learn_no_block(0);
 }
 
 void SdoClient::on_block(const Frame& frame, Time now) noexcept {
@@ -273,7 +311,7 @@ void SdoClient::on_block(const Frame& frame, Time now) noexcept {
 void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
   const SdoInitiate begin = decode_initiate(frame);
   if (state_ != State::upload_initiate || begin.object != object_) return;  // a late answer
-  last_received_ = frame;
+  heard(frame);
   if (begin.expedited) {
     if (take_bytes(begin.payload())) finish({.size = done_});
     return;
@@ -320,7 +358,7 @@ bool SdoClient::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
 
 void SdoClient::on_download_confirmed(const Frame& frame) noexcept {
   if (state_ != State::download_initiate || sdo_object(frame) != object_) return;  // a late answer
-  last_received_ = frame;
+  heard(frame);
   if (!value_.empty() && value_.size() <= 4) return finish({.size = value_.size()});
   state_ = State::download_segments;
   send_segment();

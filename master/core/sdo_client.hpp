@@ -23,7 +23,8 @@ struct SdoResult {
   bool shortened = false;  ///< fewer bytes came than the device had announced
 };
 
-/// How an upload is asked for. Block falls back to plain where the device refuses it.
+/// How an upload is asked for. Block falls back to plain where the device refuses it, or does not
+/// answer.
 enum class SdoMode : std::uint8_t { plain, block };
 
 /// SDO client of one node on one channel: one transfer at a time, expedited, segmented or block.
@@ -31,7 +32,8 @@ enum class SdoMode : std::uint8_t { plain, block };
 /// silent is aborted on the bus, so that the server isn't left half-way. CiA 301, 7.2.4.
 class SdoClient {
  public:
-  /// Downloads of so many bytes go by block where the node allows it.
+  /// Downloads of so many bytes go by block where the node allows it. One that finds no answer to
+  /// its first frame goes by segments: nothing was written yet.
   static constexpr std::size_t block_from = 128;
 
   explicit SdoClient(NodeId server) noexcept : SdoClient{default_sdo_channel(server)} {}
@@ -58,6 +60,12 @@ class SdoClient {
 
   /// The result of the transfer, once.
   std::optional<SdoResult> take_result() noexcept;
+  /// The device has shown that it knows no block transfer; told once. All further ones are plain.
+  struct NoBlock {
+    ObjectKey object;
+    std::uint32_t abort_code = 0;  ///< 0: it gave no answer
+  };
+  std::optional<NoBlock> take_no_block() noexcept;
   /// Bytes of the running transfer that are through.
   std::size_t progress() const noexcept;
 
@@ -91,7 +99,8 @@ class SdoClient {
     download_segments,
     block_upload,
     block_download,
-    settling,  // aborted while segments were under way: the server may refuse each of them
+    falling_back,  // the first frame of a block transfer found no answer; its abort is to be sent
+    settling,      // aborted while segments were under way: the server may refuse each of them
   };
 
   bool blocks() const noexcept { return block_use_ != SdoBlockUse::off && !block_refused_; }
@@ -109,7 +118,10 @@ class SdoClient {
   void abort(SdoFault fault, std::uint32_t code) noexcept;
   void on_abort(const Frame& frame, Time now) noexcept;
   void on_block(const Frame& frame, Time now) noexcept;
+  bool unanswered_block() const noexcept;
   bool fall_back(std::uint32_t code) noexcept;
+  void heard(const Frame& frame) noexcept;
+  void learn_no_block(std::uint32_t code) noexcept;
   bool is_whole(const Frame& frame) const noexcept;
   bool is_of_earlier_block(const Frame& frame) const noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
@@ -122,9 +134,11 @@ class SdoClient {
   SdoChannel channel_;
   SdoBlockUse block_use_;
   State state_ = State::idle;
+  bool uploads_ = false;
   bool toggle_ = false;
   bool last_segment_sent_ = false;
   bool block_refused_ = false;  ///< the device knows no block transfer
+  bool block_unheard_ = false;  ///< this transfer was begun by block, and found no answer
   bool block_ended_ = false;    ///< well, by the transfer before this one
   bool late_segments_ = false;  ///< of a block upload that was given up may still come
   ObjectKey object_;
@@ -139,6 +153,7 @@ class SdoClient {
   SdoBlockDownload block_download_;
   std::optional<Frame> to_send_;
   std::optional<SdoResult> result_;
+  std::optional<NoBlock> no_block_;
   SdoResult settled_;  ///< the result when it has settled
   Frame last_sent_;
   Frame last_received_;

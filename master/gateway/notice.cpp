@@ -17,6 +17,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::bus_error_active:
     case EventKind::bus_recovered:
     case EventKind::program_progress:
+    case EventKind::no_sdo_block:
     case EventKind::network_ready:
     case EventKind::lss_assigned:
     case EventKind::interface_up:

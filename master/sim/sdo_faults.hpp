@@ -7,6 +7,7 @@ namespace takt::sim {
 /// counted in segments from 1; 0: does not happen.
 struct SdoFaults {
   bool refuse_block = false;       ///< knows no block transfer: 0504 0001
+  bool mute_block = false;         ///< gives no answer to the beginning of one
   bool no_crc = false;             ///< can't compute one
   std::uint8_t block_size = 127;   ///< segments of a sub-block
   unsigned lose_segment = 0;       ///< this one vanishes, once, in each transfer

@@ -77,6 +77,7 @@ void SdoServer::on_initiate(const Frame& frame, Time now, Transmitter& out) noex
   const unsigned command = frame.data[0] >> 5;
   if (command == 1) return start_download(frame, now, out);
   if (command == 2) return start_upload(now, out);
+  if (command >= 5 && faults_->mute_block) return;
   const bool begins = (frame.data[0] & (command == 5 ? 3u : 1u)) == 0;
   if (!begins || faults_->refuse_block) return abort(Abort::command, now, out);
   if (command == 5) return start_block_upload(frame, now, out);

@@ -36,9 +36,9 @@ NOT_KEPT = {
     "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ owed_until_ owed_"},
     "PortWatch": {SHARED: "events_"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
-    "SdoClient": {PLAN: "channel_ block_use_", IDLE: "state_ to_send_ result_",
+    "SdoClient": {PLAN: "channel_ block_use_", IDLE: "state_ to_send_ result_ no_block_",
                   ANEW: "toggle_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
-                        "block_download_ settled_ last_sent_ last_received_"},
+                        "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_"},
     "SyncCounter": {PLAN: "overflow_"},
     "SyncFollower": {PLAN: "id_ declared_ tolerance_ timeout_ reaction_ overflow_", SHARED: "events_"},
     "SyncGate": {PLAN: "tolerance_"},

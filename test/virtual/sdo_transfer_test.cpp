@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
 
+#include "master/core/boot_report.hpp"
 #include "master/sim/device.hpp"
 #include "test/virtual/rig.hpp"
 
@@ -176,6 +178,25 @@ TEST_F(SdoTransfers, FallBackToSegments) {
   faults().refuse_block = true;
   expect_downloaded(300);
   expect_uploaded(300);
+}
+
+TEST_F(SdoTransfers, GoBySegmentsWhereTheDeviceIsMuteForBlocks) {
+  start();
+  faults().mute_block = true;
+  expect_downloaded(300);
+  EXPECT_GE(cycles, 5) << "it has waited for an answer";
+  expect_downloaded(300);
+  expect_uploaded(300);
+  ASSERT_EQ(rig->count(EventKind::no_sdo_block), 1);
+  const auto told = std::ranges::find(rig->events, EventKind::no_sdo_block, &Event::kind);
+  EXPECT_NE(describe(quiet_plan(), *told).find("gives no answer to SDO block transfer (2020:00)"),
+            std::string::npos)
+      << describe(quiet_plan(), *told);
+
+  start();
+  faults().mute_block = true;
+  expect_uploaded(300);
+  EXPECT_EQ(rig->count(EventKind::no_sdo_block), 1);
 }
 
 TEST_F(SdoTransfers, WorkWithoutCrc) {

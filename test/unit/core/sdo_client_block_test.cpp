@@ -195,14 +195,93 @@ TEST_F(SdoClientBlock, TakesShortFramesThatSayEverything) {
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
 }
 
-TEST_F(SdoClientBlock, TimesOutInEveryStateOfADownload) {
+TEST_F(SdoClientBlock, GoesBySegmentsWhereADownloadFindsNoAnswer) {
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  now += 500ms;
+  sends(tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x04, 0x05}));
+  EXPECT_EQ(answer, Answer::none);
+  EXPECT_FALSE(client.take_result());
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));
+  EXPECT_EQ(client.deadline(), now + 500ms);
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));  // late: of the transfer that is given up
+  EXPECT_FALSE(client.take_no_block()) << "it may be mute altogether";
+  hears(rx({0x60, 0x50, 0x1F, 0x01}));
+  const auto told = client.take_no_block();
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->object, (ObjectKey{0x1F50, 1}));
+  EXPECT_EQ(told->abort_code, 0U);
+  EXPECT_FALSE(client.take_no_block());
+  for (int i = 0; i < 19; ++i) {
+    const bool toggle = i % 2 != 0;
+    sends_some(1);
+    hears(rx({static_cast<std::uint8_t>(toggle ? 0x30 : 0x20)}));
+  }
+  EXPECT_EQ(client.take_result()->size, 128U);
+  download(128);
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
+  client.drop();                              // a reset
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+}
+
+TEST_F(SdoClientBlock, GoesBySegmentsWhereAnUploadFindsNoAnswer) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends_some(1);
+  now += 500ms;
+  sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
+  sends(tx({0x40, 0x21, 0x10, 0x00}));
+  hears(rx({0xC6, 0x21, 0x10, 0x00, 0x80}));  // late
+  hears(rx({0x80, 0x21, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.take_result());
+  EXPECT_EQ(client.take_no_block()->abort_code, 0x0504'0001U);
+  hears(rx({0x4F, 0x21, 0x10, 0x00, 0x07}));
+  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
+  EXPECT_FALSE(client.take_no_block());
+}
+
+TEST_F(SdoClientBlock, FallsBackOnceAndLearnsNothingFromAMuteServer) {
+  for (int i = 0; i < 2; ++i) {
+    client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+    sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
+    now += 500ms;
+    sends_some(1);
+    sends(tx({0x40, 0x21, 0x10, 0x00}));
+    now += 500ms;
+    sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
+    EXPECT_EQ(client.take_result()->fault, SdoFault::timeout);
+    EXPECT_FALSE(client.take_no_block());
+    sends_nothing();
+  }
+}
+
+TEST_F(SdoClientBlock, CanBeCancelledBetweenBlockAndSegments) {
+  download(128);
+  sends_some(1);
+  now += 500ms;
+  sends_some(1);
+  client.cancel();
+  EXPECT_EQ(client.take_result()->fault, SdoFault::cancelled);
+  sends(tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x00, 0x08}));
+  sends_nothing();
+}
+
+TEST_F(SdoClientBlock, TellsOnceThatTheServerRefusesBlock) {
+  download(128);
+  sends_some(1);
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_EQ(client.take_no_block()->abort_code, 0x0504'0001U);
+  EXPECT_FALSE(client.take_no_block());
+}
+
+TEST_F(SdoClientBlock, TimesOutInEveryStateOfADownloadThatWasAnswered) {
   const Frame timeout = tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x04, 0x05});
-  for (int steps = 0; steps < 3; ++steps) {
+  for (int steps = 1; steps < 3; ++steps) {
     client.drop();
     download(128);
     sends_some(1);
-    if (steps > 0) hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
-    if (steps > 0) sends_some(19);
+    hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+    sends_some(19);
     if (steps > 1) hears(rx({0xA2, 0x13, 0x7F}));
     if (steps > 1) sends_some(1);
     now += 500ms;

@@ -199,6 +199,13 @@ TEST_P(SdoClientEnds, BySilenceWhereverItWaits) {
       said = sends();
     }
     EXPECT_EQ(said, std::vector{abort});
+    const bool by_block = transfer.mode == SdoMode::block || transfer.size >= 128;
+    if (by_block && point.exchange == 0 && point.answers == 0) {  // then by segments
+      EXPECT_EQ(sends().size(), 1U);
+      EXPECT_EQ(client.deadline(), now + 500ms);
+      now = client.deadline();
+      EXPECT_EQ(sends(), std::vector{abort});
+    }
 
     const auto result = client.take_result();
     ASSERT_TRUE(result);
