@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "apps/soak/image_judge.hpp"
+#include "master/wire/nmt.hpp"
 
 namespace takt {
 namespace {
@@ -31,6 +32,7 @@ void OutputJudge::commanded(SignalIndex signal, std::int64_t value, std::uint32_
 
 void OutputJudge::sent(std::span<const Frame> frames, Time now) {
   for (const Frame& frame : frames) {
+    note_nmt(frame, now);
     if (plan_.cycle.sync && frame.id == plan_.cycle.sync_cob_id) judge_sync(frame, now);
     for (const PdoRow& row : plan_.pdos.rpdos) {
       if (row.cob_id == frame.id && !row.on_request && !row.multiplexed()) {
@@ -47,12 +49,35 @@ void OutputJudge::judge_sync(const Frame& frame, Time now) {
   }
   last_sync_ = now;
   if (plan_.cycle.sync_overflow < 2 || frame.length == 0) return;
-  const unsigned wanted = last_counter_ % plan_.cycle.sync_overflow + 1U;
-  if (frame.data[0] != wanted) {
-    verdict_.blame("the SYNC counter has no gap",
-                   std::to_string(frame.data[0]) + " after " + std::to_string(last_counter_));
-  }
+  judge_counter(frame.data[0], now);
   last_counter_ = frame.data[0];
+}
+
+/// CiA 301, 7.2.5.2.
+void OutputJudge::note_nmt(const Frame& frame, Time now) {
+  const auto nmt = decode_nmt(frame);
+  if (!nmt) return;
+  const bool stops = nmt->command == NmtCommand::stop;
+  if (is_reset(nmt->command) ? nmt->node == 0 : stopped_ && !stops) restarts_ = now;
+  if (nmt->node == 0) stopped_ = stops;
+}
+
+/// The counter may start anew some cycles before a full bus takes the command.
+void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
+  const Time patience = 10 * plan_.cycle.period;
+  const unsigned wanted = last_counter_ % plan_.cycle.sync_overflow + 1U;
+  if (counter != wanted && counter != 1) {
+    verdict_.blame("the SYNC counter has no gap",
+                   std::to_string(counter) + " after " + std::to_string(last_counter_));
+  }
+  if (counter != wanted && counter == 1) restarted_ = now;
+  if (restarted_ == never) return;
+  if (restarts_ >= restarted_ - patience) {
+    restarted_ = never;
+  } else if (now - restarted_ > patience) {
+    restarted_ = never;
+    verdict_.blame("the SYNC counter has no gap", "it started at 1 without a reason");
+  }
 }
 
 /// Values that may be sent without a fresh command: of the fallback, of the ordered stop, the safe

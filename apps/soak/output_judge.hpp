@@ -12,7 +12,7 @@ namespace takt {
 
 /// Remembers what was commanded and holds it against what the master hands to the interface: a
 /// value goes out only while its command is within its time to live; SYNC beats evenly and counts
-/// without a gap.
+/// without a gap, from 1 on where NMT of the whole network begins it anew.
 class OutputJudge {
  public:
   OutputJudge(const BusPlan& plan, Verdict& verdict);
@@ -29,6 +29,8 @@ class OutputJudge {
   static constexpr std::size_t depth = 32;
 
   void judge_sync(const Frame& frame, Time now);
+  void judge_counter(std::uint8_t counter, Time now);
+  void note_nmt(const Frame& frame, Time now);
   void judge_pdo(const PdoRow& row, const Frame& frame, Time now);
   bool lasting(const Signal& signal, std::uint64_t value) const noexcept;
   bool fresh(std::size_t output, std::uint64_t value, Time now) const noexcept;
@@ -39,6 +41,9 @@ class OutputJudge {
   std::vector<std::uint64_t> count_;
   Time last_sync_{};
   std::uint8_t last_counter_ = 0;
+  bool stopped_ = false;    ///< the whole network, and the master with it
+  Time restarts_ = -never;  ///< the newest NMT command that lets the counter start at 1
+  Time restarted_ = never;  ///< it did so, and no such command is known yet
 };
 
 }  // namespace takt

@@ -222,7 +222,7 @@ bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
 void Network::begin_stop(Time now) noexcept {
   if (stopping_) return;
   stopping_ = true;
-  own_state_ = NmtState::preoperational;
+  command_master(NmtCommand::enter_preoperational);
   command_ = nullptr;
   while (!broadcasts_.empty()) {
     NmtMessage dropped;

@@ -68,6 +68,10 @@ class Network {
   /// A block transfer is under way: frames come without a request for each.
   bool streams() const noexcept { return streaming_ != 0; }
 
+  /// The master has left Stopped, or begins anew: the counter of its SYNC starts at 1; told once.
+  /// CiA 301, 7.2.5.2.
+  bool take_sync_restart() noexcept { return std::exchange(sync_restarts_, false); }
+
   /// The SYNC of another device is gone: NMT stop to every node but that one. SyncLoss::stop.
   void on_sync_loss() noexcept;
   /// It is back: they are started again.
@@ -86,7 +90,7 @@ class Network {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(requests_, lss_, nmt_gate_, start_, sessions_, deadlines_, strangers_, own_state_,
-          heartbeat_at_);
+          sync_restarts_, heartbeat_at_);
     state.position(turn_, std::max<std::size_t>(sessions_.size(), 1));
     for (std::size_t i = 0; i < sessions_.size(); ++i) statuses_[i] = sessions_[i].status();
   }
@@ -141,6 +145,7 @@ class Network {
   std::size_t turn_ = 0;            // session that sends first, round robin
   RequestSlot* command_ = nullptr;  // NMT request that waits to be sent
   NmtState own_state_ = NmtState::bootup;
+  bool sync_restarts_ = false;
   Time heartbeat_at_ = never;
 };
 static_assert(Machine<Network>);

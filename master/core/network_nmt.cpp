@@ -14,7 +14,7 @@ void Network::follow_start(Time now) noexcept {
   }
   if (!start_.update(statuses_)) return;
   const bool bootup_waits = own_state_ == NmtState::bootup && heartbeat_at_ != never;
-  if (plan_.start_up.start_master && !bootup_waits) own_state_ = NmtState::operational;
+  if (plan_.start_up.start_master && !bootup_waits) command_master(NmtCommand::start);
   if (plan_.start_up.start_all && plan_.start_nodes) broadcasts_.push({NmtCommand::start, 0});
   for (NodeSession& session : sessions_) session.on_network_start();
   if (start_.matters()) tell(EventKind::network_ready, now, 0, 0);
@@ -86,6 +86,8 @@ void Network::on_sync_back() noexcept {
 
 /// The master is not addressed by its own broadcast: it follows by itself. CiA 302-2.
 void Network::command_master(NmtCommand command) noexcept {
+  const bool starts_anew = own_state_ == NmtState::stopped && command != NmtCommand::stop;
+  sync_restarts_ = sync_restarts_ || starts_anew || is_reset(command);
   switch (command) {
     case NmtCommand::start:
       own_state_ = NmtState::operational;

@@ -65,6 +65,8 @@ class SyncCounter {
   std::uint8_t next() const noexcept { return next_; }
   void sent() noexcept { next_ = next_ >= overflow_ ? 1 : static_cast<std::uint8_t>(next_ + 1); }
 
+  void restart() noexcept { next_ = 1; }
+
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(next_);

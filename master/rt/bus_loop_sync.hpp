@@ -148,6 +148,9 @@ void BusLoop<P, N>::begin_beat() noexcept {
 template <Port P, class N>
 bool BusLoop<P, N>::send_sync() noexcept {
   if (!plan_.cycle.sync || options_.observe) return true;
+  if constexpr (requires { network_.take_sync_restart(); }) {
+    if (network_.take_sync_restart()) counter_.restart();
+  }
   if (!hold_.open(network_.nodes())) return false;
   const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
                                      : sync_frame(plan_.cycle.sync_cob_id);

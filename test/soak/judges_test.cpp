@@ -63,6 +63,51 @@ TEST_F(Judges, BlameAnImageThatGoesBackToAnOlderFrame) {
   EXPECT_FALSE(verdict.good());
 }
 
+class SyncJudge : public Judges {
+ protected:
+  SyncJudge() { plan.cycle.sync_overflow = 10; }
+  void syncs(std::initializer_list<std::uint8_t> counters) {
+    for (const std::uint8_t counter : counters) {
+      outputs.sent({{make_frame(CobId::base(0x080), {counter})}}, now += 2ms);
+    }
+  }
+  void nmt(NmtCommand command) { outputs.sent({{encode(NmtMessage{command, 0})}}, now); }
+
+  Time now = 1s;
+};
+
+TEST_F(SyncJudge, BlamesACounterThatLeavesOneOut) {
+  syncs({1, 2, 4});
+  EXPECT_FALSE(verdict.good());
+}
+
+TEST_F(SyncJudge, BlamesACounterThatStartsAnewForNoReason) {
+  syncs({1, 2, 3, 1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_TRUE(verdict.good()) << "its reason may still wait to be sent";
+  syncs({9, 10, 1, 2, 3, 4});
+  EXPECT_FALSE(verdict.good());
+}
+
+TEST_F(SyncJudge, TakesACounterThatStartsAnewWithTheNetwork) {
+  syncs({1, 2, 3});
+  nmt(NmtCommand::reset_node);
+  syncs({1, 2});
+  nmt(NmtCommand::stop);
+  syncs({3, 4});
+  nmt(NmtCommand::start);
+  syncs({1, 2, 1, 2});  // before the command finds room
+  nmt(NmtCommand::reset_communication);
+  syncs({3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 3, 4});
+  EXPECT_TRUE(verdict.good());
+}
+
+TEST_F(SyncJudge, BlamesARestartByCommandsThatStartNothingAnew) {
+  syncs({1, 2, 3});
+  nmt(NmtCommand::start);
+  syncs({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 3});
+  EXPECT_FALSE(verdict.good());
+}
+
 TEST_F(Judges, BlameACycleNumberThatStays) {
   show(7, 0, 0);
   show(7, 0, 0);

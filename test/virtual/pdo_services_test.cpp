@@ -1,4 +1,5 @@
 // The whole master: PDOs on request, multiplexed PDOs, 512 PDOs, late frames.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <optional>
 
@@ -114,6 +115,54 @@ TEST(PdoPoll, OnDemandIsAnsweredByTheDevice) {
   EXPECT_EQ(reply->data[1], std::byte{0x43});
   rig.run(1);
   EXPECT_EQ(rig.last_image[0], 0x4321) << "the image has it too";
+}
+
+class SyncCounterRestarts : public testing::Test {
+ protected:
+  SyncCounterRestarts() {
+    BusPlan plan = test::axes({.nodes = 1});
+    plan.cycle.sync_overflow = 240;
+    rig.emplace(plan);
+  }
+  /// The counters that follow on this command, without those of the cycle in which it was sent.
+  std::vector<int> counters_after(NmtCommand command, std::uint8_t node) {
+    EXPECT_TRUE(ask(*rig, {.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
+    rig->recorder.frames.clear();
+    rig->run(3);
+    std::vector<int> counters;
+    for (const auto& sync : rig->recorder.with(0x080)) counters.push_back(sync.frame.data[0]);
+    return counters;
+  }
+
+  std::optional<Rig> rig;
+};
+
+TEST_F(SyncCounterRestarts, WhenTheMasterLeavesStopped) {
+  using testing::ElementsAre;
+  ASSERT_TRUE(rig->boot());
+  rig->run(10);
+  const auto stopped = counters_after(NmtCommand::stop, 0);
+  ASSERT_EQ(stopped.size(), 3U);
+  EXPECT_GT(stopped[0], 10) << "not yet";
+  EXPECT_THAT(counters_after(NmtCommand::start, 0), ElementsAre(1, 2, 3));
+
+  counters_after(NmtCommand::stop, 0);
+  EXPECT_THAT(counters_after(NmtCommand::enter_preoperational, 0), ElementsAre(1, 2, 3));
+  EXPECT_THAT(counters_after(NmtCommand::start, 0), ElementsAre(5, 6, 7)) << "that goes on";
+  rig->run(10);
+  EXPECT_GT(counters_after(NmtCommand::stop, 1)[0], 10) << "only the device";
+
+  counters_after(NmtCommand::stop, 127);
+  EXPECT_THAT(counters_after(NmtCommand::start, 127), ElementsAre(1, 2, 3)) << "only the master";
+}
+
+TEST_F(SyncCounterRestarts, WithEachResetOfTheNetwork) {
+  using testing::ElementsAre;
+  ASSERT_TRUE(rig->boot());
+  rig->run(10);
+  EXPECT_THAT(counters_after(NmtCommand::reset_communication, 0), ElementsAre(1, 2, 3));
+  rig->run(10);
+  EXPECT_THAT(counters_after(NmtCommand::reset_node, 0), ElementsAre(1, 2, 3));
 }
 
 /// Node 1: TPDO1 sends 6040 and 607A by source address, RPDO1 takes objects by destination address.
