@@ -67,8 +67,9 @@ class LayoutCompiler {
   void add_source(std::size_t node, const EffectivePdo& pdo, std::vector<Source>& sources) const {
     if (pdo.mpdo == Mpdo::none) return sources.push_back({node, &pdo});
     const auto first = static_cast<std::ptrdiff_t>(sources.size());
+    check_dispatching(nodes_[node].node, pdo, plan_.master_id, report_);
     for (const EffectiveEntry& entry : pdo.mapping) {
-      const std::uint32_t header = mpdo_header(pdo, entry, nodes_[node].node.id, plan_.master_id);
+      const std::uint32_t header = mpdo_header(nodes_[node].node, pdo, entry, plan_.master_id);
       sources.push_back({node, &pdo, &entry, header});
     }
     std::ranges::sort(sources.begin() + first, sources.end(), {}, &Source::header);

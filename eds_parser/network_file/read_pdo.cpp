@@ -89,11 +89,6 @@ void check_direction(const PdoSpec& pdo, std::string_view key, const std::string
   refuse(pdo.poll_ms, "poll_ms");
   refuse(pdo.poll_syncs, "poll_syncs");
   refuse(pdo.drop_late, "late");
-  if (pdo.mpdo.given && *pdo.mpdo == Mpdo::sam) {
-    report.error(
-        pdo.mpdo.pos, "mpdo",
-        "`mpdo: sam` of " + what + ": the master sends with destination addressing, `dam`");
-  }
 }
 
 void read_kinds(MapReader& reader, PdoSpec& pdo) {

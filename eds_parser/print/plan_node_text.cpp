@@ -119,6 +119,12 @@ class NodeText {
     lines_.line("    bit {:>2}..{:<2}  gap", first, first + bits - 1);
   }
 
+  /// The object that its frames name.
+  static std::string mpdo_object(const PdoRow& row) {
+    return to_string(ObjectKey{static_cast<std::uint16_t>(row.header >> 8),
+                               static_cast<std::uint8_t>(row.header >> 24)});
+  }
+
   static std::string pdo_times(const PdoRow& row, bool is_tpdo) {
     std::string text;
     if (row.sync_start != 0) text += fmt::format(", first at counter {}", row.sync_start);
@@ -132,7 +138,9 @@ class NodeText {
     if (row.drop_late) text += ", not used when late";
     if (row.on_request) text += ", on request only";
     if (row.multiplexed()) {
-      text += (row.header & 0x80) != 0 ? ", MPDO by destination" : ", MPDO by source";
+      const bool by_source = (row.header & 0x80) == 0;
+      text += by_source ? ", MPDO by source" : ", MPDO by destination";
+      if (by_source && !is_tpdo) text += fmt::format(", as {} of the master", mpdo_object(row));
     }
     return text;
   }

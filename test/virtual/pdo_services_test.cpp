@@ -165,8 +165,10 @@ TEST_F(SyncCounterRestarts, WithEachResetOfTheNetwork) {
   EXPECT_THAT(counters_after(NmtCommand::reset_node, 0), ElementsAre(1, 2, 3));
 }
 
-/// Node 1: TPDO1 sends 6040 and 607A by source address, RPDO1 takes objects by destination address.
-test::RigOptions multiplexed_device() {
+/// Node 1: TPDO1 sends 6040 and 607A by source address, RPDO1 takes objects by destination address
+/// (0xFF), or those of its dispatching list by source address (0xFE): the master's 6040:00 as its
+/// own, 2100:03 as 607A:00.
+test::RigOptions multiplexed_device(std::uint32_t rpdo = 0xFF) {
   using enum DataType;
   sim::SampleDevice device = sim::communicating(1_node);
   device.object(0x6040, 0, unsigned16, Access::rww, 0, true)
@@ -174,11 +176,14 @@ test::RigOptions multiplexed_device() {
       .object(0x1FA0, 0, unsigned8, Access::constant, 2)
       .object(0x1FA0, 1, unsigned32, Access::rw, 0x0160'4000)
       .object(0x1FA0, 2, unsigned32, Access::rw, 0x0160'7A00)
+      .object(0x1FD0, 0, unsigned8, Access::constant, 2)
+      .object(0x1FD0, 1, unsigned64, Access::rw, 0x0160'4000'6040'007F)
+      .object(0x1FD0, 2, unsigned64, Access::rw, 0x0160'7A00'2100'037F)
       .pdo(0x1400, 0x201, 255, {})
       .pdo(0x1800, 0x181, 255, {});
   DeviceTable table = device.build();
   for (DeviceObject& object : table.objects) {
-    if (object.key == ObjectKey{0x1600, 0}) object.value = sim::little_endian(0xFF, 1);
+    if (object.key == ObjectKey{0x1600, 0}) object.value = sim::little_endian(rpdo, 1);
     if (object.key == ObjectKey{0x1A00, 0}) object.value = sim::little_endian(0xFE, 1);
   }
   return {.devices = {table}};
@@ -220,6 +225,31 @@ TEST(Mpdo, GoesBothWaysByObject) {
             make_frame(CobId::base(0x181), {0x01, 0x7A, 0x60, 0x00, 0xFB, 0xFF, 0xFF, 0xFF}));
   EXPECT_EQ(rig.last_image[0], 0x000F);
   EXPECT_EQ(rig.last_image[1], -5);
+}
+
+TEST(Mpdo, GoesBySourceFromTheMasterToTheDispatchingListOfTheDevice) {
+  BusPlan plan = test::axes({.nodes = 1, .tpdo_type = 255, .rpdo_type = 255, .fallback_cycles = 0});
+  plan.layout.signals[3].seeded_from.reset();
+  multiplex(plan.pdos.tpdos, plan, {0x0060'4001, 0x0060'7A01});
+  multiplex(plan.pdos.rpdos, plan, {0x0060'407F, 0x0321'007F});
+  Rig rig{plan, multiplexed_device(0xFE)};
+  ASSERT_TRUE(rig.boot());
+  rig.run(10);
+
+  rig.command(0, 0x000F, -5, 100);
+  rig.run(5);
+  rig.command(0, 0x000F, 7, 100);
+  rig.run(5);
+
+  const auto sent = rig.recorder.with(0x201);
+  ASSERT_EQ(sent.size(), 3U) << "only what has changed";
+  EXPECT_EQ(sent[0].frame, make_frame(CobId::base(0x201), {0x7F, 0x40, 0x60, 0x00, 0x0F, 0, 0, 0}));
+  EXPECT_EQ(sent[1].frame,
+            make_frame(CobId::base(0x201), {0x7F, 0x00, 0x21, 0x03, 0xFB, 0xFF, 0xFF, 0xFF}));
+  EXPECT_EQ(sent[2].frame, make_frame(CobId::base(0x201), {0x7F, 0x00, 0x21, 0x03, 7, 0, 0, 0}));
+  EXPECT_EQ(rig.world->device(1_node)->objects().number({0x6040, 0}), 0x000F);
+  EXPECT_EQ(rig.world->device(1_node)->objects().number({0x607A, 0}), 7);
+  EXPECT_EQ(rig.last_image[1], 7);
 }
 
 TEST(ManyPdos, All512WithOneSyncAreInOneImage) {

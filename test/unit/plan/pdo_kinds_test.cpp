@@ -72,8 +72,8 @@ TEST(PdoKinds, ReservedAndWrongKeysAreRefusedAtTheirPlace) {
   EXPECT_THAT(net.complaints(),
               ElementsAre("6:30 error [transmission-type]", "6:54 error [transmission-type]",
                           "7:30 error [transmission-type]", "7:49 error [wrong-direction]",
-                          "7:58 error [wrong-direction]", "7:70 error [mpdo]",
-                          "7:36 error [transmission-type]"));
+                          "7:58 error [wrong-direction]", "7:36 error [transmission-type]",
+                          "7:36 error [dispatching-list]"));
 }
 
 TEST(PdoKinds, ReservedTypesAreRefusedAlsoWhereTheyAreWrittenBySdo) {
