@@ -191,8 +191,8 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
 
 /// CAN repeats a frame now and then. The end of a block transfer, come once more, begins nothing.
 bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
-  const bool begins = is_block_accept(frame) || is_block_initiate(frame);
-  return in_initiate() && (block_unheard_ || !begins);
+  const bool end = is_block_end(frame) || is_block_end_confirm(frame);
+  return in_initiate() && (block_unheard_ || end);
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
@@ -229,7 +229,7 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   if (given_up_ == object && object != object_) return;
   // The server heard our end of the block transfer before this one twice: an end without a
   // transfer.
-  const bool of_end = block_ended_ && in_initiate() && object != object_ &&
+  const bool of_end = block_ended_ && (in_initiate() || unanswered_block()) && object != object_ &&
                       sdo_abort_code(frame) == abort_code::command_unknown;
   if (of_end) {
     block_ended_ = false;

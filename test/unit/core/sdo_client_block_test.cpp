@@ -362,6 +362,26 @@ TEST_F(SdoClientBlock, TheEndOfAnUploadThatCanRepeatsEndsNothingElse) {
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
 }
 
+TEST_F(SdoClientBlock, AnEndThatTheServerHeardTwiceIsNoRefusalOfTheNextBlock) {
+  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
+  sends_some(1);
+  hears(rx({0xC2, 0x21, 0x10, 0x00, 0x02}));
+  sends_some(1);
+  hears(segment(0x81, {1, 2}));
+  sends_some(1);
+  hears(rx({0xD5}));
+  client.take_result();
+  sends_some(1);
+
+  download(128);
+  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
+  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.take_no_block());
+  sends_nothing();
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
+  sends_some(19);
+}
+
 TEST_F(SdoClientBlock, OnlyOneAbortIsTakenForThatOfARepeatedEnd) {
   client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
   sends_some(1);
