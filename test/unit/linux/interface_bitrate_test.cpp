@@ -1,0 +1,63 @@
+// What `takt lss set-bitrate --activate` finds out before it sends anything.
+#include "master/linux/interface_bitrate.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace takt {
+namespace {
+
+using testing::HasSubstr;
+
+/// An `ip` that writes down what it is asked for and ends as it is told to.
+class InterfaceRights : public testing::Test {
+ protected:
+  InterfaceRights() : folder_{testing::TempDir() + "takt-ip-" + std::to_string(::getpid())} {
+    std::filesystem::create_directories(folder_);
+    ::setenv("PATH", (folder_ + ":" + path_).c_str(), 1);
+  }
+  ~InterfaceRights() override {
+    ::setenv("PATH", path_.c_str(), 1);
+    std::filesystem::remove_all(folder_);
+  }
+  void ip_ends_with(int code) {
+    std::ofstream{folder_ + "/ip"} << "#!/bin/sh\necho \"$@\" >>" << folder_ << "/asked\nexit "
+                                   << code << "\n";
+    ::chmod((folder_ + "/ip").c_str(), 0755);
+  }
+  std::string asked() {
+    std::ifstream in{folder_ + "/asked"};
+    return {std::istreambuf_iterator<char>{in}, {}};
+  }
+
+  const CanLink link{.name = "can7", .kind = "can", .tx_queue_length = 10};
+
+ private:
+  std::string folder_;
+  std::string path_ = std::getenv("PATH");
+};
+
+TEST_F(InterfaceRights, AreTriedByACommandThatChangesNothing) {
+  ip_ends_with(0);
+  EXPECT_EQ(interface_bitrate_trouble(link), "");
+  EXPECT_EQ(asked(), "link set can7 txqueuelen 10\n");
+}
+
+TEST_F(InterfaceRights, ThatAreMissingAreExplainedBeforeAnyDeviceChanges) {
+  ip_ends_with(2);  // RTNETLINK answers: Operation not permitted
+  const std::string said = interface_bitrate_trouble(link);
+  EXPECT_THAT(said, HasSubstr("the bit rate of can7 can't be changed"));
+  EXPECT_THAT(said, HasSubstr("needs root, or CAP_NET_ADMIN"));
+  EXPECT_THAT(said, HasSubstr("no device was changed"));
+  EXPECT_EQ(asked(), "link set can7 txqueuelen 10\n");
+}
+
+}  // namespace
+}  // namespace takt
