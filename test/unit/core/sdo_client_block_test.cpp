@@ -1,52 +1,9 @@
-#include <algorithm>
-#include <array>
-#include <gtest/gtest.h>
-#include <vector>
+#include "test/unit/core/sdo_client_block.hpp"
 
-#include "master/core/sdo_client.hpp"
-#include "test/unit/core/script.hpp"
+#include <gtest/gtest.h>
 
 namespace takt {
 namespace {
-
-Frame segment(std::uint8_t first, std::initializer_list<std::uint8_t> data) {
-  Frame frame = rx({first});
-  std::ranges::copy(data, frame.data.begin() + 1);
-  return frame;
-}
-
-/// Block transfers of a whole client, which chooses them by itself.
-class SdoClientBlock : public testing::Test {
- protected:
-  void download(std::size_t size) {
-    value_.assign(size, std::byte{0x55});
-    client.download({0x1F50, 1}, value_, 500ms);
-  }
-  void sends(const Frame& expected) {
-    Outbox out;
-    client.on_time(now, out);
-    ASSERT_EQ(out.frames().size(), 1U);
-    EXPECT_EQ(out.frames()[0], expected);
-    answer = out.answers()[0];
-  }
-  void sends_some(int frames) {
-    Outbox out;
-    for (int i = 0; i < frames; ++i) client.on_time(now, out);
-    ASSERT_EQ(out.frames().size(), static_cast<std::size_t>(frames));
-  }
-  void sends_nothing() {
-    Outbox out;
-    client.on_time(now, out);
-    EXPECT_TRUE(out.empty());
-  }
-  void hears(const Frame& frame) { client.on_frame(frame, now); }
-
-  Time now = 1s;
-  Answer answer = Answer::comes;
-  std::array<std::byte, 256> buffer{};
-  std::vector<std::byte> value_;
-  SdoClient client{5_node};
-};
 
 TEST_F(SdoClientBlock, ChoosesBlockFor128BytesAndSegmentsFor127) {
   download(127);
@@ -87,56 +44,11 @@ TEST_F(SdoClientBlock, SaysWhichFramesGetNoAnswer) {
   EXPECT_EQ(client.deadline(), now + 500ms);
 }
 
-TEST_F(SdoClientBlock, FallsBackToSegmentsWhenTheServerKnowsNoBlock) {
-  download(128);
-  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));
-  client.cancel();
-  client.take_result();
-  sends_some(1);
-  download(128);
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
-}
-
-TEST_F(SdoClientBlock, FallsBackInAnUploadToo) {
-  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
-  sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
-  hears(rx({0x80, 0x21, 0x10, 0x00, 0x02, 0x00, 0x04, 0x05}));
-  sends(tx({0x40, 0x21, 0x10, 0x00}));
-  hears(rx({0x4F, 0x21, 0x10, 0x00, 0x07}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
-}
-
-TEST_F(SdoClientBlock, ReportsARefusalThatHasNothingToDoWithBlock) {
-  download(128);
-  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x02, 0x00, 0x01, 0x06}));
-  EXPECT_EQ(client.take_result()->abort_code, 0x06010002U);
-  sends_nothing();
-}
-
 TEST_F(SdoClientBlock, TakesNoAbortBeforeItHasAskedForAnything) {
   download(128);
   hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
   EXPECT_FALSE(client.take_result());
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-}
-
-TEST_F(SdoClientBlock, DoesNotFallBackOnceDataHaveMoved) {
-  download(128);
-  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
-  sends_some(5);
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
-  EXPECT_FALSE(client.take_result());
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));  // a segment that was under way
-  now += 20ms;
-  sends_nothing();
-  const auto result = client.take_result();
-  ASSERT_TRUE(result);
-  EXPECT_EQ(result->fault, SdoFault::aborted_by_device);
-  EXPECT_TRUE(client.idle());
 }
 
 TEST_F(SdoClientBlock, TakesTheOrdinaryAnswerBelowTheThreshold) {
@@ -193,85 +105,6 @@ TEST_F(SdoClientBlock, TakesShortFramesThatSayEverything) {
   sends_some(1);
   hears(short_rx({0xA1}));
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
-}
-
-TEST_F(SdoClientBlock, GoesBySegmentsWhereADownloadFindsNoAnswer) {
-  download(128);
-  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-  now += 500ms;
-  sends(tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x04, 0x05}));
-  EXPECT_EQ(answer, Answer::none);
-  EXPECT_FALSE(client.take_result());
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));
-  EXPECT_EQ(client.deadline(), now + 500ms);
-  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));  // late: of the transfer that is given up
-  EXPECT_FALSE(client.take_no_block()) << "it may be mute altogether";
-  hears(rx({0x60, 0x50, 0x1F, 0x01}));
-  const auto told = client.take_no_block();
-  ASSERT_TRUE(told);
-  EXPECT_EQ(told->object, (ObjectKey{0x1F50, 1}));
-  EXPECT_EQ(told->abort_code, 0U);
-  EXPECT_FALSE(client.take_no_block());
-  for (int i = 0; i < 19; ++i) {
-    const bool toggle = i % 2 != 0;
-    sends_some(1);
-    hears(rx({static_cast<std::uint8_t>(toggle ? 0x30 : 0x20)}));
-  }
-  EXPECT_EQ(client.take_result()->size, 128U);
-  download(128);
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
-  client.drop();                              // a reset
-  download(128);
-  sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-}
-
-TEST_F(SdoClientBlock, GoesBySegmentsWhereAnUploadFindsNoAnswer) {
-  client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
-  sends_some(1);
-  now += 500ms;
-  sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
-  sends(tx({0x40, 0x21, 0x10, 0x00}));
-  hears(rx({0xC6, 0x21, 0x10, 0x00, 0x80}));  // late
-  hears(rx({0x80, 0x21, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));
-  EXPECT_FALSE(client.take_result());
-  EXPECT_EQ(client.take_no_block()->abort_code, 0x0504'0001U);
-  hears(rx({0x4F, 0x21, 0x10, 0x00, 0x07}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
-  EXPECT_FALSE(client.take_no_block());
-}
-
-TEST_F(SdoClientBlock, FallsBackOnceAndLearnsNothingFromAMuteServer) {
-  for (int i = 0; i < 2; ++i) {
-    client.upload({0x1021, 0}, buffer, 500ms, SdoMode::block);
-    sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
-    now += 500ms;
-    sends_some(1);
-    sends(tx({0x40, 0x21, 0x10, 0x00}));
-    now += 500ms;
-    sends(tx({0x80, 0x21, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
-    EXPECT_EQ(client.take_result()->fault, SdoFault::timeout);
-    EXPECT_FALSE(client.take_no_block());
-    sends_nothing();
-  }
-}
-
-TEST_F(SdoClientBlock, CanBeCancelledBetweenBlockAndSegments) {
-  download(128);
-  sends_some(1);
-  now += 500ms;
-  sends_some(1);
-  client.cancel();
-  EXPECT_EQ(client.take_result()->fault, SdoFault::cancelled);
-  sends(tx({0x80, 0x50, 0x1F, 0x01, 0x00, 0x00, 0x00, 0x08}));
-  sends_nothing();
-}
-
-TEST_F(SdoClientBlock, TellsOnceThatTheServerRefusesBlock) {
-  download(128);
-  sends_some(1);
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
-  EXPECT_EQ(client.take_no_block()->abort_code, 0x0504'0001U);
-  EXPECT_FALSE(client.take_no_block());
 }
 
 TEST_F(SdoClientBlock, TimesOutInEveryStateOfADownloadThatWasAnswered) {
