@@ -77,10 +77,11 @@ void expect_shape(const json& object, const Shape& shape, const std::string& whe
   EXPECT_THAT(surplus, testing::IsEmpty()) << where;
 }
 
-const Shape bus_shape = {{"bus", 's'},       {"interface", 's'},           {"bitrate", 'n'},
-                         {"master_id", 'n'}, {"start_nodes", 'b'},         {"cycle", 'o'},
-                         {"nodes", 'l'},     {"master_heartbeat_us", 'n'}, {"image", 'o'},
-                         {"lcm", 'o'}};
+const Shape bus_shape = {
+    {"bus", 's'},         {"interface", 's'}, {"bitrate", 'n'}, {"master_id", 'n'},
+    {"start_nodes", 'b'}, {"cycle", 'o'},     {"nodes", 'l'},   {"master_heartbeat_us", 'n'},
+    {"image", 'o'},       {"lcm", 'o'},       {"waits", 'l'}};
+const Shape wait_shape = {{"wait", 's'}, {"limit_us", 'n'}, {"what", 's'}};
 const Shape cycle_shape = {{"period_us", 'n'},       {"sync", 'b'},
                            {"sync_cob_id", 'n'},     {"sync_overflow", 'n'},
                            {"time_period_us", 'n'},  {"time_cob_id", 'n'},
@@ -145,6 +146,7 @@ TEST(ExportJson, HasTheKeysThatOtherProgramsRelyOn) {
 
     expect_shape(document, bus_shape, name);
     expect_shape(document["cycle"], cycle_shape, name + " cycle");
+    for (const auto& wait : document["waits"]) expect_shape(wait, wait_shape, name + " waits");
     for (const auto& node : document["nodes"]) {
       const std::string where = name + ' ' + node.value("name", "");
       expect_shape(node, node_shape, where);
