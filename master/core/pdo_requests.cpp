@@ -116,9 +116,10 @@ void PdoRequests::send(Slot& slot, std::span<const bool> exchanging, Time now,
   ++waiting_;
 }
 
+/// A poll each cycle is due in each, although this thread does not wake up at the same time in all.
 bool PdoRequests::is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept {
   const PdoRow& row = plan_.pdos.tpdos[poll.row];
-  if (row.poll > Time{}) return now >= poll.next;
+  if (row.poll > Time{}) return now >= poll.next - plan_.cycle.period / 8;
   return beat != poll.last_beat && beat % row.poll_syncs == 0;
 }
 

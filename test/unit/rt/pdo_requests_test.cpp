@@ -78,6 +78,18 @@ TEST(PdoRequests, PollEachTimeWithARemoteRequestOfThePdosLength) {
   EXPECT_EQ(sent, (std::vector{0, 12, 20, 32}));
 }
 
+TEST(PdoRequests, PollInEachCycleWhereItsTimeIsThatOfTheCycle) {
+  BusPlan plan = plan_of(10ms);
+  plan.cycle.period = 10ms;
+  Asker asker{std::move(plan)};
+  int sent = 0;
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    const Time jitter = cycle % 2 == 0 ? 300us : -300us;
+    sent += !asker.at(10ms * cycle + 1ms + jitter).empty();
+  }
+  EXPECT_EQ(sent, 100);
+}
+
 TEST(PdoRequests, PollEveryNthSync) {
   Asker asker{plan_of({}, 3)};
   std::vector<std::uint64_t> sent;
