@@ -6,6 +6,7 @@
 
 #include "master/core/lss_command.hpp"
 #include "master/gateway/ascii_text.hpp"
+#include "master/gateway/units.hpp"
 
 namespace takt {
 namespace {
@@ -125,9 +126,7 @@ void AsciiGateway::run(int client, Client& state, const AsciiCommand& command) {
       }
       return;
     case AsciiVerb::pdo_write:
-      if (address(client, state, command, node)) {
-        finish(client, command.sequence, write_pdo(node, command));
-      }
+      if (address(client, state, command, node)) write_pdo(client, node, command);
       return;
     case AsciiVerb::sdo_read:
     case AsciiVerb::sdo_write:
@@ -188,16 +187,25 @@ AsciiGateway::Answer AsciiGateway::read_pdo(std::uint32_t node, const AsciiComma
   return text;
 }
 
-AsciiGateway::Answer AsciiGateway::write_pdo(std::uint32_t node, const AsciiCommand& command) {
+void AsciiGateway::write_pdo(int client, std::uint32_t node, const AsciiCommand& command) {
+  const auto wrong = [&](AsciiError error) {
+    finish(client, command.sequence, std::unexpected{error});
+  };
   const PdoRow* const row = find_row(plan_.pdos.rpdos, node, command.number);
-  if (row == nullptr) return std::unexpected{AsciiError::unsupported_node};
-  if (command.values.size() > row->field_count) return std::unexpected{AsciiError::pdo_length};
+  if (row == nullptr) return wrong(AsciiError::unsupported_node);
+  if (command.values.size() > row->field_count) return wrong(AsciiError::pdo_length);
   std::vector<SignalIndex> signals;
   for (std::size_t i = 0; i < command.values.size(); ++i) {
     signals.push_back(plan_.pdos.fields[row->first_field + i].signal);
+    const Signal& signal = plan_.layout.signals[signals.back()];
+    if (fits(signal.type, signal.bits, command.values[i])) continue;
+    return refuse(client, {.sequence = command.sequence,
+                           .error = AsciiError::syntax,
+                           .why = std::to_string(command.values[i]) + " does not fit the " +
+                                  std::to_string(signal.bits) + " bits of " + signal.name});
   }
-  if (!ports_.write(signals, command.values)) return std::unexpected{AsciiError::internal_state};
-  return "OK";
+  if (!ports_.write(signals, command.values)) return wrong(AsciiError::internal_state);
+  finish(client, command.sequence, "OK");
 }
 
 void AsciiGateway::take(const Reply& reply) {

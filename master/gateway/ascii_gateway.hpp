@@ -67,7 +67,7 @@ class AsciiGateway final : public FrontGuest {
   void submit(int client, Client& state, AsciiCommand command, Request request);
   void submit_lss(int client, Client& state, const AsciiCommand& command);
   Answer read_pdo(std::uint32_t node, const AsciiCommand& command) const;
-  Answer write_pdo(std::uint32_t node, const AsciiCommand& command);
+  void write_pdo(int client, std::uint32_t node, const AsciiCommand& command);
   void follow_all_nodes(Pending pending, const Reply& reply);
   void tell_all(const std::string& line, bool bootup = false);
 
