@@ -94,7 +94,7 @@ fuzz_one() {
 
 fuzz() {
   cmake --preset fuzz && ninja -C build/fuzz -j "$jobs" eds_fuzz network_fuzz &&
-    fuzz_one eds "${TAKT_FUZZ:-60}" && fuzz_one network $((${TAKT_FUZZ:-60} / 2)) -dict=test/fuzz/network.dict
+    fuzz_one eds "${TAKT_FUZZ:-60}" -dict=test/fuzz/eds.dict && fuzz_one network $((${TAKT_FUZZ:-60} / 2)) -dict=test/fuzz/network.dict
 }
 
 # run_tests PRESET [CTEST OPTION...]
