@@ -24,7 +24,7 @@ void BootRunner::start(From from, Time now) noexcept {
   restarts_ = 0;
   differs_ = false;
   cob_id_object_.reset();
-  reset_sent_ = false;
+  reset_sent_ = started_ = false;
   guards_ = running_ = wrote_ = false;
   asks_ = from == From::silent;
   left_alone_ = 0;
@@ -60,7 +60,7 @@ void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
     return;
   }
   cob_id_object_.reset();
-  differs_ = guards_ = running_ = asks_ = false;
+  differs_ = guards_ = running_ = asks_ = started_ = false;
   go_to(current().action == BootAction::probe ? step_ : after_reset_);
 }
 
@@ -76,6 +76,7 @@ std::optional<NmtCommand> BootRunner::nmt_to_send() const noexcept {
 }
 
 void BootRunner::nmt_sent(Time /*now*/, SdoClient& client) noexcept {
+  started_ = current().command == NmtCommand::start;
   if (is_reset(current().command)) {
     client.drop();
     reset_sent_ = true;

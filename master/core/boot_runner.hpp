@@ -51,6 +51,8 @@ class BootRunner {
   }
   Time began() const noexcept { return began_; }
   bool reset_sent() const noexcept { return reset_sent_; }
+  /// NMT start was sent: PDOs may come, its mapping is verified.
+  bool started() const noexcept { return started_; }
   /// The node was OPERATIONAL and is left as it is. CiA 302-2, status L.
   bool keeps_running() const noexcept { return running_; }
   /// Objects of such a node that differ from the plan, and the first of them.
@@ -123,6 +125,7 @@ class BootRunner {
   std::uint8_t restarts_ = 0;
   bool differs_ = false;
   bool reset_sent_ = false;
+  bool started_ = false;
   bool guards_ = false;
   bool running_ = false;
   bool asks_ = false;  // From::silent, until a sign of life

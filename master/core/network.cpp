@@ -219,6 +219,10 @@ bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
          node.nmt == NmtState::operational;
 }
 
+bool Network::starts(std::size_t node_index) const noexcept {
+  return node_index < sessions_.size() && sessions_[node_index].starts();
+}
+
 void Network::begin_stop(Time now) noexcept {
   if (stopping_) return;
   stopping_ = true;

@@ -60,6 +60,8 @@ class Network {
   std::span<const NodeStatus> nodes() const noexcept;
   /// Booted and, as far as is known, OPERATIONAL.
   bool exchanges_pdos(std::size_t node_index) const noexcept;
+  /// Its boot has started it: it may be OPERATIONAL some time before it says so.
+  bool starts(std::size_t node_index) const noexcept;
 
   /// The loss of some node stops drives.
   bool stops_drives() const noexcept { return stops_drives_; }

@@ -71,6 +71,8 @@ class NodeSession {
   /// The master itself was away for so long: no time-out of an answer or a heartbeat counts it.
   void excuse(Time away) noexcept;
 
+  /// Its boot has started it and waits for a sign of that.
+  bool starts() const noexcept { return booting() && runner_.started(); }
   /// The network is started: nodes that come later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
   /// The network begins anew: nobody is started until it is complete.

@@ -1,6 +1,7 @@
 #include "master/core/pdo_inputs.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 
@@ -52,21 +53,24 @@ void PdoInputs::tell(EventKind kind, const Row& row, Time now, std::uint32_t det
 }
 
 void PdoInputs::set_reception(std::size_t node_index, Reception reception) noexcept {
-  if (receptions_[node_index] == reception) return;
-  receptions_[node_index] = reception;
+  const Reception before = std::exchange(receptions_[node_index], reception);
+  if (before == reception) return;
+  const bool taken = before != Reception::off && reception != Reception::off;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
     if (row.node_index != node_index) continue;
-    mark(row, true);
+    if (!taken) {
+      mark(row, true);
+      row.expires = never;
+    }
     row.reception = reception;
     row.known = false;
     row.misses = 0;
     row.waited = false;
     row.was_late = false;
-    row.expires = never;
     // The first frame may take up to n beats, and with a SYNC start value as long as the counter
     // takes to come to it; 2 n more is too long for every phase.
-    const bool watched = reception != Reception::off && row.every != 0;
+    const bool watched = reception >= Reception::listening && row.every != 0;
     const std::uint64_t counted =
         plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;
     row.due = watched ? beat_ + counted + 2 * std::uint64_t{row.every} : not_due;

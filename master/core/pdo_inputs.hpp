@@ -15,6 +15,7 @@ namespace takt {
 /// How the TPDOs of a node are taken.
 enum class Reception : std::uint8_t {
   off,        ///< mapping not verified: frames are not ours to read
+  early,      ///< taken, but not missed: the node may not be OPERATIONAL so far
   listening,  ///< taken, watched, but no cycle waits for them
   full,       ///< taken, and cycles wait for those that are due
 };
@@ -26,6 +27,7 @@ class PdoInputs {
   /// Keeps references to the three.
   PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& events);
 
+  /// Values that were taken stay, unless it is `off` now or before.
   void set_reception(std::size_t node_index, Reception reception) noexcept;
   Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
 

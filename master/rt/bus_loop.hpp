@@ -78,6 +78,7 @@ class BusLoop {
   template <class Archive>
   void keep(Archive& state) noexcept;
   void follow_nodes() noexcept;
+  void expect_started_nodes() noexcept;
   void wait_for_beat() noexcept;
   void wait_for_sync() noexcept;
   void await_sync() noexcept;

@@ -84,7 +84,8 @@ void BusLoop<P, N>::follow_nodes() noexcept {
     const Reception heard = beats ? Reception::full : Reception::listening;
     const bool listen = options_.observe || !plan_.nodes[i].boot;
     hearing_ = hearing_ || exchanging || listen;
-    const Reception unheard = listen ? Reception::listening : Reception::off;
+    const Reception expected = network_.starts(i) ? Reception::early : Reception::off;
+    const Reception unheard = listen ? Reception::listening : expected;
     pdos_.inputs().set_reception(i, exchanging ? heard : unheard);
   }
 }

@@ -55,6 +55,18 @@ bool BusLoop<P, N>::rest_until_next_round() noexcept {
   return !follower_.arrived();
 }
 
+/// A node sends its event-driven PDOs as soon as it is started, often in this very round and never
+/// again until they change.
+template <Port P, class N>
+void BusLoop<P, N>::expect_started_nodes() noexcept {
+  if (!services_.has(nmt_cob_id)) return;
+  for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+    const bool soon = network_.starts(i) || network_.exchanges_pdos(i);
+    if (!soon || pdos_.inputs().reception(i) != Reception::off) continue;
+    pdos_.inputs().set_reception(i, Reception::early);
+  }
+}
+
 /// Service frames and the answers to them end before the outputs.
 template <Port P, class N>
 void BusLoop<P, N>::serve_round() noexcept {
@@ -78,6 +90,7 @@ void BusLoop<P, N>::serve_round() noexcept {
     services_.inbox().set_limit(budget);
     network_.on_time(now, services_.inbox());
     if (options_.observe) services_.clear();
+    expect_started_nodes();
     const std::size_t left = budget;
     const Handed handed = send_services(budget, wire_.worst_dialogue() * open);
     if (handed == Handed::requests && !hearing_) open += left - budget;

@@ -18,6 +18,9 @@ class ServiceQueue {
   bool empty() const noexcept { return outbox_.empty(); }
   std::size_t size() const noexcept { return outbox_.frames().size(); }
 
+  bool has(CobId id) const noexcept {
+    return std::ranges::find(outbox_.frames(), id, &Frame::id) != outbox_.frames().end();
+  }
   /// How many of the first `most` frames end within `room`, answers included.
   std::size_t fitting(std::size_t most, Time room, const WireTime& wire) const noexcept {
     Time needed{};

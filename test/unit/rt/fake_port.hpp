@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -122,6 +123,7 @@ class FakeNetwork {
   void withdraw(std::uint64_t id) noexcept { withdrawn.push_back(id); }
   std::span<const NodeStatus> nodes() const noexcept { return status_; }
   bool exchanges_pdos(std::size_t node) const noexcept { return up_[node] && !stopping; }
+  bool starts(std::size_t node) const noexcept { return starting && *starting == node; }
   void begin_stop(Time) noexcept { stopping = true; }
   bool stopped() const noexcept { return stopping; }
 
@@ -133,6 +135,7 @@ class FakeNetwork {
   std::vector<std::uint64_t> withdrawn;
   std::vector<Reply> replies;
   std::vector<Time> absences;
+  std::optional<std::size_t> starting;
   bool refuse = false;
   bool stopping = false;
   std::uint64_t lost_events = 0;
