@@ -124,7 +124,7 @@ TEST(Budget, NoFrameIsLaterThanItsBoundBehindServiceFramesInOneQueue) {
 /// Turns and chances that meet the longest frames are rare: those are looked for longer.
 SeenBus seen_on(const BusPlan& plan, const BusBudget& budget, sim::Random& random, double most) {
   auto seen = run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 600}, random);
-  for (std::uint64_t more = 1; more <= 8 && widest_of_each(budget, seen) > most; ++more) {
+  for (std::uint64_t more = 1; more <= 30 && widest_of_each(budget, seen) > most; ++more) {
     take_worst(seen, run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 2000},
                                      random.fork(more)));
   }
