@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -89,8 +90,9 @@ class BusyChains : protected CycleFrames {
   /// What SYNC may wait for. A service frame that goes out right behind the SYNC before is still
   /// there only if the period is that short.
   Time sync_blocking() const noexcept {
-    const Time relieved = sync_late() + sync_blocking_ + sync_frame() + services_before_sync_;
-    return sync_blocking_ + (relieved > plan_.cycle.period ? services_before_sync_ : Time{0});
+    const Time begun = std::max(sync_blocking_, late_input_);
+    const Time relieved = sync_late() + begun + sync_frame() + services_before_sync_;
+    return begun + (relieved > plan_.cycle.period ? services_before_sync_ : Time{0});
   }
 
   bool inputs_may_follow_outputs() const noexcept {
@@ -117,6 +119,7 @@ class BusyChains : protected CycleFrames {
   Time sync_jitter_{};  ///< of the arrival of another device's SYNC
   Time outputs_end_{};  ///< at the latest
   Time services_end_{};
+  Time late_input_{};  ///< the longest TPDO that may have begun just before the next SYNC
   LateSync late_ = LateSync::in_time;
 };
 

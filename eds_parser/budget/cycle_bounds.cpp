@@ -1,6 +1,7 @@
 #include "eds_parser/budget/cycle_bounds.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "eds_parser/budget/busy_chains.hpp"
@@ -127,7 +128,7 @@ class CycleAnalysis : BusyChains {
   bool find_outputs() {
     for (const auto late : {LateSync::in_time, LateSync::follows_up, LateSync::at_any_time}) {
       late_ = late;
-      outputs_end_ = services_end_ = Time{0};
+      outputs_end_ = services_end_ = late_input_ = Time{0};
       if (settle_outputs()) return true;
     }
     return false;
@@ -136,12 +137,12 @@ class CycleAnalysis : BusyChains {
   /// They may delay SYNC, and that those of the next cycle.
   bool settle_outputs() {
     for (int round = 0; round < most_rounds; ++round) {
-      const std::pair before{outputs_end_, services_end_};
+      const std::tuple before{outputs_end_, services_end_, late_input_};
       find_late_inputs();
       if (services_in_queue()) before_queue_ = busy_before(lowest_queued());
       if (!bound_services() || !bound_outputs()) return false;
       if (late_ == LateSync::in_time && sync_late() > Time{0}) return false;
-      if (before == std::pair{outputs_end_, services_end_}) return true;
+      if (before == std::tuple{outputs_end_, services_end_, late_input_}) return true;
     }
     return false;
   }
@@ -242,6 +243,7 @@ class CycleAnalysis : BusyChains {
       if (!is_input(frames_[i])) continue;
       const auto end = end_of_input(i, any_cycle, input_work(i, any_cycle));
       late_inputs_[i] = !end || *end > plan_.cycle.output_deadline;
+      if (!end || *end > plan_.cycle.period) late_input_ = std::max(late_input_, frames_[i].frame);
     }
     relieved_ = false;
   }

@@ -140,6 +140,18 @@ TEST(CycleBounds, OneNodeOwesOneAnswer) {
   EXPECT_EQ(budget.rows[4].worst_behind_services, budget.rows[4].worst);
 }
 
+TEST(CycleBounds, ATpdoThatIsLateMayHaveBegunBeforeTheNextSync) {
+  auto plan = hand_made_bus(1, 320us);
+  plan.pdos.rpdos.clear();
+  plan.pdos.tpdos[0].cob_id = CobId::extended(0x181U << 18);  // 160 bits
+  compile(plan);
+
+  EXPECT_EQ(latest_us(bus_budget(plan))[0], 160 + 55);
+  plan.cycle.period = 2ms;
+  compile(plan);
+  EXPECT_EQ(latest_us(bus_budget(plan))[0], 135 + 55);
+}
+
 TEST(CycleBounds, AnNmtFrameRightBehindSyncMayMeetTheNextOneOnlyIfThePeriodIsThatShort) {
   auto plan = hand_made_bus(1, 73us);
   plan.pdos = {};
