@@ -70,7 +70,13 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
     verdict_.blame("the SYNC counter has no gap",
                    std::to_string(counter) + " after " + std::to_string(last_counter_));
   }
-  if (counter != wanted && counter == 1) restarted_ = now;
+  if (counter != wanted && counter == 1) {
+    if (own_orders_ == 0) {
+      restarted_ = now;
+    } else {
+      --own_orders_;
+    }
+  }
   if (restarted_ == never) return;
   if (restarts_ >= restarted_ - patience) {
     restarted_ = never;

@@ -20,6 +20,8 @@ class OutputJudge {
   /// `time_to_live` in cycles, not 0.
   void commanded(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live, Time now);
   void sent(std::span<const Frame> frames, Time now);
+  /// NMT for the master itself, of which no frame tells.
+  void ordered() noexcept { ++own_orders_; }
 
  private:
   struct Command {
@@ -41,9 +43,10 @@ class OutputJudge {
   std::vector<std::uint64_t> count_;
   Time last_sync_{};
   std::uint8_t last_counter_ = 0;
-  bool stopped_ = false;    ///< the whole network, and the master with it
-  Time restarts_ = -never;  ///< the newest NMT command that lets the counter start at 1
-  Time restarted_ = never;  ///< it did so, and no such command is known yet
+  bool stopped_ = false;     ///< the whole network, and the master with it
+  Time restarts_ = -never;   ///< the newest NMT command that lets the counter start at 1
+  unsigned own_orders_ = 0;  ///< each may let it start at 1 once
+  Time restarted_ = never;   ///< it did so, and no such command is known yet
 };
 
 }  // namespace takt

@@ -89,6 +89,7 @@ void RestlessUser::submit(Request request, Time now) {
   request.id = asked_ + 1;
   if (!exchange_.requests.push(request)) return;
   ++asked_;
+  if (request.kind == RequestKind::nmt && request.node == plan_.master_id.value()) judge_.ordered();
   open_.emplace(request.id, now);
 }
 

@@ -101,6 +101,15 @@ TEST_F(SyncJudge, TakesACounterThatStartsAnewWithTheNetwork) {
   EXPECT_TRUE(verdict.good());
 }
 
+TEST_F(SyncJudge, TakesOneRestartForEachCommandToTheMasterItself) {
+  syncs({1, 2, 3});
+  outputs.ordered();
+  syncs({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 3});
+  EXPECT_TRUE(verdict.good());
+  syncs({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 3});
+  EXPECT_FALSE(verdict.good());
+}
+
 TEST_F(SyncJudge, BlamesARestartByCommandsThatStartNothingAnew) {
   syncs({1, 2, 3});
   nmt(NmtCommand::start);
