@@ -25,7 +25,7 @@ ctest_counts() { sed -n 's/.* passed, \([0-9]*\) tests failed out of \([0-9]*\)$
 
 # What the tests that failed have said, without their checks that were good; at most 100 lines of each.
 failed_tests() {
-  awk '/^ *[0-9]+\/[0-9]+ Test +#/ { left = /\*\*\*/ ? 100 : 0 }
+  awk '/^ *[0-9]+\/[0-9]+ Test +#/ { left = /\*\*\*/ && !/\*\*\*Skipped/ ? 100 : 0 }
        /^ +Start +[0-9]+: / || /^[0-9]+% tests passed/ { left = 0 }
        /^(ok |\[ RUN |\[ +OK )/ { next }
        left > 0 { print; left-- }' "$1"
