@@ -58,8 +58,9 @@ class Meddled : public testing::Test {
     if (done_) return;
     done_ = true;
     const std::vector<std::int64_t> values(network.plan.layout.signals.size(), 0x5A5A);
-    const std::vector<std::uint64_t> stale(1 + values.size() / 64, 0);
-    exchange.images.publish(stamp, values, stale);
+    const std::vector<std::uint64_t> stale((values.size() + 63) / 64, 0);
+    const std::vector<PdoMark> marks(network.plan.pdos.tpdos.size());
+    exchange.images.publish(stamp, values, stale, marks);
   }
   static std::uint64_t cycle(const Exchange& exchange) {
     StatusSnapshot status;
