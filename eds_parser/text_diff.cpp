@@ -146,24 +146,16 @@ std::string range_text(std::size_t lines_before, std::size_t count) {
   return std::to_string(first) + (count == 1 ? "" : ',' + std::to_string(count));
 }
 
-}  // namespace
+using Write = void (*)(std::string& out, std::string_view line);
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-    if (text.starts_with("\r\n")) text.remove_prefix(1);
-    if (!text.empty()) text.remove_prefix(1);
-  }
-  return lines;
+std::string_view without_end(std::string_view line) noexcept {
+  if (line.ends_with('\n')) line.remove_suffix(1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
 }
 
-std::vector<DiffLine> diff_lines(Lines before, Lines after) { return Differ{}.run(before, after); }
-
-std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
-                          std::size_t context) {
+std::string hunks_of(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
+                     std::size_t context, Write write) {
   std::string out;
   std::string_view title;
   std::size_t before = 0;  // lines of either text so far
@@ -171,7 +163,7 @@ std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::
   const auto pass = [&](const DiffLine& line) {
     if (line.kind != Kind::added) ++before;
     if (line.kind != Kind::removed) ++after;
-    if (heading(line.text)) title = line.text;
+    if (heading(line.text)) title = without_end(line.text);
   };
   for (std::size_t at = 0; at < lines.size();) {
     const auto changed = [&](std::size_t from) {
@@ -195,7 +187,7 @@ std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::
     for (; at < end; ++at) {
       constexpr std::string_view marks = " -+";
       body += marks[static_cast<std::size_t>(lines[at].kind)];
-      body += std::string{lines[at].text} + '\n';
+      write(body, lines[at].text);
       pass(lines[at]);
     }
     out += "@@ -" + range_text(first_before, before - first_before) + " +" +
@@ -205,12 +197,58 @@ std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::
   return out;
 }
 
+/// With their ends; as `diff` and `patch` see it, LF alone ends a line.
+std::vector<std::string_view> whole_lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1);
+    lines.push_back(text.substr(0, end + 1));
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+void write_line(std::string& out, std::string_view line) { (out += line) += '\n'; }
+
+void write_whole_line(std::string& out, std::string_view line) {
+  out += line;
+  if (!line.ends_with('\n')) out += "\n\\ No newline at end of file\n";
+}
+
+bool only_carriage_returns(std::string_view text) noexcept {
+  return text.contains('\r') && !text.contains('\n');
+}
+
+}  // namespace
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+    if (text.starts_with("\r\n")) text.remove_prefix(1);
+    if (!text.empty()) text.remove_prefix(1);
+  }
+  return lines;
+}
+
+std::vector<DiffLine> diff_lines(Lines before, Lines after) { return Differ{}.run(before, after); }
+
+std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
+                          std::size_t context) {
+  return hunks_of(lines, heading, context, write_line);
+}
+
 std::string unified_diff(std::string_view before, std::string_view after,
                          const std::string& before_name, const std::string& after_name,
                          bool (*heading)(std::string_view)) {
-  const auto old_lines = lines_of(before);
-  const auto new_lines = lines_of(after);
-  const std::string hunks = unified_hunks(diff_lines(old_lines, new_lines), heading);
+  const bool shown_only = only_carriage_returns(before) && only_carriage_returns(after);
+  const auto split = shown_only ? lines_of : whole_lines_of;
+  const auto old_lines = split(before);
+  const auto new_lines = split(after);
+  const std::string hunks = hunks_of(diff_lines(old_lines, new_lines), heading, 3,
+                                     shown_only ? write_line : write_whole_line);
   return hunks.empty() ? "" : "--- " + before_name + "\n+++ " + after_name + '\n' + hunks;
 }
 

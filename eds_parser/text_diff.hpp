@@ -28,7 +28,8 @@ std::vector<DiffLine> diff_lines(std::span<const std::string_view> before,
 std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
                           std::size_t context = 3);
 
-/// The whole of `diff -u`; empty where nothing differs.
+/// The whole of `diff -u`, for `patch --binary`: each line with the end it has; empty where nothing
+/// differs. Texts whose lines end with CR alone would be one line: theirs is only to be read.
 std::string unified_diff(std::string_view before, std::string_view after,
                          const std::string& before_name, const std::string& after_name,
                          bool (*heading)(std::string_view));

@@ -61,9 +61,10 @@ void add_eds_fix(CLI::App& eds, int& exit_code) {
     rules += rule;
   }
   command->footer(
-      "The difference goes to stdout as diff -u prints it, what is left to stderr (named as by\n"
-      "`takt eds check`). No object and no value becomes another one; the text elsewhere stays\n"
-      "byte for byte. Exit code 1 if an error is left. Mended are:\n" +
+      "The difference goes to stdout as diff -u prints it, for `patch --binary` (that of a file\n"
+      "in UTF-16, or with CR alone at its line ends, is only to be read), what is left to stderr\n"
+      "(named as by `takt eds check`). No object and no value becomes another one; the text\n"
+      "elsewhere stays byte for byte. Exit code 1 if an error is left. Mended are:\n" +
       rules +
       ",\nand slips of ParameterName and DataType.\n\n"
       "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");
