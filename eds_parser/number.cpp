@@ -100,6 +100,14 @@ Parsed read_unsigned(std::string_view text) noexcept {
   return finish(digits, number);
 }
 
+/// `$NODEID-1`, not `$NODEID_2`: the name is known, what follows it is not.
+bool starts_with_node_id(std::string_view text) noexcept {
+  constexpr std::string_view name = "$nodeid";
+  if (!same_word(text.substr(0, name.size()), name)) return false;
+  const char next = text.size() > name.size() ? fold(text[name.size()]) : ' ';
+  return next != '_' && (next < '0' || next > '9') && (next < 'a' || next > 'z');
+}
+
 Parsed read_term(std::string_view text) noexcept {
   const bool dollar = text.starts_with('$');
   if (same_word(dollar ? text.substr(1) : text, "nodeid")) {
@@ -108,7 +116,10 @@ Parsed read_term(std::string_view text) noexcept {
     if (!dollar) number.quirks = bit(NumberQuirk::node_id_no_dollar);
     return number;
   }
-  if (dollar) return std::unexpected{NumberFault::unknown_name};
+  if (dollar) {
+    return std::unexpected{starts_with_node_id(text) ? NumberFault::not_a_number
+                                                     : NumberFault::unknown_name};
+  }
   const bool minus = text.starts_with('-');
   auto number = read_unsigned(minus ? trim(text.substr(1)) : text);
   if (number && minus) number->negative = !number->negative && number->magnitude != 0;

@@ -35,7 +35,7 @@ struct ParsedNumber {
 
 enum class NumberFault : std::uint8_t {
   empty,         ///< nothing written: no value, not a fault of the file
-  not_a_number,  ///< `-`, `abc`, `3.14`
+  not_a_number,  ///< `-`, `abc`, `3.14`, `$NODEID-1`
   unknown_name,  ///< `$MY_NODE_ID+0x80`
   too_big,       ///< more than 64 bits
 };

@@ -170,6 +170,19 @@ TEST(Eds, TakesTheFirstOfARepeatedKeyOrSection) {
   EXPECT_EQ(find(section.findings, "duplicate-section")->pos.line, line_of(6));
 }
 
+TEST(Eds, FormulasThatAreNoSumAreAllJudgedAlike) {
+  for (const auto* formula : {"$NODEID-1", "2*$NODEID"}) {
+    const auto file = read(var("7", formula));
+    const auto* finding = find(file.findings, "value-unreadable");
+    ASSERT_NE(finding, nullptr) << formula;
+    EXPECT_EQ(finding->severity, Severity::warning) << formula;
+    EXPECT_EQ(finding->message, "2000:00 DefaultValue: '" + std::string{formula} +
+                                    "' is not UNSIGNED32; it has no value now");
+  }
+  const auto other = read(var("7", "$NODE-1"));
+  EXPECT_EQ(find(other.findings, "value-unreadable")->severity, Severity::error);
+}
+
 TEST(Eds, CallsAConfiguredValueThatCannotBeReadAnError) {
   const auto file = read(var("6", "five") + "ParameterValue=six\n");
 

@@ -69,6 +69,17 @@ TEST(Number, RefusesWhatHasNoSingleReading) {
   EXPECT_EQ(parse_number("18446744073709551615+1").error(), NumberFault::too_big);
 }
 
+TEST(Number, KnowsTheNodeIdInAFormulaThatItCannotRead) {
+  for (const auto* text : {"$NODEID-1", "$NODEID*2", "$NodeId 1", "2*$NODEID", "0x80+$NODEID-1"}) {
+    ASSERT_FALSE(parse_number(text)) << text;
+    EXPECT_EQ(parse_number(text).error(), NumberFault::not_a_number) << text;
+  }
+  for (const auto* text : {"$NODEIDS+1", "$NODEID_2", "$NODEID2", "$NODE-1", "$"}) {
+    ASSERT_FALSE(parse_number(text)) << text;
+    EXPECT_EQ(parse_number(text).error(), NumberFault::unknown_name) << text;
+  }
+}
+
 TEST(Number, HoldsAll64Bits) {
   EXPECT_EQ(parse_number("18446744073709551615")->magnitude, 18446744073709551615U);
   EXPECT_EQ(parse_number("0xFFFFFFFFFFFFFFFF")->magnitude, 18446744073709551615U);
