@@ -11,6 +11,7 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t off_flag = 0x8000'0000;
+constexpr std::uint32_t no_remote_flag = 0x4000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
 
 /// A COB-ID entry of the file: constant, and whether the node id is added.
@@ -62,6 +63,15 @@ std::optional<CobIdEntry> entry_of(const ObjectDictionary& dictionary, ObjectKey
 
 std::string start(const CobIdEntry& entry) { return section_name(entry.key) + ": COB-ID "; }
 
+std::string id_text(const CobIdEntry& entry) {
+  return (entry.relative ? "$NODEID+" : "") + hex(entry.id(), entry.extended() ? 8 : 3);
+}
+
+/// With the bits above the identifier.
+std::string written(const CobIdEntry& entry) {
+  return (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 8);
+}
+
 /// A client reaches the default channels of other devices by restricted COB-IDs.
 bool is_default_channel(const CobIdEntry& entry, std::uint32_t id) noexcept {
   const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
@@ -107,12 +117,25 @@ void check_bits(const CobIdEntry& entry, Report& report) {
                    start(entry) + hex(entry.constant, 8) +
                        " has bits above 11, but bit 29 (extended frame) is clear");
   }
+  if (entry.extended() && entry.id() <= 0x7FF) {
+    report.warning(entry.pos, "cob-id-extended",
+                   start(entry) + written(entry) +
+                       " has bit 29 set: this is the 29-bit identifier " + id_text(entry) +
+                       ", though 11 bits would do; clear bit 29 for a base frame");
+  }
+}
+
+void check_remote_of_rpdo(const CobIdEntry& entry, Report& report) {
+  if (!entry.is_rpdo() || (entry.constant & no_remote_flag) == 0) return;
+  report.note(entry.pos, "pdo-rtr-of-rpdo",
+              start(entry) + written(entry) +
+                  " has bit 30 set (no remote requests), which means nothing for an RPDO");
 }
 
 void check_absolute(const CobIdEntry& entry, bool is_dcf, Report& report) {
-  if (entry.relative || is_dcf || entry.extended()) return;
+  if (entry.relative || is_dcf) return;
   report.note(entry.pos, "cob-id-absolute",
-              start(entry) + hex(entry.id(), 3) +
+              start(entry) + id_text(entry) +
                   " is the same for every node id; $NODEID+... would let two devices share a bus");
 }
 
@@ -184,6 +207,7 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     if (!entry || !entry->on()) continue;
     check_restricted(*entry, dictionary.node_id, report);
     check_bits(*entry, report);
+    check_remote_of_rpdo(*entry, report);
     check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }

@@ -130,6 +130,44 @@ TEST(Check, KnowsTheRestrictedCobIds) {
   EXPECT_TRUE(restricted("$NODEID+0x580"));
 }
 
+TEST(Check, TellsAnExtendedFrameWhoseIdFits11Bits) {
+  const auto told = [](std::string_view cob_id) {
+    const auto findings = tpdo("0x60410010", cob_id);
+    const auto* found = find(findings, "cob-id-extended");
+    return found == nullptr ? "" : std::string{name(found->severity)} + ": " + found->message;
+  };
+
+  EXPECT_EQ(
+      told("$NODEID+0x20000180"),
+      "warning: 1800sub1: COB-ID $NODEID+0x20000180 has bit 29 set: this is the 29-bit "
+      "identifier $NODEID+0x00000180, though 11 bits would do; clear bit 29 for a base frame");
+  EXPECT_NE(told("0x60000185"), "");
+  EXPECT_NE(told("0x200007FF"), "");
+  EXPECT_EQ(told("0x20000800"), "");
+  EXPECT_EQ(told("0x38000185"), "");
+  EXPECT_EQ(told("$NODEID+0x180"), "");
+  EXPECT_EQ(told("0xA0000185"), "");  // off
+}
+
+TEST(Check, AbsoluteCobIdsOf29BitsAreToldToo) {
+  const auto findings = tpdo("0x60410010", "0x38000185");
+  ASSERT_TRUE(has(findings, "cob-id-absolute"));
+  EXPECT_TRUE(find(findings, "cob-id-absolute")->message.contains("COB-ID 0x18000185 is the same"));
+  EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x38000180"), "cob-id-absolute"));
+}
+
+TEST(Check, Bit30IsToldOfRpdosOnly) {
+  const auto findings = rpdo("0x60400010", "$NODEID+0x40000200");
+  ASSERT_TRUE(has(findings, "pdo-rtr-of-rpdo"));
+  EXPECT_EQ(find(findings, "pdo-rtr-of-rpdo")->severity, Severity::note);
+  EXPECT_EQ(find(findings, "pdo-rtr-of-rpdo")->message,
+            "1400sub1: COB-ID $NODEID+0x40000200 has bit 30 set (no remote requests), which means "
+            "nothing for an RPDO");
+  EXPECT_FALSE(has(rpdo("0x60400010", "$NODEID+0x200"), "pdo-rtr-of-rpdo"));
+  EXPECT_FALSE(has(rpdo("0x60400010", "$NODEID+0xC0000200"), "pdo-rtr-of-rpdo"));  // off
+  EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x40000180"), "pdo-rtr-of-rpdo"));
+}
+
 TEST(Check, LooksAtEachNodeWhereTheNodeIdIsUnknown) {
   const auto finding = [](std::string_view cob_id, std::optional<NodeId> node) {
     const auto findings = check(read(pdo(true, cob_id, "1", "0x60410010"), node).dictionary);

@@ -56,6 +56,8 @@ std::vector<Example> examples() {
        "ro\nRange1=0xA080-0xA0BF\nPPOffset1=0\n"},
       {"cob-id-absolute", Kind::objects, "[1400sub1]\nDataType=7\nDefaultValue=0x205\n"},
       {"cob-id-bits", Kind::objects, "[1400sub1]\nDataType=7\nDefaultValue=0x00012345\n"},
+      {"cob-id-extended", Kind::objects,
+       "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x20000180\n"},
       {"cob-id-restricted", Kind::objects, "[1800sub1]\nDataType=7\nDefaultValue=0x585\n"},
       {"cob-id-twice", Kind::objects,
        "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x180\n[1801sub1]\nDataType=7\nDefaultValue=$"
@@ -162,6 +164,8 @@ std::vector<Example> examples() {
       {"pdo-rtr", Kind::objects,
        "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x40000180\n[1800sub2]\nDataType="
        "5\nDefaultValue=253\n"},
+      {"pdo-rtr-of-rpdo", Kind::objects,
+       "[1400sub1]\nDataType=7\nDefaultValue=$NODEID+0x40000200\n"},
       {"pdo-sync-start", Kind::objects, "[1800sub6]\nDataType=5\nDefaultValue=241\n"},
       {"pdo-too-long", Kind::objects,
        "[1A00sub0]\nDataType=5\nDefaultValue=3\n[1A00sub1]\nDataType=7\nDefaultValue=0x60640020\n["
