@@ -88,8 +88,15 @@ void read_device_info(DeviceInfo& device, const IniSection& section, const IniEn
   keys.number(device.granularity, "granularity", values);
   keys.number(device.dynamic_channels, "dynamicchannelssupported", values);
   keys.flag(device.group_messaging, "groupmessaging", values);
-  keys.number(device.nr_rx_pdo, "nrofrxpdo", values);
-  keys.number(device.nr_tx_pdo, "nroftxpdo", values);
+  const auto pdos = [&](std::uint16_t& count, SourcePos& pos, std::string_view key) {
+    const auto* entry = keys.get(key);
+    pos = entry == nullptr ? section.pos : entry->pos();
+    if (entry == nullptr) return;
+    const auto read = values.read_count(entry->value, 0xFFFF, entry->key, entry->pos());
+    if (read) count = static_cast<std::uint16_t>(*read);
+  };
+  pdos(device.nr_rx_pdo, device.nr_rx_pdo_pos, "nrofrxpdo");
+  pdos(device.nr_tx_pdo, device.nr_tx_pdo_pos, "nroftxpdo");
   keys.flag(device.lss_supported, "lss_supported", values);
   keys.number(device.compact_pdo, "compactpdo", values);
   read_baud_rates(device, entries, values);

@@ -89,7 +89,9 @@ struct DeviceInfo {
   std::uint16_t nr_tx_pdo = 0;
   bool lss_supported = false;
   std::uint8_t compact_pdo = 0;
-  SourcePos pos;  ///< of the section, 0:0 where the file has none
+  SourcePos pos;            ///< of the section, 0:0 where the file has none
+  SourcePos nr_rx_pdo_pos;  ///< of NrOfRXPDO, or of the section
+  SourcePos nr_tx_pdo_pos;
 };
 
 /// [DeviceComissioning] of a DCF. CiA 306, 5.3.

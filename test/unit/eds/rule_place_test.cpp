@@ -81,6 +81,16 @@ TEST(RulePlace, OfAJudgementIsThatOfTheValue) {
   }
 }
 
+TEST(RulePlace, OfACountOfPdosIsThatOfTheCount) {
+  const std::string device = "[DeviceInfo]\nVendorName=V\n";
+  for (const auto& place :
+       {Place{"pdo-count", 3, 12, warning, device + "NrOfRXPDO= 2\n"},
+        Place{"pdo-count", 4, 11, warning, device + "NrOfRXPDO=0\nNrOfTXPDO=4\n"},
+        Place{"pdo-count", 1, 1, warning, device + section("1400sub2", "DataType=5\n")}}) {
+    expect(check(read_eds(place.text, "t.eds").dictionary), place, 0);
+  }
+}
+
 TEST(RulePlace, OfAMissingObjectIsTheSectionBeforeItOrWhatDemandsIt) {
   const auto number = [](const std::string& index, const std::string& value) {
     return section(index, "DataType=7\nDefaultValue=" + value + "\n");
