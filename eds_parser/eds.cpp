@@ -22,6 +22,8 @@ namespace {
 /// A file larger than this is not read: no dictionary of 65,536 objects needs so much.
 constexpr std::uintmax_t largest_file = 512ULL << 20;
 
+constexpr SourcePos file_start{1, 1};  // for what the file does not have
+
 /// Where each kind of section is.
 struct Outline {
   const IniSection* file_info = nullptr;
@@ -53,7 +55,7 @@ class EdsReader {
     expand_compact_pdos(dictionary);
     result.readable = !dictionary.objects.empty();
     if (!result.readable) {
-      report_.error({}, "not-an-eds",
+      report_.error(file_start, "not-an-eds",
                     "there is no section of an object, [1000] for example: this is no EDS or DCF");
     }
     return result;
@@ -183,7 +185,7 @@ class EdsReader {
       read_device_info(dictionary.device, *outline_.device_info, entries(outline_.device_info),
                        values, report_);
     } else {
-      report_.warning({}, "device-info-missing", "the file has no section [DeviceInfo]");
+      report_.warning(file_start, "device-info-missing", "the file has no section [DeviceInfo]");
     }
     read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values);
     read_channels(dictionary, values);
@@ -243,7 +245,7 @@ class EdsReader {
       if (section != nullptr) lists.read(list, *section, entries(section));
     }
     if (!lists.any() && described->any()) {
-      report_.warning({}, "lists-missing",
+      report_.warning(file_start, "lists-missing",
                       "the file has no [MandatoryObjects], [OptionalObjects] or "
                       "[ManufacturerObjects]; all sections of objects were read");
     }

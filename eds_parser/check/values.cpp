@@ -82,7 +82,8 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
                     " were read as values; takt writes them at boot if the file is named .dcf");
   }
   if (dictionary.is_dcf && !dictionary.commissioning.node_id) {
-    report.warning(dictionary.commissioning.pos, "dcf-without-node-id",
+    const auto& section = dictionary.commissioning.pos;
+    report.warning(section.line == 0 ? SourcePos{1, 1} : section, "dcf-without-node-id",
                    "a DCF says its NodeID in [DeviceComissioning]; this one does not");
   }
 }

@@ -6,7 +6,8 @@
 namespace takt {
 namespace {
 
-/// Where a rule speaks: `line` counts from the first line of `text`, 0 stands for the whole file.
+/// Where a rule speaks: `line` counts from the first line of `text`, 0 stands for a file
+/// that cannot be read.
 struct Place {
   std::string_view rule;
   std::uint32_t line;
@@ -118,21 +119,24 @@ TEST(RulePlace, OfTheEncodingIsTheFirstLine) {
   expect(read_eds(wide, "t.eds").findings, {"utf-16", 1, 1, warning, ""}, 0);
 }
 
-TEST(RulePlace, OfWhatIsMissingIsTheFile) {
+TEST(RulePlace, OfWhatIsMissingIsTheStartOfTheFile) {
   const auto object = section("2000", "DataType=5\n");
   for (const auto& place :
-       {Place{"device-info-missing", 0, 0, warning, object},
-        Place{"lists-missing", 0, 0, warning, object},
+       {Place{"device-info-missing", 1, 1, warning, object},
+        Place{"lists-missing", 1, 1, warning, object},
         Place{"node-id-range", 2, 8, warning, "[DeviceComissioning]\nNodeID=128\n" + object},
         Place{"node-id-range", 2, 8, warning, "[DeviceComissioning]\nNodeID=0\n" + object}}) {
     expect(read_eds(place.text, "t.dcf").findings, place, 0);
   }
-  const Place place{"dcf-without-node-id", 0, 0, warning, object};
+  const Place place{"dcf-without-node-id", 1, 1, warning, object};
   expect(check(read_eds(object, "t.dcf").dictionary), place, 0);
   const auto text = object + "[DeviceComissioning]\nNodeName=x\n";
   expect(check(read_eds(text, "t.dcf").dictionary), {"dcf-without-node-id", 6, 1, warning, text},
          0);
   EXPECT_FALSE(test::has(check(read_eds(object, "t.eds").dictionary), "dcf-without-node-id"));
+  for (const auto* other : {"", "no section at all\n"}) {
+    expect(read_eds(other, "t.eds").findings, {"not-an-eds", 1, 1, error, ""}, 0);
+  }
   const auto missing = read_eds_file("no-such-file.eds").findings;
   expect(missing, {"file-unreadable", 0, 0, error, ""}, 0);
 }
