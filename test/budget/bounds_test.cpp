@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
+#include "test/budget/hand_made_bus.hpp"
 #include "test/budget/random_bus.hpp"
 #include "test/budget/worst_phase.hpp"
 
@@ -168,6 +169,51 @@ TEST(Budget, NoFrameIsLaterThanItsBoundInABurstOfEmcys) {
         run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 30, .emcys = true}, random);
 
     expect_within_bounds(budget, seen, &BudgetRow::worst_in_burst, network);
+  }
+}
+
+TEST(Budget, NoFrameIsLaterThanItsBoundWithErrors) {
+  unsigned bounded = 0;
+  std::uint64_t errors = 0;
+  for (unsigned n = 0; n < networks(); ++n) {
+    const unsigned network = first_network() + n;
+    sim::Random random{network};
+    const BusPlan plan = random_bus(random, {.least_percent = 20, .most_percent = 80});
+    const Time distance = plan.cycle.period * (10 + random.below(190)) / 100;
+    const auto budget = bus_budget(plan, {.errors = {.burst = 1, .interval = distance}});
+    bounded += has_all_bounds(budget);
+    PhaseOptions options{.device_time = 30us, .cycles = 60, .error_distance = distance};
+
+    const auto seen = run_worst_phase(plan, budget, options, random.fork(1));
+    options.one_queue = true;
+    const auto queue = run_worst_phase(plan, budget, options, random.fork(2));
+    options.one_queue = false;
+    options.emcys = true;
+    const auto burst = run_worst_phase(plan, budget, options, random.fork(3));
+
+    expect_within_bounds(budget, seen, &BudgetRow::worst, network);
+    expect_within_bounds(budget, queue, &BudgetRow::worst_behind_services, network);
+    expect_within_bounds(budget, burst, &BudgetRow::worst_in_burst, network);
+    errors += seen.errors;
+  }
+  EXPECT_GE(bounded, networks() / 4);
+  EXPECT_GE(errors, 10 * networks());
+  std::printf("%u of %u networks have all bounds, %llu errors\n", bounded, networks(),
+              static_cast<unsigned long long>(errors));
+}
+
+TEST(Budget, NoFrameIsLaterThanItsBoundWithManyErrorsInACycle) {
+  for (std::uint8_t nodes = 5; nodes <= 25; ++nodes) {
+    const BusPlan plan = hand_made_bus(nodes, nodes * 2ms);
+    const auto budget = bus_budget(plan, {.errors = {.burst = 1, .interval = 600us}});
+    ASSERT_TRUE(cycle_fits(budget)) << unsigned{nodes};
+
+    const auto seen =
+        run_worst_phase(plan, budget, {.device_time = 30us, .cycles = 200, .error_distance = 600us},
+                        sim::Random{nodes});
+
+    expect_within_bounds(budget, seen, &BudgetRow::worst, nodes);
+    EXPECT_GE(seen.errors, 500U);
   }
 }
 

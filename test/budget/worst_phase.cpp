@@ -55,7 +55,6 @@ class WorstPhase {
       stream.row = row_of(traffic_[i], budget.rows);
       seen_.not_in_budget += !stream.row;
       stream.sender = sender_of(i);
-      bus_.node(stream.sender).faults.error = options.wire_errors;
       stream.next = Time{random_.below(1'000'000)};
       if (traffic_[i].kind == Traffic::sdo && traffic_[i].sent == Sent::by_itself) answers_ = i;
     }
@@ -314,10 +313,34 @@ class WorstPhase {
         queue_outputs();
       } else if (now >= end) {
         return;
-      } else if (bus_.step(now, wire) && wire.result == sim::WireResult::sent) {
-        arrived(wire);
+      } else {
+        step(now, wire);
       }
     }
+  }
+
+  void step(Time now, sim::WireFrame& wire) {
+    if (options_.error_distance > Time{0}) disturb(now >= next_error_ ? 1.0 : 0.0);
+    if (!bus_.step(now, wire)) return;
+    if (wire.result == sim::WireResult::sent) return arrived(wire);
+    ++seen_.errors;
+    next_error_ = wire.end + options_.error_distance;
+    if (random_.chance(0.3)) next_error_ = std::max(next_error_, hurting_moment());
+    // No controller becomes passive: what is tried are the errors, not who they are blamed on.
+    for (sim::BusNodeIndex i = 0; i < bus_.size(); ++i) bus_.node(i).reset_errors();
+  }
+
+  void disturb(double share) {
+    for (sim::BusNodeIndex i = 0; i < bus_.size(); ++i) bus_.node(i).faults.error = share;
+  }
+
+  /// SYNC, an input or an output of the cycle in which there may be errors again.
+  Time hurting_moment() {
+    const Time period = plan_.cycle.period;
+    const auto cycles = (next_error_ - sync_) / period;
+    const Time moments[] = {Time{0}, Time{random_.below(1'000'000)}, plan_.cycle.output_deadline};
+    const Time when = sync_ + cycles * period + moments[random_.below(std::size(moments))];
+    return when < next_error_ ? when + period : when;
   }
 
   void arrived(const sim::WireFrame& wire) {
@@ -370,6 +393,7 @@ class WorstPhase {
   SeenBus seen_;
   unsigned cycle_ = 0;
   Time sync_{};
+  Time next_error_{};     ///< at the earliest
   int awaited_ = 0;       ///< inputs of this cycle that are not there
   unsigned starved_ = 0;  ///< cycles
   bool served_ = false;

@@ -14,7 +14,7 @@ struct PhaseOptions {
   /// The master's other frames wait in the queue of SYNC and outputs, as with SocketCAN; else they
   /// have one of their own.
   bool one_queue = false;
-  double wire_errors = 0;  ///< share of the frames that are destroyed
+  Time error_distance{};  ///< least of two destroyed frames; 0: none is
 };
 
 /// What was seen of one row of the budget.
@@ -26,6 +26,7 @@ struct SeenRow {
 /// What was seen of a bus.
 struct SeenBus {
   std::vector<SeenRow> rows;   ///< as those of the budget
+  std::uint64_t errors = 0;    ///< destroyed frames
   unsigned not_in_budget = 0;  ///< frames of the network that no row speaks of
 };
 
