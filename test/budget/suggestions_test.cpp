@@ -42,6 +42,48 @@ TEST(Suggestions, ABitRateIsTheLowestOnWhichItFits) {
   EXPECT_EQ(found[1].text, "500 kbit/s instead of 250");
 }
 
+/// Four drives, and so many event-driven TPDOs of the first that go before all theirs.
+BusPlan with_urgent_events(Time period, std::uint16_t events, std::uint8_t bytes) {
+  auto plan = hand_made_bus(4, period);
+  for (auto& row : plan.pdos.tpdos) row.cob_id = CobId::base(row.cob_id.id() + 0x100U);
+  for (std::uint16_t number = 2; number < 2 + events; ++number) {
+    plan.pdos.tpdos.push_back({.cob_id = CobId::base(0x17FU + number),
+                               .node = plan.nodes[0].id,
+                               .node_index = 0,
+                               .number = number,
+                               .transmission = 255,
+                               .length = bytes,
+                               .inhibit = 50ms});
+  }
+  compile(plan);
+  return plan;
+}
+
+TEST(Suggestions, AnotherIdentifierIsWhatMakesItFit) {
+  // Without it the last TPDO is in after 895 of 909 us.
+  const auto plan = with_urgent_events(1800us, 1, 8);
+  ASSERT_FALSE(bus_budget(plan).fits());
+
+  const auto found = suggestions_for(plan);
+
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].text, "lower priority than all synchronous PDOs for TPDO2 n1");
+  EXPECT_EQ(to_string(found[0].changes), "n1.tpdo2.cob_id=0x57F");
+  EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
+}
+
+TEST(Suggestions, NoMoreIdentifiersAreChangedThanMustBe) {
+  // One of 65 us has room before the window ends, two have not.
+  const auto plan = with_urgent_events(2ms, 2, 1);
+  ASSERT_FALSE(bus_budget(plan).fits());
+
+  const auto found = suggestions_for(plan);
+
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].text, "lower priority than all synchronous PDOs for TPDO2 n1");
+  EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
+}
+
 /// Of a device that sends four TPDOs each millisecond, beside those of two drives, at 1 Mbit/s.
 BusPlan with_a_talker(Time inhibit) {
   auto plan = hand_made_bus(3, 2ms);
