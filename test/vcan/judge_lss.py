@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """judge_lss.py BIN: LSS on vcan0. python-canopen's master against the devices of `takt sim`, `takt lss`
 against slaves written here from the standard, and taktd, which gives ids to nodes that have none.
+Wireshark's dissector reads it all.
 
 Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
 """
@@ -14,6 +15,7 @@ import time
 import canopen
 from canopen.lss import LssError
 
+from dissector import judge_dissector, recording
 from scripted_slaves import Slave, Slaves
 
 NETWORK = pathlib.Path(__file__).resolve().parent / "lss_devices.yaml"
@@ -195,9 +197,13 @@ def judge_daemon(binaries):
 
 def main(binaries):
     binaries = pathlib.Path(binaries)
-    judge_devices(binaries)
-    judge_tool(binaries)
-    judge_daemon(binaries)
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "bus.log"
+        with recording(log):
+            judge_devices(binaries)
+            judge_tool(binaries)
+            judge_daemon(binaries)
+        judge_dissector(check, log, 1000)
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 

@@ -3,7 +3,7 @@
 
 First it is the master of a simulated device (`takt sim`): each transmission type, inhibit time, event
 timer, remote requests, frames of wrong length. Then taktd is: remote requests and type 0 on the wire. The families of
-devices: judge_families.py.
+devices: judge_families.py. Wireshark's dissector reads all of it.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import pathlib
@@ -11,7 +11,10 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import time
+
+from dissector import judge_dissector, recording
 
 NETWORK = pathlib.Path(__file__).resolve().parent / "pdo_types.yaml"
 NODE, TPDO, RPDO = 5, 0x185, 0x205
@@ -164,8 +167,7 @@ def judge_master(bus, binaries):
     check(sent == [bytes((7, 0, 0, 0, 9, 0, 0, 0))], f"RPDO1 of type 0 goes out once: {sent}")
 
 
-def main(binaries):
-    binaries = pathlib.Path(binaries)
+def judge_all(binaries):
     simulation = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", "vcan0"])
     bus = Bus()
     try:
@@ -176,6 +178,14 @@ def main(binaries):
     finally:
         simulation.terminate()
         simulation.wait()
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "bus.log"
+        with recording(log):
+            judge_all(pathlib.Path(binaries))
+        judge_dissector(check, log, 500, remote=[TPDO])
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 

@@ -6,7 +6,7 @@
 2. `takt sim` is the server, python-canopen the client: expedited, segmented and block, both ways.
 3. `taktd` with the simulated device: files through the daemon; python-canopen reads the master's own
    dictionary and asks it for an NMT command.
-`takt dump` reads everything that was said. Runs inside with-vcan. Exit code 1: a check failed.
+`takt dump` and Wireshark's dissector read everything that was said. Runs inside with-vcan. Exit code 1: a check failed.
 """
 import hashlib
 import pathlib
@@ -19,6 +19,8 @@ import time
 
 import can
 import canopen
+
+from dissector import judge_dissector, recording
 
 HERE = pathlib.Path(__file__).resolve().parent
 EDS = HERE / "domain_device.eds"
@@ -188,17 +190,16 @@ def judge_daemon(binaries, takt):
 def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         log = pathlib.Path(folder) / "bus.log"
-        with open(log, "w") as out:
-            candump = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
         takt = Takt(binaries, folder)
-        judge_python_server(takt)
-        judge_endless(takt)
-        simulation = judge_python_client(binaries)
-        judge_daemon(binaries, takt)
-        time.sleep(0.2)
-        for process in (simulation, candump):
-            process.terminate()
-            process.wait()
+        with recording(log):
+            judge_python_server(takt)
+            judge_endless(takt)
+            simulation = judge_python_client(binaries)
+            judge_daemon(binaries, takt)
+            time.sleep(0.2)
+            simulation.terminate()
+            simulation.wait()
+        judge_dissector(check, log, 10000)
         read = subprocess.run([takt.program, "dump", NETWORK, log], capture_output=True, text=True)
         text = read.stdout
         check(read.returncode == 0 and "block segment 127" in text, "takt dump reads block transfers")

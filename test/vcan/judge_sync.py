@@ -2,7 +2,8 @@
 """judge_sync.py BIN: taktd follows the SYNC that python-canopen makes on vcan0, and sends TIME.
 
 The cycle begins with that SYNC, keeps to another period than ours, ends with a defined reaction when SYNC
-stays away, and goes on when it is back. The TIME frames are read with python-canopen's figures.
+stays away, and goes on when it is back. The TIME frames are read with python-canopen's figures,
+and all frames by Wireshark's dissector.
 Runs inside with-vcan. Exit code 1: a check failed.
 """
 import datetime
@@ -20,6 +21,8 @@ import time
 import can
 import canopen
 from canopen.timestamp import OFFSET, ONE_DAY
+
+from dissector import judge_dissector, recording
 
 NETWORK = pathlib.Path(__file__).resolve().parent / "followed_sync.yaml"
 PERIOD, SLOWER = 0.020, 0.0205
@@ -156,8 +159,7 @@ def judge_time(frames):
     check(abs(statistics.median(steps) - 0.5) < 0.03, f"each {statistics.median(steps):.3f} s")
 
 
-def main(binaries):
-    binaries = pathlib.Path(binaries)
+def judge_all(binaries, events):
     network = canopen.Network()
     network.connect(interface="socketcan", channel="vcan0")
     simulation = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", "vcan0"])
@@ -174,32 +176,30 @@ def main(binaries):
     def followed(period):
         return lambda begin: len(steady(source.times(begin, time.time()), period, ticks)) >= ENOUGH
 
-    with tempfile.TemporaryDirectory() as folder:
-        events = pathlib.Path(folder) / "events.jsonl"
-        time.sleep(0.5)
-        taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--events", events])
-        first, _ = source.run(PERIOD, started)
-        begin, end = source.run(SLOWER, followed(SLOWER))
-        judge_following(ear, ticks, source.times(begin, end), SLOWER)
-        time.sleep(2)
-        last = source.times(begin, end + 2)[-1]
-        check(last < end + 0.1, "nobody makes SYNC in the pause, taktd does not either")
-        stopped = commands(last + 0.001, last + STANDSTILL)
-        again = stopped.count(START) if ticks.stalled(last - PERIOD, last + STANDSTILL) else 0
-        once = stopped.count(STOP) == again + 1
-        check(stopped[-1:] == [STOP] and once, f"without SYNC the node is stopped: {stopped}")
-        silence = commands(last + STANDSTILL, end + 1.9)
-        check(not silence, f"and nothing else is commanded: {silence}")
-        again, until = source.run(PERIOD, followed(PERIOD))
-        back = source.times(again, until)
-        judge_following(ear, ticks, back, PERIOD)
-        restarts = commands(again, back[-1])
-        check(restarts[:1] == [START], f"and started when it is back: {restarts}")
-        check(restarts.count(STOP) <= losses(back, PERIOD), "and not stopped again as long as it comes")
-        time.sleep(0.5)
-        taktd.send_signal(signal.SIGINT)
-        check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
-        told = [json.loads(line) for line in events.read_text().splitlines()]
+    time.sleep(0.5)
+    taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--events", events])
+    first, _ = source.run(PERIOD, started)
+    begin, end = source.run(SLOWER, followed(SLOWER))
+    judge_following(ear, ticks, source.times(begin, end), SLOWER)
+    time.sleep(2)
+    last = source.times(begin, end + 2)[-1]
+    check(last < end + 0.1, "nobody makes SYNC in the pause, taktd does not either")
+    stopped = commands(last + 0.001, last + STANDSTILL)
+    again = stopped.count(START) if ticks.stalled(last - PERIOD, last + STANDSTILL) else 0
+    once = stopped.count(STOP) == again + 1
+    check(stopped[-1:] == [STOP] and once, f"without SYNC the node is stopped: {stopped}")
+    silence = commands(last + STANDSTILL, end + 1.9)
+    check(not silence, f"and nothing else is commanded: {silence}")
+    again, until = source.run(PERIOD, followed(PERIOD))
+    back = source.times(again, until)
+    judge_following(ear, ticks, back, PERIOD)
+    restarts = commands(again, back[-1])
+    check(restarts[:1] == [START], f"and started when it is back: {restarts}")
+    check(restarts.count(STOP) <= losses(back, PERIOD), "and not stopped again as long as it comes")
+    time.sleep(0.5)
+    taktd.send_signal(signal.SIGINT)
+    check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
+    told = [json.loads(line) for line in events.read_text().splitlines()]
     kinds = [event["kind"] for event in told if event["kind"] in ("sync_lost", "sync_back")]
     stayed_away = losses(source.times(first, until), PERIOD)
     in_turn = all(kind == ("sync_lost" if i % 2 else "sync_back") for i, kind in enumerate(kinds))
@@ -212,6 +212,14 @@ def main(binaries):
     network.disconnect()
     simulation.terminate()
     simulation.wait()
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "bus.log"
+        with recording(log):
+            judge_all(pathlib.Path(binaries), pathlib.Path(folder) / "events.jsonl")
+        judge_dissector(check, log, 500)
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 

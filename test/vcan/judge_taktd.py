@@ -13,6 +13,8 @@ import sys
 import tempfile
 import time
 
+from dissector import judge_dissector, recording
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 NODES = (5, 6)
@@ -146,15 +148,6 @@ def judge_order(frames):
     check(len(good) >= 0.98 * len(punctual), f"{len(good)} of those: TPDOs after SYNC, RPDOs before the next")
 
 
-def judge_dissector(log, folder):
-    pcap = pathlib.Path(folder) / "bus.pcap"
-    subprocess.run([sys.executable, HERE / "candump_to_pcap.py", log, pcap], check=True)
-    told = subprocess.run(["tshark", "-r", pcap, "-d", "can.subdissector,canopen"], capture_output=True, text=True, check=True)
-    lines = told.stdout.splitlines()
-    strange = [line for line in lines if "CANopen" not in line or "alformed" in line]
-    check(len(lines) > 1000 and not strange, f"tshark reads {len(lines)} frames as CANopen, strange: {strange[:3]}")
-
-
 def judge_dump(binaries, log, frames):
     dump = subprocess.run([pathlib.Path(binaries) / "takt", "dump", HERE / "python_axes.yaml", log], capture_output=True, text=True)
     lines = dump.stdout.splitlines()
@@ -167,18 +160,16 @@ def main(binaries):
     with tempfile.TemporaryDirectory() as folder:
         log, events = pathlib.Path(folder) / "bus.log", pathlib.Path(folder) / "events.jsonl"
         application = Application(folder)
-        with open(log, "w") as out:
-            candump = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
         eds = ROOT / "share/eds/takt_drive402.eds"
-        nodes = subprocess.Popen([sys.executable, HERE / "python_nodes.py", "vcan0", eds, *map(str, NODES)],
-                                 stdout=subprocess.PIPE, text=True)
-        nodes.stdout.readline()
-        taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", HERE / "python_axes.yaml", "--for", "60s", "--events", events])
-        application.run_while(taktd)
-        time.sleep(0.2)
-        for process in (nodes, candump):
-            process.terminate()
-            process.wait()
+        with recording(log):
+            nodes = subprocess.Popen([sys.executable, HERE / "python_nodes.py", "vcan0", eds, *map(str, NODES)],
+                                     stdout=subprocess.PIPE, text=True)
+            nodes.stdout.readline()
+            taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", HERE / "python_axes.yaml", "--for", "60s", "--events", events])
+            application.run_while(taktd)
+            time.sleep(0.2)
+            nodes.terminate()
+            nodes.wait()
         check(taktd.returncode == 0, f"taktd ended with exit code {taktd.returncode}")
         lines = [json.loads(line) for line in events.read_text().splitlines()]
         told = dict(collections.Counter(line["kind"] for line in lines))
@@ -190,7 +181,7 @@ def main(binaries):
         judge_dump(binaries, log, frames)
         judge_boot(frames)
         judge_cycles(frames)
-        judge_dissector(log, folder)
+        judge_dissector(check, log, 1000)
         check(application.images > 400, f"LCM's Python binding decoded {application.images} images")
         moved = {n: application.positions.get(n, 0) for n in NODES}
         check(all(position >= 5000 for position in moved.values()), f"the axes followed: {moved}")
