@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""judge_python_pdos.py BIN: taktd and a device whose PDOs python-canopen sends and receives, on vcan0.
+
+TPDOs of type 5, of type 255 as an event and by its event timer; RPDOs of type 5 and 255. The frames that candump saw
+tell what has to be in the image and in the counts of taktd.
+Runs inside with-vcan, with the interpreter of the judges' environment. Exit code 1: a check failed.
+"""
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import canopen
+
+from dissector import judge_dissector, recording
+from judge_taktd import ROOT, check, failures, read_log
+from python_pdos import START, Device
+
+HERE = pathlib.Path(__file__).resolve().parent
+NETWORK, NODE, N = HERE / "python_pdo_types.yaml", 7, 5
+SYNC, NMT = 0x080, 0x000
+IMAGES = 240
+INPUTS = {"position": 0x6064, "velocity": 0x606C, "count": 0x60FD}
+
+
+class Application:
+    """New set-points with each image; remembers the values that came and the newest state of the PDOs."""
+
+    def __init__(self, folder):
+        subprocess.run(["lcm-gen", "--python", "--ppath", folder, *map(str, (ROOT / "share/lcm").glob("*.lcm"))], check=True)
+        sys.path.insert(0, folder)
+        import lcm
+        import takt
+        self.takt, self.bus = takt, lcm.LCM()
+        self.layout, self.images, self.told_at, self.pdos = None, 0, 0, {}
+        self.seen = {name: [] for name in INPUTS}
+        for channel, taker in (("LAYOUT", self.on_layout), ("IMAGE", self.on_image), ("PDOS", self.on_pdos)):
+            self.bus.subscribe("JUDGE_" + channel, taker)
+
+    def on_layout(self, _, data):
+        layout = self.takt.layout_t.decode(data)
+        self.layout = {s.index: layout.first_signal + i for i, s in enumerate(layout.signals)}
+
+    def on_pdos(self, _, data):
+        status = self.takt.pdo_status_t.decode(data)
+        self.told_at, self.pdos = status.utime / 1e6, {(pdo.output, pdo.number): pdo for pdo in status.pdos}
+
+    def on_image(self, _, data):
+        image = self.takt.image_t.decode(data)
+        if self.layout is None:
+            return
+        self.images += 1
+        for name, index in INPUTS.items():
+            self.seen[name].append(image.values[self.layout[index]])
+        command = self.takt.command_t()
+        command.schema, command.session, command.sender, command.cycle = 1, image.session, "judge", image.cycle
+        command.time_to_live = 40
+        if self.images <= IMAGES:
+            command.signals = [self.layout[0x60FF], self.layout[0x607A]]
+            command.values = [1000 + self.images // 2, -1000 - self.images]
+            command.num_values = 2
+            self.bus.publish("JUDGE_COMMAND", command.encode())
+
+    def run_while(self, process):
+        until = time.monotonic() + 60
+        asked = False
+        while process.poll() is None:
+            self.bus.handle_timeout(50)
+            if not asked and (self.images >= IMAGES + 30 or time.monotonic() > until):
+                process.terminate()
+                asked = True
+
+
+def numbers(frames, identifier):
+    return [(when, int.from_bytes(data, "little", signed=True)) for when, can_id, data in frames if can_id == identifier]
+
+
+def operational(frames):
+    """What was on the bus from the node's start to the end of its last cycle."""
+    begin = next(i for i, f in enumerate(frames) if f[1] == NMT and f[2][0] == START)
+    ends = [i for i, f in enumerate(frames) if i > begin and f[1] == NMT and f[2][0] != START]
+    return frames[begin:ends[0] if ends else len(frames)]
+
+
+def in_order(seen, sent):
+    """Every value of `seen` is one of `sent`, none before the one it follows."""
+    rest = iter(sent)
+    return all(value in rest for value in seen)
+
+
+def without_repeats(values):
+    return [value for i, value in enumerate(values) if i == 0 or value != values[i - 1]]
+
+
+def judge_each_nth(frames, cob_ids):
+    """Both directions of type 5, and what the device made of its RPDO."""
+    syncs = [f[0] for f in frames if f[1] == SYNC]
+    for name, identifier in (("TPDO1", cob_ids[False, 1]), ("RPDO2", cob_ids[True, 2])):
+        found = numbers(frames, identifier)
+        places = [sum(sync < when for sync in syncs) for when, _ in found]
+        steps = [b - a for a, b in zip(places, places[1:])]
+        check(len(found) >= 30, f"{len(found)} frames of {name}")
+        check(sum(step == N for step in steps) >= 0.9 * len(steps), f"{name} of type {N}: each {N} SYNCs: {sorted(set(steps))}")
+    orders = numbers(frames, cob_ids[True, 2])
+    wrong = []
+    for number, (when, value) in enumerate(numbers(frames, cob_ids[False, 1])):
+        sync = syncs[(number + 1) * N - 1] if (number + 1) * N <= len(syncs) else when
+        valid = [order for sent, order in orders if sent < sync]
+        if value != (valid[-1] if valid else 0):
+            wrong.append((when, value, valid[-1:]))
+    check(not wrong, f"it has the set-point that was valid with its SYNC: {wrong[:3]}")
+
+
+def judge_events(frames, cob_ids):
+    orders, answers = numbers(frames, cob_ids[True, 1]), numbers(frames, cob_ids[False, 2])
+    check(len(orders) >= 100, f"{len(orders)} frames of RPDO1")
+    check([v for _, v in answers] == [v for _, v in orders][:len(answers)] and len(orders) - len(answers) <= 1,
+          f"RPDO1 of type 255 acts at once: each has its TPDO2: {len(answers)}")
+    syncs = [f[0] for f in frames if f[1] == SYNC]
+    quick = [not any(sent < sync < answer for sync in syncs) for (sent, _), (answer, _) in zip(orders, answers)]
+    check(sum(quick) >= 0.5 * len(orders), f"{sum(quick)} of {len(orders)} before the next SYNC")
+
+
+def judge_timer(frames, cob_ids):
+    times = [when for when, _ in numbers(frames, cob_ids[False, 3])]
+    check(len(times) >= 60, f"{len(times)} frames of TPDO3")
+    period = statistics.median(b - a for a, b in zip(times, times[1:]))
+    check(abs(period - 0.1) < 0.01, f"python-canopen repeats TPDO3 each {period * 1e3:.1f} ms")
+
+
+def tardy(frames, cob_ids, key):
+    """How often python, on a busy machine, sent a TPDO later than it should have."""
+    times = [when for when, _ in numbers(frames, cob_ids[key])]
+    if key[1] == 1:
+        syncs = [f[0] for f in frames if f[1] == SYNC]
+        return sum(when - sync > 0.020 for when, sync in zip(times, syncs[N - 1::N]))
+    return sum(b - a > 0.150 for a, b in zip(times, times[1:])) if key[1] == 3 else 0
+
+
+def judge_image(frames, application, cob_ids):
+    pairs = (("position", (False, 1)), ("velocity", (False, 2)), ("count", (False, 3)))
+    for name, key in pairs:
+        seen = without_repeats(application.seen[name])
+        sent = [0] + [value for _, value in numbers(frames, cob_ids[key])]
+        check(len(set(seen)) >= 30 and in_order(seen, without_repeats(sent)), f"the image has {len(set(seen))} values of {name}")
+        pdo = application.pdos[key]
+        there = sum(when < application.told_at for when, _ in numbers(frames, cob_ids[key]))
+        check(abs(there - pdo.count) <= 2, f"TPDO{key[1]}: {pdo.count} counted, {there} on the bus until then")
+        late = tardy(frames, cob_ids, key)
+        check(pdo.missing <= late, f"TPDO{key[1]}: {pdo.missing} missing, python was late {late} times")
+        check(pdo.too_short == pdo.too_long == 0 and (late or not pdo.stale), f"TPDO{key[1]}: none of wrong length, not stale")
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log, events = pathlib.Path(folder) / "bus.log", pathlib.Path(folder) / "events.jsonl"
+        application = Application(folder)
+        with recording(log):
+            network = canopen.Network()
+            network.connect(interface="socketcan", channel="vcan0")
+            device = Device(network, str(ROOT / "share/eds/takt_drive402.eds"), NODE)
+            taktd = subprocess.Popen([pathlib.Path(binaries) / "taktd", NETWORK, "--for", "90s", "--events", events])
+            application.run_while(taktd)
+            time.sleep(0.2)
+            device.node.tpdo.stop()
+            network.disconnect()
+        check(taktd.returncode == 0, f"taktd ended with exit code {taktd.returncode}")
+        told = [json.loads(line)["kind"] for line in events.read_text().splitlines()]
+        check(told.count("boot_done") == 1, f"the device booted once: {sorted(set(told))}")
+        frames = operational(read_log(log))
+        cob_ids = {key: pdo.cob_id for key, pdo in application.pdos.items()}
+        check(sorted(cob_ids) == [(False, 1), (False, 2), (False, 3), (True, 1), (True, 2)], f"taktd tells its PDOs: {cob_ids}")
+        for judge in (judge_each_nth, judge_events, judge_timer):
+            judge(frames, cob_ids)
+        judge_image(frames, application, cob_ids)
+        judge_dissector(check, log, 500)
+    print(f"{len(failures)} checks failed" if failures else "all checks passed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
