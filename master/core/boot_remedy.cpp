@@ -138,6 +138,13 @@ std::string against_dead_node(const BootStep& step) {
          ", or use `reset: communication` where it may be reset";
 }
 
+/// Else nothing came of the device that tells about its software.
+bool tells_of_program(const BootFailure& failure) noexcept {
+  if (failure.letter < 'G' || failure.letter > 'I') return false;
+  return failure.fault == SdoFault::none || failure.fault == SdoFault::aborted_by_device ||
+         (failure.fault == SdoFault::timeout && failure.letter == 'I');
+}
+
 std::string against_program(const NodePlan& node, const BootStep& step,
                             const BootFailure& failure) {
   switch (failure.letter) {
@@ -163,6 +170,11 @@ std::string against_program(const NodePlan& node, const BootStep& step,
            "It is loaded anew with the next try; raise `sdo_timeout_ms` where its flash memory is "
            "slow";
   }
+  if (failure.fault == SdoFault::timeout) {
+    return "the device gives no answer while its program is loaded: does its boot loader talk "
+           "CANopen, at this node id and bit rate? Switch it off and on; the program is loaded "
+           "anew with the next try";
+  }
   return "the device did not take the program: is `software_file` made for this device and its "
          "boot loader? The next try loads it anew";
 }
@@ -181,7 +193,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
   if (failure.step >= node.boot_plan.steps.size()) return {};
   const BootStep& step = node.boot_plan.steps[failure.step];
   if (step.action == BootAction::await_alive) return against_dead_node(step);
-  if (failure.letter >= 'G' && failure.letter <= 'I') return against_program(node, step, failure);
+  if (tells_of_program(failure)) return against_program(node, step, failure);
   if (failure.letter == 'L' && failure.running) return against_running_node(node, failure);
   switch (failure.fault) {
     case SdoFault::none:

@@ -71,10 +71,10 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
     phase_ = Phase::upload_next;
     return;
   }
-  if (silent) return fail(result, now, client);
   if (result.fault != SdoFault::none && step.unread_letter != 0) {
     return fail(result, step.unread_letter, now, client);
   }
+  if (silent) return fail(result, now, client);
   if (result.fault == SdoFault::none) remember_cob_id();
   const bool same = result.fault == SdoFault::none ? same_value(received(), step.value, step.mask)
                                                    : may_be_missing(step, result.abort_code);

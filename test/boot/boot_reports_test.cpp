@@ -135,6 +135,7 @@ std::vector<Case> cases() {
       {"software version unknown",
        "software_version: 0x00010001",
        {on(refuse_object, {0x1F56, 1}, 0x0602'0000)}},
+      {"mute at the software version", program, {on(mute_sdo, {0x1F56, 1})}},
       {"software differs and there is no file", "software_version: 0x00010001"},
       {"software differs and the node is running",
        "reset: keep_alive, " + program,
