@@ -8,8 +8,21 @@
 namespace takt {
 namespace {
 
+/// Nothing was heard of a node that has no id of its own.
+std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
+  return "nothing at all was heard of node " + std::to_string(int{node.id.value()}) +
+         ", which gets this id by LSS (`lss: true`) as soon as a device without id answers that "
+         "has " +
+         identity_text(*node.lss) +
+         ": `takt lss find` shows who is without id. Where it is another one, correct the network "
+         "file; where it is not there, `takt scan` shows whether it has another id already. "
+         "Else: is it powered, and wired, is its bit rate " +
+         std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
+}
+
 std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const std::string id = std::to_string(int{node.id.value()});
+  if (failure.node_state == NmtState::unknown && node.lss) return against_missing_id(plan, node);
   if (failure.node_state == NmtState::unknown) {
     return "nothing at all was heard of node " + id +
            ": is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? "

@@ -70,8 +70,9 @@ enum class EventKind : std::uint8_t {
                      ///< abort code, 0: it gave no answer; detail: index << 8 | sub
   program_progress,  ///< value: bytes that the device has taken, detail: of how many
   lss_assigned,      ///< the node had no id and has got it; value: its serial number
-  lss_not_assigned,  ///< it was found without id, but did not take it; bytes: op, outcome, error,
-                     ///< specific of the LssResult; told when that changes
+  lss_not_assigned,  ///< it was found without id, but did not take it, or (outcome nobody) others
+                     ///< were; bytes: op, outcome, error, specific of the LssResult; told when that
+                     ///< changes
   unlisted_node,     ///< value: id of a node that is not in the network file (status A)
   network_ready,     ///< all mandatory nodes have booted; the master is operational
   network_late,      ///< mandatory nodes still missing after the boot time; detail: how many

@@ -101,11 +101,16 @@ std::string reaction_text(const Event& event) {
   return "it is told";
 }
 
-std::string lss_trouble_text(const Event& event) {
+std::string lss_trouble_text(const BusPlan& plan, const Event& event) {
   const LssResult result{.op = static_cast<LssOp>(event.bytes[0]),
                          .outcome = static_cast<LssOutcome>(event.bytes[1]),
                          .error = event.bytes[2],
                          .specific = event.bytes[3]};
+  const NodePlan* const node = plan.find(event.node);
+  if (result.outcome == LssOutcome::nobody && node != nullptr && node->lss) {
+    return "a device without node id answers LSS, but none with " + identity_text(*node->lss) +
+           ", which the network file gives this node: `takt lss find` shows what is there";
+  }
   return "a device without node id is there, but LSS came to no good end: " +
          lss_failure_text(result);
 }
@@ -152,7 +157,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return "a device without node id, serial number " + std::to_string(event.value) +
              ", has got this id by LSS";
     case EventKind::lss_not_assigned:
-      return lss_trouble_text(event);
+      return lss_trouble_text(plan, event);
     case EventKind::node_replaced:
       return "another device than before: its serial number is " + std::to_string(event.value) +
              ", it was " + std::to_string(event.detail) +

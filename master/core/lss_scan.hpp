@@ -13,6 +13,9 @@ enum class LssScanState : std::uint8_t { running, found, nobody, lost };
 /// in configuration state. CiA 305, 3.9.5.
 class LssFastScan {
  public:
+  /// Nobody has answered: that many questions.
+  static constexpr std::uint32_t frames_of_silence = 2;
+
   LssFastScan() = default;
   /// Bits of `mask` are known and need no question.
   LssFastScan(const LssAddress& known, const LssAddress& mask) noexcept

@@ -110,24 +110,39 @@ void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexc
   }
 }
 
+/// Once that may be the device of a node that is looked for next, or an answer was lost.
+bool LssService::only_others_answered(Candidate& candidate) const noexcept {
+  const LssResult& scan = runner_.results().front();
+  const bool answered = scan.frames > LssFastScan::frames_of_silence;
+  const bool others = scan.outcome == LssOutcome::nobody && answered;
+  return std::exchange(candidate.others_answer, others) && others;
+}
+
+void LssService::tell_failure(Candidate& candidate, Time now) noexcept {
+  const LssResult& last = runner_.results().back();
+  const std::array<std::uint8_t, 4> why{static_cast<std::uint8_t>(last.op),
+                                        static_cast<std::uint8_t>(last.outcome), last.error,
+                                        last.specific};
+  const auto sum = static_cast<std::uint32_t>(why[0] << 24 | why[1] << 16 | why[2] << 8 | why[3]);
+  if (std::exchange(candidate.told, sum) == sum) return;
+  Event event{.when = now,
+              .kind = EventKind::lss_not_assigned,
+              .node = plan_.nodes[candidate.node].id.value()};
+  std::ranges::copy(why, event.bytes.begin());
+  events_.push(event);
+}
+
 void LssService::conclude(Candidate& candidate, Time now) noexcept {
   const NodePlan& node = plan_.nodes[candidate.node];
   const auto results = runner_.results();
   candidate.next_look = now + waits::lss_look_again;
-  if (results.empty() || results.front().outcome == LssOutcome::nobody) return;
-  const LssResult& last = results.back();
+  if (results.empty()) return;
+  const bool only_others = only_others_answered(candidate);
+  if (results.front().outcome == LssOutcome::nobody && !only_others) return;
   if (runner_.done()) {
     candidate.told = 0;
   } else {
-    const std::array<std::uint8_t, 4> why{static_cast<std::uint8_t>(last.op),
-                                          static_cast<std::uint8_t>(last.outcome), last.error,
-                                          last.specific};
-    const auto sum = static_cast<std::uint32_t>(why[0] << 24 | why[1] << 16 | why[2] << 8 | why[3]);
-    if (std::exchange(candidate.told, sum) != sum) {
-      Event event{.when = now, .kind = EventKind::lss_not_assigned, .node = node.id.value()};
-      std::ranges::copy(why, event.bytes.begin());
-      events_.push(event);
-    }
+    tell_failure(candidate, now);
   }
   const bool has_id = results.size() > 1 && results[1].outcome == LssOutcome::done;
   if (!has_id) return;

@@ -37,7 +37,9 @@ class LssService {
   void keep(Archive& state) noexcept {
     state(runner_);
     state.position(turn_, std::max<std::size_t>(candidates_.size(), 1));
-    for (Candidate& candidate : candidates_) state(candidate.next_look, candidate.told);
+    for (Candidate& candidate : candidates_) {
+      state(candidate.next_look, candidate.told, candidate.others_answer);
+    }
   }
 
  private:
@@ -46,11 +48,14 @@ class LssService {
   struct Candidate {
     std::uint8_t node = 0;  // index into plan.nodes
     Time next_look = never;
-    std::uint32_t told = 0;  // last failure
+    std::uint32_t told = 0;      // last failure
+    bool others_answer = false;  // without id; none of them was it
   };
 
   void finish(Time now) noexcept;
   void answer() noexcept;
+  bool only_others_answered(Candidate& candidate) const noexcept;
+  void tell_failure(Candidate& candidate, Time now) noexcept;
   void conclude(Candidate& candidate, Time now) noexcept;
   bool begin_request() noexcept;
   void begin_search(Time now, std::span<const NodeStatus> nodes) noexcept;

@@ -49,4 +49,13 @@ inline std::string node_text(const NodePlan& node) {
   return "node " + std::to_string(int{node.id.value()}) + " '" + node.name + "'";
 }
 
+/// "vendor id 0x0000015A, product code 0x00000700, serial number 77": what is known of it.
+inline std::string identity_text(const LssPlan& lss) {
+  std::string text =
+      "vendor id " + hex(lss.address[0], 8) + ", product code " + hex(lss.address[1], 8);
+  if (lss.known[2] != 0) text += ", revision number " + hex(lss.address[2], 8);
+  if (lss.known[3] != 0) text += ", serial number " + std::to_string(lss.address[3]);
+  return text;
+}
+
 }  // namespace takt

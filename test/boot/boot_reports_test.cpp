@@ -16,8 +16,9 @@ struct Case {
   std::string keys{};  ///< of the node in the network file
   sim::Faults faults{};
   Time span = 5s;
-  Time devices_first{};  ///< so long before the master
-  std::string others{};  ///< nodes of the network file
+  Time devices_first{};      ///< so long before the master
+  std::string others{};      ///< nodes of the network file
+  std::uint32_t serial = 0;  ///< of the device, where it is not what the network file says
 };
 
 sim::Fault fault(sim::FaultKind kind, Time at = {}, Time until = never) {
@@ -65,6 +66,17 @@ std::vector<Case> cases() {
       {"SDO server mute", "", {fault(mute_sdo)}},
       {"boot-up message missing and mute", "", {fault(no_bootup), fault(mute_sdo)}, 8s},
       {"boot-up much too late", "", {late(20s)}, 8s},
+      {"without id and silent to LSS",
+       "lss: true, sim: {quirks: [no_node_id]}",
+       {fault(lss_silent)},
+       8s},
+      {"without id and with another serial number",
+       "lss: true, serial_number: 78, sim: {quirks: [no_node_id]}",
+       {},
+       8s,
+       {},
+       "",
+       77},
       {"mute at the identity", "", {on(mute_sdo, {0x1018, 1})}},
       {"mute at the heartbeat", "", {on(mute_sdo, {0x1017, 0})}},
       {"mute at a value", setting, {on(mute_sdo, {0x2000, 0})}},
@@ -164,7 +176,14 @@ std::vector<Case> cases() {
 }
 
 std::string report(const Case& what) {
-  Plant plant{valve(what.keys, "", what.others), what.faults};
+  LoadedNetwork network = valve(what.keys, "", what.others);
+  if (what.serial != 0) {
+    auto& objects = network.devices[0].objects;
+    const auto serial = std::ranges::find(objects, ObjectKey{0x1018, 4}, &DeviceObject::key);
+    EXPECT_NE(serial, objects.end());
+    serial->value = reads_as({0x1018, 4}, what.serial).value;
+  }
+  Plant plant{std::move(network), what.faults};
   if (what.devices_first != Time{}) plant.run_without_master(what.devices_first);
   plant.run(what.span);
   std::string text = plant.text_of(EventKind::boot_failed);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "master/core/boot_report.hpp"
 #include "master/core/lss_command.hpp"
 #include "master/sim/device.hpp"
 #include "test/virtual/rig.hpp"
@@ -211,6 +212,45 @@ TEST(Lss, LeavesADeviceOfAnotherIdentityAlone) {
 
   EXPECT_EQ(rig.count(EventKind::lss_assigned), 0);
   EXPECT_FALSE(rig.world->device(rig.master->plan().nodes[0].id)->address());
+  ASSERT_EQ(rig.count(EventKind::lss_not_assigned), 1) << "told once";
+  const Event told = *std::ranges::find(rig.events, EventKind::lss_not_assigned, &Event::kind);
+  EXPECT_EQ(describe(rig.master->plan(), told),
+            "node 1 'axis1': a device without node id answers LSS, but none with vendor id "
+            "0x0000015A, product code 0x0000004D, revision number 0x00000003, which the network "
+            "file gives this node: `takt lss find` shows what is there");
+}
+
+TEST(Lss, TellsNothingOfADeviceThatIsSilentToLss) {
+  BusPlan plan = axes({.nodes = 1});
+  give_id_by_lss(plan);
+  RigOptions options;
+  options.devices.push_back(lss_device(plan, 0, 17));
+  options.devices.back().quirks.push_back("lss_silent");
+  Rig rig{std::move(plan), std::move(options)};
+
+  rig.run(20'000);
+
+  EXPECT_FALSE(rig.recorder.with(0x7E5).empty());
+  EXPECT_EQ(rig.count(EventKind::lss_not_assigned), 0);
+}
+
+TEST(Lss, TellsNothingOfADeviceThatBecomesAnotherNode) {
+  BusPlan plan = axes({.nodes = 2});
+  give_id_by_lss(plan);
+  for (std::size_t i = 0; i < 2; ++i) {
+    plan.nodes[i].lss->address[3] = 17 + static_cast<std::uint32_t>(i);
+    plan.nodes[i].lss->known[3] = ~0U;
+  }
+  RigOptions options;
+  options.devices.push_back(lss_device(plan, 0, 17));
+  options.devices.back().quirks.push_back("lss_silent");
+  options.devices.push_back(lss_device(plan, 1, 18));
+  Rig rig{std::move(plan), std::move(options)};
+
+  rig.run(20'000);
+
+  EXPECT_EQ(rig.count(EventKind::lss_assigned), 1);
+  EXPECT_EQ(rig.count(EventKind::lss_not_assigned), 0);
 }
 
 TEST(Lss, LooksForNobodyWhereNoNodeWantsIt) {
