@@ -97,14 +97,32 @@ class ErrorControl : BootPart {
     if (steps.writable({0x100C, 0})) {
       steps.integer(BootAction::write_if_differs, {0x100C, 0}, ms,
                     "guard time " + std::to_string(ms) + " ms", 2);
+    } else if (spec.guard_time.given) {
+      report.note(spec.guard_time.pos, "guard-object",
+                  "the master guards node `" + spec.name + "`, which is not told how often: " +
+                      dictionary.file + " has no 100C:00 that can be written");
     }
-    if (!spec.life_time_factor.given || !steps.writable({0x100D, 0})) return;
+    if (!spec.life_time_factor.given) return;
+    if (!steps.writable({0x100D, 0})) return no_life_guarding();
     steps.integer(BootAction::write_if_differs, {0x100D, 0}, *spec.life_time_factor,
                   *spec.life_time_factor == 0
                       ? "no life guarding"
                       : "the device misses the master after " +
                             std::to_string(ms * *spec.life_time_factor) + " ms",
                   1);
+  }
+
+  void no_life_guarding() const {
+    const std::string lacks =
+        "100D:00, which " + dictionary.file + " does not have or can't change";
+    if (*spec.life_time_factor == 0) {
+      return report.note(
+          spec.life_time_factor.pos, "guarding",
+          "node `" + spec.name + "` needs no `life_time_factor: 0`: it would go to " + lacks);
+    }
+    report.warning(spec.life_time_factor.pos, "guard-object",
+                   "`life_time_factor` of node `" + spec.name + "` needs " + lacks +
+                       ": the device will not watch the master");
   }
 };
 

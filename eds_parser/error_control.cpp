@@ -59,24 +59,39 @@ GuardPlan ErrorControl::guard(const NodeSource& node) const {
   const NodeSpec& spec = *node.spec;
   const std::int64_t own = integer_of(*node.dictionary, {0x100C, 0}).value_or(0);
   const std::int64_t ms = spec.guard_time.given ? *spec.guard_time : own;
-  if (ms <= 0 || ms > 0xFFFF || !*spec.boot || !*spec_.master.heartbeat_consumer) return {};
-  if (producer_ms(node) != 0) {
-    if (spec.guard_time.given) {
-      report_.note(spec.guard_time.pos, "guarding",
-                   "node `" + spec.name +
-                       "` has a heartbeat, and with it it does not answer "
-                       "guarding (CiA 301): `guard_time` is left alone; `heartbeat_producer: 0` "
-                       "would switch to guarding");
-    }
-    return {};
-  }
   const std::int64_t factor = integer_of(*node.dictionary, {0x100D, 0}).value_or(0);
   const auto of_device = static_cast<std::uint8_t>(
       factor > 0 && factor <= 255 ? factor : std::int64_t{*spec_.retry_factor});
   const std::uint8_t retries =
       spec.retry_factor.value_or(spec_.retry_factor.given ? *spec_.retry_factor : of_device);
-  if (retries == 0) return {};  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off
-  return {.period = std::chrono::milliseconds{ms}, .retries = retries};
+  const std::string name = "node `" + spec.name + "` ";
+  if (!*spec.boot) {
+    leave_alone(spec, name + "is only watched (`boot: false`)");
+  } else if (!*spec_.master.heartbeat_consumer) {
+    leave_alone(spec, name + "is not watched (`heartbeat_consumer: false` of `master`)");
+  } else if (producer_ms(node) != 0) {
+    leave_alone(spec, name + "has a heartbeat, and with it it does not answer guarding (CiA 301)",
+                "; `heartbeat_producer: 0` would switch to guarding");
+  } else if (ms <= 0 || ms > 0xFFFF) {
+    leave_alone(spec, name + "has no guard time, neither here nor in " + node.dictionary->file);
+  } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off
+    leave_alone(spec, name + "is not guarded (`retry_factor: 0`)");
+  } else {
+    return {.period = std::chrono::milliseconds{ms}, .retries = retries};
+  }
+  return {};
+}
+
+/// What asks for guarding of a node that is not guarded; what asks for none is obeyed.
+void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
+                               const std::string& remedy) const {
+  const auto tell = [&](const auto& key, const std::string& word) {
+    if (!key.given || *key == 0) return;
+    report_.note(key.pos, "guarding", why + ": `" + word + "` is left alone" + remedy);
+  };
+  tell(spec.guard_time, "guard_time");
+  tell(spec.life_time_factor, "life_time_factor");
+  tell(spec.retry_factor, "retry_factor");
 }
 
 void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report) {

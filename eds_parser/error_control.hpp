@@ -24,6 +24,8 @@ class ErrorControl {
 
  private:
   std::uint16_t wanted_producer_ms(const NodeSource& node) const;
+  void leave_alone(const NodeSpec& spec, const std::string& why,
+                   const std::string& remedy = "") const;
 
   const NetworkSpec& spec_;
   NetworkReport& report_;

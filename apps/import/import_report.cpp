@@ -55,6 +55,7 @@ struct Row {
   std::set<SourcePos> places;
   bool leaf = true;
   bool wrong_type = false;
+  std::size_t left_alone = 0;  ///< by so many nodes that are not guarded
 };
 
 /// The rows of a file: one a key that has a value, one an entry of a list.
@@ -131,7 +132,9 @@ class RowCollector {
 KeyFate fate_of(const Finding& finding) {
   if (finding.severity == Severity::error) return KeyFate::wrong;
   if (finding.severity == Severity::warning) return KeyFate::suspicious;
-  const bool ignored = finding.rule == "unused-key" || finding.rule == "placeholder";
+  if (finding.rule == "cob-id") return KeyFate::suspicious;  // bit 30 stays as the device has it
+  const bool ignored =
+      finding.rule == "unused-key" || finding.rule == "placeholder" || finding.rule == "guarding";
   return ignored ? KeyFate::ignored : KeyFate::used;
 }
 
@@ -150,6 +153,7 @@ Row* row_of(std::vector<Row>& rows, const Finding& finding) {
 
 void apply(Row& row, const Finding& finding) {
   const KeyFate fate = fate_of(finding);
+  if (finding.rule == "guarding") ++row.left_alone;
   if (fate < row.key.fate) return;
   row.wrong_type = row.wrong_type || finding.rule == "wrong-type";
   const std::string_view reason =
@@ -199,6 +203,10 @@ std::vector<const YamlPair*> nodes_of(const YamlNode& root) {
   return nodes;
 }
 
+std::string why_used(const Row& row) {
+  return row.key.why.empty() ? std::string{key_meaning(row.word)} : row.key.why;
+}
+
 /// A node takes a key of `defaults` as a whole or, where it has that key itself, not at all.
 void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   const YamlNode* defaults = root.find("defaults");
@@ -214,12 +222,16 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
     }
     const std::string path = "defaults." + pair.key;
     for (Row& row : rows) {
-      if (count == 0 || (row.key.path != path && !is_within(row, path))) continue;
+      if (row.key.path != path && !is_within(row, path)) continue;
+      if (row.left_alone != 0 && row.left_alone < nodes.size() - count) {
+        row.key.fate = KeyFate::used;
+        row.key.why = std::string{key_meaning(row.word)} + "; but " + row.key.why;
+      }
+      if (count == 0) continue;
       if (count == nodes.size()) {
         ignore(row, "each node has its own `" + pair.key + "`, which replaces this one as a whole");
       } else if (row.leaf && row.key.fate == KeyFate::used) {
-        row.key.why = std::string{key_meaning(row.word)} + "; not of " + own + " with its own `" +
-                      pair.key + "`";
+        row.key.why = why_used(row) + "; not of " + own + " with its own `" + pair.key + "`";
       }
     }
   }
