@@ -10,6 +10,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "eds_parser/check/check.hpp"
 #include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_compiler.hpp"
@@ -235,21 +236,25 @@ class Loader {
             "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF");
       return nullptr;
     }
-    add_device_finding(path, file.findings);
+    add_device_finding(path, file, id);
     read_domain_files(path, file.dictionary, out_.findings);
     return &file.dictionary;
   }
 
   /// What is wrong in a device file does not make the network file wrong; `takt eds check` judges
-  /// it. It is told once, however many nodes share the file.
-  void add_device_finding(const fs::path& path, const Findings& findings) {
+  /// it. It is told once, however many nodes share the file, as it is for the first of them.
+  void add_device_finding(const fs::path& path, const EdsFile& file, std::optional<NodeId> id) {
+    if (!told_.insert(path).second) return;
+    const Findings judged = check(file.dictionary);
     const auto count = [&](Severity severity) {
-      return std::ranges::count(findings, severity, &Finding::severity);
+      return std::ranges::count(file.findings, severity, &Finding::severity) +
+             std::ranges::count(judged, severity, &Finding::severity);
     };
     const auto errors = count(Severity::error);
     const auto warnings = count(Severity::warning);
-    if (errors + warnings == 0 || !told_.insert(path).second) return;
-    const auto listed_only = std::ranges::count(findings, "listed-without-section", &Finding::rule);
+    if (errors + warnings == 0) return;
+    const auto listed_only =
+        std::ranges::count(file.findings, "listed-without-section", &Finding::rule);
     out_.findings.push_back(
         {path.string(),
          {},
@@ -261,7 +266,8 @@ class Loader {
                                              " objects that it lists have no section: "
                                              "is it cut off?"
                                        : "") +
-             "; `takt eds check " + path.string() + "` lists them"});
+             "; `takt eds check " + (id ? "--node " + std::to_string(id->value()) + ' ' : "") +
+             path.string() + "` lists them"});
   }
 
   /// Device files first, then the network file by position; what many nodes share is told once.

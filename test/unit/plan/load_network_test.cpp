@@ -8,12 +8,15 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "eds_parser/check/check.hpp"
+#include "eds_parser/eds.hpp"
 #include "eds_parser/print/plan.hpp"
 
 namespace takt {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -182,6 +185,35 @@ TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
   for (const Finding& finding : network.findings) lines += finding.rule == "device-file";
   EXPECT_EQ(lines, 1U);
   EXPECT_THAT(findings(network, Severity::error), IsEmpty());
+}
+
+TEST(LoadNetwork, FindingsOfADeviceFileAreThoseOfEdsCheck) {
+  const Folder folder;
+  std::string eds = read(source / "share/eds/takt_io401.eds");
+  eds.insert(eds.find("ParameterName=Device type"), "PDOMapping=maybe\n");
+  const std::string mapped = "DefaultValue=0x60000108";  // 1A00:01; 1017:00 can't be mapped
+  ASSERT_NE(eds.find(mapped), std::string::npos);
+  eds.replace(eds.find(mapped), mapped.size(), "DefaultValue=0x10170010");
+  const auto device = folder.write("d.eds", eds);
+  const auto file =
+      folder.write("net.yaml", "master: {sync_period: 10000}\na: {node_id: 1, dcf: d.eds}\n");
+
+  const EdsFile read_file = read_eds_file(device, NodeId::from(1));
+  Findings all = read_file.findings;
+  for (const Finding& finding : check(read_file.dictionary)) all.push_back(finding);
+  const auto errors = std::ranges::count(all, Severity::error, &Finding::severity);
+  const auto warnings = std::ranges::count(all, Severity::warning, &Finding::severity);
+  ASSERT_GT(errors, std::ranges::count(read_file.findings, Severity::error, &Finding::severity));
+  ASSERT_GT(warnings, 0);
+
+  const auto network = load_network(file);
+
+  const auto line = std::ranges::find(network.findings, "device-file", &Finding::rule);
+  ASSERT_NE(line, network.findings.end());
+  EXPECT_EQ(line->severity, Severity::warning);
+  EXPECT_THAT(line->message, AllOf(HasSubstr(std::to_string(errors) + " error"),
+                                   HasSubstr(std::to_string(warnings) + " warning"),
+                                   HasSubstr("`takt eds check --node 1 " + device.string())));
 }
 
 /// A DCF with a DOMAIN, and a network that has it.
