@@ -9,7 +9,7 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t predefined_time = 0x100;
-constexpr std::uint32_t emcy_off = 0x8000'0000;
+constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
 
 bool is_relative(const SubObject& sub) {
@@ -19,8 +19,8 @@ bool is_relative(const SubObject& sub) {
 }
 
 /// A plain number as the default of an EDS is that of the node it was taken from.
-std::int64_t emcy_of_file(const ObjectDictionary& dictionary) {
-  const SubObject* sub = dictionary.find(ObjectKey{0x1014, 0});
+std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
+  const SubObject* sub = dictionary.find(key);
   if (sub == nullptr) return 0;
   const bool configured = dictionary.is_dcf && sub->parameter_value;
   const std::int64_t id =
@@ -28,6 +28,79 @@ std::int64_t emcy_of_file(const ObjectDictionary& dictionary) {
   const bool meant = configured || is_relative(*sub) || (id & extended_flag) != 0;
   return meant ? id : 0;
 }
+
+/// None: it is off.
+std::optional<CobId> cob_id_of(std::int64_t value) {
+  const auto raw = static_cast<std::uint32_t>(value);
+  if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
+  const CobId id = (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);
+  return id.id() == 0 ? std::nullopt : std::optional{id};
+}
+
+/// An SDO server besides the first: 0x1201..0x127F.
+struct SdoServer {
+  std::uint16_t index = 0;
+  SdoChannel channel;
+  SourcePos pos;
+};
+
+/// Those that the network file, else the device file, has on.
+class SdoServers {
+ public:
+  explicit SdoServers(const NodeSource& node) : node_{node} {}
+
+  std::vector<SdoServer> active() const {
+    std::vector<SdoServer> servers;
+    for (std::uint16_t index = first; index <= last; ++index) {
+      if (const auto server = at(index)) servers.push_back(*server);
+    }
+    return servers;
+  }
+
+ private:
+  static constexpr std::uint16_t first = 0x1201;
+  static constexpr std::uint16_t last = 0x127F;
+
+  std::optional<SdoServer> at(std::uint16_t index) const {
+    const SdoSpec* own_request = written({index, 1});
+    const SdoSpec* own_answer = written({index, 2});
+    const auto request = cob_id({index, 1}, own_request);
+    const auto answer = cob_id({index, 2}, own_answer);
+    if (!request || !answer) return std::nullopt;
+    const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
+    return SdoServer{.index = index,
+                     .channel = {.request = *request, .answer = *answer},
+                     .pos = own != nullptr ? own->pos : node_.spec->pos};
+  }
+
+  /// The last one counts: those of `configuration_file` come before those of `sdo`.
+  const SdoSpec* written(ObjectKey key) const {
+    const SdoSpec* last_one = nullptr;
+    for (const SdoSpec& sdo : node_.spec->sdo) {
+      if (sdo.object == key) last_one = &sdo;
+    }
+    return last_one;
+  }
+
+  std::optional<CobId> cob_id(ObjectKey key, const SdoSpec* own) const {
+    if (own == nullptr) return cob_id_of(cob_id_of_file(*node_.dictionary, key));
+    return cob_id_of(number_of(own->value));
+  }
+
+  /// Little-endian where it comes from a concise DCF.
+  static std::int64_t number_of(const decltype(SdoSpec::value)& value) {
+    if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
+    const auto* bytes = std::get_if<std::vector<std::byte>>(&value);
+    if (bytes == nullptr || bytes->size() != 4) return 0;
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      number |= std::to_integer<std::uint32_t>((*bytes)[i]) << (8 * i);
+    }
+    return number;
+  }
+
+  const NodeSource& node_;
+};
 
 class ServiceIdCollector {
  public:
@@ -43,6 +116,7 @@ class ServiceIdCollector {
     ids_.try_emplace(CobId::base(predefined_time), "is TIME");
     for (const NodePdos& node : nodes_) emcy(node.node);
     for (const NodePdos& node : nodes_) channel(node.node);
+    for (const NodePdos& node : nodes_) servers(node.node);
     return std::move(ids_);
   }
 
@@ -73,6 +147,35 @@ class ServiceIdCollector {
     }
   }
 
+  void servers(const NodeSource& node) {
+    for (const SdoServer& server : SdoServers{node}.active()) {
+      for (const CobId id : {server.channel.request, server.channel.answer}) {
+        if (!of_own_default(node.id, id) && !of_own_channel(*node.spec, id))
+          enter(node, server, id);
+      }
+    }
+  }
+
+  void enter(const NodeSource& node, const SdoServer& server, CobId id) {
+    const std::string number = std::to_string(server.index - 0x1200 + 1);
+    const auto [other, is_new] = ids_.try_emplace(
+        id, "is in the SDO channel " + number + " of node `" + node.spec->name + "`");
+    const NodeSource* of_default = is_new ? user_of_default(node, id) : nullptr;
+    if (is_new && of_default == nullptr) return;
+    const std::string whose =
+        is_new ? in_channel_of(*of_default, default_sdo_channel(of_default->id)) : other->second;
+    report_.error(server.pos, "cob-id-clash",
+                  "the SDO channel " + number + " (" + hex(server.index, 4) + ") of node `" +
+                      node.spec->name + "` is on: " + to_string(id) + " " + whose +
+                      "; switch it off by `sdo: [{index: " + hex(server.index, 4) +
+                      ", sub_index: 1, value: 0x80000000}]`, or give one of the nodes another id");
+  }
+
+  static bool of_own_channel(const NodeSpec& spec, CobId id) {
+    return spec.sdo_channel.given &&
+           (id == spec.sdo_channel->request || id == spec.sdo_channel->answer);
+  }
+
   static std::string in_channel_of(const NodeSource& node, const SdoChannel& channel) {
     return "is in the SDO channel of node `" + node.spec->name + "` (" +
            to_string(channel.request) + ", " + to_string(channel.answer) + ")";
@@ -83,15 +186,22 @@ class ServiceIdCollector {
     return id == own.request || id == own.answer;
   }
 
-  /// The channel that every device has stays in use where no other one is configured.
   void clash_with_default(const NodeSource& node, CobId id) {
-    for (const NodePdos& other : nodes_) {
-      if (other.node.spec == node.spec || other.node.spec->sdo_channel.given) continue;
-      if (!of_own_default(other.node.id, id)) continue;
-      report_.error(node.spec->sdo_channel.pos, "cob-id-clash",
-                    "`sdo_channel` of `" + node.spec->name + "`: " + to_string(id) + " " +
-                        in_channel_of(other.node, default_sdo_channel(other.node.id)));
-    }
+    const NodeSource* other = user_of_default(node, id);
+    if (other == nullptr) return;
+    report_.error(node.spec->sdo_channel.pos, "cob-id-clash",
+                  "`sdo_channel` of `" + node.spec->name + "`: " + to_string(id) + " " +
+                      in_channel_of(*other, default_sdo_channel(other->id)));
+  }
+
+  /// The other node whose first channel has `id`. That channel stays in use where no other one is
+  /// configured.
+  const NodeSource* user_of_default(const NodeSource& node, CobId id) const {
+    const auto other = std::ranges::find_if(nodes_, [&](const NodePdos& one) {
+      const bool in_use = one.node.spec != node.spec && !one.node.spec->sdo_channel.given;
+      return in_use && of_own_default(one.node.id, id);
+    });
+    return other == nodes_.end() ? nullptr : &other->node;
   }
 
   const NetworkSpec& spec_;
@@ -103,9 +213,10 @@ class ServiceIdCollector {
 }  // namespace
 
 std::optional<CobId> emcy_cob_id(const NodeSource& node) {
-  const std::int64_t id =
-      node.spec->emcy_cob_id.given ? *node.spec->emcy_cob_id : emcy_of_file(*node.dictionary);
-  const bool off = (id & emcy_off) != 0;
+  const std::int64_t id = node.spec->emcy_cob_id.given
+                              ? *node.spec->emcy_cob_id
+                              : cob_id_of_file(*node.dictionary, {0x1014, 0});
+  const bool off = (id & off_flag) != 0;
   if (id <= 0 || off || id == 0x80 + node.id.value()) return std::nullopt;
   const auto raw = static_cast<std::uint32_t>(id);
   return (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);

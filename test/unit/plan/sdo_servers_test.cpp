@@ -1,0 +1,82 @@
+// SDO channels of devices besides the first: 0x1201..0x127F.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "test/unit/plan/tiny_network.hpp"
+
+namespace takt {
+namespace {
+
+using test::compile;
+using test::entry;
+using test::record;
+using testing::HasSubstr;
+
+/// A device whose second channel is on from the factory.
+std::string eds(const std::string& request = "$NODEID+0x640",
+                const std::string& answer = "$NODEID+0x5C0") {
+  return test::tiny_objects() + record("1201", "SDO server 2", 3) +
+         entry("1201sub0", "highest", 5, "const", "2") +
+         entry("1201sub1", "client to server", 7, "rw", request) +
+         entry("1201sub2", "server to client", 7, "rw", answer);
+}
+
+std::string two(int first, int second, const std::string& keys = "") {
+  return "master: {node_id: 127}\nnodes:\n  arm: {node_id: " + std::to_string(first) + ", dcf: x" +
+         keys + "}\n  leg: {node_id: " + std::to_string(second) +
+         ", dcf: x, sdo: [{index: 0x1201, sub_index: 2, value: 0x80000000}]}\n";
+}
+
+const std::string off = ", sdo: [{index: 0x1201, sub_index: 1, value: 0x80000641}]";
+
+TEST(SdoServers, ASecondChannelOnTheFirstOfAnotherNodeIsAnError) {
+  const auto net = compile(two(1, 65), eds());
+
+  EXPECT_THAT(net.said("cob-id-clash"),
+              HasSubstr("SDO channel 2 (0x1201) of node `arm` is on: 0x641 is in the SDO channel "
+                        "of node `leg` (0x641, 0x5C1)"));
+  EXPECT_THAT(net.said("cob-id-clash"),
+              HasSubstr("`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"));
+  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in"));
+}
+
+TEST(SdoServers, NothingIsSaidWhereTheyDoNotMeet) {
+  EXPECT_EQ(compile(two(1, 64), eds()).said("cob-id-clash"), "");
+}
+
+TEST(SdoServers, OneThatIsSwitchedOffIsNotInUse) {
+  EXPECT_EQ(compile(two(1, 65, off), eds()).said("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65), eds("$NODEID+0x80000640")).said("cob-id-clash"), "");
+  EXPECT_EQ(compile(two(1, 65), eds("0")).said("cob-id-clash"), "");
+}
+
+TEST(SdoServers, OneThatTheNetworkFileSwitchesOnIsInUse) {
+  const std::string on =
+      ", sdo: [{index: 0x1201, sub_index: 1, value: 0x6E0}, "
+      "{index: 0x1201, sub_index: 2, value: 0x5C1}]";
+  const auto net = compile(two(1, 65, on), eds("0x80000000", "0x80000000"));
+
+  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `leg`"));
+  EXPECT_EQ(net.complaints().at(0).substr(0, 2), "3:") << "where it is written";
+}
+
+TEST(SdoServers, TheOneThatTheMasterUsesIsNoClash) {
+  const auto net = compile(
+      "nodes: {arm: {node_id: 1, dcf: x, sdo_channel: {request: 0x641, answer: 0x5C1}}}\n", eds());
+
+  EXPECT_EQ(net.said("cob-id-clash"), "");
+}
+
+TEST(SdoServers, OtherServicesAreMetToo) {
+  const auto net = compile(
+      "nodes: {arm: {node_id: 1, dcf: x}, leg: {node_id: 2, dcf: x, emcy_cob_id: 0x641}}\n", eds());
+
+  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x641 is EMCY of node `leg`"));
+}
+
+TEST(SdoServers, APlainNumberOfAnEdsIsThatOfAnotherNode) {
+  EXPECT_EQ(compile(two(1, 65), eds("0x641", "0x5C1")).said("cob-id-clash"), "");
+}
+
+}  // namespace
+}  // namespace takt
