@@ -83,7 +83,7 @@ constexpr std::array<KeyText, 61> meanings{{
     {"model", "of the simulated device"},
 }};
 
-constexpr std::array<KeyText, 26> reasons{{
+constexpr std::array<KeyText, 28> reasons{{
     {"driver", "C++ class of a ROS 2 driver: takt needs none, profiles follow from the device"},
     {"package", "ROS 2 package of that driver"},
     {"namespace", "ROS 2 names; LCM channels are named after the bus and the node"},
@@ -110,6 +110,9 @@ constexpr std::array<KeyText, 26> reasons{{
     {"remappings", "ROS 2 names"},
     {"boot_timeout", "of the ROS 2 driver; here it is `boot_timeout_ms`"},
     {"time_cobid", "dcfgen reads it and writes `time_cob_id`; here it is `time_cob_id`"},
+    {"emcy_inhibit_time", "takt as master sends no EMCY: there is nothing to hold back"},
+    {"error_behavior",
+     "takt as master has no 1029: `on_loss`, `on_sync_loss` and `on_timeout` say what faults do"},
     {"dcf_path",
      "filled in by a build that takt does not need: files are looked for beside this one"},
 }};

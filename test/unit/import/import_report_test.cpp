@@ -170,6 +170,19 @@ TEST_F(Import, Bit30OfATpdoStaysAsTheDeviceHasIt) {
   EXPECT_THAT(key(bus, "arm.tpdo.1.cob_id").why, HasSubstr("stays as the device has it"));
 }
 
+TEST_F(Import, WhyAMasterNeedsNoEmcyInhibitTime) {
+  const auto bus = report(
+      "master: {sync_period: 10000, emcy_inhibit_time: 100, error_behavior: {1: 0}}\n"
+      "arm: {node_id: 2, dcf: drive.eds, emcy_inhibit_time: 100, error_behavior: {1: 0}}\n");
+
+  EXPECT_EQ(key(bus, "master.emcy_inhibit_time").fate, KeyFate::ignored);
+  EXPECT_THAT(key(bus, "master.emcy_inhibit_time").why, HasSubstr("sends no EMCY"));
+  EXPECT_EQ(key(bus, "master.error_behavior.1").fate, KeyFate::ignored);
+  EXPECT_THAT(key(bus, "master.error_behavior.1").why, HasSubstr("has no 1029"));
+  EXPECT_EQ(key(bus, "arm.emcy_inhibit_time").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.error_behavior.1").fate, KeyFate::used);
+}
+
 TEST_F(Import, AnAliasIsReportedOnce) {
   const auto bus = report(
       "master: {sync_period: 10000}\n"
