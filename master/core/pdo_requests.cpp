@@ -21,7 +21,7 @@ std::size_t find(const std::vector<PdoRow>& rows, std::uint8_t node, std::uint16
 }  // namespace
 
 PdoRequests::PdoRequests(const BusPlan& plan)
-    : plan_{plan}, owed_until_(plan.pdos.tpdos.size(), never) {
+    : plan_{plan}, owed_until_(plan.pdos.tpdos.size(), never), sent_(plan.pdos.rpdos.size()) {
   for (std::size_t i = 0; i < plan.pdos.tpdos.size(); ++i) {
     const PdoRow& row = plan.pdos.tpdos[i];
     if (row.poll > Time{} || row.poll_syncs != 0) {
@@ -43,6 +43,7 @@ SdoFault PdoRequests::prepare(const Request& request, Slot& slot) const noexcept
   if (rpdo == plan_.pdos.rpdos.size() || !plan_.pdos.rpdos[rpdo].on_request) {
     return SdoFault::no_such_pdo;
   }
+  slot.rpdo = static_cast<std::uint16_t>(rpdo);
   const PdoRow& row = plan_.pdos.rpdos[rpdo];
   const bool mapped = row.length != 0;  // else its mapping is not known
   if (mapped && request.size != row.length) return SdoFault::wrong_length;
@@ -110,6 +111,7 @@ void PdoRequests::send(Slot& slot, std::span<const bool> exchanging, Time now,
     return answer(slot, SdoFault::not_exchanging);
   }
   if (!is_next(slot) || !out.push(slot.frame)) return;
+  if (!slot.frame.rtr) ++sent_[slot.rpdo];
   slot.state = Slot::State::sent;
   slot.sent_at = now;
   slot.deadline = now + slot.timeout;

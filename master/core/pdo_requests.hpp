@@ -40,10 +40,12 @@ class PdoRequests {
   /// No request is under way, and no answer is late.
   bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
   void cancel_all() noexcept;
+  /// Frames of this RPDO that requests have sent; `row` of PdoTable::rpdos.
+  std::uint32_t sent(std::size_t row) const noexcept { return sent_[row]; }
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(order_);
+    state(order_, sent_);
     for (Poll& poll : polls_) state(poll.next, poll.last_beat);
   }
 
@@ -58,6 +60,7 @@ class PdoRequests {
     State state = State::free;
     SdoFault fault = SdoFault::none;
     std::uint16_t tpdo = 0;
+    std::uint16_t rpdo = 0;  ///< of an exchange
     std::uint64_t id = 0;
     std::uint64_t order = 0;
     Frame frame{};  ///< to send, then the answer
@@ -79,6 +82,7 @@ class PdoRequests {
   std::array<Slot, capacity> slots_{};
   std::vector<Time> owed_until_;  // by TPDO: the answer to a request that timed out may still come
   std::size_t owed_ = 0;          // TPDOs with one
+  std::vector<std::uint32_t> sent_;  // by RPDO
   std::size_t used_ = 0;
   std::size_t waiting_ = 0;
   std::uint64_t order_ = 0;

@@ -297,7 +297,11 @@ void BusLoop<P, N>::write_status() noexcept {
   const PdoInputs& inputs = pdos_.inputs();
   exchange_.status.write(
       status_, network_.nodes(), [&](std::size_t row) { return inputs.status(row); },
-      [&](std::size_t row) { return pdos_.outputs().status(row); });
+      [&](std::size_t row) {
+        RpdoStatus status = pdos_.outputs().status(row);
+        status.sent += pdo_requests_.sent(row);
+        return status;
+      });
   if (done_) exchange_.finished.store(true, std::memory_order_release);
 }
 

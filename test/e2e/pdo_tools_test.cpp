@@ -1,5 +1,6 @@
 // `takt param` and `takt status --pdos` against a daemon with a simulated DRV-28.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "test/e2e/daemon_process.hpp"
@@ -17,6 +18,17 @@ class Drv28Daemon : public testing::Test {
     arguments.insert(arguments.begin(), TAKT);
     arguments.insert(arguments.end(), {"--lcm-url", daemon_.lcm_url()});
     return run(std::move(arguments), folder_.path());
+  }
+
+  /// What `takt status --pdos` shows of RPDO1.
+  nlohmann::json rpdo1() {
+    using namespace nlohmann::literals;
+    const auto document =
+        nlohmann::json::parse(takt({"status", "--pdos", "--json"}).output, nullptr, false);
+    for (const nlohmann::json& pdo : document.at("/buses/0/pdos"_json_pointer)) {
+      if (pdo["pdo"] == "RPDO1") return pdo;
+    }
+    return {};
   }
 
   Folder folder_;
@@ -50,12 +62,19 @@ TEST_F(Drv28Daemon, SaysWhichPdosCanBeAsked) {
 }
 
 TEST_F(Drv28Daemon, ShowsEachPdoInItsStatus) {
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(takt({"param", "read", "pump", "P15.13"}).exit_code, 0);
+  }
   const Ended status = takt({"status", "--pdos"});
   EXPECT_EQ(status.exit_code, 0);
   EXPECT_NE(status.output.find("TPDO2"), std::string::npos) << status.output;
   EXPECT_NE(status.output.find("0x284"), std::string::npos);
   const Ended json = takt({"status", "--pdos", "--json"});
   EXPECT_NE(json.output.find("\"age_cycles\""), std::string::npos) << json.output;
+  nlohmann::json shown = rpdo1();
+  for (int i = 0; i < 50 && shown.value("count", 0) < 3; ++i) shown = rpdo1();
+  EXPECT_EQ(shown.value("count", 0), 3) << "one frame for each request: " << shown;
+  EXPECT_TRUE(shown.value("toggle", false)) << shown;
 }
 
 }  // namespace

@@ -141,6 +141,22 @@ TEST(PdoRequests, ExchangeAnRpdoForTheTpdoThatAnswersIt) {
   EXPECT_EQ(replies[0].data[4], std::byte{1});
 }
 
+TEST(PdoRequests, CountTheRpdosThatTheySend) {
+  Asker asker{plan_of()};
+  for (int i = 0; i < 3; ++i) {
+    asker.ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
+    asker.at(1ms, 1, 0);
+    EXPECT_EQ(asker.requests.sent(0), static_cast<std::uint32_t>(i)) << "no room yet";
+    asker.at(2ms);
+    asker.answer(3ms, {1, 0, 0, 0, 0, 0});
+    ASSERT_EQ(asker.replies().size(), 1U);
+  }
+  asker.ask(2, RequestKind::pdo_poll);
+  ASSERT_EQ(asker.at(4ms), std::vector{remote});
+  EXPECT_EQ(asker.requests.sent(0), 3U);
+  EXPECT_EQ(asker.requests.sent(1), 0U);
+}
+
 TEST(PdoRequests, WaitNoLongerThanTheirTime) {
   Asker asker{plan_of()};
   asker.ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
