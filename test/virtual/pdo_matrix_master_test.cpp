@@ -197,7 +197,8 @@ TEST(PdoMatrix, TheSyncStartValueCountsInTheSyncOfTheMaster) {
 }
 
 TEST(PdoMatrix, MasterSendsEachNthCycleForEveryN) {
-  for (const std::uint8_t n : std::vector<std::uint8_t>{2, 3, 7, 16, 100, 240}) {
+  for (int every = 1; every <= 240; ++every) {
+    const auto n = static_cast<std::uint8_t>(every);
     // Neither inhibit time nor event timer is of type n.
     Loop loop{{"", n, 1, {.inhibit = n % 2 * 30, .repeat = n % 2 * 20}, {}, {}}};
     ASSERT_TRUE(loop.boot());
