@@ -1,0 +1,49 @@
+// `takt emcy`: what a simulated device has reported.
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "test/e2e/daemon_process.hpp"
+#include "test/e2e/process.hpp"
+
+namespace takt::test {
+namespace {
+
+/// A SYNC with a counter, which a device without 0x1019 does not expect: EMCY 8240.
+TEST(EmcyHistory, IsReadFromTheDaemon) {
+  const Folder folder;
+  std::ofstream{folder / "network.yaml"}
+      << "bus: {name: e2e, bitrate_kbit: 500}\n"
+         "master: {node_id: 127, sync_period: 10000, sync_overflow: 10}\n"
+         "nodes: {plain: {node_id: 5, dcf: " TAKT_SOURCE_DIR
+         "/share/eds/plain301.eds,\n"
+         "                mandatory: true, heartbeat_producer: 200}}\n";
+  DaemonProcess daemon{folder / "network.yaml"};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); })) << daemon.log();
+  const auto takt = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {TAKT, "emcy"});
+    arguments.insert(arguments.end(), {"--lcm-url", daemon.lcm_url()});
+    return run(std::move(arguments), folder.path());
+  };
+  ASSERT_TRUE(daemon.hear([&] { return daemon.bus().status()->nodes[0].emcy_count != 0; }))
+      << daemon.log();
+
+  const Ended told = takt({"plain"});
+  EXPECT_EQ(told.exit_code, 0) << told.output;
+  EXPECT_NE(told.output.find("node 5 plain"), std::string::npos) << told.output;
+  EXPECT_NE(told.output.find("0x8240  SYNC of unexpected length"), std::string::npos)
+      << told.output;
+
+  const auto json = nlohmann::json::parse(takt({"--json"}).output, nullptr, false);
+  ASSERT_TRUE(json.is_object());
+  EXPECT_EQ(json["bus"], "e2e");
+  ASSERT_FALSE(json["emcys"].empty()) << json;
+  EXPECT_EQ(json["emcys"][0]["node_id"], 5);
+  EXPECT_EQ(json["emcys"][0]["code"], 0x8240);
+  EXPECT_EQ(json["emcys"][0]["manufacturer"].size(), 5U);
+
+  EXPECT_NE(takt({"nobody"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace takt::test
