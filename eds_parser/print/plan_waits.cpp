@@ -64,6 +64,8 @@ class Waits {
       add("sdo_settle", waits::sdo_settle,
           "segments still under way when a device aborts a block download");
     }
+    add("sdo_sub_block", waits::sub_block_end,
+        "service frames of the master while a device sends a sub-block of a block upload");
     add("sdo_server", waits::own_server, "next frame of an SDO client of the master itself");
   }
 

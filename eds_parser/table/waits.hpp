@@ -16,6 +16,10 @@ inline constexpr Time probe_pause = std::chrono::milliseconds{50};
 inline constexpr Time poll_pause = std::chrono::milliseconds{100};  ///< CiA 302-3, flash status
 inline constexpr Time sdo_settle = std::chrono::milliseconds{20};
 inline constexpr Time own_server = std::chrono::seconds{1};
+/// The segments of a block upload have priority over most that the master sends: a sub-block lasts
+/// no longer on a free wire, and service frames wait for its end, twice as long at most.
+inline constexpr Time sub_block = std::chrono::milliseconds{20};
+inline constexpr Time sub_block_end = 2 * sub_block;
 /// In a block upload the client speaks up before a server loses its own patience.
 constexpr Time block_silence(Time sdo_timeout) noexcept { return sdo_timeout * 7 / 10; }
 

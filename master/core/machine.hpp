@@ -11,7 +11,11 @@
 namespace takt {
 
 /// Whether somebody answers a frame soon: the bus loop leaves time for it.
-enum class Answer : std::uint8_t { comes, none };
+enum class Answer : std::uint8_t {
+  comes,
+  none,
+  stream,  ///< many frames one after another: nothing of less priority gets through beside them
+};
 
 /// Frames that machines want to send, in order; fixed room. Bus thread only.
 class Outbox {

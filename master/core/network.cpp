@@ -26,7 +26,12 @@ Network::Network(const BusPlan& plan, NetworkOptions options)
     if (node.emcy_cob_id) emcy_ids_.emplace_back(*node.emcy_cob_id, position);
     answers_[node.sdo.channel_of(node.id).answer.id() & 0x7FF] = position;
     const auto managed = node.boot && !observe_ ? Managed::yes : Managed::no;
-    sessions_.emplace_back(node, managed, NodeSession::Shared{events_, requests_, nmt_gate_});
+    sessions_.emplace_back(
+        node, managed,
+        NodeSession::Shared{.events = events_,
+                            .requests = requests_,
+                            .nmt_gate = nmt_gate_,
+                            .sub_block_segments = sub_block_segments(plan.bitrate)});
   }
   streams_.resize(sessions_.size());
   deadlines_.resize(sessions_.size(), never);
@@ -49,6 +54,12 @@ void Network::touched(std::size_t index, Time now) noexcept {
   if (sessions_[index].streams() == streams_[index]) return;
   streams_[index] = !streams_[index];
   streaming_ += streams_[index] ? 1U : static_cast<std::size_t>(-1);
+}
+
+std::size_t Network::awaited_sub_blocks() const noexcept {
+  if (streaming_ == 0) return 0;
+  const auto count = std::ranges::count_if(sessions_, &NodeSession::awaits_sub_block);
+  return static_cast<std::size_t>(count);
 }
 
 void Network::start(Time now) noexcept {

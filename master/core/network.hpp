@@ -69,6 +69,8 @@ class Network {
   bool demands_quick_stop(std::size_t node_index) const noexcept;
   /// A block transfer is under way: frames come without a request for each.
   bool streams() const noexcept { return streaming_ != 0; }
+  /// Sub-blocks of block uploads that were asked for, frames still to be sent included.
+  std::size_t awaited_sub_blocks() const noexcept;
 
   /// The master has left Stopped, or begins anew: the counter of its SYNC starts at 1; told once.
   /// CiA 301, 7.2.5.2.

@@ -18,7 +18,7 @@ NodeSession::NodeSession(const NodePlan& plan, Managed managed, Shared shared) n
     : plan_{&plan},
       managed_{managed},
       shared_{shared},
-      client_{plan.sdo.channel_of(plan.id), plan.sdo.block},
+      client_{plan.sdo.channel_of(plan.id), plan.sdo.block, shared.sub_block_segments},
       runner_{plan.boot_plan},
       watch_{plan.heartbeat_timeout},
       guard_{plan.guard},

@@ -49,6 +49,7 @@ class NodeSession {
     EventQueue& events;
     RequestTable& requests;
     NmtGate& nmt_gate;
+    std::uint8_t sub_block_segments;  ///< of a block upload
   };
 
   NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
@@ -94,6 +95,8 @@ class NodeSession {
 
   /// A block transfer is under way.
   bool streams() const noexcept { return client_.streams(); }
+  /// The node sends a sub-block of a block upload, or was asked to.
+  bool awaits_sub_block() const noexcept { return client_.awaits_sub_block(); }
   const NodeStatus& status() const noexcept { return status_; }
   /// No boot, no transfer and no command is under way.
   bool idle() const noexcept {

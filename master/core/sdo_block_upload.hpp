@@ -29,6 +29,14 @@ class SdoBlockUpload {
   /// The frame to send now; none: it is the server's turn.
   std::optional<Frame> to_send() const noexcept;
   void sent() noexcept { to_send_ = Next::nothing; }
+  /// The server answers the frame that is to be sent with a sub-block.
+  bool asks_for_sub_block() const noexcept {
+    return state_ == State::segments && to_send_ != Next::nothing;
+  }
+  /// A sub-block was asked for and has not ended.
+  bool awaits_sub_block() const noexcept {
+    return state_ == State::segments && to_send_ == Next::nothing;
+  }
 
   /// Frames of the server, aborts excepted. `done`: the end is to be confirmed by to_send().
   SdoBlockStep on_frame(const Frame& frame) noexcept;

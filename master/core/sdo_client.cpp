@@ -62,7 +62,10 @@ void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   state_ = state;
   deadline_ = never;
   if (state == State::block_upload) {
-    block_upload_.begin({.channel = channel_, .object = object, .threshold = switch_threshold},
+    block_upload_.begin({.channel = channel_,
+                         .object = object,
+                         .segments = segments_,
+                         .threshold = switch_threshold},
                         buffer_);
   } else {
     block_download_.begin(channel_, object, value_);
@@ -122,6 +125,7 @@ std::optional<Frame> SdoClient::next_frame() const noexcept {
 Answer SdoClient::answer_to_next() const noexcept {
   // An abort, or the end of a block upload.
   if (state_ == State::idle || state_ == State::falling_back) return Answer::none;
+  if (state_ == State::block_upload && block_upload_.asks_for_sub_block()) return Answer::stream;
   const bool burst = state_ == State::block_download && !block_download_.answered();
   return burst ? Answer::none : Answer::comes;
 }

@@ -37,8 +37,10 @@ class SdoClient {
   static constexpr std::size_t block_from = 128;
 
   explicit SdoClient(NodeId server) noexcept : SdoClient{default_sdo_channel(server)} {}
-  explicit SdoClient(SdoChannel channel, SdoBlockUse block = SdoBlockUse::automatic) noexcept
-      : channel_{channel}, block_use_{block} {}
+  /// `segments`: of a sub-block that the server sends, 1..127.
+  explicit SdoClient(SdoChannel channel, SdoBlockUse block = SdoBlockUse::automatic,
+                     std::uint8_t segments = most_block_segments) noexcept
+      : channel_{channel}, block_use_{block}, segments_{segments} {}
 
   /// Nothing is running, no result is waiting and no abort is still to be sent.
   bool idle() const noexcept { return state_ == State::idle && !result_ && !to_send_; }
@@ -77,6 +79,10 @@ class SdoClient {
   /// In the middle of a block transfer: the next frame of the server comes soon.
   bool streams() const noexcept {
     return state_ == State::block_upload || state_ == State::block_download;
+  }
+  /// The server sends one segment after another, as fast as the wire takes them.
+  bool awaits_sub_block() const noexcept {
+    return state_ == State::block_upload && !to_send_ && block_upload_.awaits_sub_block();
   }
   const SdoChannel& channel() const noexcept { return channel_; }
   /// The newest frames of the newest transfer, for reports. Length 0: there is none.
@@ -133,6 +139,7 @@ class SdoClient {
 
   SdoChannel channel_;
   SdoBlockUse block_use_;
+  std::uint8_t segments_;
   State state_ = State::idle;
   bool uploads_ = false;
   bool toggle_ = false;

@@ -106,6 +106,8 @@ class BusLoop {
     burst,     ///< nobody answers, more may follow as the wire takes them
   };
   Handed send_services(std::size_t& budget, Time under_way) noexcept;
+  std::size_t hand_over(std::size_t most) noexcept;
+  bool behind_stream(Time now) const noexcept;
   void send_time() noexcept;
   void take_requests() noexcept;
   bool submit(const Request& request) noexcept;
@@ -165,6 +167,7 @@ class BusLoop {
   bool followed_ = false;   ///< the followed SYNC began this cycle
   bool sync_lost_ = false;  ///< and is lost; its reaction is in force
   Time wire_free_{};        ///< the service frames handed over in this cycle have ended
+  Time stream_end_{};       ///< of the newest that was asked for, at the latest
   unsigned starved_ = 0;    ///< cycles in which service frames found no room
   std::uint64_t held_ = 0;  ///< cycles since it was open
   Time sync_sent_{};        ///< of this cycle

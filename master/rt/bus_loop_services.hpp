@@ -3,6 +3,7 @@
 // turn.
 #include <algorithm>
 
+#include "eds_parser/table/waits.hpp"
 #include "master/rt/bus_loop.hpp"
 
 namespace takt {
@@ -11,7 +12,8 @@ namespace takt {
 /// service frame goes out right behind SYNC. PDOs have priority over it on the wire.
 template <Port P, class N>
 void BusLoop<P, N>::relieve_services() noexcept {
-  services_.drop(send(services_.first(1)));
+  if (behind_stream(port_.now())) return;
+  hand_over(1);
   starved_ = 0;
 }
 
@@ -113,24 +115,40 @@ void BusLoop<P, N>::serve_round() noexcept {
   give_replies();
 }
 
+/// A device sends a sub-block: a frame of less priority would wait for its end in the queue of the
+/// controller, and SYNC behind it.
+template <Port P, class N>
+bool BusLoop<P, N>::behind_stream(Time now) const noexcept {
+  return now < stream_end_ && network_.awaited_sub_blocks() > services_.stream_requests();
+}
+
+/// The first service frames, as many as the port takes.
+template <Port P, class N>
+std::size_t BusLoop<P, N>::hand_over(std::size_t most) noexcept {
+  const std::size_t streams = services_.stream_requests();
+  const std::size_t count = send(services_.first(most));
+  if (services_.unanswered(count)) wire_free_ += wire_.mean(services_.first(count));
+  services_.drop(count);
+  if (services_.stream_requests() != streams) stream_end_ = port_.now() + waits::sub_block_end;
+  return count;
+}
+
 template <Port P, class N>
 auto BusLoop<P, N>::send_services(std::size_t& budget, Time under_way) noexcept -> Handed {
   if (services_.empty()) return Handed::nothing;
   const Time now = port_.now();
+  if (behind_stream(now)) return Handed::nothing;
   const Time outputs = clock_.deadline() + plan_.cycle.output_deadline;
   wire_free_ = std::max(wire_free_, now);
   std::size_t fitting = services_.fitting(budget, outputs - wire_free_ - under_way, wire_);
   const bool burst = services_.unanswered(std::min(fitting, burst_frames));
   if (burst) fitting = std::min(fitting, burst_frames);
-  const std::span<const Frame> frames = services_.first(fitting);
-  if (frames.empty()) {
+  if (services_.first(fitting).empty()) {
     starved_ += wire_free_ == now;
     return Handed::nothing;
   }
   starved_ = 0;
-  const std::size_t count = send(frames);
-  if (burst) wire_free_ += wire_.mean(frames.first(count));
-  services_.drop(count);
+  const std::size_t count = hand_over(fitting);
   budget -= count;
   if (count == 0) return Handed::nothing;
   return burst ? Handed::burst : Handed::requests;

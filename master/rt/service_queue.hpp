@@ -21,14 +21,20 @@ class ServiceQueue {
   bool has(CobId id) const noexcept {
     return std::ranges::find(outbox_.frames(), id, &Frame::id) != outbox_.frames().end();
   }
-  /// How many of the first `most` frames end within `room`, answers included.
+  /// Frames that ask for a stream.
+  std::size_t stream_requests() const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(outbox_.answers(), Answer::stream));
+  }
+  /// How many of the first `most` frames end within `room`, answers included. A stream has priority
+  /// over what would follow it.
   std::size_t fitting(std::size_t most, Time room, const WireTime& wire) const noexcept {
     Time needed{};
     std::size_t count = 0;
     for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
-      needed += answer == Answer::comes ? wire.worst_dialogue() : wire.worst_dialogue() / 2;
+      needed += answer == Answer::none ? wire.worst_dialogue() / 2 : wire.worst_dialogue();
       if (needed > room) break;
       ++count;
+      if (answer == Answer::stream) break;
     }
     return count;
   }

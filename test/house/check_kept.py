@@ -16,7 +16,7 @@ SHOWN = "decides nothing: is only shown, or says when to show"
 NOT_KEPT = {
     "ArrivalPrediction": {PLAN: "window_"},
     "BusLoop": {PLAN: "plan_ options_ wire_ state_words_", SHARED: "port_ exchange_", SHOWN: "last_status_",
-                IDLE: "events_ stop_ fallbacks_ services_ left_from_ left_end_ reply_ reply_waits_ done_",
+                IDLE: "events_ stop_ fallbacks_ services_ stream_end_ left_from_ left_end_ reply_ reply_waits_ done_",
                 ANEW: "received_ request_ published_"},
     "LssRunner": {IDLE: "master_ state_", ANEW: "commands_ results_ count_ results_count_ timeout_"},
     "LssService": {PLAN: "plan_", SHARED: "requests_ events_", IDLE: "searched_ request_ stopping_"},
@@ -36,7 +36,7 @@ NOT_KEPT = {
     "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ owed_until_ owed_"},
     "PortWatch": {SHARED: "events_"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
-    "SdoClient": {PLAN: "channel_ block_use_", IDLE: "state_ to_send_ result_ no_block_",
+    "SdoClient": {PLAN: "channel_ block_use_ segments_", IDLE: "state_ to_send_ result_ no_block_",
                   ANEW: "toggle_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
                         "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_"},
     "SyncCounter": {PLAN: "overflow_"},

@@ -141,6 +141,48 @@ TEST_F(SdoTransfers, SyncStaysOnTheBeatBesideABlockDownload) {
   }
 }
 
+/// The segments of the device have priority over the heartbeat of the master, which stands before
+/// SYNC in the queue of its controller.
+TEST_F(SdoTransfers, SyncAndHeartbeatStayOnTheBeatBesideABlockUploadOfASlowBus) {
+  BusPlan plan = test::axes({.nodes = 2, .period = 10ms});
+  plan.bitrate = 125'000;
+  plan.master_heartbeat = 50ms;
+  plan.cycle.service_frames = 4;
+  test::RigOptions options;
+  options.world.bitrate = plan.bitrate;
+  const CobId heartbeat = CobId::base(0x700U + plan.master_id.value());
+  rig.emplace(std::move(plan), options);
+  ASSERT_TRUE(rig->boot());
+  rig->recorder.frames.clear();
+  expect_uploaded(20000);
+
+  constexpr Time longest_frame = 135 * 8us;
+  const auto expect_beat = [&](CobId id, Time period, Time late) {
+    const auto frames = rig->recorder.with(id.id());
+    ASSERT_GT(frames.size(), 10U);
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      EXPECT_LE(frames[i].start - frames[i - 1].start, period + late);
+    }
+  };
+  expect_beat(CobId::base(0x080), 10ms, longest_frame);
+  expect_beat(heartbeat, 50ms, 40ms);
+}
+
+TEST_F(SdoTransfers, AServerThatFallsSilentHoldsTheHeartbeatUpForAMoment) {
+  BusPlan plan = quiet_plan();
+  plan.master_heartbeat = 20ms;
+  const CobId heartbeat = CobId::base(0x700U + plan.master_id.value());
+  start(std::move(plan));
+  timeout = 1s;
+  faults().silent_after = 20;
+  EXPECT_EQ(upload(1000).fault, SdoFault::timeout);
+  const auto frames = rig->recorder.with(heartbeat.id());
+  ASSERT_GT(frames.size(), 20U);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_LE(frames[i].start - frames[i - 1].start, 80ms);
+  }
+}
+
 TEST_F(SdoTransfers, FillsATransmitQueueOfTenWithoutOverrunningIt) {
   test::RigOptions options;
   options.port.tx_queue = 10;

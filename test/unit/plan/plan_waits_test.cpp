@@ -37,11 +37,11 @@ TEST(PlanWaits, HoldEveryWaitThatNobodyHasConfigured) {
   EXPECT_THAT(
       limits(net.plan),
       ElementsAre(Pair("sdo_answer", 500ms), Pair("sdo_object", 5s), Pair("sdo_probe", 500ms),
-                  Pair("sdo_settle", 20ms), Pair("sdo_server", 1s), Pair("pdo_answer", 500ms),
-                  Pair("pdo_turn", 8s), Pair("lss_answer", 1s), Pair("lss_store", 5s),
-                  Pair("lss_all", 100ms), Pair("held_sync", 30s), Pair("transfer_silence", 10s),
-                  Pair("stop_fallback", 500ms), Pair("stop_quick_stop", 3s),
-                  Pair("stop_disable", 4s), Pair("stop_nmt", 4980ms)));
+                  Pair("sdo_settle", 20ms), Pair("sdo_sub_block", 40ms), Pair("sdo_server", 1s),
+                  Pair("pdo_answer", 500ms), Pair("pdo_turn", 8s), Pair("lss_answer", 1s),
+                  Pair("lss_store", 5s), Pair("lss_all", 100ms), Pair("held_sync", 30s),
+                  Pair("transfer_silence", 10s), Pair("stop_fallback", 500ms),
+                  Pair("stop_quick_stop", 3s), Pair("stop_disable", 4s), Pair("stop_nmt", 4980ms)));
 }
 
 TEST(PlanWaits, NameTheNodesWhereTheyDiffer) {

@@ -106,6 +106,7 @@ class FakeNetwork {
   Time deadline() const noexcept { return never; }
   void on_absence(Time away) noexcept { absences.push_back(away); }
   bool streams() const noexcept { return false; }
+  std::size_t awaited_sub_blocks() const noexcept { return 0; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
     submitted.push_back(request);
