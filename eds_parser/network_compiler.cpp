@@ -17,6 +17,7 @@
 #include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
+#include "eds_parser/sdo_servers.hpp"
 #include "eds_parser/service_ids.hpp"
 #include "eds_parser/signal_rules.hpp"
 #include "eds_parser/sync_source.hpp"
@@ -203,6 +204,7 @@ class NetworkCompiler {
     add_device_data(source, node);
     node.sdo = sdo_access(source.node);
     check_fallback(source.node, node.cia402, report_);
+    check_sdo_channel(source.node, report_);
     check_node_values(source, report_);
     check_bit_rate(source.node);
     plan().nodes.push_back(std::move(node));

@@ -1,9 +1,8 @@
 #include "eds_parser/service_ids.hpp"
 
 #include <algorithm>
-#include <cctype>
 
-#include "eds_parser/integer_of.hpp"
+#include "eds_parser/sdo_servers.hpp"
 
 namespace takt {
 namespace {
@@ -11,96 +10,6 @@ namespace {
 constexpr std::uint32_t predefined_time = 0x100;
 constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
-
-bool is_relative(const SubObject& sub) {
-  constexpr std::string_view formula = "$nodeid";
-  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
-  return !std::ranges::search(sub.default_text, formula, same).empty();
-}
-
-/// A plain number as the default of an EDS is that of the node it was taken from.
-std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
-  const SubObject* sub = dictionary.find(key);
-  if (sub == nullptr) return 0;
-  const bool configured = dictionary.is_dcf && sub->parameter_value;
-  const std::int64_t id =
-      integer_of(configured ? sub->parameter_value : sub->default_value).value_or(0);
-  const bool meant = configured || is_relative(*sub) || (id & extended_flag) != 0;
-  return meant ? id : 0;
-}
-
-/// None: it is off.
-std::optional<CobId> cob_id_of(std::int64_t value) {
-  const auto raw = static_cast<std::uint32_t>(value);
-  if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
-  const CobId id = (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);
-  return id.id() == 0 ? std::nullopt : std::optional{id};
-}
-
-/// An SDO server besides the first: 0x1201..0x127F.
-struct SdoServer {
-  std::uint16_t index = 0;
-  SdoChannel channel;
-  SourcePos pos;
-};
-
-/// Those that the network file, else the device file, has on.
-class SdoServers {
- public:
-  explicit SdoServers(const NodeSource& node) : node_{node} {}
-
-  std::vector<SdoServer> active() const {
-    std::vector<SdoServer> servers;
-    for (std::uint16_t index = first; index <= last; ++index) {
-      if (const auto server = at(index)) servers.push_back(*server);
-    }
-    return servers;
-  }
-
- private:
-  static constexpr std::uint16_t first = 0x1201;
-  static constexpr std::uint16_t last = 0x127F;
-
-  std::optional<SdoServer> at(std::uint16_t index) const {
-    const SdoSpec* own_request = written({index, 1});
-    const SdoSpec* own_answer = written({index, 2});
-    const auto request = cob_id({index, 1}, own_request);
-    const auto answer = cob_id({index, 2}, own_answer);
-    if (!request || !answer) return std::nullopt;
-    const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
-    return SdoServer{.index = index,
-                     .channel = {.request = *request, .answer = *answer},
-                     .pos = own != nullptr ? own->pos : node_.spec->pos};
-  }
-
-  /// The last one counts: those of `configuration_file` come before those of `sdo`.
-  const SdoSpec* written(ObjectKey key) const {
-    const SdoSpec* last_one = nullptr;
-    for (const SdoSpec& sdo : node_.spec->sdo) {
-      if (sdo.object == key) last_one = &sdo;
-    }
-    return last_one;
-  }
-
-  std::optional<CobId> cob_id(ObjectKey key, const SdoSpec* own) const {
-    if (own == nullptr) return cob_id_of(cob_id_of_file(*node_.dictionary, key));
-    return cob_id_of(number_of(own->value));
-  }
-
-  /// Little-endian where it comes from a concise DCF.
-  static std::int64_t number_of(const decltype(SdoSpec::value)& value) {
-    if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
-    const auto* bytes = std::get_if<std::vector<std::byte>>(&value);
-    if (bytes == nullptr || bytes->size() != 4) return 0;
-    std::uint32_t number = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      number |= std::to_integer<std::uint32_t>((*bytes)[i]) << (8 * i);
-    }
-    return number;
-  }
-
-  const NodeSource& node_;
-};
 
 class ServiceIdCollector {
  public:
@@ -148,7 +57,7 @@ class ServiceIdCollector {
   }
 
   void servers(const NodeSource& node) {
-    for (const SdoServer& server : SdoServers{node}.active()) {
+    for (const SdoServer& server : active_sdo_servers(node)) {
       for (const CobId id : {server.channel.request, server.channel.answer}) {
         if (!of_own_default(node.id, id) && !of_own_channel(*node.spec, id))
           enter(node, server, id);

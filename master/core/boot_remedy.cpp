@@ -20,25 +20,42 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
          std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
 }
 
+/// Where the first answer is still missing, the channel of the network file may be the cause.
+std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
+  const SdoChannel used = node.sdo.channel_of(node.id);
+  if (failure.letter != 'B' || used == default_sdo_channel(node.id)) return {};
+  return " It was asked on the SDO channel that `sdo_channel` names (" + to_string(used.request) +
+         " and " + to_string(used.answer) +
+         "): the device may not have this server, may have it off or on other COB-IDs "
+         "(`takt sdo read " +
+         std::to_string(int{node.id.value()}) + " 1201:01 --bus " + interface_text(plan) +
+         "` asks on the default channel). Without `sdo_channel` the boot goes over the default "
+         "channel";
+}
+
 std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const std::string id = std::to_string(int{node.id.value()});
-  if (failure.node_state == NmtState::unknown && node.lss) return against_missing_id(plan, node);
+  const std::string channel = about_channel(plan, node, failure);
+  if (failure.node_state == NmtState::unknown && node.lss) {
+    return against_missing_id(plan, node) + channel;
+  }
   if (failure.node_state == NmtState::unknown) {
     return "nothing at all was heard of node " + id +
            ": is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? "
            "Is "
            "its node id " +
            id + " and its bit rate " + std::to_string(plan.bitrate / 1000) +
-           " kbit/s? `takt dump --bus " + interface_text(plan) + "` shows who talks on the bus";
+           " kbit/s? `takt dump --bus " + interface_text(plan) + "` shows who talks on the bus" +
+           (channel.empty() ? "" : ".") + channel;
   }
   if (failure.node_state == NmtState::stopped) {
     return "the node is in NMT state STOPPED, where it answers no SDO: let the boot reset it "
            "(`reset: communication`), or stop whoever stops it";
   }
-  return "the node is alive on the bus but its SDO server keeps silent: does it need longer to "
-         "start (raise `boot_timeout_ms` of the node)? Is a second node or a second master using "
-         "node "
-         "id " +
+  return "the node is alive on the bus but its SDO server keeps silent" +
+         (channel.empty() ? ":" : "." + channel + ". Else:") +
+         " does it need longer to start (raise `boot_timeout_ms` of the node)? Is a second node or "
+         "a second master using node id " +
          id + "?";
 }
 

@@ -50,6 +50,7 @@ const std::string mapping = "tpdo: {1: {mapping: [{index: 0x2010}, {index: 0x201
 const std::string setting = "sdo: [{index: 0x2000, value: 5}]";
 const std::string label = "sdo: [{index: 0x2002, value: '" + std::string(800, 'x') + "'}]";
 const std::string guarded = "heartbeat_producer: 0, heartbeat_consumer: false, guard_time: 100";
+const std::string channel = "sdo_channel: {request: 0x645, answer: 0x5C5}";
 const std::string program = "software_version: 0x00010001, software_file: program.bin";
 
 std::vector<Case> cases() {
@@ -66,6 +67,8 @@ std::vector<Case> cases() {
       {"SDO server mute", "", {fault(mute_sdo)}},
       {"boot-up message missing and mute", "", {fault(no_bootup), fault(mute_sdo)}, 8s},
       {"boot-up much too late", "", {late(20s)}, 8s},
+      {"no SDO server on the channel of the network file", channel},
+      {"neither boot-up message nor that SDO server", channel, {fault(no_bootup)}, 8s},
       {"without id and silent to LSS",
        "lss: true, sim: {quirks: [no_node_id]}",
        {fault(lss_silent)},

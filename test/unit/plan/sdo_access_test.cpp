@@ -12,6 +12,21 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+/// Besides the usual objects an SDO server with these COB-IDs.
+std::string eds_with_server(const std::string& request, const std::string& answer) {
+  return test::tiny_objects() + test::record("1201", "SDO server 2", 3) +
+         test::entry("1201sub0", "highest", 5, "const", "2") +
+         test::entry("1201sub1", "client to server", 7, "rw", request) +
+         test::entry("1201sub2", "server to client", 7, "rw", answer);
+}
+
+std::string on_channel(const std::string& channel) {
+  return "master: {sync_period: 10000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: x\n    "
+         "sdo_channel: " +
+         channel + "\n";
+}
+const std::string on_second = on_channel("{request: 0x645, answer: 0x5C5}");
+
 TEST(SdoAccess, IsTheDefaultChannelWithBlockWhereNobodySaysOtherwise) {
   const auto net = compile("nodes: {arm: {node_id: 5, dcf: x}}\n");
   const NodePlan& node = net.plan.nodes.at(0);
@@ -32,7 +47,8 @@ TEST(SdoAccess, TakesChannelBlockAndTimeOutsOfTheFile) {
       "    sdo_channel: {request: 0x645, answer: 0x5C5}\n"
       "    sdo_timeouts: [{index: 0x1F50, timeout_ms: 20000},\n"
       "                   {index: 0x6081, sub_index: 0, timeout_ms: 3000}]\n"
-      "    sdo: [{index: 0x6081, value: 7}]\n");
+      "    sdo: [{index: 0x6081, value: 7}]\n",
+      eds_with_server("$NODEID+0x640", "$NODEID+0x5C0"));
   EXPECT_THAT(net.complaints(), IsEmpty());
   const NodePlan& node = net.plan.nodes.at(0);
   EXPECT_EQ(node.sdo.channel_of(node.id), (SdoChannel{CobId::base(0x645), CobId::base(0x5C5)}));
@@ -55,8 +71,35 @@ TEST(SdoAccess, RefusesAChannelOfAnotherNode) {
       "nodes:\n"
       "  arm: {node_id: 5, dcf: x, sdo_channel: {request: 0x645, answer: 0x586}}\n"
       "  leg: {node_id: 6, dcf: x}\n");
-  EXPECT_THAT(net.complaints(), ElementsAre("3:42 error [cob-id-clash]"));
+  EXPECT_THAT(net.complaints(),
+              ElementsAre("3:42 error [cob-id-clash]", "3:42 warning [no-sdo-server]"));
   EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("`leg` (0x606, 0x586)"));
+}
+
+TEST(SdoAccess, TellsOfAChannelThatTheDeviceFileHasNoServerFor) {
+  const auto net = compile(on_second);
+
+  EXPECT_THAT(net.complaints(), ElementsAre("6:18 warning [no-sdo-server]"));
+  EXPECT_THAT(net.said("no-sdo-server"),
+              HasSubstr("`sdo_channel` of node `arm`: tiny.eds has no SDO server besides the first "
+                        "(no 0x1201 to 0x127F)"));
+  EXPECT_THAT(net.said("no-sdo-server"), HasSubstr("leave `sdo_channel` out"));
+}
+
+TEST(SdoAccess, TellsOfAServerThatIsOffOrOnOtherIds) {
+  EXPECT_THAT(compile(on_second, eds_with_server("$NODEID+0x80000640", "$NODEID+0x800005C0"))
+                  .said("no-sdo-server"),
+              HasSubstr("no SDO server of tiny.eds is on 0x645 and 0x5C5 (0x1201: off)"));
+  EXPECT_THAT(
+      compile(on_second, eds_with_server("$NODEID+0x640", "$NODEID+0x6C0")).said("no-sdo-server"),
+      HasSubstr("(0x1201: 0x645 and 0x6C5)"));
+  EXPECT_THAT(compile(on_second, eds_with_server("", "")).said("no-sdo-server"),
+              HasSubstr("(0x1201: off)"));
+}
+
+TEST(SdoAccess, TakesAChannelThatTheDeviceFileHas) {
+  EXPECT_EQ(compile(on_second, eds_with_server("0x645", "0x5C5")).said("no-sdo-server"), "");
+  EXPECT_EQ(compile(on_channel("{request: 0x605, answer: 0x585}")).said("no-sdo-server"), "");
 }
 
 TEST(SdoAccess, RefusesWhatIsIncompleteOrOutOfRange) {
