@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <tuple>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct CobIdEntry {
   bool extended() const noexcept { return (constant & extended_flag) != 0; }
   bool is_rpdo() const noexcept { return (key.index & 0xFE00) == 0x1400; }
   bool is_sdo_client() const noexcept { return (key.index & 0xFF80) == 0x1280; }
+  /// Besides the first.
+  bool is_sdo_server() const noexcept { return key.index > 0x1200 && key.index < 0x1280; }
   std::uint32_t id() const noexcept { return constant & (extended() ? 0x1FFF'FFFF : 0x7FF); }
   std::uint32_t id_of(std::optional<NodeId> node) const noexcept {
     return id() + (relative && node ? node->value() : 0U);
@@ -78,12 +81,38 @@ bool is_default_channel(const CobIdEntry& entry, std::uint32_t id) noexcept {
   return entry.is_sdo_client() && id > base && id <= base + 127;
 }
 
+/// The default SDO channel of a node has this identifier.
+struct DefaultChannel {
+  std::string_view direction;
+  unsigned node = 0;
+};
+
+std::optional<DefaultChannel> default_channel_at(std::uint32_t id) noexcept {
+  if (id > 0x600 && id <= 0x67F) return DefaultChannel{"request", id - 0x600};
+  if (id > 0x580 && id <= 0x5FF) return DefaultChannel{"answer", id - 0x580};
+  return std::nullopt;
+}
+
+/// Devices have further servers on default channels of other nodes, where they work as long as none
+/// of these is on the bus. `own`: the node id of the device; 0: unknown.
+bool is_channel_of_another(const CobIdEntry& entry, std::uint32_t id, unsigned own) noexcept {
+  const auto channel = default_channel_at(id);
+  return entry.is_sdo_server() && channel && channel->node != own;
+}
+
 /// Why an entry cannot have this COB-ID; empty: it can.
-std::string objection(const CobIdEntry& entry, std::uint32_t id) {
+std::string objection(const CobIdEntry& entry, std::uint32_t id, unsigned own) {
   if (id > 0x7FF) return "needs more than 11 bits";
   const auto* range = restriction_of(id);
   if (range == nullptr || is_default_channel(entry, id)) return "";
+  if (is_channel_of_another(entry, id, own)) return "";
   return "is restricted (" + std::string{range->use} + ")";
+}
+
+/// What nobody else sends on can be no more than a deviation in an SDO server.
+bool harmless(const CobIdEntry& entry, std::uint32_t id) noexcept {
+  const auto* range = restriction_of(id);
+  return entry.is_sdo_server() && range != nullptr && range->use == "reserved";
 }
 
 /// Where the node id is added but unknown, each that the device might have is looked at: an error
@@ -92,23 +121,74 @@ void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Repor
   if (entry.extended()) return;
   if (node || !entry.relative) {
     const auto id = entry.id_of(node);
-    const auto why = objection(entry, id);
+    const auto why = objection(entry, id, node ? node->value() : 0U);
     if (why.empty()) return;
-    return report.error(entry.pos, "cob-id-restricted", start(entry) + hex(id, 3) + ' ' + why);
+    const auto text = start(entry) + hex(id, 3) + ' ' + why;
+    if (harmless(entry, id)) return report.warning(entry.pos, "cob-id-restricted", text);
+    return report.error(entry.pos, "cob-id-restricted", text);
   }
   std::uint32_t first = 0;
   std::uint32_t last = 0;
   for (std::uint32_t any = 1; any <= 127; ++any) {
-    if (objection(entry, entry.id() + any).empty()) continue;
+    if (objection(entry, entry.id() + any, any).empty()) continue;
     if (first == 0) first = any;
     last = any;
   }
   if (first == 0) return;
   const auto text = start(entry) + "$NODEID+" + hex(entry.id(), 3) + ' ' +
-                    objection(entry, entry.id() + first) + " for nodes of " +
+                    objection(entry, entry.id() + first, first) + " for nodes of " +
                     std::to_string(first) + ".." + std::to_string(last);
-  if (first == 1) return report.error(entry.pos, "cob-id-restricted", text);
+  if (first == 1 && !harmless(entry, entry.id() + first)) {
+    return report.error(entry.pos, "cob-id-restricted", text);
+  }
   report.warning(entry.pos, "cob-id-restricted", text);
+}
+
+/// Nodes of `first` to `last` with this entry meet the channels of the nodes `away` from them.
+struct Meeting {
+  unsigned first = 0;
+  unsigned last = 0;
+  int away = 0;
+  std::string_view direction;
+};
+
+std::vector<Meeting> meetings_of(const CobIdEntry& entry) {
+  std::vector<Meeting> all;
+  for (unsigned own = 1; own <= 127; ++own) {
+    const auto channel = default_channel_at(entry.id() + own);
+    if (!channel || channel->node == own) continue;
+    const int away = static_cast<int>(channel->node) - static_cast<int>(own);
+    const bool goes_on = !all.empty() && all.back().away == away && all.back().last + 1 == own;
+    if (!goes_on) all.push_back({own, own, away, channel->direction});
+    all.back().last = own;
+  }
+  return all;
+}
+
+std::string channels_met(const CobIdEntry& entry, std::optional<NodeId> node) {
+  if (node || !entry.relative) {
+    const auto id = entry.id_of(node);
+    if (!is_channel_of_another(entry, id, node ? node->value() : 0U)) return "";
+    const auto channel = *default_channel_at(id);
+    return hex(id, 3) + " is the SDO " + std::string{channel.direction} + " of node " +
+           std::to_string(channel.node);
+  }
+  std::string text;
+  for (const Meeting& meeting : meetings_of(entry)) {
+    text += (text.empty() ? id_text(entry) + " is the SDO " : ", and the SDO ") +
+            std::string{meeting.direction} + " of node $NODEID" + (meeting.away < 0 ? "-" : "+") +
+            std::to_string(std::abs(meeting.away)) + " for nodes of " +
+            std::to_string(meeting.first) + ".." + std::to_string(meeting.last);
+  }
+  return text;
+}
+
+void check_further_server(const CobIdEntry& entry, std::optional<NodeId> node, Report& report) {
+  if (!entry.is_sdo_server() || entry.extended()) return;
+  const auto met = channels_met(entry, node);
+  if (met.empty()) return;
+  report.warning(entry.pos, "cob-id-restricted",
+                 start(entry) + met + "; it works while no such node is on the bus");
 }
 
 void check_bits(const CobIdEntry& entry, Report& report) {
@@ -191,6 +271,7 @@ void check_sdo_channels(const ObjectDictionary& dictionary, std::vector<CobIdEnt
       }
       if (!entry->on() || entry->id() == 0) continue;
       check_restricted(*entry, dictionary.node_id, report);
+      check_further_server(*entry, dictionary.node_id, report);
       check_bits(*entry, report);
       if (!entry->is_sdo_client()) check_absolute(*entry, dictionary.is_dcf, report);
       active.push_back(*entry);

@@ -38,7 +38,8 @@ constexpr RuleInfo rules[] = {
     {"cob-id-extended", Severity::warning, "bit 29 (extended frame) is set for an id of 11 bits",
      "[1800sub1] DefaultValue=$NODEID+0x20000180"},
     {"cob-id-restricted", Severity::error,
-     "a COB-ID that CiA 301 reserves (a warning where only for higher node ids)",
+     "a COB-ID that CiA 301 reserves (a warning where only for higher node ids, or where a further "
+     "SDO server has that of another node)",
      "[1800sub1] DefaultValue=0x585"},
     {"cob-id-twice", Severity::error, "two active users of one COB-ID (two RPDOs: a warning)",
      "[1800sub1] and [1801sub1] =$NODEID+0x180"},

@@ -60,6 +60,46 @@ TEST(CheckSdo, AFurtherServerNeedsCobIdsOfItsOwn) {
   }
 }
 
+/// Severity and message of what is said about sub 1 of 0x1201.
+std::string said(const std::string& cob_id, std::optional<NodeId> node = std::nullopt) {
+  std::string text;
+  for (const auto& finding : judged(channel("1201", cob_id, "0x80000000"), node)) {
+    if (finding.rule != "cob-id-restricted") continue;
+    text += std::string{name(finding.severity)} + ": " + finding.message + "\n";
+  }
+  return text;
+}
+
+TEST(CheckSdo, AFurtherServerOnTheChannelOfAnotherNodeIsAWarningThatNamesIt) {
+  EXPECT_EQ(said("$NODEID+0x640", 5_node),
+            "warning: 1201sub1: COB-ID 0x645 is the SDO request of node 69; it works while no such "
+            "node is on the bus\n");
+  EXPECT_EQ(said("0x645"),
+            "warning: 1201sub1: COB-ID 0x645 is the SDO request of node 69; it works while no such "
+            "node is on the bus\n");
+  EXPECT_EQ(said("$NODEID+0x640"),
+            "warning: 1201sub1: COB-ID $NODEID+0x640 is the SDO request of node $NODEID+64 for "
+            "nodes of 1..63; it works while no such node is on the bus\n");
+  EXPECT_EQ(
+      said("$NODEID+0x5C0"),
+      "warning: 1201sub1: COB-ID $NODEID+0x5C0 is the SDO answer of node $NODEID+64 for nodes "
+      "of 1..63, and the SDO request of node $NODEID-64 for nodes of 65..127; it works while "
+      "no such node is on the bus\n");
+  EXPECT_EQ(said("$NODEID+0x640", 64_node), "");
+  EXPECT_EQ(said("$NODEID+0x5C0", 64_node), "");
+}
+
+TEST(CheckSdo, AFurtherServerOnTheFirstChannelOfTheDeviceOrOnOtherServicesIsAnError) {
+  EXPECT_EQ(said("$NODEID+0x600", 5_node),
+            "error: 1201sub1: COB-ID 0x605 is restricted (SDO requests)\n");
+  EXPECT_EQ(said("$NODEID+0x600"),
+            "error: 1201sub1: COB-ID $NODEID+0x600 is restricted (SDO requests) for nodes of "
+            "1..127\n");
+  EXPECT_EQ(said("$NODEID+0x700", 5_node),
+            "error: 1201sub1: COB-ID 0x705 is restricted (error control)\n");
+  EXPECT_EQ(said("0x6E5"), "warning: 1201sub1: COB-ID 0x6E5 is restricted (reserved)\n");
+}
+
 TEST(CheckSdo, ACobIdOfAPdoIsTaken) {
   const auto pdo = channel("1800", "$NODEID+0x180", "");
 
