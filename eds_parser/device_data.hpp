@@ -128,6 +128,15 @@ struct ObjectEdit {
   std::optional<Firmware> below;
 };
 
+/// An SDO server that the device comes with, on these COB-IDs + node id, whether its EDS tells of
+/// it or not.
+struct SdoServerFact {
+  DeviceFact fact;
+  std::uint16_t index = 0;  ///< 0x1201..0x127F
+  std::uint16_t request = 0;
+  std::uint16_t answer = 0;
+};
+
 struct BootTweaks {
   DeviceFact fact;
   std::optional<ResetPolicy> reset;
@@ -159,6 +168,7 @@ struct DeviceData {
   TimerRule timer;
   SyncRule sync;
   std::vector<ObjectEdit> objects;
+  std::vector<SdoServerFact> sdo_servers;
   BootTweaks boot;
   std::vector<EmcyMeaning> emcy;
   std::string on_sync_loss;  ///< what its outputs do when 0x1006 has run out; empty: not known

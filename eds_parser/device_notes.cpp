@@ -83,6 +83,11 @@ std::vector<std::string> device_notes(const NodePdos& node) {
   if (data.timer.meaning == TimerMeaning::alone) {
     notes.emplace_back("with an event timer, changes send nothing");
   }
+  for (const SdoServerFact& server : data.sdo_servers) {
+    notes.push_back("SDO channel " + std::to_string(server.index - 0x1200 + 1) + " on " +
+                    hex(server.request + node.node.id.value(), 3) + " and " +
+                    hex(server.answer + node.node.id.value(), 3));
+  }
   if (node.node.firmware) notes.push_back("firmware " + to_string(*node.node.firmware));
   return notes;
 }

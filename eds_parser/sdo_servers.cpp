@@ -4,6 +4,7 @@
 #include <cctype>
 #include <optional>
 
+#include "eds_parser/device_data.hpp"
 #include "eds_parser/integer_of.hpp"
 
 namespace takt {
@@ -57,11 +58,28 @@ class SdoServers {
     const SdoSpec* own_answer = written({index, 2});
     const auto request = cob_id({index, 1}, own_request);
     const auto answer = cob_id({index, 2}, own_answer);
-    if (!request || !answer) return std::nullopt;
+    const bool configured = own_request != nullptr || own_answer != nullptr;
+    if (!request || !answer) return configured ? std::nullopt : of_factory(index);
     const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
     return SdoServer{.index = index,
                      .channel = {.request = *request, .answer = *answer},
-                     .pos = own != nullptr ? own->pos : node_.spec->pos};
+                     .pos = own != nullptr ? own->pos : node_.spec->pos,
+                     .doubt = {}};
+  }
+
+  /// As the device may be delivered, unless a DCF says how it was left.
+  std::optional<SdoServer> of_factory(std::uint16_t index) const {
+    const SubObject* sub = node_.dictionary->find(ObjectKey{index, 1});
+    const bool left_off = sub != nullptr && is_configured(*node_.dictionary, *sub);
+    if (node_.data == nullptr || left_off) return std::nullopt;
+    const auto& facts = node_.data->sdo_servers;
+    const auto found = std::ranges::find(facts, index, &SdoServerFact::index);
+    if (found == facts.end()) return std::nullopt;
+    const auto id = [this](std::uint32_t base) { return CobId::base(base + node_.id.value()); };
+    return SdoServer{.index = index,
+                     .channel = {.request = id(found->request), .answer = id(found->answer)},
+                     .pos = node_.spec->pos,
+                     .doubt = node_.data->cite(found->fact)};
   }
 
   /// The last one counts: those of `configuration_file` come before those of `sdo`.

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "eds_parser/cob_ids.hpp"
@@ -11,10 +12,11 @@ namespace takt {
 struct SdoServer {
   std::uint16_t index = 0;
   SdoChannel channel;
-  SourcePos pos;  ///< in the network file
+  SourcePos pos;      ///< in the network file
+  std::string doubt;  ///< not empty: only the device data have it on; what they say
 };
 
-/// Those that the network file, else the device file, has on.
+/// Those that the network file, else the device file, else the device data have on.
 std::vector<SdoServer> active_sdo_servers(const NodeSource& node);
 
 /// A COB-ID entry of the device file for this node; 0: none, or the plain number of an EDS, which

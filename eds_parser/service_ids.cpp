@@ -66,18 +66,34 @@ class ServiceIdCollector {
   }
 
   void enter(const NodeSource& node, const SdoServer& server, CobId id) {
-    const std::string number = std::to_string(server.index - 0x1200 + 1);
-    const auto [other, is_new] = ids_.try_emplace(
-        id, "is in the SDO channel " + number + " of node `" + node.spec->name + "`");
-    const NodeSource* of_default = is_new ? user_of_default(node, id) : nullptr;
-    if (is_new && of_default == nullptr) return;
-    const std::string whose =
-        is_new ? in_channel_of(*of_default, default_sdo_channel(of_default->id)) : other->second;
-    report_.error(server.pos, "cob-id-clash",
-                  "the SDO channel " + number + " (" + hex(server.index, 4) + ") of node `" +
-                      node.spec->name + "` is on: " + to_string(id) + " " + whose +
-                      "; switch it off by `sdo: [{index: " + hex(server.index, 4) +
-                      ", sub_index: 1, value: 0x80000000}]`, or give one of the nodes another id");
+    const std::string channel = "the SDO channel " + std::to_string(server.index - 0x1200 + 1) +
+                                " (" + hex(server.index, 4) + ") of node `" + node.spec->name + "`";
+    const bool certain = server.doubt.empty();
+    const auto other = ids_.find(id);
+    const NodeSource* of_default = other == ids_.end() ? user_of_default(node, id) : nullptr;
+    if (other == ids_.end() && certain) ids_.emplace(id, "is in " + channel);
+    if (other == ids_.end() && of_default == nullptr) return;
+    const std::string whose = of_default != nullptr
+                                  ? in_channel_of(*of_default, default_sdo_channel(of_default->id))
+                                  : other->second;
+    const std::string clash = to_string(id) + " " + whose;
+    if (certain) {
+      return report_.error(server.pos, "cob-id-clash",
+                           channel + " is on: " + clash + switched_off_by(node, server));
+    }
+    report_.warning(server.pos, "cob-id-clash",
+                    channel + " may be on" + server.doubt +
+                        ", and then the two would meet: " + clash + switched_off_by(node, server));
+  }
+
+  static std::string switched_off_by(const NodeSource& node, const SdoServer& server) {
+    const std::string index = hex(server.index, 4);
+    const std::string other_id = ", or give one of the nodes another id";
+    if (node.dictionary->find(ObjectKey{server.index, 1}) != nullptr) {
+      return "; switch it off by `sdo: [{index: " + index + ", sub_index: 1, value: 0x80000000}]`" +
+             other_id;
+    }
+    return "; switch it off in the device (bit 31 of " + index.substr(2) + ":01)" + other_id;
   }
 
   static bool of_own_channel(const NodeSpec& spec, CobId id) {

@@ -32,6 +32,7 @@ class DeviceReader {
     section(reader, "event_timer", [&](MapReader& map) { timer(map); });
     section(reader, "sync_producer", [&](MapReader& map) { sync(map); });
     list(reader, "objects", [&](const YamlNode& item) { object(item); });
+    list(reader, "sdo_servers", [&](const YamlNode& item) { sdo_server(item); });
     section(reader, "boot", [&](MapReader& map) { boot(map); });
     data_.on_sync_loss = text(reader, "on_sync_loss");
     emcy(reader);
@@ -303,6 +304,18 @@ class DeviceReader {
       return;
     }
     data_.objects.push_back(std::move(edit));
+  }
+
+  void sdo_server(const YamlNode& item) {
+    MapReader reader{item, "`sdo_servers`", report_};
+    for (const std::string_view key : {"index", "request", "answer"}) need(reader, key);
+    Sourced<std::uint16_t> index, request, answer;
+    reader.integer("index", index, {0x1201, 0x127F});
+    reader.integer("request", request, {0x180, 0x77F});
+    reader.integer("answer", answer, {0x180, 0x77F});
+    data_.sdo_servers.push_back(
+        {.fact = fact(reader, item.pos), .index = *index, .request = *request, .answer = *answer});
+    reader.finish();
   }
 
   void boot(MapReader& reader) {

@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "master/sim/cob_rules.hpp"
+
 namespace takt::sim {
 namespace {
 
@@ -317,14 +319,13 @@ void Device::plan_tick() noexcept {
 
 /// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
 void Device::route_sdo_servers() noexcept {
-  constexpr std::uint32_t invalid = 0x8000'0000;
   for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
     if (n != 0) {
       const auto index = static_cast<std::uint16_t>(0x1200u + n);
-      const auto request = static_cast<std::uint32_t>(store_.number({index, 1}, invalid));
-      const auto answer = static_cast<std::uint32_t>(store_.number({index, 2}, invalid));
-      if (((request | answer) & invalid) != 0) continue;
-      sdo_[n].set_channel(CobId::base(request), CobId::base(answer));
+      const auto request = static_cast<std::uint32_t>(store_.number({index, 1}, cob_invalid));
+      const auto answer = static_cast<std::uint32_t>(store_.number({index, 2}, cob_invalid));
+      if (((request | answer) & cob_invalid) != 0 || request == 0 || answer == 0) continue;
+      sdo_[n].set_channel(cob_id(request), cob_id(answer));
     }
     routes_.push_back({sdo_[n].request_id(), RouteKind::sdo, n});
   }

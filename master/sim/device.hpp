@@ -144,6 +144,7 @@ class Device final : private Dictionary {
   void stop_pdos() noexcept;
   void list_multiplexed() noexcept;
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
+  Abort check_sdo_server(const Object& object, std::uint64_t raw) const noexcept;
   void written(const Object& object, Time now) noexcept;
   void forget_configuration_date(const Object& changed) noexcept;
   void pdo_written(ObjectKey key, Time now) noexcept;

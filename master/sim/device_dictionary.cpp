@@ -1,5 +1,6 @@
 #include <initializer_list>
 
+#include "master/sim/cob_rules.hpp"
 #include "master/sim/device.hpp"
 
 namespace takt::sim {
@@ -73,6 +74,7 @@ Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcep
   if (between(index, 0x1600, 0x17FF) || between(index, 0x1A00, 0x1BFF)) {
     if (faults_.fixed_mapping) return Abort::read_only;
   }
+  if (between(index, 0x1201, 0x127F)) return check_sdo_server(object, raw);
   for (const Rpdo& rpdo : rpdos_) {
     if (!rpdo.record().owns(object.key)) continue;
     return rpdo.record().check_write({PdoDirection::receive, dummy_usage_}, object, raw);
@@ -87,6 +89,17 @@ Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcep
     if (refused != Abort::none) return refused;
   }
   return Abort::none;
+}
+
+/// The identifiers of a server that is on stay as they are. CiA 301, 7.5.2.33.
+Abort Device::check_sdo_server(const Object& object, std::uint64_t raw) const noexcept {
+  if (object.key.sub != 1 && object.key.sub != 2) return Abort::none;
+  if (has_stray_bits(raw)) return Abort::value;
+  const auto on = [this, &object](std::uint8_t sub) {
+    return (store_.number({object.key.index, sub}, cob_invalid) & cob_invalid) == 0;
+  };
+  const bool stays_on = on(1) && on(2) && (raw & cob_invalid) == 0;
+  return stays_on && raw != object.value ? Abort::value : Abort::none;
 }
 
 /// Whatever changes a configuration makes its date and time zero. CiA 301, 7.5.2.23.

@@ -66,5 +66,20 @@ TEST(SdoChannelBoot, DoesNotBlameAChannelThatHasAnswered) {
   EXPECT_THAT(report, Not(HasSubstr("sdo_channel")));
 }
 
+/// Until the boot of node 1 has switched its second channel off, both answer what node 65 is asked.
+TEST(SdoChannelBoot, OfTwoLenzes64IdsApartGoesWellWhereTheNetworkFileSwitchesTheChannelOff) {
+  const std::string lenze = "dcf: " TAKT_SOURCE_DIR "/share/eds/lenze8400.eds";
+  const std::string off = ", sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]";
+  Plant plant{
+      network_of("master: {sync_period: 10000, node_id: 127}\nnodes:\n  pump: {node_id: 1, " +
+                 lenze + off + "}\n  fan: {node_id: 65, " + lenze + off + "}\n")};
+
+  plant.run(10s);
+
+  EXPECT_EQ(plant.node(0).nmt, NmtState::operational);
+  EXPECT_EQ(plant.node(1).nmt, NmtState::operational);
+  EXPECT_EQ(plant.device(1).objects().number({0x1201, 1}, 0), 0x8000'0000U);
+}
+
 }  // namespace
 }  // namespace takt

@@ -22,7 +22,8 @@ constexpr std::int64_t counts_a_second = 16384;  // nominal speed in one second
 constexpr Firmware newest{{16, 0, 0}};
 constexpr Firmware obeys_itself{{16, 0, 0}};
 
-bool is_pdo_cob_id(ObjectKey key) noexcept {
+bool is_cob_id(ObjectKey key) noexcept {
+  if (key.index == 0x1201) return key.sub == 1 || key.sub == 2;
   return key.sub == 1 && ((key.index >= 0x1400 && key.index <= 0x15FF) ||
                           (key.index >= 0x1800 && key.index <= 0x19FF));
 }
@@ -87,7 +88,7 @@ void Lenze8400::publish() noexcept {
 
 /// 29-bit identifiers are not supported: bits 11 to 29 have to be 0.
 Abort Lenze8400::check_communication(const Object& object, std::uint64_t raw) const noexcept {
-  if (is_pdo_cob_id(object.key) && (raw & cob_extended) != 0) return Abort::value;
+  if (is_cob_id(object.key) && (raw & cob_extended) != 0) return Abort::value;
   return Abort::none;
 }
 

@@ -34,8 +34,8 @@ TEST(FamilyDefaults, OfADrv28AreThoseOfItsTable) {
   has(device, {{{0x1800, 1}, 0x185}, {{0x1801, 1}, 0x285}, {{0x1802, 1}, 0x385}});
 }
 
-/// C00367 and C00368 are 0x80; two pairs of PDOs are on, by event.
-TEST(FamilyDefaults, OfALenzeAreOneSyncIdentifierAndTwoPairsOfPdos) {
+/// C00367 and C00368 are 0x80; two pairs of PDOs are on, by event, and two SDO servers.
+TEST(FamilyDefaults, OfALenzeAreOneSyncIdentifierTwoPairsOfPdosAndTwoSdoServers) {
   FamilyDevice device{"lenze8400.eds", "lenze8400"};
   has(device, {{{0x1005, 0}, 0x80}, {{0x5E90, 0}, 0x80}, {{0x5E8F, 0}, 0x80}});
   has(device, {{{0x1800, 2}, 254}, {{0x1801, 2}, 254}, {{0x1802, 2}, 254}, {{0x1803, 2}, 254}});
@@ -44,6 +44,7 @@ TEST(FamilyDefaults, OfALenzeAreOneSyncIdentifierAndTwoPairsOfPdos) {
                {{0x1802, 1}, 0x8000'0385},
                {{0x1803, 1}, 0x8000'0485}});
   has(device, {{{0x1400, 2}, 254}, {{0x1401, 2}, 254}});
+  has(device, {{{0x1201, 1}, 0x645}, {{0x1201, 2}, 0x5C5}});
 }
 
 /// "Digital inputs (n = 1) ... analog inputs (e.g. n = 10)".

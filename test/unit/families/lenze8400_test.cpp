@@ -168,5 +168,39 @@ TEST(Lenze8400, DoesNotObeyItsOwnSyncOnAnotherIdentifier) {
   EXPECT_EQ(device.times(0x185), (Times{100})) << "one from elsewhere";
 }
 
+/// Section 11.9.1: identifier = basic identifier + node address, 0x640 to the device, 0x5C0 from
+/// it.
+TEST(Lenze8400, AnswersOnItsSecondParameterChannelToo) {
+  FamilyDevice device = lenze();
+  device.start();
+
+  device.receive(make_frame(CobId::base(0x645), {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}));
+  device.at(5);
+
+  ASSERT_EQ(device.of(0x5C5).size(), 1u);
+  EXPECT_EQ(device.of(0x5C5)[0],
+            make_frame(CobId::base(0x5C5), {0x43, 0x18, 0x10, 0x01, 0x3B, 0, 0, 0}));
+  EXPECT_TRUE(device.of(0x585).empty());
+}
+
+/// Its page on 0x1201: off by bit 31 first, then another identifier; bits 11 to 29 are 0.
+TEST(Lenze8400, MovesItsSecondChannelOnlyWhileThatIsOff) {
+  FamilyDevice device = lenze();
+
+  EXPECT_EQ(device.write({0x1201, 1}, 0x6A5, 4), 0x0609'0030U);
+  EXPECT_EQ(device.write({0x1201, 1}, 0xA000'0645, 4), 0x0609'0030U) << "29 bits";
+  EXPECT_EQ(device.write({0x1201, 1}, 0x8000'1645, 4), 0x0609'0030U);
+  EXPECT_EQ(device.write({0x1201, 1}, 0x8000'0645, 4), 0U);
+  EXPECT_EQ(device.write({0x1201, 2}, 0x6C5, 4), 0U) << "the server is off";
+  EXPECT_EQ(device.write({0x1201, 1}, 0x6A5, 4), 0U);
+
+  device.start();
+  device.receive(make_frame(CobId::base(0x645), {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}));
+  device.receive(make_frame(CobId::base(0x6A5), {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}));
+  device.at(5);
+  EXPECT_TRUE(device.of(0x5C5).empty());
+  EXPECT_EQ(device.of(0x6C5).size(), 1u);
+}
+
 }  // namespace
 }  // namespace takt::sim

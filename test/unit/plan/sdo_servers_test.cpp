@@ -1,8 +1,9 @@
 // SDO channels of devices besides the first: 0x1201..0x127F.
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "test/unit/plan/tiny_network.hpp"
+#include "test/unit/plan/device_data_network.hpp"
 
 namespace takt {
 namespace {
@@ -72,6 +73,65 @@ TEST(SdoServers, OtherServicesAreMetToo) {
       "nodes: {arm: {node_id: 1, dcf: x}, leg: {node_id: 2, dcf: x, emcy_cob_id: 0x641}}\n", eds());
 
   EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x641 is EMCY of node `leg`"));
+}
+
+/// Node 1 with `keys` beside node 65; the second channel of the first has the first of the other.
+std::string lenzes(const std::string& keys = "") {
+  return "nodes:\n  pump: {node_id: 1, dcf: x" + keys +
+         "}\n  fan: {node_id: 65, dcf: x, sdo: [{index: 0x1201, sub_index: 1, value: "
+         "0x80000000}]}\n";
+}
+
+TEST(SdoServers, TwoLenze8400Meet64NodeIdsApart) {
+  const auto net = test::compile_device_file(lenzes(), "lenze8400.eds");
+
+  EXPECT_TRUE(has_error(net.findings));
+  EXPECT_THAT(net.said("cob-id-clash"),
+              HasSubstr("the SDO channel 2 (0x1201) of node `pump` is on: 0x641 is in the SDO "
+                        "channel of node `fan` (0x641, 0x5C1)"));
+  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x5C1 is in the SDO channel of node `fan`"));
+  EXPECT_EQ(test::compile_device_file(lenzes(off), "lenze8400.eds").said("cob-id-clash"), "");
+}
+
+/// As an EDS of the maker: the second channel is off, or not there at all.
+std::string lenze_eds(const std::string& request) {
+  return eds(request, "0x80000000") + entry("1018sub1", "Vendor-ID", 7, "ro", "0x3B") +
+         entry("1018sub2", "Product code", 7, "ro", "0x84003");
+}
+const std::string identity = ", vendor_id: 0x3B, product_code: 0x84003";
+
+TEST(SdoServers, OneThatOnlyTheDeviceDataHaveOnIsAWarning) {
+  for (const bool there : {true, false}) {
+    const auto net = test::compile_with_shipped(
+        lenzes(identity), there ? lenze_eds("0x80000000") : test::tiny_objects());
+    const std::string said = net.said("cob-id-clash");
+
+    EXPECT_THAT(said, HasSubstr("the SDO channel 2 (0x1201) of node `pump` may be on: parameter "
+                                "channel 2 listens on 0x640"));
+    EXPECT_THAT(said, HasSubstr("(lenze8400.yaml:"));
+    EXPECT_THAT(said, HasSubstr("and then the two would meet: 0x641 is in the SDO channel of node "
+                                "`fan` (0x641, 0x5C1)"));
+    EXPECT_THAT(said, HasSubstr(there ? "`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"
+                                      : "switch it off in the device (bit 31 of 1201:01)"));
+    EXPECT_TRUE(std::ranges::none_of(net.findings, [](const Finding& finding) {
+      return finding.rule == "cob-id-clash" && finding.severity == Severity::error;
+    }));
+  }
+}
+
+TEST(SdoServers, OfTheDeviceDataNeedIndexAndBothIdentifiers) {
+  const std::string entry = "name: x\nmatch: none\nsdo_servers:\n";
+
+  EXPECT_THAT(test::errors_of_entry(entry + "  - {index: 0x1200, request: 0x640, answer: 0x5C0}\n"),
+              testing::ElementsAre("4 out-of-range"));
+  EXPECT_THAT(test::errors_of_entry(entry + "  - {index: 0x1201, request: 0x640}\n"),
+              testing::ElementsAre("4 missing-key"));
+}
+
+TEST(SdoServers, OneOfTheDeviceDataThatTheNetworkFileSwitchesOffIsNotInUse) {
+  const auto net = test::compile_with_shipped(lenzes(identity + off), lenze_eds("0x80000000"));
+
+  EXPECT_EQ(net.said("cob-id-clash"), "");
 }
 
 TEST(SdoServers, APlainNumberOfAnEdsIsThatOfAnotherNode) {
