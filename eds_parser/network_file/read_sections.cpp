@@ -10,7 +10,7 @@ namespace takt {
 namespace {
 
 constexpr std::string_view other_reader = "means nothing to takt and is left alone";
-constexpr std::string_view not_yet = "is not acted on by this version of takt";
+constexpr std::string_view of_nodes = "has no effect: write it to the nodes, or to `defaults`";
 
 constexpr std::array<std::uint32_t, 9> standard_rates{10, 20, 50, 100, 125, 250, 500, 800, 1000};
 
@@ -188,14 +188,17 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   reader.integer("stop_timeout", master.stop_timeout_ms, {100, 60'000, " ms"});
   reader.integer("service_frames", master.service_frames, {1, 250, " frames"});
   reader.ignore(
-      std::array<std::string_view, 11>{"driver", "package", "namespace", "polling", "period",
+      std::array<std::string_view, 13>{"driver", "package", "namespace", "polling", "period",
                                        "diagnostics", "vendor_id", "product_code",
-                                       "revision_number", "serial_number", "remappings"},
+                                       "revision_number", "serial_number", "remappings",
+                                       "boot_timeout", "non_transmit_timeout"},
       other_reader);
-  reader.ignore(
-      std::array<std::string_view, 6>{"emcy_inhibit_time", "error_behavior", "boot_timeout",
-                                      "boot_timeout_ms", "sdo_timeout_ms", "non_transmit_timeout"},
-      not_yet);
+  reader.ignore(std::array<std::string_view, 2>{"boot_timeout_ms", "sdo_timeout_ms"}, of_nodes);
+  reader.ignore(std::array<std::string_view, 1>{"emcy_inhibit_time"},
+                "has no effect: the master sends no EMCY, so there is none to hold back");
+  reader.ignore(std::array<std::string_view, 1>{"error_behavior"},
+                "has no effect: the master has no 0x1029; `on_loss` of a node, `on_sync_loss`, "
+                "`on_timeout` and `stop_all_nodes` say what faults do");
   reader.finish();
 }
 

@@ -62,6 +62,19 @@ TEST(ReadNetwork, KeysOfOtherReadersGiveANoteOnceAndNoError) {
   EXPECT_THAT(net.said("unused-key"), HasSubstr("units: {position: {scale"));
 }
 
+TEST(ReadNetwork, KeysThatHaveNoEffectOnTheMasterSayWhy) {
+  const auto net = read(
+      "master: {emcy_inhibit_time: 100, error_behavior: {1: 0}, sdo_timeout_ms: 100}\n"
+      "nodes: {one: {node_id: 1, dcf: a.eds}}\n");
+  const std::string said = net.said("unused-key");
+
+  EXPECT_THAT(said, HasSubstr("`emcy_inhibit_time` of `master` has no effect: the master sends no "
+                              "EMCY"));
+  EXPECT_THAT(said,
+              HasSubstr("`error_behavior` of `master` has no effect: the master has no 0x1029"));
+  EXPECT_THAT(said, HasSubstr("`sdo_timeout_ms` of `master` has no effect: write it to the nodes"));
+}
+
 TEST(ReadNetwork, QuotedNumbersAndBooleansAreRead) {
   const auto net = read(
       "nodes:\n"
