@@ -55,7 +55,7 @@ Time ErrorControl::heartbeat_timeout(const NodeSource& node) const {
   return Time{static_cast<Time::rep>(std::llround(ms * 1e6))};
 }
 
-GuardPlan ErrorControl::guard(const NodeSource& node) const {
+GuardPlan ErrorControl::guard(const NodeSource& node) {
   const NodeSpec& spec = *node.spec;
   const std::int64_t own = integer_of(*node.dictionary, {0x100C, 0}).value_or(0);
   const std::int64_t ms = spec.guard_time.given ? *spec.guard_time : own;
@@ -77,9 +77,18 @@ GuardPlan ErrorControl::guard(const NodeSource& node) const {
   } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off
     leave_alone(spec, name + "is not guarded (`retry_factor: 0`)");
   } else {
+    guards_ = true;
+    uses_retry_factor_ = uses_retry_factor_ || !spec.retry_factor.given;
     return {.period = std::chrono::milliseconds{ms}, .retries = retries};
   }
   return {};
+}
+
+void ErrorControl::tell_unused_retry_factor() const {
+  if (!spec_.retry_factor.given || *spec_.retry_factor == 0 || uses_retry_factor_) return;
+  report_.note(spec_.retry_factor.pos, "guarding",
+               std::string{"`retry_factor` of `options` is left alone: "} +
+                   (guards_ ? "each node that is guarded has its own" : "no node is guarded"));
 }
 
 /// What asks for guarding of a node that is not guarded; what asks for none is obeyed.

@@ -20,7 +20,9 @@ class ErrorControl {
   /// Zero: no heartbeat is expected.
   Time heartbeat_timeout(const NodeSource& node) const;
   /// Guarding where the device file or the network file has a guard time and there is no heartbeat.
-  GuardPlan guard(const NodeSource& node) const;
+  GuardPlan guard(const NodeSource& node);
+  /// Tells of `retry_factor` of `options` where guard() gave it to no node.
+  void tell_unused_retry_factor() const;
 
  private:
   std::uint16_t wanted_producer_ms(const NodeSource& node) const;
@@ -29,6 +31,8 @@ class ErrorControl {
 
   const NetworkSpec& spec_;
   NetworkReport& report_;
+  bool guards_ = false;
+  bool uses_retry_factor_ = false;  ///< that of `options`
 };
 
 /// A node that is to be kept running has to show its state.

@@ -73,6 +73,7 @@ class NetworkCompiler {
     }
     assign_cob_ids(nodes_, service_ids(spec_, nodes_, report_), report_);
     for (const NodePdos& node : nodes_) add_node(node);
+    error_control_.tell_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);
     compile_cycle(spec_, nodes_, plan(), report_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);

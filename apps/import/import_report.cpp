@@ -51,7 +51,7 @@ std::string value_text(const YamlNode& node) {
 /// A row of the report with the places that findings may name for it.
 struct Row {
   ImportedKey key;
-  std::string_view word;  ///< the key itself, for the table of meanings
+  std::string_view word;  ///< the key itself, or that of its map, for the table of meanings
   std::set<SourcePos> places;
   bool leaf = true;
   bool wrong_type = false;
@@ -62,30 +62,34 @@ struct Row {
 class RowCollector {
  public:
   std::vector<Row> collect(const YamlNode& root) {
-    map(root, "");
+    map(root, "", "");
     return std::move(rows_);
   }
 
  private:
-  void map(const YamlNode& node, const std::string& path) {
+  void map(const YamlNode& node, const std::string& path, std::string_view word) {
     for (const YamlPair& pair : node.pairs) {
       if (path.empty() && pair.key.starts_with('.')) continue;  // for anchors only
-      value(*pair.value, pair, path.empty() ? pair.key : path + '.' + pair.key);
+      value(*pair.value, pair, path.empty() ? pair.key : path + '.' + pair.key, word);
     }
   }
 
-  void value(const YamlNode& node, const YamlPair& pair, const std::string& path) {
+  /// `word`: the key of the map around it.
+  void value(const YamlNode& node, const YamlPair& pair, const std::string& path,
+             std::string_view word) {
     if (!seen_.emplace(pair.key_pos, pair.key).second) return;  // by alias once more
     if (node.kind == YamlNode::Kind::map) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
-      map(node, path);
+      map(node, path, pair.key);
     } else if (node.kind == YamlNode::Kind::sequence && is_list_of_maps(node)) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       items(node, pair.key, path);
     } else {
       std::set<SourcePos> places;
       places_of(node, places);
-      add(path, pair.key, value_text(node), pair.key_pos, std::move(places), true);
+      const bool is_number = pair.key.find_first_not_of("0123456789") == std::string::npos;
+      add(path, is_number ? word : pair.key, value_text(node), pair.key_pos, std::move(places),
+          true);
     }
   }
 

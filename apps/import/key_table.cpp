@@ -34,7 +34,7 @@ constexpr std::array<KeyText, 61> meanings{{
     {"emcy_inhibit_time", "1015, 100 us"},
     {"heartbeat_consumer", "who watches whom: 1016"},
     {"heartbeat_producer", "heartbeat, ms: 1017"},
-    {"error_behavior", "1029"},
+    {"error_behavior", "what the device does at its errors: 1029 by sub-index"},
     {"nmt_inhibit_time", "least time between NMT commands, 100 us"},
     {"start", "the master becomes operational by itself"},
     {"start_nodes", "NMT start after each boot"},

@@ -181,6 +181,25 @@ TEST_F(Import, WhyAMasterNeedsNoEmcyInhibitTime) {
   EXPECT_THAT(key(bus, "master.error_behavior.1").why, HasSubstr("has no 1029"));
   EXPECT_EQ(key(bus, "arm.emcy_inhibit_time").fate, KeyFate::used);
   EXPECT_EQ(key(bus, "arm.error_behavior.1").fate, KeyFate::used);
+  EXPECT_THAT(key(bus, "arm.error_behavior.1").why, HasSubstr("1029"));
+}
+
+TEST_F(Import, TheRetryFactorOfAllIsUsedOnlyWhereANodeIsGuardedByIt) {
+  const auto fate = [this](const std::string& keys) {
+    const auto bus = report(
+        "options: {retry_factor: 3}\nmaster: {sync_period: 10000}\n"
+        "arm: {node_id: 2, dcf: drive.eds" +
+        keys + "}\n");
+    const auto& row = key(bus, "options.retry_factor");
+    return std::string{name(row.fate)} + ": " + row.why;
+  };
+
+  EXPECT_THAT(fate(""),
+              HasSubstr("ignored: `retry_factor` of `options` is left alone: no node is"));
+  EXPECT_THAT(fate(", heartbeat_producer: 0, guard_time: 100, retry_factor: 2"),
+              HasSubstr("ignored: `retry_factor` of `options` is left alone: each node that is"));
+  EXPECT_EQ(fate(", heartbeat_producer: 0, guard_time: 100"),
+            "used: silence that is accepted, in guard times");
 }
 
 TEST_F(Import, AnAliasIsReportedOnce) {
