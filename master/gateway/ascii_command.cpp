@@ -284,7 +284,7 @@ std::string_view ascii_help() noexcept {
 # types: b i8..i64 u8..u64 x8..x64 r32 r64 vs hex; os us d in base64
 # [seq] lss_switch_glob 0|1, lss_switch_sel vendor product revision serial
 # [seq] lss_set_node id, lss_conf_bitrate [table] index, lss_store
-# [seq] lss_inquire_addr [part], lss_get_node
+# [seq] lss_inquire_addr [0..3 | 0x5A..0x5D], lss_get_node
 # [seq] lss_identity vendor product revision-from -to serial-from -to, lss_ident_nonconf
 # [seq] _lss_fastscan [timeout | number mask x 4], _lss_slowscan as lss_identity
 # [seq] lss_allnodes [timeout [first store [type number] x 4]])";

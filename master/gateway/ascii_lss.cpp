@@ -34,13 +34,24 @@ Read<void> lss_bit_rate(Words words, AsciiCommand& out) {
   return end_at(words, has_table ? 3 : 2);
 }
 
+/// The parts of an LSS address by number, as CANopenNode's gateway does, or by the code of their
+/// LSS request, as Lely's.
 Read<void> lss_inquire(Words words, AsciiCommand& out) {
+  constexpr std::uint32_t first_code = 0x5A;
+  constexpr std::uint32_t parts = 4;
   out.lss.op = LssOp::inquire_vendor;
   out.lss_all_parts = words.size() == 1;
   if (out.lss_all_parts) return {};
-  const auto part = number(words, 1, 3, "part 0..3");
-  if (!part) return std::unexpected{part.error()};
-  out.lss.op = static_cast<LssOp>(static_cast<unsigned>(LssOp::inquire_vendor) + *part);
+  const auto given = parse_ascii_integer(words[1].text).value_or(-1);
+  const bool is_code = given >= first_code && given < first_code + parts;
+  if (!is_code && (given < 0 || given >= parts)) {
+    return wrong(
+        "expected a part of the LSS address, 0 vendor id, 1 product code, 2 revision "
+        "number, 3 serial number (or 0x5A..0x5D), not '" +
+        words[1].text + "'");
+  }
+  const auto part = static_cast<unsigned>(is_code ? given - first_code : given);
+  out.lss.op = static_cast<LssOp>(static_cast<unsigned>(LssOp::inquire_vendor) + part);
   return end_at(words, 2);
 }
 
