@@ -168,6 +168,35 @@ std::string step_title(const BootStep& step) {
   return step.object == ObjectKey{} ? "unnamed step" : "object " + to_string(step.object);
 }
 
+/// What an identity status is about; empty: another status.
+std::string_view identity_part(char letter) noexcept {
+  switch (letter) {
+    case 'C':
+      return "device type";
+    case 'D':
+      return "vendor id";
+    case 'M':
+      return "product code";
+    case 'N':
+      return "revision number";
+    case 'O':
+      return "serial number";
+    default:
+      return {};
+  }
+}
+
+/// CiA 302-2 has one letter for an identity that differs and for one that the device does not tell.
+std::string status_text(const BootFailure& failure) {
+  const std::string start = std::string{failure.letter} + " of CiA 302-2: ";
+  const std::string part{identity_part(failure.letter)};
+  if (part.empty() || failure.fault == SdoFault::none) {
+    return start + std::string{letter_text(failure.letter)};
+  }
+  if (failure.fault == SdoFault::timeout) return start + "no answer to the read of the " + part;
+  return start + part + " can't be read";
+}
+
 std::string heard_text(const BootFailure& failure) {
   if (failure.node_state == NmtState::unknown) return "no boot-up message and no heartbeat";
   const bool only_bootup = failure.node_state == NmtState::bootup;
@@ -219,9 +248,7 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
     add_line(text, "expected", wanted_text(step));
   }
   if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for that
-    add_line(
-        text, "status",
-        std::string{failure.letter} + " of CiA 302-2: " + std::string{letter_text(failure.letter)});
+    add_line(text, "status", status_text(failure));
   }
   add_line(text, "heard", heard_text(failure));
   if (failure.emcy != 0) {

@@ -66,6 +66,7 @@ TEST(BootSweep, ARefusalAtAnyStepIsToldWithObjectAbortAndRemedy) {
     const std::string text = report(refuse_object, object, 0x0800'0000);
     EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
     EXPECT_NE(text.find("abort 0800 0000: general error"), std::string::npos) << text;
+    EXPECT_EQ(text.find(" differs"), std::string::npos) << text;
     EXPECT_NE(text.find("\n  try       "), std::string::npos) << text;
   }
 }
@@ -94,6 +95,7 @@ TEST(BootSweep, SilenceIsNeverTakenForADifference) {
       EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n"
                                                                  << text;
       EXPECT_NE(text.find("nothing within"), std::string::npos) << text;
+      EXPECT_EQ(text.find(" differs"), std::string::npos) << text;
       EXPECT_NE(advice(text), "") << text;
       for (const std::string blame :
            {"another device", "another specimen", "another software", "another version",
