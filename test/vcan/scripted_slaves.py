@@ -95,13 +95,15 @@ class Slaves:
     def run(self):
         while self.running:
             message = self.bus.recv(0.05)
-            if message is None or message.arbitration_id != MASTER:
-                continue
-            self.commands.append((message.timestamp, bytes(message.data)))
-            for slave in self.slaves:
-                answer = slave.react(message.data) if message.dlc == 8 else None
-                if answer is not None:
-                    self.bus.send(can.Message(arbitration_id=SLAVE, is_extended_id=False, data=bytes(answer).ljust(8, b"\0")))
+            if message is not None and message.arbitration_id == MASTER:
+                self.take(message)
+
+    def take(self, message):
+        self.commands.append((message.timestamp, bytes(message.data)))
+        for slave in self.slaves:
+            answer = slave.react(message.data) if message.dlc == 8 else None
+            if answer is not None:
+                self.bus.send(can.Message(arbitration_id=SLAVE, is_extended_id=False, data=bytes(answer).ljust(8, b"\0")))
 
     def stop(self):
         self.running = False
