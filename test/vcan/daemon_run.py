@@ -6,6 +6,8 @@ import subprocess
 import tempfile
 import time
 
+from dissector import judge_dissector
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NMT, SYNC = 0x000, 0x080
 PATIENCE = 60  # s; what does not happen within these does not happen
@@ -90,6 +92,12 @@ class DaemonRun:
         except subprocess.TimeoutExpired:
             code = "none: it hangs"
         check(code == 0, f"taktd ended with exit code {code}")
+
+    def dissect(self, least, **known):
+        """Ends the recording; Wireshark's dissector reads it."""
+        self.candump.terminate()
+        self.candump.wait()
+        judge_dissector(check, self.log, least, **known)
 
     def events(self, kind, node=None):
         lines = self.event_file.read_text().split("\n")[:-1]

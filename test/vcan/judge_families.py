@@ -3,15 +3,17 @@
 
 The course of test/virtual/pdo_matrix_cells.hpp, 20 times as slow, for all families at once: this script is their
 master. Then taktd is, with other types. Where the machine itself stood
-still a run has another try, three in all. Runs inside with-vcan. Exit code 1: a check failed.
+still a run has another try, three in all. Wireshark's dissector reads all of it. Runs inside with-vcan. Exit code 1: a check failed.
 """
 import collections
 import pathlib
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 
+from dissector import judge_dissector, recording
 from judge_pdos import RTR, Bus, check, failures
 
 NETWORK = pathlib.Path(__file__).resolve().parent / "pdo_families.yaml"
@@ -68,6 +70,7 @@ FAMILIES = {
     "Beckhoff": (8, 1, (0x6200, 1), 1),
     "DRV-28": (9, 2, (0x2101, 3), 2),
 }
+ASKED = (0x185, 0x285, 0x186, 0x187, 0x188, 0x289)  # by remote requests; 0x285 by taktd alone
 
 
 def course(devices, letters):
@@ -171,8 +174,7 @@ def judge_master(binaries):
     check((told.returncode, told.stdout) == (0, "0\n"), f"DRV-28, PDO1: P15.13 is {told.stdout}{told.stderr}")
 
 
-def main(binaries):
-    binaries = pathlib.Path(binaries)
+def judge_all(binaries):
     simulation = subprocess.Popen([binaries / "takt", "sim", NETWORK, "--bus", "vcan0"])
     devices = {name: Device(*how) for name, how in FAMILIES.items()}
     try:
@@ -184,6 +186,14 @@ def main(binaries):
     finally:
         simulation.terminate()
         simulation.wait()
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "bus.log"
+        with recording(log):
+            judge_all(pathlib.Path(binaries))
+        judge_dissector(check, log, 4000, remote=ASKED)
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 

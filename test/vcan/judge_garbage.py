@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """judge_garbage.py BIN [SEED]: thousands of random frames on vcan0 against a running taktd and its two nodes.
 
-taktd lives, and when the bus is quiet again its nodes are operational and it ends in order. Runs inside with-vcan.
+taktd lives, and when the bus is quiet again its nodes are operational and it ends in order. What takt's programs
+sent to all that is well formed. Runs inside with-vcan.
 Exit code 1: a check failed.
 
 NMT commands that stop or reset the nodes are among them, and a second SYNC: taktd takes the nodes back. Only error
@@ -65,13 +66,17 @@ def garbage(dice):
 
 
 def pour(dice, count):
+    """Sends it; what a candump log has of it."""
+    sent = []
     with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as bus:
         bus.bind(("vcan0",))
         for number in range(count):
             identifier, data = garbage(dice)
             bus.send(struct.pack("=IB3x8s", identifier, len(data), data))
+            sent.append((identifier, b"" if identifier & REMOTE else data))
             if number % BATCH == 0:
                 time.sleep(PAUSE)
+    return sent
 
 
 def states(run):
@@ -99,7 +104,7 @@ def main(binaries, seed="1"):
         run.start_taktd()
         check(soon(lambda: settled(run)), "both nodes are operational and answer each SYNC")
         begin = run.place()
-        pour(random.Random(int(seed)), FRAMES)
+        sent = pour(random.Random(int(seed)), FRAMES)
         check(soon(lambda: run.place() - begin > FRAMES), f"garbage by seed {seed}: {run.place() - begin} frames")
         check(run.taktd.poll() is None, "taktd is alive")
         check(soon(lambda: settled(run)), f"its nodes are again what they were: {states(run)}, {exchange(run)}")
@@ -107,6 +112,7 @@ def main(binaries, seed="1"):
         told = {kind: len(run.events(kind)) for kind in kinds}
         check(told["emcy"] and told["foreign_nmt"], f"it has noticed: {told}")
         run.stop_taktd()
+        run.dissect(1000, foreign=sent)
     return verdict()
 
 

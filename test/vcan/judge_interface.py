@@ -67,6 +67,7 @@ def main(binaries):
         check(told == (1, 1), f"down and up are told once: {told}")
         run.stop_taktd()
         judge_beat(run, 0.9 * down)
+        run.dissect(1000)
     return verdict()
 
 

@@ -2,7 +2,8 @@
 """judge_learn.py BIN: `takt learn` of a bus that python-canopen has booted and configured on vcan0.
 
 `takt sim` plays two drives, candump records, python-canopen is the master. What is learned is what python-canopen
-was told to do, and taktd boots the same devices by the learned file. Runs inside with-vcan. Exit code 1: a check failed.
+was told to do, and taktd boots the same devices by the learned file. Wireshark's dissector reads it all.
+Runs inside with-vcan. Exit code 1: a check failed.
 """
 import json
 import pathlib
@@ -12,6 +13,8 @@ import tempfile
 import time
 
 import canopen
+
+from dissector import judge_dissector, recording
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NETWORK = ROOT / "test/vcan/simulated_axes.yaml"
@@ -78,32 +81,34 @@ def judge_plan(plan):
         check(int(writes.get(0x1017, "0"), 16) == 250, f"node {node['id']} 1017 = {writes.get(0x1017)}")
 
 
+def judge_all(programs, folder):
+    log, learned, events = folder / "boot.log", folder / "learned.yaml", folder / "events"
+    devices = subprocess.Popen([programs / "takt", "sim", NETWORK, "--bus", "vcan0"])
+    with recording(log):
+        time.sleep(1)
+        boot_with_python_canopen()
+    done = subprocess.run([programs / "takt", "learn", log, "--eds-dir", EDS.parent, "-o", learned],
+                          capture_output=True, text=True, timeout=60)
+    check(done.returncode == 0, f"takt learn ends with {done.returncode} {done.stderr}")
+    plan = subprocess.run([programs / "takt", "plan", "--json", "--quiet", learned], capture_output=True, text=True)
+    judge_plan(json.loads(plan.stdout))
+    daemon = subprocess.run([programs / "taktd", learned, "--for", "8s", "--events", events,
+                             "--lcm-url", "tcpq://127.0.0.1:7791"], capture_output=True, text=True, timeout=60)
+    done = [json.loads(line) for line in events.read_text().splitlines()] if events.exists() else []
+    ready = {event.get("node") for event in done if "boot_done" in json.dumps(event)}
+    check(len(ready) == len(NODES), f"taktd boots by the learned file: {ready} {daemon.stderr[-800:]}")
+    devices.terminate()
+    devices.wait()
+    if failures:
+        print(learned.read_text())
+
+
 def main(binaries):
-    programs = pathlib.Path(binaries)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        log, learned, events = folder / "boot.log", folder / "learned.yaml", folder / "events"
-        devices = subprocess.Popen([programs / "takt", "sim", NETWORK, "--bus", "vcan0"])
-        with log.open("w") as out:
-            record = subprocess.Popen(["candump", "-L", "-r", "8000000", "vcan0"], stdout=out)
-            time.sleep(1)
-            boot_with_python_canopen()
-            record.terminate()
-            record.wait()
-        done = subprocess.run([programs / "takt", "learn", log, "--eds-dir", EDS.parent, "-o", learned],
-                              capture_output=True, text=True, timeout=60)
-        check(done.returncode == 0, f"takt learn ends with {done.returncode} {done.stderr}")
-        plan = subprocess.run([programs / "takt", "plan", "--json", "--quiet", learned], capture_output=True, text=True)
-        judge_plan(json.loads(plan.stdout))
-        daemon = subprocess.run([programs / "taktd", learned, "--for", "8s", "--events", events,
-                                 "--lcm-url", "tcpq://127.0.0.1:7791"], capture_output=True, text=True, timeout=60)
-        done = [json.loads(line) for line in events.read_text().splitlines()] if events.exists() else []
-        ready = {event.get("node") for event in done if "boot_done" in json.dumps(event)}
-        check(len(ready) == len(NODES), f"taktd boots by the learned file: {ready} {daemon.stderr[-800:]}")
-        devices.terminate()
-        devices.wait()
-        if failures:
-            print(learned.read_text())
+        with recording(folder / "bus.log"):
+            judge_all(pathlib.Path(binaries), folder)
+        judge_dissector(check, folder / "bus.log", 1000)
     return 1 if failures else 0
 
 

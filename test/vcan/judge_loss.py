@@ -100,6 +100,7 @@ def main(binaries):
         check(len(run.events("boot_done", LEFT)) == 1, f"node {LEFT} was booted once")
         run.stop_taktd()
         judge_beat(run)
+        run.dissect(1000)
     return verdict()
 
 

@@ -8,15 +8,19 @@ profile against our drive. Runs inside with-vcan. Exit code 1: a check failed.
 import pathlib
 import subprocess
 import sys
+import tempfile
 import time
 
 import canopen
 from canopen.profiles.p402 import BaseNode402
 
+from dissector import judge_dissector, recording
+
 HERE = pathlib.Path(__file__).resolve().parent
 NETWORK = HERE / "master_devices.yaml"
 EDS = HERE.parent.parent / "share/eds"
 IO, DRIVE, TERMINALS = 5, 6, 7
+UNKNOWN_NMT = (0, bytes((0x42, IO)))
 failures = []
 
 
@@ -92,7 +96,7 @@ def judge_nmt(network, node):
         except canopen.nmt.NmtError as error:
             check(False, f"boot-up after {command}: {error}")
     check(node.sdo[0x1017].raw == 0, "and 0x1017 has its default again")
-    network.send_message(0, [0x42, IO])
+    network.send_message(*UNKNOWN_NMT)
     check(abort_of(node.sdo.upload, 0x1000, 0) == 0, "an unknown NMT command does nothing")
 
 
@@ -252,7 +256,7 @@ def judge_drive(network, node):
     network.sync.stop()
 
 
-def main(binaries):
+def judge_all(binaries):
     simulation = subprocess.Popen([pathlib.Path(binaries) / "takt", "sim", NETWORK, "--bus", "vcan0"])
     network = canopen.Network()
     network.connect(interface="socketcan", channel="vcan0")
@@ -273,6 +277,14 @@ def main(binaries):
         network.disconnect()
         simulation.terminate()
         simulation.wait()
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "bus.log"
+        with recording(log):
+            judge_all(binaries)
+        judge_dissector(check, log, 1000, remote=[0x185, 0x700 + TERMINALS], foreign=[UNKNOWN_NMT])
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 

@@ -13,6 +13,8 @@ import sys
 import tempfile
 import time
 
+from dissector import judge_dissector
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NETWORK = ROOT / "test/vcan/simulated_axes.yaml"
 NODES = (5, 6)
@@ -98,6 +100,7 @@ def main(binaries):
         read = subprocess.run([binaries / "takt", "dump", NETWORK, log], capture_output=True, text=True)
         strange = [line for line in read.stdout.splitlines() if " ?  " in line or "unknown" in line]
         check(read.returncode == 0 and not strange, f"takt dump reads every frame: {strange[:3]}")
+        judge_dissector(check, log, 2000)
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 
