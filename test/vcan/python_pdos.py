@@ -14,8 +14,12 @@ COUNT = 0x60FD  # how many set-points came
 
 
 class Device:
-    def __init__(self, network, eds, node_id):
+    """`left_out`: which of the times that a TPDO of type 1 to 240 is due it stays away, counted from 1.
+    `pause`: (how many SYNCs after the start, seconds) of the PDOs with event timer."""
+
+    def __init__(self, network, eds, node_id, left_out=(), pause=(0, 0)):
         self.node = canopen.LocalNode(node_id, eds)
+        self.left_out, self.pause = left_out, pause
         network.add_node(self.node)
         network.subscribe(0x000, self.on_nmt)
         network.subscribe(0x080, self.on_sync)
@@ -49,12 +53,23 @@ class Device:
         self.node.rpdo.read()
         for pdo in self.tpdos():
             self.fill(pdo)
-            if pdo.trans_type == 255 and pdo.event_timer:
-                pdo.start(pdo.event_timer / 1000)
+        self.start_timers()
         self.running = True
+
+    def start_timers(self):
+        for pdo in self.timed():
+            pdo.start(pdo.event_timer / 1000)
+
+    def rest(self):
+        for pdo in self.timed():
+            pdo.stop()
+        threading.Timer(self.pause[1], lambda: self.running and self.start_timers()).start()
 
     def tpdos(self):
         return [pdo for pdo in self.node.tpdo.values() if pdo.enabled]
+
+    def timed(self):
+        return [pdo for pdo in self.tpdos() if pdo.trans_type == 255 and pdo.event_timer]
 
     def fill(self, pdo):
         for variable in pdo:
@@ -92,4 +107,7 @@ class Device:
         for pdo in self.tpdos():
             if 1 <= pdo.trans_type <= 240 and self.syncs % pdo.trans_type == 0:
                 self.fill(pdo)
-                pdo.transmit()
+                if self.syncs // pdo.trans_type not in self.left_out:
+                    pdo.transmit()
+        if self.syncs == self.pause[0]:
+            self.rest()
