@@ -243,6 +243,11 @@ ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniS
                       (known ? " is no ARRAY or RECORD" : " has no ObjectType") +
                       " but has sub-objects; taken for a RECORD");
   return ObjectType::record;
+    if (sub.pdo_mappable && is_bytes(sub.type) && sub.type != DataType::unknown) {
+      report_.warning(mapping->pos(), "mappable-without-size",
+                      to_string(key) + ": the size of " + std::string{name(sub.type)} +
+                          " is not fixed, so PDOMapping should be 0");
+    }
 }
 
 void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key,
@@ -268,6 +273,12 @@ void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKe
   }
 }
 
+    const auto wanted = standard_type(key);
+    if (wanted != DataType::unknown && wanted != sub.type && sub.type != DataType::unknown) {
+      report_.warning(pos, "standard-type",
+                      to_string(key) + ": DataType is " + std::string{name(sub.type)} +
+                          ", CiA 301 says " + std::string{name(wanted)});
+    }
 void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                              const IniSection& section) {
   const auto pos = fields.pos(Keyword::data_type, section.pos);

@@ -60,6 +60,10 @@ struct SubObject {
   }
   /// Where value() is written.
   SourcePos value_pos() const noexcept { return parameter_value ? parameter_pos : default_pos; }
+  /// A master writes it: it can be written, and ObjFlags do not forbid that.
+  bool is_configurable() const noexcept {
+    return access != Access::ro && access != Access::constant && (flags & 1) == 0;
+  }
 };
 
 struct Object {

@@ -1,7 +1,6 @@
 #include "eds_parser/check/rules.hpp"
 #include "eds_parser/eds_limits.hpp"
 #include "eds_parser/integer_of.hpp"
-#include "eds_parser/standard_types.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -13,24 +12,13 @@ void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
                    section_name(key) + ": DefaultValue " + quoted(sub.default_text) +
                        " is outside LowLimit and HighLimit; it is kept");
   }
-  if (sub.parameter_value && outside_limits(*sub.parameter_value, sub)) {
-    report.error(sub.parameter_pos, "value-outside-limits",
-                 section_name(key) + ": ParameterValue " + quoted(sub.parameter_text) +
-                     " is outside LowLimit and HighLimit; the device would refuse it");
-  }
-}
-
-void check_type(ObjectKey key, const SubObject& sub, Report& report) {
-  const auto wanted = standard_type(key);
-  if (wanted != DataType::unknown && sub.type != DataType::unknown && wanted != sub.type) {
-    report.warning(sub.pos, "standard-type",
-                   section_name(key) + ": DataType is " + std::string{name(sub.type)} +
-                       ", CiA 301 says " + std::string{name(wanted)});
-  }
-  if (sub.pdo_mappable && is_bytes(sub.type) && sub.type != DataType::unknown) {
-    report.warning(sub.pos, "mappable-without-size",
-                   section_name(key) + ": a " + std::string{name(sub.type)} +
-                       " has no fixed size, so PDOMapping should be 0");
+  if (!sub.parameter_value || !outside_limits(*sub.parameter_value, sub)) return;
+  const auto text = section_name(key) + ": ParameterValue " + quoted(sub.parameter_text) +
+                    " is outside LowLimit and HighLimit; ";
+  if (sub.is_configurable()) {
+    report.error(sub.parameter_pos, "value-outside-limits", text + "the device would refuse it");
+  } else {
+    report.note(sub.parameter_pos, "value-outside-limits", text + "it is never written");
   }
 }
 
@@ -70,7 +58,6 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
     for (const auto& sub : object.subs) {
       const ObjectKey key{object.index, sub.sub};
       check_limits(key, sub, report);
-      check_type(key, sub, report);
       if (sub.parameter_text.empty()) continue;
       if (parameter_values++ == 0) first_parameter_value = sub.parameter_pos;
     }

@@ -10,16 +10,10 @@
 namespace takt {
 namespace {
 
-constexpr std::uint32_t refuse_write = 1;  // ObjFlags, bit 0
 constexpr std::uint64_t invalid_pdo = 0x8000'0000;
 
-bool may_be_written(const SubObject& sub) noexcept {
-  return sub.access != Access::ro && sub.access != Access::constant &&
-         (sub.flags & refuse_write) == 0;
-}
-
 bool is_configured(const SubObject& sub) noexcept {
-  return sub.parameter_value && may_be_written(sub);
+  return sub.parameter_value && sub.is_configurable();
 }
 
 /// Of an entry of a mapping.
@@ -71,7 +65,7 @@ class Collector {
     for (const auto& object : dictionary_.objects) {
       for (const auto& sub : object.subs) {
         const auto number = parse_number(sub.parameter_text);
-        if (!number || !number->relative() || !may_be_written(sub)) continue;
+        if (!number || !number->relative() || !sub.is_configurable()) continue;
         report_.warning(sub.parameter_pos, "value-left-out",
                         to_string(ObjectKey{object.index, sub.sub}) + ": ParameterValue " +
                             takt::quoted(sub.parameter_text) +

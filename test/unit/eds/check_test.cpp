@@ -229,6 +229,17 @@ TEST(Check, ComparesValuesWithLimits) {
   EXPECT_TRUE(has(value, "parameter-value-in-eds"));
 }
 
+TEST(Check, AValueThatIsNeverWrittenIsNotRefused) {
+  const std::string value = "DataType=3\nHighLimit=5\nParameterValue=6\n";
+  for (const std::string access :
+       {"AccessType=ro\n", "AccessType=const\n", "AccessType=rw\nObjFlags=1\n"}) {
+    const auto findings = check(read("[2000]\nParameterName=x\n" + value + access).dictionary);
+
+    ASSERT_TRUE(has(findings, "value-outside-limits")) << access;
+    EXPECT_EQ(find(findings, "value-outside-limits")->severity, Severity::note) << access;
+  }
+}
+
 /// Indices that the profile of a device type demands and `objects` have not.
 std::vector<std::string> missing(std::string_view device_type, const std::string& objects = "",
                                  std::string_view rule = "profile-object-missing") {

@@ -41,6 +41,7 @@ TEST(RulePlace, IsThatOfTheObjectOrEntryAtFault) {
       {"bit-pattern", 6, 14, note, section("2000", "DataType=4\nDefaultValue=0x80000001\n")},
       {"compact-too-many", 7, 16, warning,
        section("2000", "ObjectType=8\nDataType=5\nCompactSubObj= 255\n")},
+      {"mappable-without-size", 6, 13, warning, section("2000", "DataType=9\nPDOMapping= 1\n")},
       {"no-sub-objects", 2, 1, warning, section("2000", "ObjectType=9\nSubNumber=1\n")},
       {"number-unreadable", 6, 11, warning,
        section("2000", "ObjectType=9\nSubNumber=three\n" + number)},
@@ -63,7 +64,6 @@ TEST(RulePlace, OfAJudgementIsThatOfTheValue) {
   };
   const std::vector<Place> places = {
       {"cob-id-bits", 6, 14, warning, section("1400sub1", u32 + "0x00012345\n")},
-      {"mappable-without-size", 2, 1, warning, section("2000", "DataType=9\nPDOMapping=1\n")},
       {"pdo-half", 2, 1, warning, section("1A04", "ObjectType=9\nSubNumber=0\n")},
       {"pdo-inhibit-of-rpdo", 6, 14, note, section("1400sub3", u16 + "100\n")},
       {"pdo-mapping-count", 6, 14, warning,
@@ -71,7 +71,6 @@ TEST(RulePlace, OfAJudgementIsThatOfTheValue) {
       {"pdo-mapping-count", 6, 14, error,
        section("1A00sub0", u8 + "65\n") + section("1800sub1", u32 + "$NODEID+0x180\n")},
       {"pdo-sync-start", 6, 14, error, section("1800sub6", u8 + "241\n")},
-      {"standard-type", 2, 1, warning, section("1017", u32 + "0\n")},
       {"sub-0-count", 12, 14, note,
        record(section("2000sub0", u8 + "3\n") + section("2000sub4", u16 + "0\n"))},
       {"sub-0-missing", 2, 1, warning,
