@@ -122,6 +122,7 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
   const ObjectFields fields{file_.entries(section), section.name, report_};
   object.name = to_utf8(fields.text(Keyword::parameter_name));
   if (object.name.empty()) {
+  object.denotation = to_utf8(fields.text(Keyword::denotation));
     report_.warning(section.pos, "parameter-name-missing",
                     section_text(section) + " has no ParameterName");
   }

@@ -69,6 +69,7 @@ struct SubObject {
 struct Object {
   std::uint16_t index = 0;
   std::string name;
+  std::string denotation;  ///< of an ARRAY or RECORD as a whole; a VAR has its own in sub 0
   ObjectType type = ObjectType::var;
   ObjectList list = ObjectList::unlisted;
   std::vector<SubObject> subs;  ///< ascending; a VAR has exactly sub 0

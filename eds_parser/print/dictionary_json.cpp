@@ -137,6 +137,7 @@ Json json_of(const Object& object) {
             {"name", object.name},
             {"object_type", static_cast<unsigned>(object.type)},
             {"list", list_name(object)}};
+  if (!object.denotation.empty()) json["denotation"] = object.denotation;
   auto subs = Json::array();
   for (const auto& sub : object.subs) subs.push_back(json_of(sub));
   json["subs"] = std::move(subs);

@@ -266,6 +266,22 @@ void print_object(std::ostream& out, const Object& object, std::size_t columns) 
   }
 }
 
+/// Names that the application has for objects.
+void print_denotations(std::ostream& out, const std::vector<Object>& objects) {
+  bool first = true;
+  const auto print = [&](std::string_view key, std::string_view text) {
+    if (text.empty()) return;
+    if (first) out << "\nDenotations\n";
+    first = false;
+    out << "  " << left(key, 10) << shortened(text, 100) << '\n';
+  };
+  for (const auto& object : objects) {
+    print(hex(object.index).substr(2), object.denotation);
+    for (const auto& sub : object.subs)
+      print(to_string(ObjectKey{object.index, sub.sub}), sub.denotation);
+  }
+}
+
 void print_references(std::ostream& out, const std::vector<ParameterReference>& references) {
   if (references.empty()) return;
   out << "\nReferences (" << references.size() << ")\n";
@@ -286,6 +302,7 @@ void print_text(std::ostream& out, const ObjectDictionary& dictionary) {
       << left("name", columns) << "  " << left("type", 16) << left("access", 7) << left("PDO", 5)
       << left("value (as written)", widest_value) << "  limits\n";
   for (const auto& object : dictionary.objects) print_object(out, object, columns);
+  print_denotations(out, dictionary.objects);
   print_references(out, dictionary.parameter_references);
 }
 

@@ -85,6 +85,17 @@ TEST(Eds, PrefersTheValueOfADcf) {
   EXPECT_EQ(sub->denotation, "speed");
 }
 
+TEST(Eds, KeepsTheDenotationOfAWholeArray) {
+  const auto file = read(
+      "[2000]\nParameterName=a\nObjectType=8\nSubNumber=2\nDenotation=axes\n"
+      "[2000sub0]\nParameterName=n\nDataType=5\nAccessType=ro\nDefaultValue=1\n"
+      "[2000sub1]\nParameterName=v\nDataType=6\nAccessType=rw\nDenotation=lift\n");
+
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->denotation, "axes");
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2000, 0})->denotation, "");
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2000, 1})->denotation, "lift");
+}
+
 TEST(Eds, ReadsEveryOtherType) {
   const auto value = [](std::string_view type, std::string_view text) {
     return *read(var(type, text)).dictionary.find(ObjectKey{0x2000, 0})->value();

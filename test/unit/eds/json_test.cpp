@@ -164,5 +164,21 @@ TEST(EdsText, ShowsPdosAndObjectsOnLinesOfTheirOwn) {
   EXPECT_NE(out.str().find("133 ($NODEID+0x80)\n"), std::string::npos);
 }
 
+TEST(EdsText, ShowsTheDenotationsOfADcf) {
+  const auto file = read_eds(
+      "[2000]\nParameterName=a\nObjectType=8\nSubNumber=2\nDenotation=axes\n"
+      "[2000sub0]\nParameterName=n\nDataType=5\nAccessType=ro\nDefaultValue=1\n"
+      "[2000sub1]\nParameterName=v\nDataType=6\nAccessType=rw\nDenotation=lift\n",
+      "t.dcf");
+  std::ostringstream out;
+
+  print_text(out, file.dictionary);
+
+  EXPECT_TRUE(out.str().ends_with("\nDenotations\n  2000      axes\n  2000:01   lift\n"))
+      << out.str();
+  EXPECT_EQ(json_of(file)["objects"][0]["denotation"], "axes");
+  EXPECT_EQ(json_of(file)["objects"][0]["subs"][1]["denotation"], "lift");
+}
+
 }  // namespace
 }  // namespace takt
