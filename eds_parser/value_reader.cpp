@@ -1,6 +1,8 @@
 #include "eds_parser/value_reader.hpp"
 
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -129,6 +131,24 @@ bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept {
   return true;
 }
 
+/// Of normal numbers and 0. 0xFFFF in a REAL32 would be 9.2e-41, which nobody means.
+bool is_pattern(std::uint64_t bits, DataType type) noexcept {
+  const unsigned fraction = type == DataType::real32 ? 23 : 52;
+  return bits == 0 || bits >> fraction != 0;
+}
+
+/// A hexadecimal number of a REAL: its bit pattern, or the number itself.
+double real_of(std::uint64_t bits, DataType type) noexcept {
+  if (!is_pattern(bits, type)) return static_cast<double>(bits);
+  return type == DataType::real32 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
+                                  : std::bit_cast<double>(bits);
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.begin(), text.end(), value).ptr};
+}
+
 }  // namespace
 
 std::string to_string(const ValuePlace& place) {
@@ -203,12 +223,11 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
       unreadable(text, name(type), place);
       return std::nullopt;
     }
-    const double value = type == DataType::real32
-                             ? std::bit_cast<float>(static_cast<std::uint32_t>(pattern->magnitude))
-                             : std::bit_cast<double>(pattern->magnitude);
+    const double value = real_of(pattern->magnitude, type);
     report_.warning(place.pos, "real-bit-pattern",
-                    to_string(place) + ": hexadecimal was taken for the bit pattern of " +
-                        std::to_string(value) + "; write a decimal number");
+                    to_string(place) + ": hexadecimal was taken for " +
+                        (is_pattern(pattern->magnitude, type) ? "the bit pattern of " : "") +
+                        shortest(value) + "; write a decimal number");
     return value;
   }
   if (bare.empty()) return std::nullopt;
