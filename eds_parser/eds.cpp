@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "eds_parser/compact_pdos.hpp"
+#include "eds_parser/decimal_subs.hpp"
 #include "eds_parser/eds_channels.hpp"
 #include "eds_parser/eds_info.hpp"
 #include "eds_parser/eds_lists.hpp"
@@ -65,7 +66,7 @@ class EdsReader {
   void outline() {
     outline_.objects.reserve(file_.sections.size());
     for (std::uint32_t at = 0; at < file_.sections.size(); ++at) {
-      place(classify_section(file_.sections[at].name), at);
+      place(classify_section(file_.sections[at]), at);
     }
     auto& objects = outline_.objects;
     if (!std::ranges::is_sorted(objects, {}, &ObjectSection::order)) {
@@ -289,7 +290,8 @@ EdsFile unreadable(std::string file_name, std::string_view message) {
 EdsFile read_eds(std::string_view text, std::string file_name, std::optional<NodeId> node) {
   Report report{file_name};
   if (text.size() > largest_file) return unreadable(std::move(file_name), "larger than 512 MB");
-  const auto file = read_ini(text, report);
+  auto file = read_ini(text, report);
+  mark_decimal_subs(file, report);
   auto result = EdsReader{file, report}.read(std::move(file_name), node);
   result.findings = report.take();
   return result;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -199,6 +200,14 @@ SectionName classify_section(std::string_view name) noexcept {
   if (is_tool(name)) return {.kind = SectionKind::tools};
   if (!name.empty() && fold(name.front()) == 'm') return classify_module(name);
   return {};
+}
+
+SectionName classify_section(const IniSection& section) noexcept {
+  if (!section.has_decimal_sub) return classify_section(section.name);
+  SectionName name = classify_section(section.name.substr(0, 4));
+  name.kind = SectionKind::sub_object;
+  name.sub = static_cast<std::uint8_t>(entry_number(section.name.substr(7)).value_or(0));
+  return name;
 }
 
 void tell_blank_in_name(const IniSection& section, Report& report) {

@@ -48,6 +48,8 @@ struct SectionName {
 };
 
 SectionName classify_section(std::string_view name) noexcept;
+/// The same of a section of a file, where the sub-index may be decimal.
+SectionName classify_section(const IniSection& section) noexcept;
 
 /// Says that a name has a blank in it or around it.
 void tell_blank_in_name(const IniSection& section, Report& report);

@@ -170,7 +170,7 @@ class Reader {
     }
     close_section();
     file_.sections.push_back({trim(rest.substr(1, close - 1)), here(rest),
-                              static_cast<std::uint32_t>(file_.spots.size()), 0});
+                              static_cast<std::uint32_t>(file_.spots.size())});
   }
 
   void leave_out(std::string_view rule, std::string_view why, std::string_view line) {

@@ -56,6 +56,8 @@ constexpr RuleInfo rules[] = {
     {"data-type-unknown", Severity::warning, "DataType is none of CiA 301", "DataType=0x0041"},
     {"dcf-without-node-id", Severity::warning, "a DCF without NodeID",
      "[DeviceComissioning] without NodeID=5"},
+    {"decimal-sub-index", Severity::warning, "sub-indices in the names of sections are decimal",
+     "[2000sub128]"},
     {"default-outside-limits", Severity::warning, "DefaultValue is outside LowLimit and HighLimit",
      "HighLimit=5, DefaultValue=6"},
     {"device-info-missing", Severity::warning, "no [DeviceInfo]",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "eds_parser/decimal_subs.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/eds_limits.hpp"
 #include "eds_parser/number.hpp"
@@ -321,7 +322,8 @@ DcfText write_dcf(std::string_view source, const std::string& source_name,
   const auto eds = read_eds(source, source_name, options.node);
   if (!eds.readable) return {{}, eds.findings};
   Report ignored{source_name};
-  const auto file = read_ini(source, ignored);
+  auto file = read_ini(source, ignored);
+  mark_decimal_subs(file, ignored);
   Report report{source_name};
   const std::string_view text = file.recoded ? std::string_view{*file.recoded} : source;
   DcfText result;

@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 
+#include "eds_parser/decimal_subs.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/suggest.hpp"
@@ -79,7 +80,7 @@ class FixPass {
     } else if (finding.rule == "list-numbers-gap") {
       lists_.renumber(line);
     } else if (finding.rule == "object-not-listed" && section_at_.contains(line)) {
-      lists_.add(classify_section(section_at_[line]->name).index);
+      lists_.add(classify_section(*section_at_[line]).index);
     } else {
       return false;
     }
@@ -163,7 +164,7 @@ class FixPass {
   std::size_t subs_of(std::uint16_t index) {
     if (subs_.empty()) {
       for (const IniSection& each : file_.sections) {
-        const SectionName name = classify_section(each.name);
+        const SectionName name = classify_section(each);
         const bool counts = name.kind == SectionKind::sub_object && name.sub != 0xFF;
         if (counts) subs_[name.index].insert(name.sub);
       }
@@ -173,7 +174,7 @@ class FixPass {
   }
 
   bool sub_number(const IniSection& section, const IniEntry* entry) {
-    const std::string count = std::to_string(subs_of(classify_section(section.name).index));
+    const std::string count = std::to_string(subs_of(classify_section(section).index));
     const std::string_view bare =
         entry == nullptr ? std::string_view{} : without_comment(entry->value);
     if (!bare.empty()) return replace(bare, count);
@@ -196,7 +197,7 @@ class FixPass {
 
   /// A slip of a key that the section does not have: `AcessType`.
   bool slip(const Place& at) {
-    const SectionName name = classify_section(at.section->name);
+    const SectionName name = classify_section(*at.section);
     if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return false;
     if (slips_ == Slips::left || at.section->count > most_keys) return false;
     if (at.entry.key.find_first_of("0123456789") != std::string_view::npos) return false;
@@ -244,7 +245,7 @@ class FixPass {
   }
 
   static bool in_list(const IniSection& section) {
-    const SectionKind kind = classify_section(section.name).kind;
+    const SectionKind kind = classify_section(section).kind;
     return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
            kind == SectionKind::manufacturer_objects;
   }
@@ -302,7 +303,8 @@ struct Pass {
 std::optional<Pass> one_pass(const std::string& text, const std::string& source_name,
                              const EdsFile& eds, Slips slips) {
   Report ignored{source_name};
-  const IniFile file = read_ini(text, ignored);
+  IniFile file = read_ini(text, ignored);
+  mark_decimal_subs(file, ignored);
   const std::string& source = file.recoded ? *file.recoded : text;
   Pass pass;
   pass.text = FixPass{source, file, eds, slips}.run(pass.fixed);

@@ -7,7 +7,7 @@ namespace takt {
 
 SectionIndex::SectionIndex(const IniFile& file) : file_{file} {
   for (const auto& section : file.sections) {
-    const auto name = classify_section(section.name);
+    const auto name = classify_section(section);
     const auto kind =
         name.kind == SectionKind::commissioning_two_m ? SectionKind::commissioning : name.kind;
     sections_.try_emplace({kind, {name.index, name.sub}}, &section);

@@ -24,13 +24,14 @@ const std::optional<Value>* value_of(const SubObject& sub, Keyword keyword) {
 }
 
 std::string magnitude_text(const ParsedNumber& number) {
-  return number.hex ? hex(0, 1).substr(0, 2) + [&] {
-    std::string digits;
-    for (std::uint64_t rest = number.magnitude; rest != 0; rest >>= 4U) {
-      digits.insert(digits.begin(), "0123456789ABCDEF"[rest & 0xFU]);
-    }
-    return digits.empty() ? std::string{"0"} : digits;
-  }()
+  return number.hex ? hex(0, 1).substr(0, 2) +
+                          [&] {
+                            std::string digits;
+                            for (std::uint64_t rest = number.magnitude; rest != 0; rest >>= 4U) {
+                              digits.insert(digits.begin(), "0123456789ABCDEF"[rest & 0xFU]);
+                            }
+                            return digits.empty() ? std::string{"0"} : digits;
+                          }()
                     : std::to_string(number.magnitude);
 }
 
@@ -65,7 +66,7 @@ std::optional<std::string> plain_flag(std::string_view text) {
 
 std::optional<std::string> value_as_read(const ObjectDictionary& dictionary,
                                          const IniSection& section, std::string_view key) {
-  const SectionName name = classify_section(section.name);
+  const SectionName name = classify_section(section);
   if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return {};
   const SubObject* sub = dictionary.find(ObjectKey{name.index, name.sub});
   const std::optional<Value>* value = sub == nullptr ? nullptr : value_of(*sub, classify_key(key));

@@ -73,6 +73,7 @@ std::vector<Example> examples() {
       {"dcf-without-node-id", Kind::dcf, "[DeviceComissioning]\nBaudrate=500\n"},
       {"default-outside-limits", Kind::objects,
        "[2000]\nDataType=0x0006\nHighLimit=5\nLowLimit=0\nDefaultValue=6\n"},
+      {"decimal-sub-index", Kind::objects, "[2000]\nObjectType=9\n[2000sub128]\nDataType=5\n"},
       {"device-info-missing", Kind::whole, "[FileInfo]\n[MandatoryObjects]\n"},
       {"duplicate-key", Kind::objects, "[2000]\nDataType=0x0006\nDefaultValue=5\nDefaultValue=6\n"},
       {"duplicate-section", Kind::objects, "[2000]\nDataType=0x0006\n[2000]\nDataType=0x0006\n"},

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "eds_parser/write/dcf_writer.hpp"
+#include "eds_parser/write/eds_fix.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {
@@ -47,6 +49,62 @@ TEST(SectionName, OtherTextBehindAnIndexIsNoSectionOfIt) {
   EXPECT_TRUE(has(record_with("[2000 sub]").findings, "unknown-section"));
   EXPECT_TRUE(has(record_with("[2000 sub1 2]").findings, "unknown-section"));
   EXPECT_TRUE(has(record_with("[2000 gain]").findings, "unknown-section"));
+}
+
+std::string entry(const std::string& section, unsigned value) {
+  return "[" + section +
+         "]\nParameterName=v\nDataType=6\nAccessType=rw\nDefaultValue=" + std::to_string(value) +
+         "\n";
+}
+
+/// A RECORD with sub-objects of these names, the value of each is its place.
+std::string record_of(const std::string& index, const std::vector<std::string>& subs) {
+  std::string text = "[" + index +
+                     "]\nParameterName=r\nObjectType=9\nSubNumber=" + std::to_string(subs.size()) +
+                     "\n";
+  for (std::size_t i = 0; i < subs.size(); ++i) {
+    text += entry(index + "sub" + subs[i], static_cast<unsigned>(i));
+  }
+  return text;
+}
+
+TEST(SectionName, SubIndicesBeyondFfAreDecimal) {
+  const auto file = read(record_of("2000", {"0", "10", "100", "254"}));
+
+  EXPECT_EQ(integer(file, {0x2000, 10}), 1);
+  EXPECT_EQ(integer(file, {0x2000, 0x10}), std::nullopt);
+  EXPECT_EQ(integer(file, {0x2000, 100}), 2);
+  EXPECT_EQ(integer(file, {0x2000, 254}), 3);
+  ASSERT_TRUE(has(file.findings, "decimal-sub-index"));
+  EXPECT_EQ(find(file.findings, "decimal-sub-index")->pos, (SourcePos{line_of(5), 1}));
+  EXPECT_EQ(std::ranges::count(file.findings, "decimal-sub-index", &Finding::rule), 1);
+  EXPECT_FALSE(has(file.findings, "unknown-section"));
+}
+
+TEST(SectionName, DecimalSubIndicesGoForOtherObjectsThatShowThem) {
+  const auto proof = record_of("2000", {"100"});
+  const auto file = read(proof + record_of("2001", {"9", "10"}) + record_of("2002", {"0", "10"}) +
+                         record_of("2003", {"9", "A", "10"}) + record_of("2004", {"A", "100"}));
+
+  EXPECT_EQ(integer(file, {0x2001, 10}), 1);
+  EXPECT_EQ(integer(file, {0x2002, 0x10}), 1);
+  EXPECT_EQ(integer(file, {0x2003, 0x10}), 2);
+  EXPECT_EQ(integer(file, {0x2004, 10}), 0);
+  EXPECT_TRUE(has(file.findings, "unknown-section"));
+  EXPECT_EQ(integer(read(record_of("2001", {"9", "10"})), {0x2001, 0x10}), 1);
+}
+
+TEST(SectionName, AFileWithDecimalSubIndicesIsMendedAndConfigured) {
+  const std::string text =
+      std::string{test::base} + record_of("2000", {"0", "10", "254"}) + "[2001]\nDataTyp=5\n";
+
+  const FixedEds fixed = fix_eds(text, "t.eds");
+  EXPECT_EQ(integer(read_eds(fixed.text, "t.eds"), {0x2000, 10}), 1);
+  EXPECT_NE(fixed.text, text);
+
+  const auto dcf = write_dcf(text, "t.eds", {.values = {{{0x2000, 254}, "7"}}});
+  EXPECT_EQ(integer(read_eds(dcf.text, "t.dcf"), {0x2000, 254}), 7);
+  EXPECT_EQ(integer(read_eds(dcf.text, "t.dcf"), {0x2000, 10}), 1);
 }
 
 }  // namespace

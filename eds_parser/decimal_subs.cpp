@@ -1,0 +1,78 @@
+#include "eds_parser/decimal_subs.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "eds_parser/eds_lists.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t index_digits = 4;
+constexpr std::size_t sub_at = index_digits + 3;
+constexpr std::uint32_t last_sub = 254;
+
+/// What stands behind `xxxxsub`; empty where the name is another one.
+std::string_view sub_text(std::string_view name) noexcept {
+  if (name.size() <= sub_at || !same_word(name.substr(index_digits, 3), "sub")) return {};
+  const auto index = name.substr(0, index_digits);
+  const bool is_index = std::ranges::all_of(index, [](char c) { return hex_digit(c) >= 0; });
+  return is_index ? name.substr(sub_at) : std::string_view{};
+}
+
+std::optional<std::uint32_t> decimal_sub(const IniSection& section) noexcept {
+  const auto sub = entry_number(sub_text(section.name));
+  return sub && *sub <= last_sub ? sub : std::nullopt;
+}
+
+/// Three digits are a sub-index in decimal only.
+bool is_beyond_ff(const IniSection& section) noexcept {
+  const auto& name = section.name;
+  return name.size() == sub_at + 3 && name[sub_at] != '0' && decimal_sub(section).has_value();
+}
+
+/// The sections of the sub-objects of one index, in order of the file.
+struct Subs {
+  std::vector<IniSection*> sections;
+  bool all_decimal = true;
+  bool beyond_ff = false;
+  bool has_9 = false;
+  bool has_10 = false;
+
+  void add(IniSection& section) {
+    const auto sub = decimal_sub(section);
+    sections.push_back(&section);
+    all_decimal = all_decimal && sub.has_value();
+    beyond_ff = beyond_ff || is_beyond_ff(section);
+    has_9 = has_9 || sub == 9U;
+    has_10 = has_10 || sub == 10U;
+  }
+  bool is_decimal() const noexcept { return all_decimal && (beyond_ff || (has_9 && has_10)); }
+};
+
+}  // namespace
+
+void mark_decimal_subs(IniFile& file, Report& report) {
+  if (std::ranges::none_of(file.sections, is_beyond_ff)) return;
+  std::map<std::string, Subs> objects;
+  for (auto& section : file.sections) {
+    if (sub_text(section.name).empty()) continue;
+    std::string index{section.name.substr(0, index_digits)};
+    std::ranges::transform(index, index.begin(), fold);
+    objects[std::move(index)].add(section);
+  }
+  for (const auto& [index, subs] : objects) {
+    if (!subs.is_decimal()) continue;
+    for (auto* section : subs.sections) section->has_decimal_sub = true;
+    if (!report.wants("decimal-sub-index")) continue;
+    report.warning(subs.sections.front()->pos, "decimal-sub-index",
+                   "the sub-indices of [" +
+                       std::string{subs.sections.front()->name.substr(0, index_digits)} +
+                       "] were read as decimal, " +
+                       (subs.beyond_ff ? "they go beyond FF" : "as others of the file are") +
+                       "; CiA 306 writes them in hexadecimal, other tools take sub10 for 16");
+  }
+}
+
+}  // namespace takt
