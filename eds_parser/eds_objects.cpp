@@ -4,6 +4,7 @@
 
 #include "eds_parser/eds_limits.hpp"
 #include "eds_parser/number.hpp"
+#include "eds_parser/object_words.hpp"
 #include "eds_parser/standard_types.hpp"
 #include "eds_parser/text.hpp"
 
@@ -15,20 +16,6 @@ bool is_structured(ObjectType type) noexcept {
 }
 
 std::string section_text(const IniSection& section) { return '[' + to_utf8(section.name) + ']'; }
-
-std::optional<Access> access_of(std::string_view text) noexcept {
-  struct Known {
-    std::string_view text;
-    Access access;
-  };
-  constexpr Known known[] = {{"ro", Access::ro},   {"wo", Access::wo},
-                             {"rw", Access::rw},   {"rwr", Access::rwr},
-                             {"rww", Access::rww}, {"const", Access::constant}};
-  for (const auto& candidate : known) {
-    if (same_word(text, candidate.text)) return candidate.access;
-  }
-  return std::nullopt;
-}
 
 std::uint32_t role_of(const SectionName& name) noexcept {
   switch (name.kind) {
@@ -122,7 +109,6 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
   const ObjectFields fields{file_.entries(section), section.name, report_};
   object.name = to_utf8(fields.text(Keyword::parameter_name));
   if (object.name.empty()) {
-  object.denotation = to_utf8(fields.text(Keyword::denotation));
     report_.warning(section.pos, "parameter-name-missing",
                     section_text(section) + " has no ParameterName");
   }
@@ -136,6 +122,7 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
     return;
   }
   keep_reference(fields, object.index, {});
+  object.denotation = to_utf8(fields.text(Keyword::denotation));
   read_subs(object, parts);
   if (compact.value_or(0) != 0) {
     expand(object, fields, section, parts);
@@ -230,7 +217,7 @@ void ObjectReader::check_sub_number(const Object& object, const ObjectFields& fi
 ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniSection& section,
                                           std::uint16_t index, bool has_subs) {
   const auto pos = fields.pos(Keyword::object_type, section.pos);
-  const auto code = values_.read_count(fields.text(Keyword::object_type), 0xFF, "ObjectType", pos);
+  const auto code = read_object_type_code(fields, pos, values_, report_);
   const bool known = code && (*code == 0 || *code == 2 || (*code >= 5 && *code <= 9));
   if (code && !known) {
     report_.warning(pos, "object-type-unknown",
@@ -244,11 +231,6 @@ ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniS
                       (known ? " is no ARRAY or RECORD" : " has no ObjectType") +
                       " but has sub-objects; taken for a RECORD");
   return ObjectType::record;
-    if (sub.pdo_mappable && is_bytes(sub.type) && sub.type != DataType::unknown) {
-      report_.warning(mapping->pos(), "mappable-without-size",
-                      to_string(key) + ": the size of " + std::string{name(sub.type)} +
-                          " is not fixed, so PDOMapping should be 0");
-    }
 }
 
 void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKey key,
@@ -261,6 +243,11 @@ void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKe
   sub.access = read_access(fields, key, section, sub.type == DataType::domain);
   if (const auto mapping = fields.get(Keyword::pdo_mapping)) {
     sub.pdo_mappable = values_.read_flag(mapping->value, "PDOMapping", mapping->pos());
+    if (sub.pdo_mappable && is_bytes(sub.type) && sub.type != DataType::unknown) {
+      report_.warning(mapping->pos(), "mappable-without-size",
+                      to_string(key) + ": the size of " + std::string{name(sub.type)} +
+                          " is not fixed, so PDOMapping should be 0");
+    }
   }
   if (const auto flags = fields.get(Keyword::obj_flags)) {
     sub.flags = values_.read_count(flags->value, 0xFFFF'FFFF, "ObjFlags", flags->pos()).value_or(0);
@@ -274,16 +261,10 @@ void ObjectReader::read_sub(SubObject& sub, const ObjectFields& fields, ObjectKe
   }
 }
 
-    const auto wanted = standard_type(key);
-    if (wanted != DataType::unknown && wanted != sub.type && sub.type != DataType::unknown) {
-      report_.warning(pos, "standard-type",
-                      to_string(key) + ": DataType is " + std::string{name(sub.type)} +
-                          ", CiA 301 says " + std::string{name(wanted)});
-    }
 void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                              const IniSection& section) {
   const auto pos = fields.pos(Keyword::data_type, section.pos);
-  const auto code = values_.read_count(fields.text(Keyword::data_type), 0xFFFF, "DataType", pos);
+  const auto code = read_data_type_code(fields, pos, values_, report_);
   if (code) {
     sub.type_code = static_cast<std::uint16_t>(*code);
     sub.type = data_type_of(*code);
@@ -292,10 +273,16 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
                       to_string(key) + ": DataType " + hex(*code) +
                           " is not one of CiA 301; values are kept as text");
     }
+    const auto wanted = standard_type(key);
+    if (wanted != DataType::unknown && wanted != sub.type && sub.type != DataType::unknown) {
+      report_.warning(pos, "standard-type",
+                      to_string(key) + ": DataType is " + std::string{name(sub.type)} +
+                          ", CiA 301 says " + std::string{name(wanted)});
+    }
     return;
   }
-  const auto object_type =
-      values_.read_count(fields.text(Keyword::object_type), 0xFF, "ObjectType", section.pos);
+  const auto object_type = read_object_type_code(
+      fields, fields.pos(Keyword::object_type, section.pos), values_, report_);
   const bool is_domain = object_type == 2U;
   sub.type = is_domain ? DataType::domain : standard_type(key);
   sub.type_code = static_cast<std::uint16_t>(sub.type);
@@ -310,10 +297,10 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
 Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
                                  const IniSection& section, bool is_domain) {
   const auto text = fields.text(Keyword::access_type);
-  if (const auto access = access_of(text)) return *access;
+  if (const auto access = access_of_word(text)) return *access;
   const auto pos = fields.pos(Keyword::access_type, section.pos);
   const auto bare = without_comment(text);
-  if (const auto access = access_of(bare)) {
+  if (const auto access = access_of_word(bare)) {
     report_.warning(pos, "inline-comment",
                     to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
     return *access;

@@ -218,6 +218,7 @@ constexpr RuleInfo rules[] = {
      "[ConnectedModules] 255=1"},
     {"too-many-sub-objects", Severity::error,
      "short notations ask for more than 262,144 sub-objects", "CompactSubObj=254 in 1,100 objects"},
+    {"type-word", Severity::warning, "ObjectType or DataType is a word", "ObjectType=RECORD"},
     {"unknown-key", Severity::warning, "a key that CiA 306 does not have", "MaxSize=4"},
     {"unknown-module", Severity::warning, "a connected module that brings no objects",
      "[ConnectedModules] 1=7, no [M7...]"},

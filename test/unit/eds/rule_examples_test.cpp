@@ -200,6 +200,7 @@ std::vector<Example> examples() {
        "[2000]\nObjectType=0x7\nSubNumber=2\n[2000sub0]\nDataType=5\nAccessType=ro\nDefaultValue="
        "1\n[2000sub1]\nDataType=6\nDefaultValue=0\n"},
       {"text-after-section", Kind::objects, "[1003sub01] # repeat\n"},
+      {"type-word", Kind::objects, "[2000]\nObjectType=RECORD\n[2000sub0]\nDataType=5\n"},
       {"unknown-key", Kind::objects, "[2000]\nDataType=0x0006\nMaxSize=4\n"},
       {"unknown-module", Kind::objects, "[ConnectedModules]\n1=7\n"},
       {"unknown-section", Kind::objects, "[PreDefines]\n"},

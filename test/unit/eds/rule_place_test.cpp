@@ -46,6 +46,8 @@ TEST(RulePlace, IsThatOfTheObjectOrEntryAtFault) {
       {"number-unreadable", 6, 11, warning,
        section("2000", "ObjectType=9\nSubNumber=three\n" + number)},
       {"object-type-unknown", 5, 12, warning, section("2000", "ObjectType=0x99\nDataType=5\n")},
+      {"standard-type", 5, 10, warning, section("1017", "DataType=7\nDefaultValue=0\n")},
+      {"type-word", 5, 12, warning, section("2000", "ObjectType=VAR\nDataType=5\n")},
       {"unknown-sub-object", 10, 1, warning,
        section("2000", "ObjectType=8\nDataType=5\nCompactSubObj=3\n") +
            "[2000Value]\nNrOfEntries=1\n9=1\n"},

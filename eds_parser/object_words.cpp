@@ -1,0 +1,87 @@
+#include "eds_parser/object_words.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/text.hpp"
+
+namespace takt {
+namespace {
+
+template <class T>
+struct Word {
+  std::string_view text;
+  T meaning;
+};
+
+template <class T>
+std::optional<T> meaning_of(std::string_view text, std::span<const Word<T>> words) noexcept {
+  const auto it = std::ranges::find_if(
+      words, [text](const Word<T>& word) { return same_word(text, word.text); });
+  return it == words.end() ? std::nullopt : std::optional{it->meaning};
+}
+
+constexpr Word<Access> access_words[] = {{"ro", Access::ro},   {"wo", Access::wo},
+                                         {"rw", Access::rw},   {"rwr", Access::rwr},
+                                         {"rww", Access::rww}, {"const", Access::constant}};
+
+constexpr Word<ObjectType> object_type_words[] = {
+    {"null", ObjectType::null},       {"domain", ObjectType::domain},
+    {"deftype", ObjectType::deftype}, {"defstruct", ObjectType::defstruct},
+    {"var", ObjectType::var},         {"variable", ObjectType::var},
+    {"array", ObjectType::array},     {"record", ObjectType::record}};
+
+bool may_be_word(std::string_view text) noexcept {
+  return !text.empty() && (text.front() < '0' || text.front() > '9');
+}
+
+std::optional<ObjectType> object_type_of(std::string_view text) noexcept {
+  if (!may_be_word(text)) return std::nullopt;
+  return meaning_of<ObjectType>(text, object_type_words);
+}
+
+std::optional<DataType> data_type_of_word(std::string_view text) noexcept {
+  if (!may_be_word(text)) return std::nullopt;
+  for (unsigned code = 1; code <= static_cast<unsigned>(DataType::unsigned64); ++code) {
+    const auto type = static_cast<DataType>(code);
+    const auto word = name(type);
+    if (word != "unknown" && std::ranges::equal(text, word, {}, fold, fold)) return type;
+  }
+  return std::nullopt;
+}
+
+/// The number of a word, which is told.
+std::uint32_t told(std::uint32_t code, std::string_view text, SourcePos pos, Report& report) {
+  if (report.wants("type-word")) {
+    report.warning(pos, "type-word",
+                   quoted(text) + " was read as " + hex(code) + "; CiA 306 has the number here");
+  }
+  return code;
+}
+
+}  // namespace
+
+std::optional<Access> access_of_word(std::string_view text) noexcept {
+  return meaning_of<Access>(text, access_words);
+}
+
+std::optional<std::uint32_t> read_object_type_code(const ObjectFields& fields, SourcePos pos,
+                                                   ValueReader& values, Report& report) {
+  const auto text = fields.text(Keyword::object_type);
+  if (const auto type = object_type_of(text)) {
+    return told(static_cast<std::uint32_t>(*type), text, pos, report);
+  }
+  return values.read_count(text, 0xFF, "ObjectType", pos);
+}
+
+std::optional<std::uint32_t> read_data_type_code(const ObjectFields& fields, SourcePos pos,
+                                                 ValueReader& values, Report& report) {
+  const auto text = fields.text(Keyword::data_type);
+  if (const auto type = data_type_of_word(text)) {
+    return told(static_cast<std::uint32_t>(*type), text, pos, report);
+  }
+  return values.read_count(text, 0xFFFF, "DataType", pos);
+}
+
+}  // namespace takt
