@@ -1,5 +1,6 @@
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "apps/takt/eds_commands.hpp"
 #include "apps/takt/live_arguments.hpp"
@@ -17,11 +18,19 @@ struct Options {
   bool quiet = false;
 };
 
-/// For the eye: UTF-16 as UTF-8.
-std::string readable(const std::string& source) {
+/// UTF-16 as UTF-8, for the eye; none for a file that is no UTF-16.
+std::optional<std::string> recoded(const std::string& source) {
   Report ignored{""};
   const IniFile file = read_ini(source, ignored);
-  return file.recoded ? *file.recoded : source;
+  if (!file.recoded) return std::nullopt;
+  return *file.recoded;
+}
+
+/// What `patch` would make of the difference.
+void tell_unpatchable(const Options& options) {
+  std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference is that of "
+            << "the text and can't be applied with patch, "
+            << (options.out.empty() ? "-o writes the mended file\n" : "the output is whole\n");
 }
 
 int run(const Options& options) {
@@ -35,8 +44,10 @@ int run(const Options& options) {
   if (!fixed.readable) return 1;
   const std::string name = options.out.empty() || options.out == "-" ? options.file : options.out;
   std::ostream& diff = options.out == "-" ? std::cerr : std::cout;
-  diff << unified_diff(readable(*source), fixed.text, options.file, name,
+  const auto text = recoded(*source);
+  diff << unified_diff(text.value_or(*source), fixed.text, options.file, name,
                        [](std::string_view line) { return line.starts_with('['); });
+  if (text) tell_unpatchable(options);
   std::cerr << options.file << ": " << fixed.fixed.size() << " findings mended, "
             << fixed.left.size() << " left\n";
   if (!options.out.empty()) {

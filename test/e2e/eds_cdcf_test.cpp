@@ -11,6 +11,7 @@ namespace takt::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class EdsCdcf : public testing::Test {
  protected:
@@ -57,6 +58,22 @@ TEST_F(EdsCdcf, GoesToStdoutAsWell) {
 
   EXPECT_EQ(piped.exit_code, 0);
   EXPECT_EQ(piped.output, std::string("\x01\0\0\0\x17\x10\0\x02\0\0\0\x64\0", 13));
+}
+
+TEST_F(EdsCdcf, TheDifferenceOfAUtf16FileIsSaidToBeForTheEyeOnly) {
+  const std::string text = "[1017]\nParameterName=x\nDataType=6\nAccessType=rw\nDefaultValue=08\n";
+  std::string wide{"\xFF\xFE"};
+  for (const char c : text) wide += {c, '\0'};
+  std::ofstream{folder_ / "wide.eds", std::ios::binary} << wide;
+  const auto file = (folder_ / "wide.eds").string();
+  const auto mended = (folder_ / "mended.eds").string();
+
+  const Ended shown = takt({"fix", file});
+  EXPECT_THAT(shown.output, HasSubstr("can't be applied with patch, -o writes the mended file\n"));
+  const Ended written = takt({"fix", file, "-o", mended});
+  EXPECT_THAT(written.output, HasSubstr("can't be applied with patch, the output is whole\n"));
+  EXPECT_THAT(read_file(mended), HasSubstr("AccessType=rw\nDefaultValue=8\n"));
+  EXPECT_THAT(takt({"fix", mended}).output, Not(HasSubstr("patch")));
 }
 
 TEST_F(EdsCdcf, TakesTheNodeIdThatIsGiven) {
