@@ -89,8 +89,10 @@ void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t 
   const auto& device = dictionary.device;
   const std::size_t said = is_tpdo ? device.nr_tx_pdo : device.nr_rx_pdo;
   if (said == found || device.pos.line == 0) return;
-  report.warning(is_tpdo ? device.nr_tx_pdo_pos : device.nr_rx_pdo_pos, "pdo-count",
-                 std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} + " is " + std::to_string(said) +
+  const SourcePos pos = is_tpdo ? device.nr_tx_pdo_pos : device.nr_rx_pdo_pos;
+  report.warning(pos, "pdo-count",
+                 std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} +
+                     (pos == device.pos ? " is missing" : " is " + std::to_string(said)) +
                      ", but " + std::to_string(found) + " are described; the records count");
 }
 

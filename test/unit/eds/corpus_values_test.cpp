@@ -132,8 +132,14 @@ class Judge {
     }
   }
 
+  /// A value of [xxxxValue] is one beside sections of sub-objects too.
   void judge_sub(const std::string& name, const PlainSection& section, ObjectKey key) {
-    const auto* sub = compare(name, section, key);
+    PlainSection with_value = section;
+    const auto values = ini_.find(name.substr(0, 4) + "value");
+    const auto text =
+        values == ini_.end() ? "" : text_of(values->second, std::to_string(unsigned{key.sub}));
+    if (!text.empty()) with_value["parametervalue"] = text;
+    const auto* sub = compare(name, with_value, key);
     if (sub != nullptr) compare_name(name, section, sub->name);
   }
 

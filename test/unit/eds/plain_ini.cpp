@@ -100,6 +100,7 @@ std::optional<PlainNumber> plain_number(std::string_view text, unsigned node) {
     const auto number = lower(term) == "$nodeid" ? std::uint64_t{node} : magnitude(term);
     if (!number || (sum.negative && sum.bits != 0)) return std::nullopt;
     sum.bits += sum.negative ? ~*number + 1 : *number;
+    sum.negative = sum.negative && sum.bits != 0;
   }
   return sum;
 }
