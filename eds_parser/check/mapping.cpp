@@ -91,8 +91,10 @@ void check_count(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
                  where + ": " + std::to_string(count) + " mapped objects; a PDO has at most 64");
   } else if (count <= 64 && count > pdo.mapping.size()) {
     report.warning(sub->value_pos(), "pdo-mapping-count",
-                   where + " says " + std::to_string(count) + " mapped objects, but only " +
-                       std::to_string(pdo.mapping.size()) + " of them have a value");
+                   where + " counts " + std::to_string(count) + " mapped objects, " +
+                       (pdo.mapping.empty() ? std::string{"no"}
+                                            : "only " + std::to_string(pdo.mapping.size())) +
+                       (pdo.mapping.size() == 1 ? " entry has" : " entries have") + " a value");
   }
 }
 
