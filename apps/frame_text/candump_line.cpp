@@ -1,39 +1,19 @@
 #include "apps/frame_text/candump_line.hpp"
 
-#include <charconv>
 #include <fmt/format.h>
+#include <span>
 #include <vector>
+
+#include "apps/frame_text/words.hpp"
 
 namespace takt {
 namespace {
 
 constexpr std::uint32_t error_flag = 0x2000'0000;
-constexpr std::size_t most_words = 32;
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\n";
-  std::vector<std::string_view> words;
-  while (words.size() < most_words) {
-    const std::size_t begin = text.find_first_not_of(blank);
-    if (begin == std::string_view::npos) break;
-    const std::size_t end = std::min(text.find_first_of(blank, begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    text.remove_prefix(end);
-  }
-  return words;
-}
-
-template <class T>
-std::optional<T> number(std::string_view text, int base) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-  if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
-  return value;
-}
 
 /// Three digits are an 11-bit identifier, eight a 29-bit one, or the class of an error frame.
 bool read_id(std::string_view text, CandumpLine& line) {
-  const auto id = number<std::uint32_t>(text, 16);
+  const auto id = number_in<std::uint32_t>(text, 16);
   if (!id || (text.size() != 3 && text.size() != 8)) return false;
   line.error_frame = text.size() == 8 && (*id & error_flag) != 0;
   line.frame.id = text.size() == 8 ? CobId::extended(*id) : CobId::base(*id);
@@ -41,7 +21,7 @@ bool read_id(std::string_view text, CandumpLine& line) {
 }
 
 bool add_byte(std::string_view text, Frame& frame) {
-  const auto byte = number<std::uint8_t>(text, 16);
+  const auto byte = number_in<std::uint8_t>(text, 16);
   if (!byte || text.size() != 2 || frame.length == 8) return false;
   frame.data[frame.length++] = *byte;
   return true;
@@ -55,7 +35,7 @@ bool read_log_frame(std::string_view text, CandumpLine& line) {
   if (text.starts_with('#')) return false;  // CAN FD
   if (text.starts_with('R') || text.starts_with('r')) {
     line.frame.rtr = true;
-    const auto length = text.size() == 1 ? 0 : number<std::uint8_t>(text.substr(1), 10);
+    const auto length = text.size() == 1 ? 0 : number_in<std::uint8_t>(text.substr(1), 10);
     if (!length || *length > 8) return false;
     line.frame.length = *length;
     return true;
@@ -73,7 +53,7 @@ bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& l
   if (words.size() < 2 || !read_id(words[0], line)) return false;
   const std::string_view bracket = words[1];
   if (bracket.size() != 3 || bracket[0] != '[' || bracket[2] != ']') return false;
-  const auto length = number<std::uint8_t>(bracket.substr(1, 1), 10);
+  const auto length = number_in<std::uint8_t>(bracket.substr(1, 1), 10);
   if (!length || *length > 8) return false;
   if (words.size() >= 4 && words[2] == "remote") {
     line.frame.rtr = true;
@@ -87,19 +67,37 @@ bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& l
   return true;
 }
 
+/// `(1436509052.249713)`, or `(2015-07-10 08:17:32.249713)` of -tA. False: it has no end.
+bool read_stamp(std::span<const std::string_view>& words, CandumpLine& line) {
+  if (words.empty() || !words[0].starts_with('(')) return true;
+  const std::size_t count = words[0].ends_with(')') ? 1 : 2;
+  if (words.size() < count || !words[count - 1].ends_with(')')) return false;
+  const char* const begin = words[0].data() + 1;
+  const char* const end = words[count - 1].data() + words[count - 1].size() - 1;
+  line.stamp.assign(begin, end);
+  words = words.subspan(count);
+  return true;
+}
+
+/// `-x` shows the direction and flags before the identifier: `RX - -`, `TX B -`.
+std::span<const std::string_view> without_direction(std::span<const std::string_view> words) {
+  if (words.empty() || (words[0] != "RX" && words[0] != "TX")) return words;
+  words = words.subspan(1);
+  while (!words.empty() && words[0].size() == 1) words = words.subspan(1);
+  return words;
+}
+
 }  // namespace
 
 std::optional<CandumpLine> parse_candump(std::string_view text) {
   const std::vector<std::string_view> all = words_of(text);
   std::span<const std::string_view> words{all};
   CandumpLine line;
-  if (!words.empty() && words[0].starts_with('(') && words[0].ends_with(')')) {
-    line.stamp = words[0].substr(1, words[0].size() - 2);
-    words = words.subspan(1);
-  }
+  if (!read_stamp(words, line)) return {};
   if (words.size() < 2) return {};
   line.interface = words[0];
-  words = words.subspan(1);
+  words = without_direction(words.subspan(1));
+  if (words.empty()) return {};
   const bool log = words[0].find('#') != std::string_view::npos;
   if (!(log ? read_log_frame(words[0], line) : read_terminal_frame(words, line))) return {};
   return line;

@@ -1,9 +1,11 @@
 #include "apps/learn/recording.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <chrono>
 #include <utility>
 
+#include "apps/frame_text/trace_line.hpp"
+#include "apps/frame_text/words.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt {
@@ -16,20 +18,38 @@ constexpr std::size_t most_objects = 8192;  // of one boot
 constexpr std::size_t most_line = 512;
 
 /// `1436509052.249713` in microseconds.
-std::optional<std::int64_t> microseconds(const std::string& stamp) {
-  std::int64_t seconds = 0;
-  const char* const end = stamp.data() + stamp.size();
-  const auto [dot, error] = std::from_chars(stamp.data(), end, seconds);
-  if (error != std::errc{} || seconds < 0 || seconds > 100'000'000'000) return {};
-  if (dot == end) return seconds * 1'000'000;
-  if (*dot != '.') return {};
+std::optional<std::int64_t> seconds_in_us(std::string_view stamp) {
+  const std::size_t dot = std::min(stamp.find('.'), stamp.size());
+  const auto seconds = number_in<std::int64_t>(stamp.substr(0, dot), 10);
+  if (!seconds || *seconds < 0 || *seconds > 100'000'000'000) return {};
   std::int64_t micros = 0;
   std::int64_t unit = 100'000;
-  for (const char* digit = dot + 1; digit != end; ++digit, unit /= 10) {
-    if (*digit < '0' || *digit > '9') return {};
-    micros += (*digit - '0') * unit;
+  for (const char digit : stamp.substr(std::min(dot + 1, stamp.size()))) {
+    if (digit < '0' || digit > '9') return {};
+    micros += (digit - '0') * unit;
+    unit /= 10;
   }
-  return seconds * 1'000'000 + micros;
+  return *seconds * 1'000'000 + micros;
+}
+
+/// That, or `2015-07-10 08:17:32.249713`.
+std::optional<std::int64_t> microseconds(std::string_view stamp) {
+  if (stamp.size() < 19 || stamp[10] != ' ') return seconds_in_us(stamp);
+  const auto part = [&](std::size_t at, std::size_t size) {
+    return number_in<unsigned>(stamp.substr(at, size), 10);
+  };
+  const auto year = part(0, 4);
+  const auto month = part(5, 2);
+  const auto day = part(8, 2);
+  const auto hours = part(11, 2);
+  const auto minutes = part(14, 2);
+  const auto seconds = seconds_in_us(stamp.substr(17));
+  if (!year || !month || !day || !hours || !minutes || !seconds) return {};
+  const std::chrono::year_month_day date{std::chrono::year{static_cast<int>(*year)},
+                                         std::chrono::month{*month}, std::chrono::day{*day}};
+  if (!date.ok()) return {};
+  const std::int64_t days = std::chrono::sys_days{date}.time_since_epoch().count();
+  return ((days * 24 + *hours) * 60 + *minutes) * 60'000'000 + *seconds;
 }
 
 bool is_node(unsigned id) { return id >= 1 && id <= 127; }
@@ -48,11 +68,11 @@ void Recording::tell(Severity severity, std::string_view rule, std::uint32_t lin
 
 void Recording::add(std::string_view text, std::uint32_t line) {
   line_ = line;
-  const auto parsed = parse_candump(text);
+  const auto parsed = parse_recorded(text);
   if (!parsed) {
-    const bool blank = text.find_first_not_of(" \t\r") == std::string_view::npos;
-    if (!blank && ++strange_ <= 3) {
-      tell(Severity::warning, "not-candump", line, "not a line of candump (or CAN FD), left out");
+    if (!is_remark(text) && ++strange_ <= 3) {
+      tell(Severity::warning, "not-candump", line,
+           "not a frame of candump, .trc or .asc (or CAN FD), left out");
     }
     return;
   }
@@ -208,7 +228,7 @@ void Recording::other(const Frame& frame) {
 LearnedBus Recording::take() {
   if (strange_ > 3) {
     tell(Severity::warning, "not-candump", 0,
-         std::to_string(strange_) + " lines are not of candump and were left out");
+         std::to_string(strange_) + " lines are no frames and were left out");
   }
   if (foreign_ != 0) {
     tell(Severity::note, "other-interface", 0,

@@ -16,6 +16,7 @@
 #include "apps/frame_text/candump_line.hpp"
 #include "apps/frame_text/error_frame_text.hpp"
 #include "apps/frame_text/frame_text.hpp"
+#include "apps/frame_text/trace_line.hpp"
 #include "apps/frame_text/value_text.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
@@ -34,7 +35,7 @@ constexpr int bus_trouble = 3;
 constexpr const char* example = R"(Examples:
   takt dump --bus can0                 what goes over the bus now
   takt dump lift.yaml --bus can0       with the names, values and units of the network file
-  takt dump lift.yaml trace.log        a recording of `candump -L` or of `candump`
+  takt dump lift.yaml trace.log        a recording of `candump -L` or `candump`, a .trc or .asc
   candump -L can0 | takt dump          the same from a pipe
   takt dump lift.yaml trace.log --node shoulder --only SDO,EMCY
 Services: NMT, SYNC, TIME, EMCY, TPDO, RPDO, SDO, BOOTUP, HEARTBEAT, GUARD, LSS, MASTER, GFC, ERROR
@@ -140,17 +141,24 @@ class Printer {
 int dump_log(std::istream& in, const std::string& name, Printer& printer) {
   std::string text;
   std::uint64_t line_number = 0;
+  std::uint64_t frames = 0;
   std::uint64_t strange = 0;
   while (std::getline(in, text)) {
     ++line_number;
-    const auto line = parse_candump(text);
-    if (line) {
+    if (const auto line = parse_recorded(text)) {
+      ++frames;
       if (!printer.print(*line)) break;
-    } else if (!text.empty() && ++strange <= 3) {
-      fmt::print(stderr, "{}:{}: not a line of candump (or CAN FD), left out\n", name, line_number);
+    } else if (!is_remark(text) && ++strange <= 3) {
+      fmt::print(stderr, "{}:{}: not a frame of candump, .trc or .asc (or CAN FD), left out\n",
+                 name, line_number);
     }
   }
   if (strange > 3) fmt::print(stderr, "{}: {} lines left out\n", name, strange);
+  if (frames == 0 && strange != 0) {
+    fmt::print(stderr, "{}: no frame in it; `candump -L can0 > FILE` records what takt reads\n",
+               name);
+    return usage;
+  }
   return good;
 }
 

@@ -44,11 +44,25 @@ TEST(CandumpLine, KnowsAnErrorFrame) {
   EXPECT_TRUE(line->error_frame);
 }
 
+TEST(CandumpLine, ReadsADatedStampAndADirection) {
+  const auto dated = parse_candump(" (2023-01-02 12:00:00.123456)  can0  705   [1]  7F");
+  const auto received = parse_candump(" (1.5)  can0  RX - -  705   [1]  7F");
+  const auto sent = parse_candump("  can0  TX B E  705   [1]  7F");
+
+  ASSERT_TRUE(dated && received && sent);
+  EXPECT_EQ(dated->stamp, "2023-01-02 12:00:00.123456");
+  for (const auto& line : {dated, received, sent}) {
+    EXPECT_EQ(line->frame, make_frame(CobId::base(0x705), {0x7F}));
+    EXPECT_EQ(line->interface, "can0");
+  }
+}
+
 TEST(CandumpLine, RefusesWhatIsNoFrame) {
   for (const char* text :
        {"", "hello", "(1.0) can0", "(1.0) can0 185#1", "(1.0) can0 185#ZZ", "can0 185##0112233",
         "can0 185#112233445566778899", "can0 1855#11", "can0 185 [9] 11", "can0 185 [2] 11",
-        "can0 185 [2] 11 2", "can0 185#R9", "(1.0) can0 185#.", "can0 #", "can0 185 [x]"}) {
+        "can0 185 [2] 11 2", "can0 185#R9", "(2023-01-02", "(1 2 can0 705#7F", "can0 RX - -",
+        "(1.0) can0 185#.", "can0 #", "can0 185 [x]"}) {
     EXPECT_FALSE(parse_candump(text)) << text;
   }
 }

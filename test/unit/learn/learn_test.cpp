@@ -353,8 +353,24 @@ TEST(Learn, NamesTheLinesThatAreNoFrames) {
   const LearnedBus bus = heard("hello\n(1.0) can0 701#00\n(1.1) can0 701##100\n\n");
 
   EXPECT_EQ(bus.frames, 1u);
-  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:1:0: warning: not a line of candump"));
-  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:3:0: warning: not a line of candump"));
+  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:1:0: warning: not a frame of candump"));
+  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:3:0: warning: not a frame of candump"));
+}
+
+TEST(Learn, ReadsDatedStampsAndPcanTraces) {
+  const LearnedBus dated = heard(
+      " (2023-01-31 23:59:59.900000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.000000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.100000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.200000)  can0  705   [1]  05\n");
+  const LearnedBus traced = heard(
+      ";$FILEVERSION=1.1\n"
+      "     1)     100.0  Rx         0705  1  05\n     2)     200.0  Rx         0705  1  05\n"
+      "     3)     300.0  Rx         0705  1  05\n     4)     400.0  Rx         0705  1  05\n");
+
+  EXPECT_EQ(dated.nodes.at(5).heartbeats.median(), 100'000);
+  EXPECT_EQ(traced.nodes.at(5).heartbeats.median(), 100'000);
+  EXPECT_TRUE(traced.findings.empty());
 }
 
 TEST(Learn, SurvivesARecordingOfNoise) {

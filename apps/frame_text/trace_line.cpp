@@ -1,0 +1,165 @@
+#include "apps/frame_text/trace_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fmt/format.h>
+#include <span>
+
+#include "apps/frame_text/words.hpp"
+
+namespace takt {
+namespace {
+
+using Words = std::span<const std::string_view>;
+
+constexpr const char* unnamed_interface = "can0";  // of a trace that names none
+
+bool is_direction(std::string_view word) { return word == "Rx" || word == "Tx"; }
+
+/// Digits with one dot or none.
+bool is_time(std::string_view word) {
+  return !word.empty() && std::ranges::count(word, '.') <= 1 &&
+         std::ranges::all_of(word,
+                             [](unsigned char c) { return c == '.' || std::isdigit(c) != 0; });
+}
+
+/// Milliseconds as PCAN counts them, `46268.2`, as `46.268200`.
+std::string seconds_of(std::string_view milliseconds) {
+  const std::size_t dot = std::min(milliseconds.find('.'), milliseconds.size());
+  const auto whole = number_in<std::uint64_t>(milliseconds.substr(0, dot), 10).value_or(0);
+  std::string micros{milliseconds.substr(std::min(dot + 1, milliseconds.size()))};
+  micros.resize(3, '0');
+  return fmt::format("{}.{:03}{}", whole / 1000, whole % 1000, micros);
+}
+
+std::string interface_of(std::string_view channel) {
+  return channel.empty() ? unnamed_interface : fmt::format("can{}", channel);
+}
+
+/// A length, then its bytes, or `RTR`; what follows is not read.
+bool read_payload(Words words, Frame& frame) {
+  if (words.empty()) return false;
+  const auto length = number_in<std::uint8_t>(words[0], 10);
+  if (!length || *length > 8) return false;
+  frame.length = *length;
+  if (words.size() >= 2 && words[1] == "RTR") frame.rtr = true;
+  if (frame.rtr) return true;
+  if (words.size() < 1U + *length) return false;
+  for (std::size_t i = 0; i < *length; ++i) {
+    const auto byte = number_in<std::uint8_t>(words[1 + i], 16);
+    if (!byte || words[1 + i].size() != 2) return false;
+    frame.data[i] = *byte;
+  }
+  return true;
+}
+
+/// Four digits are an 11-bit identifier, eight a 29-bit one.
+bool read_padded_id(std::string_view text, Frame& frame) {
+  const auto id = number_in<std::uint32_t>(text, 16);
+  if (!id || (text.size() != 4 && text.size() != 8)) return false;
+  if (*id > (text.size() == 8 ? 0x1FFF'FFFFU : 0x7FFU)) return false;
+  frame.id = text.size() == 8 ? CobId::extended(*id) : CobId::base(*id);
+  return true;
+}
+
+/// `13)  45412.6  Tx  0601  8  40 ...`; since 1.2 with a channel before `Tx`, since 1.3 with a `-`
+/// before the length, 1.0 without a direction.
+std::optional<CandumpLine> parse_pcan_1(Words words) {
+  if (words.size() < 4 || !words[0].ends_with(')') || !is_time(words[1])) return {};
+  if (!number_in<std::uint64_t>(words[0].substr(0, words[0].size() - 1), 10)) return {};
+  CandumpLine line{.stamp = seconds_of(words[1]), .interface = interface_of({})};
+  words = words.subspan(2);
+  if (words.size() >= 2 && words[0].size() <= 2 && is_direction(words[1])) {
+    line.interface = interface_of(words[0]);
+    words = words.subspan(1);
+  }
+  if (is_direction(words[0])) words = words.subspan(1);
+  if (words.empty() || !read_padded_id(words[0], line.frame)) return {};
+  words = words.subspan(1);
+  if (!words.empty() && words[0] == "-") words = words.subspan(1);
+  if (!read_payload(words, line.frame)) return {};
+  return line;
+}
+
+/// `904  4023.599 DT  0601 Rx 8  40 ...`; 2.1 with a channel before the identifier and a `-` before
+/// the length. `RR` is a remote frame.
+std::optional<CandumpLine> parse_pcan_2(Words words) {
+  if (words.size() < 6 || !is_time(words[1]) || (words[2] != "DT" && words[2] != "RR")) return {};
+  CandumpLine line{.stamp = seconds_of(words[1]), .interface = interface_of({})};
+  line.frame.rtr = words[2] == "RR";
+  words = words.subspan(3);
+  if (words[0].size() <= 2) {
+    line.interface = interface_of(words[0]);
+    words = words.subspan(1);
+  }
+  if (words.size() < 3 || !read_padded_id(words[0], line.frame) || !is_direction(words[1])) {
+    return {};
+  }
+  words = words.subspan(2);
+  if (words[0] == "-") words = words.subspan(1);
+  if (!read_payload(words, line.frame)) return {};
+  return line;
+}
+
+/// `1.001000 1  601  Tx  d 8 40 ...`; `x` behind the identifier: 29 bits; `r`: remote.
+std::optional<CandumpLine> parse_vector(Words words) {
+  if (words.size() < 5 || !is_time(words[0]) || !is_time(words[1])) return {};
+  if (!is_direction(words[3]) || (words[4] != "d" && words[4] != "r")) return {};
+  CandumpLine line{.stamp = std::string{words[0]}, .interface = interface_of(words[1])};
+  std::string_view digits = words[2];
+  const bool extended = digits.ends_with('x');
+  if (extended) digits.remove_suffix(1);
+  const auto id = number_in<std::uint32_t>(digits, 16);
+  if (!id || *id > (extended ? 0x1FFF'FFFFU : 0x7FFU)) return {};
+  line.frame.id = extended ? CobId::extended(*id) : CobId::base(*id);
+  line.frame.rtr = words[4] == "r";
+  words = words.subspan(5);
+  if (line.frame.rtr && words.empty()) return line;
+  if (!read_payload(words, line.frame)) return {};
+  return line;
+}
+
+/// `Timestamp: 1572.18 ID: 0601 S Rx DL: 8 40 ... Channel: can0`; `X` is a 29-bit identifier, `R`
+/// among the letters a remote frame, the length was once `DLC:`.
+std::optional<CandumpLine> parse_python_can(Words words) {
+  if (words.size() < 7 || words[0] != "Timestamp:" || words[2] != "ID:") return {};
+  CandumpLine line{.stamp = std::string{words[1]}, .interface = interface_of({})};
+  const auto id = number_in<std::uint32_t>(words[3], 16);
+  const auto length = std::ranges::find_if(
+      words, [](std::string_view word) { return word == "DL:" || word == "DLC:"; });
+  if (!id || length == words.end()) return {};
+  const auto letters = words.subspan(4, static_cast<std::size_t>(length - words.begin()) - 4);
+  const auto has = [&](std::string_view letter) {
+    return std::ranges::find(letters, letter) != letters.end();
+  };
+  if (has("E") || has("F")) return {};  // error frame, CAN FD
+  if (*id > (has("X") ? 0x1FFF'FFFFU : 0x7FFU)) return {};
+  line.frame.id = has("X") ? CobId::extended(*id) : CobId::base(*id);
+  line.frame.rtr = has("R");
+  const auto name = std::ranges::find(words, std::string_view{"Channel:"});
+  if (name != words.end() && name + 1 != words.end()) line.interface = *(name + 1);
+  words = words.subspan(static_cast<std::size_t>(length - words.begin()) + 1);
+  if (!read_payload(words, line.frame)) return {};
+  return line;
+}
+
+}  // namespace
+
+std::optional<CandumpLine> parse_recorded(std::string_view text) {
+  if (auto line = parse_candump(text)) return line;
+  const std::vector<std::string_view> words = words_of(text);
+  for (const auto parse : {parse_pcan_1, parse_pcan_2, parse_vector, parse_python_can}) {
+    if (auto line = parse(words)) return line;
+  }
+  return {};
+}
+
+bool is_remark(std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty() || words[0].starts_with(';') || words[0].starts_with("//")) return true;
+  constexpr std::array heads{"date", "base", "internal", "Begin", "End", "no"};
+  return std::ranges::find(heads, words[0]) != heads.end();
+}
+
+}  // namespace takt

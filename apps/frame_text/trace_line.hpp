@@ -1,0 +1,17 @@
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include "apps/frame_text/candump_line.hpp"
+
+namespace takt {
+
+/// One line of a recording: of candump, else of a PCAN trace (.trc, versions 1.0 to 2.1), of a
+/// Vector log (.asc, hexadecimal) or of what python-can prints. The stamp of a PCAN trace becomes
+/// seconds. None: another line, or a frame of CAN FD.
+std::optional<CandumpLine> parse_recorded(std::string_view text);
+
+/// Blank, or a line that such files hold beside frames: comments, heads, triggers.
+bool is_remark(std::string_view text);
+
+}  // namespace takt

@@ -1,0 +1,99 @@
+#include "apps/frame_text/trace_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace takt {
+namespace {
+
+const Frame boot_up = make_frame(CobId::base(0x701), {0x00});
+const Frame device_type =
+    make_frame(CobId::base(0x581), {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00});
+
+TEST(TraceLine, ReadsEveryVersionOfAPcanTrace) {
+  for (const char* text :
+       {"     2)     46268 0581 8 43 00 10 00 92 01 02 00",                   // 1.0
+        "     2)     46268.0  Rx         0581  8  43 00 10 00 92 01 02 00 ",  // 1.1
+        "     2)     46268.000 1  Tx         0581  8  43 00 10 00 92 01 02 00",
+        "     2)     46268.000 1  Rx         0581 -  8    43 00 10 00 92 01 02 00",
+        "      2     46268.000 DT     0581 Rx 8  43 00 10 00 92 01 02 00 ",            // 2.0
+        "      2     46268.000 DT 1      0581 Rx -  8    43 00 10 00 92 01 02 00"}) {  // 2.1
+    const auto line = parse_recorded(text);
+
+    ASSERT_TRUE(line) << text;
+    EXPECT_EQ(line->frame, device_type) << text;
+    EXPECT_EQ(line->stamp, "46.268000") << text;
+  }
+}
+
+TEST(TraceLine, ReadsRemoteAndExtendedFramesOfAPcanTrace) {
+  const auto guard = parse_recorded("   3)   1059.9  Rx         0705  1  RTR");
+  const auto newer = parse_recorded("   3   1059.900 RR     0705 Rx 1");
+  const auto extended = parse_recorded("   3)   1059.9  Rx     00012345  1  7F");
+
+  ASSERT_TRUE(guard && newer && extended);
+  EXPECT_TRUE(guard->frame.rtr);
+  EXPECT_EQ(guard->frame.length, 1);
+  EXPECT_EQ(newer->frame, guard->frame);
+  EXPECT_EQ(extended->frame, make_frame(CobId::extended(0x12345), {0x7F}));
+  EXPECT_EQ(extended->stamp, "1.059900");
+}
+
+TEST(TraceLine, ReadsAVectorLog) {
+  const auto line = parse_recorded("   1.001000 2  701             Rx   d 1 00  Length = 112000");
+  const auto remote = parse_recorded("   1.002000 1  705             Tx   r");
+  const auto extended = parse_recorded("   1.003000 1  12345x          Rx   d 1 7F");
+
+  ASSERT_TRUE(line && remote && extended);
+  EXPECT_EQ(line->frame, boot_up);
+  EXPECT_EQ(line->stamp, "1.001000");
+  EXPECT_EQ(line->interface, "can2");
+  EXPECT_TRUE(remote->frame.rtr);
+  EXPECT_EQ(extended->frame.id, CobId::extended(0x12345));
+}
+
+TEST(TraceLine, ReadsWhatPythonCanPrints) {
+  const auto line = parse_recorded(
+      "Timestamp:     1572363931.183001    ID: 0701    S Rx                DL:  1    00    "
+      "Channel: vcan0");
+  const auto older =
+      parse_recorded("Timestamp:        0.000000        ID: 0701    S    DLC:  1  00");
+
+  ASSERT_TRUE(line && older);
+  EXPECT_EQ(line->frame, boot_up);
+  EXPECT_EQ(line->stamp, "1572363931.183001");
+  EXPECT_EQ(line->interface, "vcan0");
+  EXPECT_EQ(older->frame, boot_up);
+}
+
+TEST(TraceLine, ReadsCandumpToo) {
+  const auto line = parse_recorded("(1.0) can0 701#00");
+
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->frame, boot_up);
+}
+
+TEST(TraceLine, RefusesWhatIsNoFrame) {
+  for (const char* text :
+       {"hello", "2) 46268.0 Rx", "2) 46268.0 Rx 0581", "2) 46268.0 Rx 0581 8 43 00",
+        "2) 46268.0 Rx 0581 9 43 00 10 00 92 01 02 00 00", "2) 46268.0 Rx 0881 1 00",
+        "2) 46268.0 Rx 581 1 00", "2 46268.0 FD 0581 Rx 1 00", "2 46268.0 ST Rx 00 00 00 00",
+        "2) 46268.0  Warng FFFFFFFF 4 00 00 00 08 BUSHEAVY", "1.0 1 701 Rx d 1",
+        "1.0 1 801 Rx d 1 00", "1.0 CANFD 1 Rx 701 1 0 1 1 00", "1.0 1 ErrorFrame",
+        "Timestamp: 1.0 ID: 0701 S Rx", "Timestamp: 1.0 ID: 0701 S F Rx DL: 1 00",
+        "Timestamp: 1.0 ID: 0701 S Rx DL: 1", ") 1 0701 1 00 2)", "1..0 1 701 Rx d 1 00"}) {
+    EXPECT_FALSE(parse_recorded(text)) << text;
+  }
+}
+
+TEST(TraceLine, KnowsWhatStandsBesideFrames) {
+  for (const char* text :
+       {"", "  \r", ";$FILEVERSION=1.1", ";   Message   Number", "// version 13.0.0",
+        "date Sat Sep 30 22:06:13.191 2017", "base hex  timestamps absolute",
+        "internal events logged", "Begin Triggerblock", "End TriggerBlock"}) {
+    EXPECT_TRUE(is_remark(text)) << text;
+  }
+  EXPECT_FALSE(is_remark("2) 46268.0 Rx"));
+}
+
+}  // namespace
+}  // namespace takt
