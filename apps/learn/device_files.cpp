@@ -100,7 +100,7 @@ DeviceFiles::Match DeviceFiles::find(std::uint8_t node, const SeenIdentity& iden
   if (const auto own = assigned_.find(node); own != assigned_.end()) {
     return match(own->second, node);
   }
-  if (identity.vendor_id == 0) return {};
+  if (identity.vendor_id == 0 && identity.product_code == 0) return {};
   const Known* best = nullptr;
   int best_score = 0;
   std::size_t rivals = 0;
@@ -110,6 +110,7 @@ DeviceFiles::Match DeviceFiles::find(std::uint8_t node, const SeenIdentity& iden
       continue;
     }
     const bool type = file.identity.device_type == identity.device_type;
+    if (identity.vendor_id == 0 && !type) continue;
     const bool revision = file.identity.revision_number == identity.revision_number;
     const int score = 1 + (type ? 1 : 0) + (revision ? 2 : 0);
     rivals = score == best_score ? rivals + 1 : score > best_score ? 0 : rivals;

@@ -1,6 +1,8 @@
 #include "apps/learn/device_files.hpp"
 
 #include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -48,6 +50,26 @@ TEST_F(DeviceFolder, TellsThatItIsShutItself) {
 
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].message, "Permission denied");
+}
+
+TEST(DeviceFiles, AVendorIdOfZeroNeedsAProductCodeAndTheDeviceType) {
+  const fs::path path = fs::temp_directory_path() / fmt::format("takt_nobody_{}.eds", ::getpid());
+  std::ofstream{path}
+      << "[MandatoryObjects]\nSupportedObjects=2\n1=0x1000\n2=0x1018\n"
+         "[1000]\nParameterName=Device type\nDataType=0x0007\nAccessType=ro\nDefaultValue=0xF0191\n"
+         "[1018]\nParameterName=Identity\nObjectType=9\nSubNumber=2\n"
+         "[1018sub0]\nParameterName=Count\nDataType=5\nAccessType=ro\nDefaultValue=2\n"
+         "[1018sub2]\nParameterName=Product\nDataType=7\nAccessType=ro\nDefaultValue=1\n";
+  DeviceFiles files;
+  Findings findings;
+  files.add_file(path, findings);
+
+  const auto found = files.find(1, {.device_type = 0xF0191, .vendor_id = 0, .product_code = 1});
+
+  EXPECT_EQ(found.path, path);
+  EXPECT_TRUE(files.find(1, {.device_type = 0x20192, .product_code = 1}).path.empty());
+  EXPECT_TRUE(files.find(1, {.device_type = 0xF0191}).path.empty());
+  fs::remove(path);
 }
 
 }  // namespace
