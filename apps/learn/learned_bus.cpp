@@ -49,11 +49,16 @@ LearnedValues LearnedNode::values() const {
   return all;
 }
 
+bool LearnedNode::is_there() const noexcept {
+  return booted_up || answers != 0 || heartbeats.count() != 0 || addressed || guarded();
+}
+
 std::optional<std::uint8_t> LearnedBus::master() const {
-  std::vector<std::uint8_t> silent;  // heartbeats, but no SDO server and never told anything
+  std::vector<std::uint8_t> silent;  // it lives, but has no SDO server and is never told anything
   for (const auto& [id, node] : nodes) {
     const bool told = node.answers != 0 || node.addressed || node.guarded();
-    if (!told && node.heartbeats.count() != 0) silent.push_back(id);
+    const bool lives = node.heartbeats.count() != 0 || (node.booted_up && node.deaf_to_reset);
+    if (!told && lives) silent.push_back(id);
   }
   const auto watched = [&](std::uint8_t id) {
     return std::ranges::any_of(nodes, [&](const auto& entry) {
@@ -78,7 +83,15 @@ std::vector<const LearnedNode*> LearnedBus::devices() const {
   const auto own = master();
   std::vector<const LearnedNode*> list;
   for (const auto& [id, node] : nodes) {
-    if (!own || id != *own) list.push_back(&node);
+    if (node.is_there() && (!own || id != *own)) list.push_back(&node);
+  }
+  return list;
+}
+
+std::vector<std::uint8_t> LearnedBus::strangers() const {
+  std::vector<std::uint8_t> list;
+  for (const auto& [id, node] : nodes) {
+    if (!node.is_there()) list.push_back(id);
   }
   return list;
 }

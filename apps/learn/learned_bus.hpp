@@ -42,6 +42,7 @@ struct LearnedNode {
   std::uint8_t id = 0;  ///< 1..127
   std::uint32_t first_line = 0;
   bool booted_up = false;
+  bool deaf_to_reset = false;  ///< no boot-up message since the newest reset of all nodes
   bool reset_node = false;    ///< newest reset was by NMT reset node, else communication
   bool started = false;       ///< by an NMT command of its own
   bool addressed = false;     ///< any NMT command of its own
@@ -54,6 +55,8 @@ struct LearnedNode {
   SdoObserver sdo;
 
   bool guarded() const noexcept { return guard_requests.count() > 2; }
+  /// It sent something, or the master counts on it: more than reads that nobody answered.
+  bool is_there() const noexcept;
   /// The writes of the fullest boot, with those that only other boots have.
   std::vector<LearnedWrite> configuration() const;
   /// What objects held at the end of it.
@@ -92,8 +95,10 @@ struct LearnedBus {
 
   /// The node id of the master that made the recording; none: nothing says so.
   std::optional<std::uint8_t> master() const;
-  /// Nodes but for the master.
+  /// Nodes but for the master and those that `strangers` has.
   std::vector<const LearnedNode*> devices() const;
+  /// Ids that were asked by SDO and never heard, as by a scan.
+  std::vector<std::uint8_t> strangers() const;
 };
 
 }  // namespace takt

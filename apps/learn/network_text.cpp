@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ranges>
 #include <set>
 
 #include "apps/learn/learned_pdos.hpp"
@@ -76,6 +78,12 @@ class NetworkText {
     } else {
       tell(Severity::note, "no-master-id", 0,
            "nothing in the recording says which node id the master has: 127 is taken");
+    }
+    if (const auto strangers = bus_.strangers(); !strangers.empty()) {
+      tell(Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
+           fmt::format("{} node ids were asked by SDO and never heard ({}{}): they are left out",
+                       strangers.size(), fmt::join(strangers | std::views::take(8), ", "),
+                       strangers.size() > 8 ? " ..." : ""));
     }
     if (devices_.empty()) {
       tell(Severity::warning, "no-nodes", 0, "no device answers in this recording");

@@ -164,7 +164,12 @@ void Recording::nmt(const Frame& frame) {
   bus_.started_all = bus_.started_all || command == NmtCommand::start;
   if (command == NmtCommand::reset_node) all_reset_ = true;
   if (command == NmtCommand::reset_communication) all_reset_ = false;
-  for (auto& [id, each] : bus_.nodes) apply(each);
+  const bool resets =
+      command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
+  for (auto& [id, each] : bus_.nodes) {
+    each.deaf_to_reset = each.deaf_to_reset || resets;
+    apply(each);
+  }
 }
 
 /// Boot-up messages, heartbeats, guarding. CiA 301, 7.2.8.3.2.
@@ -174,6 +179,7 @@ void Recording::error_control(std::uint8_t id, const Frame& frame) {
   if (frame.length != 1) return;
   if (frame.data[0] == 0) {
     sender.booted_up = true;
+    sender.deaf_to_reset = false;
     const bool whole_node = sender.reset_node;
     reset(sender, whole_node);
     return;

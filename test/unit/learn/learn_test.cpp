@@ -182,6 +182,45 @@ TEST(Learn, FindsTheMasterByWhatTheDevicesWatch) {
   EXPECT_THAT(network.text, Not(HasSubstr("node_1:")));
 }
 
+TEST(Learn, WhoStaysSilentWhenAllAreResetIsTheMaster) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 701#00\n(1.01) can0 000#8200\n(1.02) can0 702#00\n"
+      "(1.03) can0 602#4000100000000000\n(1.04) can0 582#4300100092010200\n");
+
+  EXPECT_THAT(network.text, HasSubstr("master:\n  node_id: 1\n"));
+  EXPECT_THAT(network.text, Not(HasSubstr("node_1:")));
+  EXPECT_THAT(rules(network.findings), Not(HasSubstr("no-master-id")));
+}
+
+TEST(Learn, ADeviceThatComesBackAfterTheResetOfAllIsNotTheMaster) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 703#00\n(1.01) can0 000#8200\n(1.02) can0 702#00\n(1.03) can0 703#00\n"
+      "(1.04) can0 602#4000100000000000\n(1.05) can0 582#4300100092010200\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_3:"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("no-master-id"));
+}
+
+TEST(Learn, NodeIdsThatAScanAsksInVainAreNoNodes) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 602#4000100000000000\n(1.01) can0 603#4000100000000000\n"
+      "(1.02) can0 583#4300100092010200\n(1.03) can0 604#4000100000000000\n"
+      "(1.20) can0 602#8000100000000405\n(1.21) can0 604#8000100000000405\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_3:"));
+  EXPECT_THAT(network.text, Not(HasSubstr("node_2:")));
+  EXPECT_EQ(network.made_files.size(), 1u);
+  EXPECT_THAT(rules(network.findings),
+              HasSubstr("2 node ids were asked by SDO and never heard (2, 4)"));
+}
+
+TEST(Learn, ANodeThatTheMasterCommandsByNameIsOneWithoutAnAnswerToo) {
+  const LearnedNetwork network =
+      learned("(1.00) can0 000#8202\n(1.01) can0 602#4000100000000000\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_2:"));
+}
+
 TEST(Learn, LearnsGuarding) {
   std::string log = "(0.9) can0 000#8203\n(0.95) can0 703#00\n";
   for (int i = 0; i < 6; ++i) {
