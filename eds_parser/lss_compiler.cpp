@@ -21,7 +21,7 @@ std::uint32_t identity(const Sourced<std::uint32_t>& wanted, const ObjectDiction
   return static_cast<std::uint32_t>(integer_of(dictionary, {0x1018, sub}).value_or(0));
 }
 
-/// A number of 0 is not known.
+/// A number of 0 is not known, but for a vendor id beside a product code: that device has none.
 LssPlan lss_plan(const NodeSpec& node, const ObjectDictionary& dictionary) {
   LssPlan lss{.address = {identity(node.vendor_id, dictionary, 1),
                           identity(node.product_code, dictionary, 2), *node.revision_number,
@@ -29,6 +29,7 @@ LssPlan lss_plan(const NodeSpec& node, const ObjectDictionary& dictionary) {
               .store = *node.lss_store};
   std::ranges::transform(lss.address, lss.known.begin(),
                          [](std::uint32_t number) { return number != 0 ? ~std::uint32_t{0} : 0; });
+  if (lss.known[1] != 0) lss.known[0] = ~std::uint32_t{0};
   return lss;
 }
 
@@ -44,11 +45,11 @@ std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary&
     return {};
   }
   const LssPlan lss = lss_plan(node, dictionary);
-  if (lss.known[0] == 0 || lss.known[1] == 0) {
+  if (lss.known[1] == 0) {
     report.error(node.lss.pos, "lss",
                  "LSS finds node `" + node.name + "` by its identity, and " + dictionary.file +
-                     " has no vendor id and product code in 1018: write `vendor_id` and "
-                     "`product_code`, better `serial_number` as well");
+                     " has no product code in 1018:02: write `vendor_id` and `product_code`, "
+                     "better `serial_number` as well");
   }
   for (const NodePlan& other : others) {
     if (!other.lss || !may_be_same(*other.lss, lss)) continue;

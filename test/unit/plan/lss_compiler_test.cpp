@@ -34,6 +34,18 @@ nodes:
   EXPECT_FALSE(net.plan.nodes[0].lss->store);
 }
 
+TEST(LssCompiler, AVendorIdOfZeroIsOneBesideAProductCode) {
+  const Compiled net = compile(R"(
+master: {sync_period: 10000}
+nodes:
+  axis: {node_id: 5, dcf: tiny.eds, lss: true, vendor_id: 0}
+)");
+  ASSERT_TRUE(net.plan.nodes[0].lss);
+  EXPECT_EQ(net.plan.nodes[0].lss->address[0], 0u);
+  EXPECT_EQ(net.plan.nodes[0].lss->known, (LssAddress{all, all, 0, 0}));
+  EXPECT_EQ(net.said("lss"), "");
+}
+
 TEST(LssCompiler, WarnsOfDevicesThatItCannotTellApart) {
   const Compiled net = compile(R"(
 master: {sync_period: 10000}
@@ -65,7 +77,7 @@ TEST(LssCompiler, RefusesANodeThatItCannotFind) {
   const Compiled net = compile(R"(
 master: {sync_period: 10000}
 nodes:
-  nobody: {node_id: 5, dcf: tiny.eds, lss: true, vendor_id: 0}
+  nobody: {node_id: 5, dcf: tiny.eds, lss: true, product_code: 0}
   watched: {node_id: 6, dcf: tiny.eds, lss: true, boot: false, serial_number: 1}
   typo: {node_id: 7, dcf: tiny.eds, lss: {stores: true}, serial_number: 2}
 )");
