@@ -15,7 +15,9 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
          "has " +
          identity_text(*node.lss) +
          ": `takt lss find` shows who is without id. Where it is another one, correct the network "
-         "file; where it is not there, `takt scan` shows whether it has another id already. "
+         "file; where it is not there, `takt scan` shows whether it has another id already. Where "
+         "the log says that it has got this id, it may want a reset of all nodes (`takt nmt "
+         "reset-comm all`), or to be switched off and on, before it uses it. "
          "Else: is it powered, and wired, is its bit rate " +
          std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
 }

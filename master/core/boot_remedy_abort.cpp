@@ -62,6 +62,22 @@ std::string against_refused_mapping(const BootStep& step, const BootFailure& fai
   }
 }
 
+std::string against_length(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  const std::string object = to_string(failure.object);
+  const bool is_text = step.eds_note.find("STRING") != std::string::npos ||
+                       step.eds_note.find("DOMAIN") != std::string::npos;
+  if (!is_text || !failure.downloading) {
+    return "the device holds " + object + " in another data type than " + node.description_file +
+           " says: use the EDS of this firmware, or correct `DataType` in a copy of it";
+  }
+  const std::string bytes = std::to_string(step.value.size()) + " bytes";
+  if (failure.abort_code == abort_code::length_too_high) {
+    return object + " of the device has no room for " + bytes + ": make the value shorter";
+  }
+  return object + " of the device takes another length than " + bytes +
+         ": look it up in the manual, and fill the value up to it";
+}
+
 std::string against_rare_abort(const BootFailure& failure) {
   const std::string object = to_string(failure.object);
   switch (failure.abort_code) {
@@ -133,8 +149,7 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
     case abort_code::length_mismatch:
     case abort_code::length_too_high:
     case abort_code::length_too_low:
-      return "the device holds " + object +
-             " in another data type than the EDS says: give the data type in the network file";
+      return against_length(node, step, failure);
     case abort_code::invalid_value:
     case abort_code::value_too_high:
     case abort_code::value_too_low:

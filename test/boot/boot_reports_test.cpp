@@ -166,6 +166,9 @@ std::vector<Case> cases() {
        {},
        20s},
   };
+  const std::string text = "sdo: [{index: 0x2002, value: 'hello'}]";
+  all.push_back({"text too long", text, {on(refuse_write, {0x2002, 0}, 0x0607'0012)}});
+  all.push_back({"text too short", text, {on(refuse_write, {0x2002, 0}, 0x0607'0013)}});
   // every abort code that the standard and EtherCAT's devices know
   for (const std::uint32_t code :
        {0x0503'0000U, 0x0504'0001U, 0x0504'0005U, 0x0601'0000U, 0x0601'0001U, 0x0601'0002U,
