@@ -47,10 +47,10 @@ constexpr std::array<Range, 64> communication_objects{{
     {0x102A, 0x102A, "NMT inhibit time", DataType::unsigned16},
     {0x1200, 0x127F, "SDO server parameter"},
     {0x1280, 0x12FF, "SDO client parameter"},
-    {0x1400, 0x15FF, "RPDO communication parameter"},
-    {0x1600, 0x17FF, "RPDO mapping parameter"},
-    {0x1800, 0x19FF, "TPDO communication parameter"},
-    {0x1A00, 0x1BFF, "TPDO mapping parameter"},
+    {0x1400, 0x15FF, "RPDO"},
+    {0x1600, 0x17FF, "RPDO"},
+    {0x1800, 0x19FF, "TPDO"},
+    {0x1A00, 0x1BFF, "TPDO"},
     {0x1F20, 0x1F20, "store DCF"},
     {0x1F21, 0x1F21, "store format of DCFs"},
     {0x1F22, 0x1F22, "concise DCF"},
@@ -92,9 +92,23 @@ const Range* range_of(std::uint16_t index) {
 
 }  // namespace
 
-std::string_view communication_object_name(std::uint16_t index) {
-  const Range* range = range_of(index);
-  return range == nullptr ? std::string_view{} : range->name;
+std::string communication_object_name(ObjectKey key) {
+  const Range* range = range_of(key.index);
+  if (range == nullptr) return {};
+  constexpr std::array parameters{"highest sub-index", "COB-ID",   "transmission type",
+                                  "inhibit time",      "reserved", "event timer",
+                                  "SYNC start value"};
+  constexpr std::array identity{"highest sub-index", "vendor id", "product code", "revision number",
+                                "serial number"};
+  const auto named = [&](const auto& names) -> std::string {
+    return key.sub < names.size() ? names[key.sub] : "parameter";
+  };
+  if (key.index == 0x1018) return named(identity);
+  if (key.index < 0x1400 || key.index >= 0x1C00) return std::string{range->name};
+  const std::string pdo = fmt::format("{}{}", range->name, (key.index & 0x1FFU) + 1);
+  const bool mapping = (key.index & 0x200U) != 0;
+  if (!mapping) return fmt::format("{} {}", pdo, named(parameters));
+  return key.sub == 0 ? pdo + " mapped objects" : fmt::format("{} mapping entry {}", pdo, key.sub);
 }
 
 std::string FrameNames::node(unsigned id) const {
@@ -109,7 +123,7 @@ std::string FrameNames::node(unsigned id) const {
 
 std::string FrameNames::object(unsigned node, ObjectKey key) const {
   std::string text = fmt::format("{:04X}:{:02X}", key.index, key.sub);
-  std::string_view name = communication_object_name(key.index);
+  std::string name = communication_object_name(key);
   if (network_ != nullptr) {
     for (const Signal& signal : network_->plan.layout.signals) {
       if (signal.node.value() == node && signal.object == key) name = signal.name;

@@ -33,8 +33,8 @@ class FrameNames {
   const LoadedNetwork* network_ = nullptr;
 };
 
-/// Name of an object of the communication profile (`1017`: "producer heartbeat time"); empty for
-/// others. CiA 301, 7.5.
-std::string_view communication_object_name(std::uint16_t index);
+/// Name of an object of the communication profile (`1017:00`: "producer heartbeat time", `1801:02`:
+/// "TPDO2 transmission type"); empty for others. CiA 301, 7.5.
+std::string communication_object_name(ObjectKey key);
 
 }  // namespace takt

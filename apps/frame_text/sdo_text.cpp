@@ -154,6 +154,9 @@ std::string SdoText::answer(const Frame& frame) {
     case SdoAnswer::upload_initiate:
       return initiate(frame, "read");
     case SdoAnswer::download_initiate:
+      if (transfer_.open && transfer_.object == sdo_object(frame)) {
+        return fmt::format("write {} accepted, segments follow", object());
+      }
       return fmt::format("written {}", names_->object(node_, sdo_object(frame)));
     case SdoAnswer::abort:
       return abort(frame);

@@ -35,7 +35,7 @@ TEST_F(BlockTextTest, ABlockUploadShowsItsValueAndItsCrc) {
   EXPECT_EQ(plain(0x605, {0xA1, 0, 0, 0, 0, 0, 0, 0}),
             "SDO node 5 asked: block upload 1008:00 manufacturer device name done = \"123456789\"");
   EXPECT_EQ(plain(0x605, {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
-            "SDO node 5 asked: read 1018:01 identity object");
+            "SDO node 5 asked: read 1018:01 vendor id");
 }
 
 TEST_F(BlockTextTest, ABlockDownloadTellsWhatIsRepeatedAndAWrongCrc) {
@@ -56,7 +56,7 @@ TEST_F(BlockTextTest, ABlockDownloadTellsWhatIsRepeatedAndAWrongCrc) {
             "SDO node 5 answers: ABORT 1F50:01 program data: 0504 0004 CRC error in a block "
             "transfer");
   EXPECT_EQ(plain(0x605, {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
-            "SDO node 5 asked: read 1018:01 identity object");
+            "SDO node 5 asked: read 1018:01 vendor id");
 }
 
 TEST_F(BlockTextTest, ARecordingWithAGapDoesNotCallTheCrcWrong) {

@@ -50,9 +50,9 @@ TEST_F(SdoTextTest, ASecondSdoChannelIsOfItsNode) {
   FrameText reader{network_};
 
   EXPECT_EQ(read(reader, 0x645, {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
-            "SDO shoulder (channel 2) asked: read 1018:01 identity object");
+            "SDO shoulder (channel 2) asked: read 1018:01 vendor id");
   EXPECT_EQ(read(reader, 0x5C5, {0x80, 0x18, 0x10, 0x01, 0, 0, 0x02, 0x06}),
-            "SDO shoulder (channel 2) answers: ABORT 1018:01 identity object: 0602 0000 object "
+            "SDO shoulder (channel 2) answers: ABORT 1018:01 vendor id: 0602 0000 object "
             "does not exist in the dictionary");
 }
 
@@ -68,7 +68,7 @@ TEST_F(SdoTextTest, ATransferThatBeginsInTheMiddleOfSegmentsEndsTheOneBefore) {
       "SDO node 5 asked: block upload 1008:00 manufacturer device name, 127 segments a block");
   half_a_download();
   EXPECT_EQ(plain(0x605, {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
-            "SDO node 5 asked: read 1018:01 identity object");
+            "SDO node 5 asked: read 1018:01 vendor id");
   EXPECT_EQ(plain(0x585, {0x21, 0xA4, 0xD7, 0, 0, 0, 0, 0}),
             "SDO node 5 answers: segment taken, beginning not seen");
 }
@@ -109,9 +109,24 @@ TEST_F(SdoTextTest, SdoChannelsOfTheDescriptionAreFollowedApart) {
             "(last segment)");
 }
 
+TEST_F(SdoTextTest, ParametersOfAPdoHaveItsNumber) {
+  const auto asked = [&](std::uint16_t index, std::uint8_t sub) {
+    return plain(0x605, {0x40, static_cast<std::uint8_t>(index),
+                         static_cast<std::uint8_t>(index >> 8), sub, 0, 0, 0, 0});
+  };
+
+  EXPECT_EQ(asked(0x1803, 5), "SDO node 5 asked: read 1803:05 TPDO4 event timer");
+  EXPECT_EQ(asked(0x15FF, 3), "SDO node 5 asked: read 15FF:03 RPDO512 inhibit time");
+  EXPECT_EQ(asked(0x1601, 0), "SDO node 5 asked: read 1601:00 RPDO2 mapped objects");
+  EXPECT_EQ(asked(0x1A1F, 8), "SDO node 5 asked: read 1A1F:08 TPDO32 mapping entry 8");
+  EXPECT_EQ(asked(0x1018, 4), "SDO node 5 asked: read 1018:04 serial number");
+  EXPECT_EQ(asked(0x1016, 1), "SDO node 5 asked: read 1016:01 consumer heartbeat time");
+}
+
 TEST_F(SdoTextTest, ARepeatedToggleBitOfSegmentsIsTold) {
   plain(0x605, {0x21, 0x08, 0x10, 0, 0x0E, 0, 0, 0});
-  plain(0x585, {0x60, 0x08, 0x10, 0, 0, 0, 0, 0});
+  EXPECT_EQ(plain(0x585, {0x60, 0x08, 0x10, 0, 0, 0, 0, 0}),
+            "SDO node 5 answers: write 1008:00 manufacturer device name accepted, segments follow");
   EXPECT_EQ(plain(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}),
             "SDO node 5 asked: segment of 1008:00 manufacturer device name, 7 bytes");
   EXPECT_EQ(plain(0x585, {0x30, 0, 0, 0, 0, 0, 0, 0}),
@@ -132,13 +147,13 @@ TEST_F(SdoTextTest, AnAnswerOfAnotherLengthThanAnnouncedIsTold) {
 
 TEST_F(SdoTextTest, ValuesOfTheCommunicationProfileAreExplained) {
   EXPECT_EQ(plain(0x605, {0x23, 0x00, 0x18, 0x01, 0x85, 0x01, 0x00, 0xC0}),
-            "SDO node 5 asked: write 1800:01 TPDO communication parameter = 3221225861 "
+            "SDO node 5 asked: write 1800:01 TPDO1 COB-ID = 3221225861 "
             "(0xC0000185): 0x185, not valid, no RTR");
   EXPECT_EQ(named(0x605, {0x23, 0x00, 0x1A, 0x01, 0x10, 0x00, 0x41, 0x60}),
-            "SDO shoulder asked: write 1A00:01 TPDO mapping parameter = 1614872592 (0x60410010): "
+            "SDO shoulder asked: write 1A00:01 TPDO1 mapping entry 1 = 1614872592 (0x60410010): "
             "6041:00 statusword, 16 bits");
   EXPECT_EQ(plain(0x605, {0x2F, 0x00, 0x14, 0x02, 0x0A, 0, 0, 0}),
-            "SDO node 5 asked: write 1400:02 RPDO communication parameter = 10 (0xA): every 10 "
+            "SDO node 5 asked: write 1400:02 RPDO1 transmission type = 10 (0xA): every 10 "
             "SYNCs");
   EXPECT_EQ(named(0x605, {0x23, 0x16, 0x10, 0x01, 0xC8, 0x00, 0x05, 0x00}),
             "SDO shoulder asked: write 1016:01 consumer heartbeat time = 327880 (0x500C8): "
