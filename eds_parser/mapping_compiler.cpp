@@ -160,10 +160,12 @@ std::vector<EffectiveEntry> compile_mapping(const NodeSource& node, const Effect
     if (!entry) continue;
     const auto same = [&](const EffectiveEntry& other) { return other.object == entry->object; };
     if (!entry->dummy && std::ranges::any_of(entries, same)) {
-      report.error(spec.pos, "mapped-twice",
-                   pdo.label() + " of node `" + node.spec->name + "` maps " +
-                       label(*node.dictionary, spec.object) + " twice");
-      continue;
+      report.warning(
+          spec.pos, "mapped-twice",
+          pdo.label() + " of node `" + node.spec->name + "` maps " +
+              label(*node.dictionary, spec.object) + " twice: " +
+              (pdo.is_tpdo ? "the second is an input of its own" : "both get the same value") +
+              "; is one of them meant for another object?");
     }
     entry->bit_offset = static_cast<std::uint8_t>(std::min(bits, 64U));
     bits += entry->bits;

@@ -109,7 +109,7 @@ constexpr std::array<KeyText, 28> reasons{{
     {"enable_lazy_load", "ROS 2 component loading"},
     {"remappings", "ROS 2 names"},
     {"boot_timeout", "of the ROS 2 driver; here it is `boot_timeout_ms`"},
-    {"time_cobid", "dcfgen reads it and writes `time_cob_id`; here it is `time_cob_id`"},
+    {"time_cobid", "a variable of dcfgen, which reads no such key; the key is `time_cob_id`"},
     {"emcy_inhibit_time", "takt as master sends no EMCY: there is nothing to hold back"},
     {"error_behavior",
      "takt as master has no 1029: `on_loss`, `on_sync_loss` and `on_timeout` say what faults do"},

@@ -183,12 +183,18 @@ void MapReader::ignore(std::span<const std::string_view> keys, std::string_view 
   }
 }
 
-void MapReader::finish() {
+void MapReader::finish() { finish_shared({}); }
+
+void MapReader::finish_shared(std::string_view why) {
   for (const YamlPair& pair : node_.pairs) {
     if (std::ranges::find(known_, pair.key) != known_.end()) continue;
-    report_.error(
-        pair.key_pos, "unknown-key",
-        "unknown key " + quote(pair.key) + " in " + what_ + did_you_mean(pair.key, known_));
+    const std::string guess = did_you_mean(pair.key, known_);
+    const std::string text = "unknown key " + quote(pair.key) + " in " + what_;
+    if (why.empty() || !guess.empty()) {
+      report_.error(pair.key_pos, "unknown-key", text + guess);
+    } else {
+      report_.warning(pair.key_pos, "unknown-key", text + std::string{why});
+    }
   }
 }
 

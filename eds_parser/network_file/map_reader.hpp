@@ -62,6 +62,9 @@ class MapReader {
   void ignore(std::span<const std::string_view> keys, std::string_view why);
   /// Every key that nobody took is an error with a suggestion.
   void finish();
+  /// As finish(), for a map that another program reads as well: an error only where the key is
+  /// near one that takt reads, else a warning. `why` ends the sentence.
+  void finish_shared(std::string_view why);
 
   NetworkReport& report() noexcept { return report_; }
   const std::string& what() const noexcept { return what_; }

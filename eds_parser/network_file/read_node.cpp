@@ -291,7 +291,7 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
                 "is left alone: takt scales by `units: {position: {scale: ..., unit: rad}}`");
   reader.ignore(not_supported, "is not acted on by this version of takt");
   const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
-  reader.finish();
+  reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
   if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
   if (!has_id) report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
   if (misnamed != nullptr) {

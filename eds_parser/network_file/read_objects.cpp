@@ -66,6 +66,21 @@ std::optional<SdoSpec> read_object(const YamlNode& item, std::string_view key,
   return sdo;
 }
 
+/// In a list that is written in order it does what it says; elsewhere one of the two has no effect.
+void tell_repeated(const SdoSpec& sdo, const std::string& owner, SourcePos first, bool in_order,
+                   NetworkReport& report) {
+  const std::string text = to_string(sdo.object) + " of " + owner +
+                           " is written twice, first in line " + std::to_string(first.line);
+  if (in_order) {
+    report.warning(sdo.pos, "written-twice",
+                   text +
+                       ": both are, in this order; is one of them meant for another object? "
+                       "(`again: true` says that both are meant)");
+  } else {
+    report.error(sdo.pos, "written-twice", text + ": keep one");
+  }
+}
+
 }  // namespace
 
 std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
@@ -84,12 +99,7 @@ std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
     const auto sdo = read_object(*item, key, owner, again, report);
     if (!sdo) continue;
     const auto [first, is_new] = seen.emplace(sdo->object, sdo->pos);
-    if (!is_new && !again) {
-      report.error(sdo->pos, "written-twice",
-                   to_string(sdo->object) + " of " + owner + " is written twice, first in line " +
-                       std::to_string(first->second.line) +
-                       ": is one of them meant for another object? (`again: true` keeps both)");
-    }
+    if (!is_new && !again) tell_repeated(*sdo, owner, first->second, key == "sdo", report);
     list.push_back(*sdo);
   }
   return list;

@@ -199,7 +199,7 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   reader.ignore(std::array<std::string_view, 1>{"error_behavior"},
                 "has no effect: the master has no 0x1029; `on_loss` of a node, `on_sync_loss`, "
                 "`on_timeout` and `stop_all_nodes` say what faults do");
-  reader.finish();
+  reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
 }
 
 void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {

@@ -13,6 +13,10 @@ void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& repor
 void read_black_box(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 
+/// Of unknown keys beside `driver`: ros2_canopen hands the whole map to the class named there.
+inline constexpr std::string_view driver_key =
+    ": takt reads none of that name and leaves it alone; the class of `driver` may read it";
+
 /// One node; keys that it does not have itself are already merged in from `defaults`.
 NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
                    NetworkReport& report);
@@ -20,7 +24,8 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
 /// `tpdo:` or `rpdo:` of a node. `key` is "tpdo" or "rpdo".
 std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const std::string& owner,
                                NetworkReport& report);
-/// A list of `{index, sub_index, value}`; an object twice is an error unless it says `again: true`.
+/// A list of `{index, sub_index, value}`; an object twice is told unless it says `again: true`: in
+/// `sdo`, which is written in order, as a warning, else as an error.
 std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
                                   const std::string& owner, NetworkReport& report);
 UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report);

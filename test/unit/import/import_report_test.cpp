@@ -53,6 +53,38 @@ TEST_F(Import, ADefaultThatEachNodeReplacesIsIgnored) {
   EXPECT_EQ(key(bus, "defaults.dcf").fate, KeyFate::used);
 }
 
+TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
+  const auto bus = report(
+      "arm:\n"
+      "  node_id: 2\n"
+      "  dcf: drive.eds\n"
+      "  tpdo: {1: {transmission: 1, mapping: [{index: 0x6041}, {index: 0x6041}]}}\n"
+      "  rpdo: {1: {transmission: 1, mapping: [{index: 0x6040}, {index: 0x6040}]}}\n"
+      "  sdo: [{index: 0x6083, value: 1}, {index: 0x6083, value: 1}]\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.tpdo.1.mapping[2]").why, HasSubstr("an input of its own"));
+  EXPECT_EQ(key(bus, "arm.rpdo.1.mapping[2]").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.rpdo.1.mapping[2]").why, HasSubstr("both get the same value"));
+  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.sdo[2]").why, HasSubstr("meant for another object?"));
+}
+
+TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
+  const auto bus = report(
+      "master: {name: main, driver: x::Master, sync_period: 10000}\n"
+      "arm: {node_id: 2, dcf: drive.eds, driver: x::Drive, gearbox_ratio: 20.0}\n"
+      "leg: {node_id: 3, dcf: drive.eds, gearbox_ratio: 20.0}\n"
+      "neck: {node_id: 4, dcf: drive.eds, driver: x::Drive, hartbeat_producer: 20}\n");
+
+  EXPECT_EQ(key(bus, "master.name").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.gearbox_ratio").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.gearbox_ratio").why, HasSubstr("the class of `driver` may read it"));
+  EXPECT_EQ(key(bus, "leg.gearbox_ratio").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "neck.hartbeat_producer").fate, KeyFate::wrong);
+}
+
 TEST_F(Import, AMapWhereAWordBelongsIsWrongAsAWhole) {
   const auto bus = report(
       "master:\n"

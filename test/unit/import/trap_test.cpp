@@ -167,9 +167,19 @@ TEST_F(Trap, TwoNodesOfOneIdAndOneCobIdTwiceAreErrors) {
   EXPECT_THAT(told, HasSubstr("node id 6"));
 }
 
-TEST_F(Trap, AnObjectWrittenTwiceIsAnError) {
-  EXPECT_THAT(errors(load("sdo: [{index: 0x6081, value: 1}, {index: 0x6081, value: 2}]")),
-              HasSubstr("6081:00 of node `arm` is written twice"));
+TEST_F(Trap, AnObjectWrittenTwiceIsToldAndWrittenTwiceInThisOrder) {
+  const auto network = load("sdo: [{index: 0x6040, value: 0x80}, {index: 0x6040, value: 6}]");
+
+  EXPECT_EQ(errors(network), "");
+  const auto writes = steps(network, {0x6040, 0}, BootAction::write_if_differs);
+  ASSERT_EQ(writes.size(), 2u);
+  EXPECT_EQ(value(writes[0]), 0x80);
+  EXPECT_EQ(value(writes[1]), 6);
+}
+
+TEST_F(Trap, ASafeValueTwiceIsAnError) {
+  EXPECT_THAT(errors(load("safe_values: [{index: 0x6040, value: 1}, {index: 0x6040, value: 2}]")),
+              HasSubstr("6040:00 of node `arm` is written twice"));
 }
 
 }  // namespace

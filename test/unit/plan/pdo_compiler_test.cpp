@@ -73,7 +73,7 @@ TEST(PdoCompiler, ReportsEveryBadMappingAtItsPlace) {
                                     "4:3 error [no-such-object]", "5:3 error [no-such-object]",
                                     "6:3 error [not-mappable]", "7:3 error [wrong-direction]",
                                     "8:3 error [dummy]", "9:3 error [wrong-width]",
-                                    "11:3 error [mapped-twice]", "13:3 error [wrong-direction]",
+                                    "11:3 warning [mapped-twice]", "13:3 error [wrong-direction]",
                                     "14:3 error [dummy]", "15:3 error [not-mappable]"));
   EXPECT_THAT(net.said("no-such-object"), HasSubstr("did you mean 0x6064 Position actual value?"));
   EXPECT_THAT(net.said("no-such-object"), HasSubstr("0x6041 Statusword has sub-index 00"));

@@ -177,7 +177,7 @@ TEST(ReadNetwork, AnEdsUnderTheKeyEdsIsToldItsKey) {
   EXPECT_THAT(net.said("missing-key"), HasSubstr("the key is `dcf`"));
 }
 
-TEST(ReadNetwork, TheSameObjectWrittenTwiceIsAnErrorUnlessMeant) {
+TEST(ReadNetwork, TheSameObjectWrittenTwiceIsToldUnlessMeant) {
   const auto net = read(
       "nodes:\n"
       "  arm:\n"
@@ -188,7 +188,8 @@ TEST(ReadNetwork, TheSameObjectWrittenTwiceIsAnErrorUnlessMeant) {
       "      - {index: 0x6083, sub_index: 0, value: 2000}  # deceleration\n"
       "      - {index: 0x6083, sub_index: 0, value: 3000, again: true}\n");
 
-  EXPECT_THAT(net.complaints(), ElementsAre("7:9 error [written-twice]"));
+  EXPECT_THAT(net.complaints(), ElementsAre("7:9 warning [written-twice]"));
+  EXPECT_EQ(net.spec.nodes[0].sdo.size(), 3U);
   EXPECT_THAT(net.said("written-twice"), HasSubstr("6083:00"));
   EXPECT_THAT(net.said("written-twice"), HasSubstr("first in line 6"));
 }
