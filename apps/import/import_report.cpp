@@ -241,6 +241,38 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   }
 }
 
+bool same(const YamlNode& a, const YamlNode& b) {
+  const auto same_pair = [](const YamlPair& x, const YamlPair& y) {
+    return x.key == y.key && same(*x.value, *y.value);
+  };
+  const auto same_item = [](const YamlNode* x, const YamlNode* y) { return same(*x, *y); };
+  return a.kind == b.kind && a.text == b.text && std::ranges::equal(a.pairs, b.pairs, same_pair) &&
+         std::ranges::equal(a.items, b.items, same_item);
+}
+
+/// The generator of ros2_canopen copies `defaults` over the keys of each node under `nodes`: there
+/// the node's own value has never been in effect.
+void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
+  const YamlNode* defaults = root.find("defaults");
+  const YamlNode* nodes = root.find("nodes");
+  if (defaults == nullptr || nodes == nullptr) return;
+  for (const YamlPair& node : nodes->pairs) {
+    for (const YamlPair& own : node.value->pairs) {
+      const YamlNode* common = defaults->find(own.key);
+      if (common == nullptr || same(*common, *own.value)) continue;
+      const auto row = std::ranges::find_if(rows, [&](const Row& candidate) {
+        return candidate.key.path == "nodes." + node.key + '.' + own.key;
+      });
+      if (row == rows.end() || row->key.fate != KeyFate::used) continue;
+      row->key.fate = KeyFate::suspicious;
+      row->key.why =
+          "takt takes this one; ros2_canopen (cogen) lets the one of `defaults` win: the machine "
+          "has run with " +
+          (value_text(*common).empty() ? "that" : '`' + value_text(*common) + '`');
+    }
+  }
+}
+
 }  // namespace
 
 std::string_view name(KeyFate fate) noexcept {
@@ -279,7 +311,10 @@ ImportReport import_report(const std::filesystem::path& path) {
       apply(*row, finding);
     }
   }
-  if (tree.root() != nullptr) judge_defaults(*tree.root(), rows);
+  if (tree.root() != nullptr) {
+    judge_defaults(*tree.root(), rows);
+    judge_overrides(*tree.root(), rows);
+  }
   ignore_children(rows);
   for (Row& row : rows) {
     if (!row.leaf && row.key.why.empty()) continue;

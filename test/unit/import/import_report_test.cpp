@@ -85,6 +85,23 @@ TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
   EXPECT_EQ(key(bus, "neck.hartbeat_producer").fate, KeyFate::wrong);
 }
 
+TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
+  const auto bus = report(
+      "master: {sync_period: 10000}\n"
+      "defaults:\n"
+      "  dcf: drive.eds\n"
+      "  heartbeat_producer: 1000\n"
+      "  boot_timeout_ms: 500\n"
+      "nodes:\n"
+      "  arm: {node_id: 2, heartbeat_producer: 200, boot_timeout_ms: 500}\n"
+      "  leg: {node_id: 3}\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "nodes.arm.heartbeat_producer").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "nodes.arm.heartbeat_producer").why, HasSubstr("`1000`"));
+  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
+}
+
 TEST_F(Import, AMapWhereAWordBelongsIsWrongAsAWhole) {
   const auto bus = report(
       "master:\n"
