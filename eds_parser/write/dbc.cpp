@@ -159,6 +159,7 @@ class DbcWriter {
                      Time cycle) {
     id_ = std::to_string(id.is_extended() ? id.id() | 0x8000'0000U : id.id());
     names_.clear();
+    full_names_.clear();
     const auto unique = shorten(name, message_names_);
     out_ += "\nBO_ " + id_ + ' ' + unique + ": " + std::to_string(length) + ' ' + sender + '\n';
     if (unique != name) {
@@ -170,16 +171,26 @@ class DbcWriter {
     }
   }
 
+  /// An output that one PDO carries twice is one signal of the image and two of the message.
+  std::string unique_in_message(const std::string& name) {
+    std::string unique = name;
+    for (unsigned n = 2; !full_names_.insert(unique).second; ++n) {
+      unique = name + '_' + std::to_string(n);
+    }
+    return unique;
+  }
+
   void write_signal(const DbcSignal& signal, const std::string& receivers) {
-    last_name_ = shorten(signal.name, names_);
+    const std::string name = unique_in_message(signal.name);
+    last_name_ = shorten(name, names_);
     out_ += " SG_ " + last_name_ + (signal.multiplex.empty() ? "" : ' ' + signal.multiplex) +
             " : " + std::to_string(signal.start) + '|' + std::to_string(signal.bits) + "@1" +
             (signal.is_signed ? '-' : '+') + " (" + dbc_number(signal.scale) + ',' +
             dbc_number(signal.offset) + ") [0|0] \"" + dbc_text(signal.unit) + "\" " + receivers +
             '\n';
-    if (last_name_ != signal.name) {
-      attributes_ += "BA_ \"SystemSignalLongSymbol\" SG_ " + id_ + ' ' + last_name_ + " \"" +
-                     signal.name + "\";\n";
+    if (last_name_ != name) {
+      attributes_ +=
+          "BA_ \"SystemSignalLongSymbol\" SG_ " + id_ + ' ' + last_name_ + " \"" + name + "\";\n";
     }
   }
 
@@ -212,7 +223,8 @@ class DbcWriter {
   std::string multiplex_;  // of the signals of one MPDO object
   std::optional<CobId> mpdo_;
   std::set<std::string> message_names_;
-  std::set<std::string> names_;  // of signals of one message
+  std::set<std::string> names_;       // of signals of one message
+  std::set<std::string> full_names_;  // the same, before they are cut
 };
 
 }  // namespace

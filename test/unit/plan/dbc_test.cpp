@@ -87,6 +87,20 @@ TEST(Dbc, LongNamesAreCutAndKeptAsAttributes) {
                         std::string{second} + "\";\n"));
 }
 
+TEST(Dbc, AnOutputThatAPdoCarriesTwiceHasTwoNames) {
+  auto plan = plan_of({signal("target", {0x607A, 0}, DataType::integer32)});
+  PdoField again = plan.pdos.fields[0];
+  again.bit_offset = 32;
+  plan.pdos.fields.push_back(again);
+  plan.pdos.tpdos[0].field_count = 2;
+
+  const auto dbc = to_dbc(plan);
+
+  EXPECT_TRUE(holds(dbc, " SG_ target : 0|32@1-")) << dbc;
+  EXPECT_TRUE(holds(dbc, " SG_ target_2 : 32|32@1-")) << dbc;
+  EXPECT_FALSE(holds(dbc, "SystemSignalLongSymbol\" SG_ 389")) << dbc;
+}
+
 TEST(Dbc, ObjectsOfAnMpdoAreMultiplexed) {
   auto plan = plan_of({signal("one", {0x2001, 1}, DataType::unsigned8),
                        signal("two", {0x2001, 2}, DataType::unsigned8)});
