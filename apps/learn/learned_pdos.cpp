@@ -36,7 +36,9 @@ LearnedPdo pdo_of(const LearnedValues& values, std::uint16_t number, bool is_tpd
                  .sync_start = at<std::uint8_t>(values, {communication, 6}),
                  .count = at<std::uint8_t>(values, {mapping, 0}),
                  .mapping = {}};
-  if (pdo.count && *pdo.count <= 64) pdo.mapping = entries(values, mapping, *pdo.count);
+  if (pdo.count && *pdo.count != 0 && *pdo.count <= 64) {
+    pdo.mapping = entries(values, mapping, *pdo.count);
+  }
   return pdo;
 }
 

@@ -17,7 +17,7 @@ struct LearnedPdo {
   std::optional<std::uint16_t> timer;         ///< ms, sub 5
   std::optional<std::uint8_t> sync_start;
   std::optional<std::uint8_t> count;                  ///< sub 0 of the mapping
-  std::optional<std::vector<std::uint32_t>> mapping;  ///< all entries that count
+  std::optional<std::vector<std::uint32_t>> mapping;  ///< all entries that count; never empty
   bool enabled() const noexcept { return !cob_id || (*cob_id & 0x8000'0000U) == 0; }
   std::optional<CobId> identifier() const noexcept;
 };

@@ -83,6 +83,7 @@ class EdsMaker {
     const auto type = static_cast<std::uint16_t>(identity_of(values_).device_type & 0xFFFFU);
     cia402_ = type == 402;
     add_standard();
+    if (node.heartbeats.median()) sub({0x1017, 0}, DataType::unsigned16, Access::rw);
     for (const auto& [key, value] : values_) add_seen(key, value);
     for (const LearnedPdo& pdo : learned_pdos(values_)) add_pdo(pdo);
   }

@@ -188,6 +188,9 @@ class NodeText {
 
   void write_pdo(const LearnedPdo& pdo) {
     if (!pdo.enabled()) return line("  {}: {{enabled: false}}", pdo.number);
+    if (pdo.count == 0 && !what_.made) {
+      return line("  {}: {{enabled: false}}   # nothing is mapped in the recording", pdo.number);
+    }
     std::string keys;
     const auto add = [&](const std::string& key) { keys += (keys.empty() ? "" : ", ") + key; };
     const auto id = pdo.identifier();
@@ -199,7 +202,8 @@ class NodeText {
         static_cast<std::uint16_t>((pdo.is_tpdo ? 0x1800 : 0x1400) + pdo.number - 1);
     const auto optional = [&](std::string_view key, std::uint8_t sub, const auto& value,
                               std::uint32_t unit = 1) {
-      if (!value || *value == described_number({communication, sub})) return;
+      const std::uint64_t known = what_.made ? 0 : described_number({communication, sub});
+      if (!value || *value == known) return;
       add(fmt::format("{}: {}", key, *value * unit));
     };
     optional("inhibit_time", 3, pdo.inhibit_time, what_.inhibit_unit_us / 100);
@@ -294,6 +298,7 @@ class NodeText {
   /// 0x60C2 of a drive that fits the SYNC period is what takt sets by itself.
   bool is_own_cycle(ObjectKey key) const {
     if ((identity_of(values_).device_type & 0xFFFFU) != 402 || what_.sync_us == 0) return false;
+    if (described({0x6040, 0}) == nullptr || described({0x6041, 0}) == nullptr) return false;
     if (key.index < 0x60C2 || key.index >= 0xA000 || (key.index - 0x60C2) % 0x800 != 0)
       return false;
     const auto count = number({key.index, 1});

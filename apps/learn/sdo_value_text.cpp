@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
 
-#include "apps/learn/yaml_text.hpp"
-
 namespace takt {
 namespace {
+
+constexpr std::size_t longest_text = 4096;
 
 std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
   std::uint64_t value = 0;
@@ -18,13 +17,20 @@ std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
+/// YAML has an escape for every character; bytes above 0x7F would become two of UTF-8.
 std::optional<std::string> quoted(std::span<const std::uint8_t> bytes) {
-  const auto printable = [](std::uint8_t c) { return c >= 0x20 && c < 0x7F; };
-  if (bytes.empty() || !std::ranges::all_of(bytes, printable)) return {};
-  std::size_t first = 0;
-  while (first < bytes.size() && (bytes[first] == '+' || bytes[first] == '-')) ++first;
-  if (first < 2 && first < bytes.size() && std::isdigit(bytes[first]) != 0) return {};
-  return yaml_quoted(std::string{bytes.begin(), bytes.end()});
+  const auto ascii = [](std::uint8_t c) { return c < 0x80; };
+  if (bytes.empty() || bytes.size() > longest_text || !std::ranges::all_of(bytes, ascii)) return {};
+  std::string out = "\"";
+  for (const std::uint8_t c : bytes) {
+    if (c < 0x20 || c == 0x7F) {
+      out += fmt::format("\\x{:02X}", c);
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += static_cast<char>(c);
+    }
+  }
+  return out + '"';
 }
 
 std::optional<std::string> real_text(double value) {

@@ -22,11 +22,13 @@ TEST(SdoValueText, WritesRealsSoThatTheyStayReals) {
 
 TEST(SdoValueText, QuotesText) {
   EXPECT_EQ(sdo_value_text(Bytes{'a', '"', '\\'}, DataType::visible_string), R"("a\"\\")");
+  EXPECT_EQ(sdo_value_text(Bytes{'1', '2'}, DataType::visible_string), R"("12")");
+  EXPECT_EQ(sdo_value_text(Bytes{'a', 0}, DataType::visible_string), R"("a\x00")");
+  EXPECT_EQ(sdo_value_text(Bytes{0, 0x7F}, DataType::domain), R"("\x00\x7F")");
 }
 
 TEST(SdoValueText, SaysWhatANetworkFileCannotHold) {
   EXPECT_EQ(sdo_value_text(Bytes{0x00, 0xFF}, DataType::octet_string), std::nullopt);
-  EXPECT_EQ(sdo_value_text(Bytes{'1', '2'}, DataType::visible_string), std::nullopt);
   EXPECT_EQ(sdo_value_text(Bytes{}, DataType::unsigned8), std::nullopt);
   EXPECT_EQ(sdo_value_text(Bytes(8, 0xFF), DataType::unsigned64), std::nullopt);
 }
