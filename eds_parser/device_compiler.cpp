@@ -4,13 +4,14 @@
 
 #include "eds_parser/device_data.hpp"
 #include "eds_parser/integer_of.hpp"
+#include "eds_parser/profile_of.hpp"
 
 namespace takt {
 namespace {
 
 std::string model_of(const NodeSource& node) {
   if (!node.spec->sim.model.empty()) return node.spec->sim.model;
-  switch (integer_of(*node.dictionary, {0x1000, 0}).value_or(0) & 0xFFFF) {
+  switch (profile_of(*node.dictionary)) {
     case 401:
       return "io401";
     case 402:

@@ -17,6 +17,7 @@
 #include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
+#include "eds_parser/profile_of.hpp"
 #include "eds_parser/sdo_servers.hpp"
 #include "eds_parser/service_ids.hpp"
 #include "eds_parser/signal_rules.hpp"
@@ -48,9 +49,7 @@ std::string channel_form(const std::string& name) {
 
 bool is_cia402(const NodeSource& node) {
   if (node.spec->profile.given) return *node.spec->profile == "cia402";
-  return (integer_of(*node.dictionary, {0x1000, 0}).value_or(0) & 0xFFFF) == 402 &&
-         node.dictionary->find(ObjectKey{0x6040, 0}) != nullptr &&
-         node.dictionary->find(ObjectKey{0x6041, 0}) != nullptr;
+  return profile_of(*node.dictionary) == 402 && has_drive_words(*node.dictionary);
 }
 
 class NetworkCompiler {
@@ -204,6 +203,12 @@ class NetworkCompiler {
     node.lss = compile_lss(spec, dictionary, plan().nodes, report_);
     add_device_data(source, node);
     node.sdo = sdo_access(source.node);
+    if (!spec.profile.given && is_drive_by_objects(dictionary)) {
+      report_.note(spec.pos, "profile",
+                   "node `" + spec.name + "`: " + dictionary.file +
+                       " gives 1000:00 no value; with 6040:00 and 6041:00 it is taken for a drive "
+                       "(`profile: none` if it is none)");
+    }
     check_fallback(source.node, node.cia402, report_);
     check_sdo_channel(source.node, report_);
     check_node_values(source, report_);

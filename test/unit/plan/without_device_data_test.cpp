@@ -84,6 +84,25 @@ TEST(WithoutDeviceData, AnAxisNeedsNoSupportedModes) {
   EXPECT_THAT(steps_of(wrong, {0x6502, 0}), IsEmpty());
 }
 
+// EPOS4 and PRBT: their files give 0x1000 no value.
+TEST(WithoutDeviceData, AFileWithoutDeviceTypeIsOfADriveByItsObjects) {
+  std::string eds = test::tiny_eds();
+  eds.erase(eds.find("0x00020192"), 10);
+  std::string other = test::tiny_eds();
+  other.replace(other.find("0x00020192"), 10, "0x00000000");
+
+  const auto drive = compile(arm(""), eds);
+  const auto stated = compile(arm(""), other);
+  const auto denied = compile(arm(", profile: none"), eds);
+
+  EXPECT_TRUE(drive.plan.nodes.at(0).cia402);
+  EXPECT_EQ(drive.devices.at(0).model, "drive402");
+  EXPECT_THAT(drive.said("profile"), testing::HasSubstr("gives 1000:00 no value"));
+  EXPECT_FALSE(stated.plan.nodes.at(0).cia402);
+  EXPECT_FALSE(denied.plan.nodes.at(0).cia402);
+  EXPECT_EQ(denied.said("profile"), "");
+}
+
 // Joystick receivers send their TPDOs by themselves, and an NMT command would silence them.
 TEST(WithoutDeviceData, ANodeThatIsNotBootedIsHeardAllTheSame) {
   const auto net = compile(arm(", boot: false"));
