@@ -224,7 +224,18 @@ class ValueSteps {
     }
     auto value = bytes_of(sdo, *sub);
     if (!value) return;
+    if (sdo.object == ObjectKey{0x1006, 0}) compare_sync_period(sdo);
     write(sdo.object, std::move(*value), "sdo: " + label(dictionary_, sdo.object));
+  }
+
+  /// 0 is no supervision of SYNC, so nothing to compare.
+  void compare_sync_period(const SdoSpec& sdo) {
+    const auto* us = std::get_if<std::int64_t>(&sdo.value);
+    if (!context_.sync || us == nullptr || *us == 0 || *us == context_.sync_period_us) return;
+    report_.warning(sdo.pos, "sync-period",
+                    "node `" + spec_.name + "` is told a SYNC period of " + std::to_string(*us) +
+                        " us, it is " + std::to_string(context_.sync_period_us) +
+                        " us: it may take SYNC for lost (leave the entry out and takt sets it)");
   }
 
   /// A concise DCF may know more of the device than its EDS.

@@ -85,6 +85,20 @@ TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
   EXPECT_EQ(key(bus, "neck.hartbeat_producer").fate, KeyFate::wrong);
 }
 
+TEST_F(Import, TellsADeviceThatIsToldAnotherSyncPeriod) {
+  const auto bus = report(
+      "master: {sync_period: 20000}\n"
+      "arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 0x1006, value: 10000}]}\n"
+      "leg: {node_id: 3, dcf: drive.eds, sdo: [{index: 0x1006, value: 20000}]}\n"
+      "neck: {node_id: 4, dcf: drive.eds, sdo: [{index: 0x1006, value: 0}]}\n");
+
+  EXPECT_TRUE(bus.usable);
+  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
+  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("10000 us, it is 20000 us"));
+  EXPECT_EQ(key(bus, "leg.sdo[1]").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "neck.sdo[1]").fate, KeyFate::used);
+}
+
 TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
   const auto bus = report(
       "master: {sync_period: 10000}\n"
