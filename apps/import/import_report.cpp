@@ -5,6 +5,7 @@
 #include <set>
 
 #include "apps/import/key_table.hpp"
+#include "apps/import/unasked.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
@@ -314,6 +315,7 @@ ImportReport import_report(const std::filesystem::path& path) {
   if (tree.root() != nullptr) {
     judge_defaults(*tree.root(), rows);
     judge_overrides(*tree.root(), rows);
+    if (report.usable) report.unasked = unasked(*tree.root(), network.plan);
   }
   ignore_children(rows);
   for (Row& row : rows) {

@@ -28,9 +28,10 @@ struct ImportedKey {
 };
 
 struct ImportReport {
-  std::vector<ImportedKey> keys;  ///< in the order of the file
-  Findings others;                ///< of no key: device files, what is missing
-  bool usable = false;            ///< taktd would run it
+  std::vector<ImportedKey> keys;     ///< in the order of the file
+  Findings others;                   ///< of no key: device files, what is missing
+  bool usable = false;               ///< taktd would run it
+  std::vector<std::string> unasked;  ///< what taktd does besides that other readers do not
 
   std::size_t count(KeyFate fate) const noexcept;
 };

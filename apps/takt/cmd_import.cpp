@@ -52,6 +52,7 @@ void print_json(const Options& options, const ImportReport& report) {
   const nlohmann::ordered_json document{{"file", options.file},
                                         {"usable", report.usable},
                                         {"keys", std::move(keys)},
+                                        {"unasked", report.unasked},
                                         {"findings", std::move(others)}};
   fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
@@ -84,6 +85,8 @@ void print_text(const Options& options, const Imported& imported) {
     const std::string place = fmt::format("{}:{}", key.pos.line, key.pos.column);
     fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), what, key.why);
   }
+  if (!report.unasked.empty()) fmt::print("without a word in the file taktd sets:\n");
+  for (const std::string& line : report.unasked) fmt::print("  {}\n", line);
   for (const Finding& finding : report.others) fmt::print("{}\n", to_string(finding));
   if (is_nodelist(options)) {
     fmt::print("{}\n", last_line(options, imported));

@@ -99,6 +99,34 @@ TEST_F(Import, TellsADeviceThatIsToldAnotherSyncPeriod) {
   EXPECT_EQ(key(bus, "neck.sdo[1]").fate, KeyFate::used);
 }
 
+TEST_F(Import, TellsWhatIsDoneWithoutAWord) {
+  const auto bus = report(
+      "master: {node_id: 1, sync_period: 10000}\n"
+      "arm: {node_id: 2, dcf: drive.eds, heartbeat_producer: 50}\n"
+      "leg: {node_id: 3, dcf: drive.eds, heartbeat_consumer: false}\n"
+      "neck: {node_id: 4, dcf: drive.eds, sdo: [{index: 0x60C2, sub_index: 1, value: 10}]}\n");
+
+  EXPECT_THAT(bus.unasked,
+              testing::ElementsAre(
+                  "the master: heartbeat every 100 ms; `heartbeat_producer: 0`: none",
+                  "1016:01 of `arm`, `neck`: the device watches the master (node 1) for 300 ms; "
+                  "`heartbeat_consumer: false`: it does not",
+                  "60C2:01 of `arm`, `leg`: interpolation period = SYNC period; an entry in `sdo` "
+                  "has a value of its own",
+                  "1017:00 of `leg`, `neck`: heartbeat every 100 ms; `heartbeat_producer: 0`: "
+                  "none"));
+}
+
+TEST_F(Import, ATaktFileThatSaysAllHasNothingUnasked) {
+  const auto bus = report(
+      "master: {sync_period: 10000, heartbeat_producer: 100}\n"
+      "defaults: {dcf: drive.eds, heartbeat_producer: 50, heartbeat_consumer: true, profile: "
+      "none}\n"
+      "nodes: {arm: {node_id: 2}}\n");
+
+  EXPECT_THAT(bus.unasked, testing::IsEmpty());
+}
+
 TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
   const auto bus = report(
       "master: {sync_period: 10000}\n"
