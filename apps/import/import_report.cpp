@@ -56,6 +56,7 @@ struct Row {
   std::set<SourcePos> places;
   bool leaf = true;
   bool wrong_type = false;
+  bool unknown = false;        ///< what stands in it is read by nobody here
   std::size_t left_alone = 0;  ///< by so many nodes that are not guarded
 };
 
@@ -161,6 +162,7 @@ void apply(Row& row, const Finding& finding) {
   if (finding.rule == "guarding") ++row.left_alone;
   if (fate < row.key.fate) return;
   row.wrong_type = row.wrong_type || finding.rule == "wrong-type";
+  row.unknown = row.unknown || finding.rule == "unknown-key";
   const std::string_view reason =
       fate == KeyFate::ignored ? why_ignored(row.word) : std::string_view{};
   const std::string text = reason.empty() ? finding.message : std::string{reason};
@@ -183,7 +185,7 @@ void ignore(Row& row, const std::string& why) {
 void ignore_children(std::vector<Row>& rows) {
   for (const Row& parent : rows) {
     if (parent.leaf) continue;
-    const bool wrong = parent.key.fate == KeyFate::wrong && parent.wrong_type;
+    const bool wrong = parent.unknown || (parent.key.fate == KeyFate::wrong && parent.wrong_type);
     if (parent.key.fate != KeyFate::ignored && !wrong) continue;
     const std::string why = wrong ? "stands in `" + parent.key.path + "`" : parent.key.why;
     for (Row& row : rows) {

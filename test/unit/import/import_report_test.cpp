@@ -99,6 +99,17 @@ TEST_F(Import, TellsADeviceThatIsToldAnotherSyncPeriod) {
   EXPECT_EQ(key(bus, "neck.sdo[1]").fate, KeyFate::used);
 }
 
+TEST_F(Import, WhatStandsInAnUnknownKeyIsNotUsed) {
+  const auto bus = report(
+      "arm: {node_id: 2, dcf: drive.eds, driver: x::Drive, motor_channels: {1: {node_id: 7}}}\n"
+      "leg: {node_id: 3, dcf: drive.eds, motor_channels: {1: {node_id: 7}}}\n");
+
+  EXPECT_EQ(key(bus, "arm.motor_channels").fate, KeyFate::suspicious);
+  EXPECT_EQ(key(bus, "arm.motor_channels.1.node_id").fate, KeyFate::ignored);
+  EXPECT_EQ(key(bus, "leg.motor_channels").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "leg.motor_channels.1.node_id").fate, KeyFate::ignored);
+}
+
 TEST_F(Import, TellsWhatIsDoneWithoutAWord) {
   const auto bus = report(
       "master: {node_id: 1, sync_period: 10000}\n"
