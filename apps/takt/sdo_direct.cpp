@@ -25,7 +25,7 @@ class Drive {
   std::expected<std::size_t, LiveError> run(std::size_t total, const Progress& progress) {
     for (;;) {
       if (Interrupt::asked()) client_.cancel();
-      if (progress) progress(client_.progress(), total);
+      if (progress) progress(client_.progress(), total != 0 ? total : client_.announced());
       if (!send()) return std::unexpected{LiveError{"a frame could not be sent on " + bus_, 3}};
       if (const auto result = client_.take_result()) return told(*result);
       receive();

@@ -63,6 +63,8 @@ void NodeSession::follow_transfer(Time now) noexcept {
   SdoTransfer* const transfer = active_->request.transfer;
   if (transfer == nullptr) return;
   transfer->done.store(static_cast<std::uint32_t>(client_.progress()), std::memory_order_relaxed);
+  transfer->announced.store(static_cast<std::uint32_t>(client_.announced()),
+                            std::memory_order_relaxed);
   if (transfer->cancel.load(std::memory_order_relaxed)) client_.cancel();
   next_look_ = now + transfer_look;
 }

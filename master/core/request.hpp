@@ -30,8 +30,9 @@ enum class RequestKind : std::uint8_t {
 /// it over with a request and has it back with the reply; only `done` and `cancel` are shared.
 struct SdoTransfer {
   std::vector<std::byte> data;
-  std::atomic<std::uint32_t> done{0};  ///< bytes that are through; at the end all of them
-  std::atomic<bool> cancel{false};     ///< asks for an early end; it is aborted on the bus
+  std::atomic<std::uint32_t> done{0};       ///< bytes that are through; at the end all of them
+  std::atomic<std::uint32_t> announced{0};  ///< of an upload, by the device; 0: it does not say
+  std::atomic<bool> cancel{false};          ///< asks for an early end; it is aborted on the bus
 };
 
 /// A service asked of the bus thread by the front thread. Trivially copyable.

@@ -115,6 +115,11 @@ std::size_t SdoClient::progress() const noexcept {
   return done_;
 }
 
+std::size_t SdoClient::announced() const noexcept {
+  const bool by_block = state_ == State::block_upload;
+  return (by_block ? block_upload_.announced() : announced_).value_or(0);
+}
+
 std::optional<Frame> SdoClient::next_frame() const noexcept {
   if (to_send_) return to_send_;
   if (state_ == State::block_upload) return block_upload_.to_send();

@@ -70,6 +70,8 @@ class SdoClient {
   std::optional<NoBlock> take_no_block() noexcept;
   /// Bytes of the running transfer that are through.
   std::size_t progress() const noexcept;
+  /// Bytes that the device said the running upload has; 0: it did not say.
+  std::size_t announced() const noexcept;
 
   /// The master itself was away for so long: the server is not late by that.
   void excuse(Time away) noexcept {

@@ -66,6 +66,7 @@ void Transfers::begin(const transfer_t& message, Time now) {
   job->request.transfer = job->buffer;
   job->buffer->data.resize(static_cast<std::size_t>(message.total));
   job->buffer->done.store(0);
+  job->buffer->announced.store(0);
   job->buffer->cancel.store(false);
   if (job->request.kind == RequestKind::sdo_upload || message.total == 0) submit(*job);
   sinks_.state(state_of(*job));
@@ -202,9 +203,9 @@ transfer_state_t Transfers::state_of(const Job& job) const {
   state.id = job.id;
   state.sender = job.sender;
   state.stage = stages[static_cast<std::size_t>(job.stage)];
-  const bool length_known =
-      job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
-  state.total = length_known ? static_cast<std::int64_t>(job.buffer->data.size()) : 0;
+  const bool has_all = job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
+  state.total = has_all ? static_cast<std::int64_t>(job.buffer->data.size())
+                        : job.buffer->announced.load(std::memory_order_relaxed);
   state.received = static_cast<std::int64_t>(job.received);
   state.done = job.buffer->done.load(std::memory_order_relaxed);
   state.abort_code = job.abort_code;

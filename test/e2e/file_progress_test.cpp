@@ -42,6 +42,7 @@ TEST(FileProgress, IsToldOnTheWayAndAtTheEnd) {
 
   const Ended up = transfer("upload", "back.bin");
   EXPECT_EQ(up.exit_code, 0) << up.output;
+  EXPECT_NE(up.output.find(" of 10000 bytes, "), std::string::npos) << "announced: " << up.output;
   EXPECT_NE(up.output.find(" byte/s\n"), std::string::npos) << "on the way: " << up.output;
   EXPECT_NE(up.output.find("10000 bytes in "), std::string::npos) << up.output;
   EXPECT_EQ(read_file(folder / "back.bin"), content);

@@ -122,6 +122,22 @@ TEST_F(TransfersTest, AnUploadIsFetchedInParts) {
   EXPECT_EQ(states[2].data[0], 2048 % 251);
 }
 
+TEST_F(TransfersTest, AnUploadOnItsWayTellsWhatTheDeviceAnnounced) {
+  begin("upload", 4096);
+  EXPECT_EQ(last().total, 0);
+  buffers[0].announced = 2500;
+  buffers[0].done = 700;
+
+  transfers.take(message("status"), now);
+
+  EXPECT_EQ(last().total, 2500);
+  EXPECT_EQ(last().done, 700);
+  reply(SdoFault::cancelled);
+  transfers.take(message("end"), now);
+  begin("upload", 4096, 8);
+  EXPECT_EQ(last().total, 0) << "of another transfer";
+}
+
 TEST_F(TransfersTest, AFailureIsToldInWords) {
   begin("upload", 100);
   reply(SdoFault::aborted_by_device, 0x0601'0001);
