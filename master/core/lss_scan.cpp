@@ -1,14 +1,18 @@
 #include "master/core/lss_scan.hpp"
 
+#include <algorithm>
+
 namespace takt {
 namespace {
 
 constexpr std::uint8_t parts = 4;
+constexpr std::uint8_t most_restarts = 4;
 
 }  // namespace
 
 void LssFastScan::begin_part(std::uint8_t part) noexcept {
-  question_ = {.number = known_[part] & mask_[part], .part = part, .next = part};
+  const std::uint32_t number = part < confirmed_ ? address_[part] : known_[part] & mask_[part];
+  question_ = {.number = number, .part = part, .next = part};
   confirming_ = false;
   ask_below(32);
 }
@@ -16,9 +20,10 @@ void LssFastScan::begin_part(std::uint8_t part) noexcept {
 /// The highest unknown bit below `bit`; where there is none, the whole part is asked for again and
 /// the devices go on to the next one.
 void LssFastScan::ask_below(int bit) noexcept {
+  const std::uint32_t mask = question_.part < confirmed_ ? ~0U : mask_[question_.part];
   do {
     --bit;
-  } while (bit >= 0 && ((mask_[question_.part] >> bit) & 1) != 0);
+  } while (bit >= 0 && ((mask >> bit) & 1) != 0);
   confirming_ = bit < 0;
   question_.bit_check = static_cast<std::uint8_t>(confirming_ ? 0 : bit);
   if (confirming_) question_.next = static_cast<std::uint8_t>((question_.part + 1) % parts);
@@ -34,27 +39,45 @@ void LssFastScan::on_reaction(bool answered) noexcept {
 
 /// One lost or late answer must not make all devices unfound: silence counts the second time.
 void LssFastScan::on_anybody(bool answered) noexcept {
-  if (!answered && repeated_) state_ = LssScanState::nobody;
-  repeated_ = !answered;
-  if (answered) begin_part(0);
+  if (answered) {
+    doubtful_ = restarts_ != 0;
+    return begin_part(0);
+  }
+  if (doubtful_) state_ = restarts_ == 0 ? LssScanState::nobody : LssScanState::lost;
+  doubtful_ = true;
 }
 
-/// An answer that was lost or late has been taken for a 1: the part is asked for once more. A part
-/// with known bits may just belong to nobody.
+/// An answer that was lost or late has been taken for a 1 or for that of the next question, or
+/// the devices have gone on to the next part unheard. A part with known bits may just belong to
+/// nobody. Only a device that has gone to configuration state unheard makes a higher one the next
+/// that is found: a lost answer makes an address too high.
 void LssFastScan::on_confirm(bool answered) noexcept {
   const std::uint8_t part = question_.part;
   may_have_switched_ = may_have_switched_ || part + 1 == parts;
   if (answered) {
     address_[part] = question_.number;
-    repeated_ = false;
+    if (part >= confirmed_) doubtful_ = false;
+    confirmed_ = std::max(confirmed_, static_cast<std::uint8_t>(part + 1));
     if (part + 1 < parts) return begin_part(static_cast<std::uint8_t>(part + 1));
-    state_ = LssScanState::found;
-  } else if (!repeated_) {
-    repeated_ = true;
-    begin_part(part);
+    state_ = question_.number > unheard_ ? LssScanState::lost : LssScanState::found;
+  } else if (!doubtful_ || part < confirmed_) {
+    confirmed_ = std::min(confirmed_, part);
+    if (part + 1 == parts) unheard_ = std::min(unheard_, question_.number);
+    start_over();
   } else {
     state_ = mask_[part] != 0 ? LssScanState::nobody : LssScanState::lost;
   }
+}
+
+/// What is confirmed needs one question for each part, and leads the devices to where it was.
+void LssFastScan::start_over() noexcept {
+  if (restarts_ == most_restarts) {
+    state_ = LssScanState::lost;
+    return;
+  }
+  ++restarts_;
+  doubtful_ = true;
+  question_ = {};
 }
 
 void LssSlowScan::on_reaction(bool answered) noexcept {

@@ -30,10 +30,13 @@ class LssFastScan {
   /// A device that heard the last question is in configuration state, even where its answer was
   /// lost.
   bool may_have_switched() const noexcept { return may_have_switched_; }
-  /// A question had a reaction that can't be: wait for as long as may be.
-  bool doubtful() const noexcept { return repeated_; }
+  /// Wait for as long as may be: a question had a reaction that can't be, or this is the end,
+  /// where a late answer would confirm a wrong address or leave a device in configuration state.
+  bool doubtful() const noexcept { return doubtful_ || at_the_end(); }
 
  private:
+  bool at_the_end() const noexcept { return question_.bit_check == 0 && question_.part == 3; }
+  void start_over() noexcept;
   void begin_part(std::uint8_t part) noexcept;
   void ask_below(int bit) noexcept;
   void on_anybody(bool answered) noexcept;
@@ -45,7 +48,10 @@ class LssFastScan {
   lss::FastScan question_{};
   LssScanState state_ = LssScanState::running;
   bool confirming_ = false;
-  bool repeated_ = false;
+  bool doubtful_ = false;
+  std::uint8_t confirmed_ = 0;  // parts of address_
+  std::uint8_t restarts_ = 0;
+  std::uint32_t unheard_ = ~0U;  // lowest serial number that nobody has confirmed
   bool may_have_switched_ = false;
 };
 
