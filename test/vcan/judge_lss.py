@@ -107,7 +107,7 @@ class Tool:
         self.takt = binaries / "takt"
 
     def run(self, *words):
-        done = subprocess.run([self.takt, "lss", *words, "--bus", "vcan0"], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([self.takt, "lss", *words, "--bus", "vcan0"], capture_output=True, text=True, timeout=120)
         return done.returncode, done.stdout, done.stderr
 
     def json(self, *words):
