@@ -158,5 +158,34 @@ TEST(ObjectTypes, ADefstructInShortNotationIsExpanded) {
             Value{std::uint64_t{72057594037927935}});
 }
 
+TEST(DataType, HexadecimalOfARealIsItsBitPatternUnlessThatIsNextToNothing) {
+  const auto value = [](std::string_view type, std::string_view text) {
+    const auto file = read(var(type, text));
+    EXPECT_TRUE(has(file.findings, "real-bit-pattern")) << text;
+    return *file.dictionary.find(ObjectKey{0x2000, 0})->value();
+  };
+
+  EXPECT_EQ(value("0x0008", "0x00800000"), Value{0x1p-126});
+  EXPECT_EQ(value("0x0008", "0x00000000"), Value{0.0});
+  EXPECT_EQ(value("0x0008", "0xBF800000"), Value{-1.0});
+  EXPECT_EQ(value("0x0008", "0xFFFF"), Value{65535.0});
+  EXPECT_EQ(value("0x0011", "0x3FF0000000000000"), Value{1.0});
+  EXPECT_EQ(value("0x0011", "0xFFFFFFFF"), Value{4294967295.0});
+}
+
+TEST(DataType, MayBeAWordAsObjectTypeMay) {
+  const auto file = read(
+      "[2000]\nParameterName=r\nObjectType=Record\nSubNumber=1\n"
+      "[2000sub0]\nParameterName=n\nObjectType=VAR\nDataType=unsigned8\nAccessType=ro\n"
+      "[2001]\nParameterName=x\nDataType=REAL32\nAccessType=rw\nDefaultValue=0.5\n");
+
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::record);
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2000, 0})->type, DataType::unsigned8);
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2001, 0})->default_value, Value{0.5});
+  EXPECT_EQ(std::ranges::count(file.findings, "type-word", &Finding::rule), 3);
+  EXPECT_FALSE(has(file.findings, "number-unreadable"));
+  EXPECT_FALSE(has(file.findings, "sub-objects-of-var"));
+}
+
 }  // namespace
 }  // namespace takt
