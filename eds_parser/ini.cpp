@@ -160,9 +160,7 @@ class Reader {
 
   void read_header(std::string_view rest) {
     const auto close = rest.find(']');
-    if (close == std::string_view::npos) {
-      return leave_out("section-not-closed", "']' is missing", rest);
-    }
+    if (close == std::string_view::npos) return read_open_header(rest);
     const auto behind = trim(rest.substr(close + 1));
     if (!behind.empty() && behind.front() != ';' && report_.wants("text-after-section")) {
       report_.note(here(behind), "text-after-section",
@@ -171,6 +169,19 @@ class Reader {
     close_section();
     file_.sections.push_back({trim(rest.substr(1, close - 1)), here(rest),
                               static_cast<std::uint32_t>(file_.spots.size())});
+  }
+
+  /// What follows belongs to this section, whatever it is, and not to the one before.
+  void read_open_header(std::string_view rest) {
+    if (report_.wants("section-not-closed")) {
+      report_.warning(here(rest), "section-not-closed",
+                      "']' is missing behind " + quoted(rest) + "; read as if it were there");
+    }
+    close_section();
+    file_.sections.push_back({.name = trim(rest.substr(1)),
+                              .pos = here(rest),
+                              .first = static_cast<std::uint32_t>(file_.spots.size()),
+                              .closed = false});
   }
 
   void leave_out(std::string_view rule, std::string_view why, std::string_view line) {

@@ -104,10 +104,13 @@ struct IniSection {
   SourcePos pos;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+  bool closed = true;            ///< by ]
   bool has_decimal_sub = false;  ///< [2000sub128], see mark_decimal_subs()
 
   /// Blanks around the name: [ 2000 ].
-  bool padded() const noexcept { return name.data()[-1] != '[' || name.data()[name.size()] != ']'; }
+  bool padded() const noexcept {
+    return name.data()[-1] != '[' || (closed && name.data()[name.size()] != ']');
+  }
 };
 
 /// A file of sections, as EDS, DCF and CPJ are. Views point into the text given to read_ini, or

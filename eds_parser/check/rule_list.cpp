@@ -198,7 +198,7 @@ constexpr RuleInfo rules[] = {
      "[2000 sub1]"},
     {"section-name-form", Severity::warning, "an index with 0x, or a sub-index with leading zero",
      "[0x2000], [2000sub01]"},
-    {"section-not-closed", Severity::warning, "']' is missing", "[1000"},
+    {"section-not-closed", Severity::warning, "']' is missing; read as if it were there", "[1000"},
     {"section-spelling", Severity::warning, "[DeviceCommissioning]: CiA 306 has one m",
      "[DeviceCommissioning]"},
     {"standard-type", Severity::warning, "another DataType than CiA 301 gives the object",

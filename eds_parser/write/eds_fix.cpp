@@ -121,6 +121,7 @@ class FixPass {
   bool section_finding(const Finding& finding, const IniSection& section) {
     const std::string_view rule = finding.rule;
     if (rule == "section-spelling") return replace(section.name, "DeviceComissioning");
+    if (rule == "section-not-closed") return replace(section.name, std::string{section.name} + ']');
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule == "inline-comment" || rule == "octal-number") return named_entry(finding, section);
     if (rule != "section-name-form") return false;

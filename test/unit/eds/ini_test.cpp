@@ -67,8 +67,10 @@ TEST(Ini, TellsOfLinesItCannotUse) {
   EXPECT_EQ(test::find(findings, "no-equals")->pos.line, 3U);
   EXPECT_EQ(test::find(findings, "text-after-section")->pos, (SourcePos{4, 5}));
   EXPECT_EQ(test::find(findings, "hash-comment")->pos.line, 6U);
-  ASSERT_EQ(read.file.sections.size(), 1U);
-  EXPECT_EQ(read.entries(0).size(), 1U);
+  ASSERT_EQ(read.file.sections.size(), 2U);
+  EXPECT_EQ(read.file.sections[0].name, "a");
+  EXPECT_EQ(read.entries(0).size(), 0U);
+  EXPECT_EQ(read.entries(1).size(), 1U);
 }
 
 TEST(Ini, SaysOnceWhereTheEncodingIsAssumed) {

@@ -35,6 +35,20 @@ TEST(SectionName, BlanksAreLeftOutAndTold) {
   EXPECT_FALSE(has(record_with("[2000sub1]").findings, "section-name-blank"));
 }
 
+TEST(SectionName, AMissingBracketLosesNothing) {
+  for (const auto* header : {"[2000sub1", "[2000sub1 ", "[ 2000sub1"}) {
+    const auto file = record_with(header);
+
+    EXPECT_EQ(integer(file, {0x2000, 1}), 7) << header;
+    EXPECT_EQ(integer(file, {0x2000, 0}), 1) << header;
+    ASSERT_TRUE(has(file.findings, "section-not-closed")) << header;
+    EXPECT_EQ(find(file.findings, "section-not-closed")->pos, (SourcePos{line_of(10), 1}));
+  }
+  const auto lost = record_with("[2000sub1]\nParameterName=v\nDataType=6\nAccessType=rw\n[20");
+  EXPECT_EQ(integer(lost, {0x2000, 1}), std::nullopt);
+  EXPECT_TRUE(has(read_eds("[1000", "t.eds").findings, "section-not-closed"));
+}
+
 TEST(SectionName, ABlankBeforeAListIsLeftOutToo) {
   const auto file = read(
       "[2000]\nParameterName=g\nObjectType=8\nDataType=6\nAccessType=rw\nCompactSubObj=2\n"
