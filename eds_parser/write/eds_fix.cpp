@@ -122,6 +122,7 @@ class FixPass {
     const std::string_view rule = finding.rule;
     if (rule == "section-spelling") return replace(section.name, "DeviceComissioning");
     if (rule == "section-not-closed") return replace(section.name, std::string{section.name} + ']');
+    if (rule == "decimal-sub-index") return hexadecimal_subs(classify_section(section).index);
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule == "inline-comment" || rule == "octal-number") return named_entry(finding, section);
     if (rule != "section-name-form") return false;
@@ -132,6 +133,16 @@ class FixPass {
     const std::size_t digits = sub == std::string::npos ? sub : sub + 3;
     while (digits < name.size() - 1 && name[digits] == '0') name.erase(digits, 1);
     return replace(section.name, name);
+  }
+
+  bool hexadecimal_subs(std::uint16_t index) {
+    for (const IniSection& each : file_.sections) {
+      const SectionName name = classify_section(each);
+      if (!each.has_decimal_sub || name.index != index) continue;
+      const std::string_view start = each.name.substr(0, std::string_view{"2000sub"}.size());
+      replace(each.name, std::string{start} + hex(name.sub, 1).substr(2));
+    }
+    return true;
   }
 
   /// A finding at the section whose message begins with the key: `ObjectType: ...`.

@@ -91,6 +91,8 @@ std::vector<Case> cases() {
       {"section-name-form", with_objects(list, changed(plain, "[2000]", "[0x2000]")), "\n[2000]\n"},
       {"section-name-form", with_objects(list, changed(record, "[2000sub1]", "[2000sub01]")),
        "\n[2000sub1]\n"},
+      {"decimal-sub-index", with_objects(list, changed(record, "[2000sub1]", "[2000sub100]")),
+       "\n[2000sub64]\n"},
       {"section-not-closed", with_objects(list, changed(plain, "[2000]", "[2000")), "\n[2000]\n"},
       {"section-spelling",
        std::string{test::base} + "\n[DeviceCommissioning]\nNodeID=5\nBaudrate=500\n",
