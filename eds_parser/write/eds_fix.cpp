@@ -79,6 +79,8 @@ class FixPass {
       lists_.count(line);
     } else if (finding.rule == "list-numbers-gap") {
       lists_.renumber(line);
+    } else if (finding.rule == "wrong-list" && entry_at_.contains(line)) {
+      lists_.move(entry_at_[line].entry);
     } else if (finding.rule == "object-not-listed" && section_at_.contains(line)) {
       lists_.add(classify_section(*section_at_[line]).index);
     } else {

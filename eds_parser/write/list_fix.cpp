@@ -30,6 +30,13 @@ SectionKind ListFix::kind_of(std::uint16_t index) const {
   return manufacturer ? kinds[2] : kinds[1];
 }
 
+void ListFix::move(const IniEntry& entry) {
+  const auto index = parse_number(without_comment(entry.value));
+  if (!index || !index->hex || index->magnitude > 0xFFFF) return;  // else when 0x is there
+  drop(entry.line);
+  add(static_cast<std::uint16_t>(index->magnitude));
+}
+
 void ListFix::remove_line(const IniEntry& entry) {
   const auto key = static_cast<std::size_t>(entry.key.data() - text_.data());
   const std::size_t first = key - (entry.key_column - 1);

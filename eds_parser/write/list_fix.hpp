@@ -11,7 +11,7 @@
 namespace takt {
 
 /// Mends the three lists of objects: entries that repeat go, objects without an entry get one,
-/// numbers run from 1, the count is right.
+/// each stands in its list, numbers run from 1, the count is right.
 class ListFix {
  public:
   /// `touched` receives the lines that are not to be edited any more.
@@ -21,6 +21,8 @@ class ListFix {
 
   /// The entry on this line says what another one has said.
   void drop(std::uint32_t line) { dropped_.insert(line); }
+  /// The object of this entry belongs into another list.
+  void move(const IniEntry& entry);
   /// No list has this object.
   void add(std::uint16_t index) { added_.insert(index); }
   /// The list whose count or name is on this line is wrong in its count, or in its numbers.

@@ -83,6 +83,10 @@ std::vector<Case> cases() {
        "[ManufacturerObjects]\nSupportedObjects=1\n1=0x2000\n[2000]"},
       {"object-not-listed", with_objects(list, plain + object("2001", u16)),
        "SupportedObjects=2\n1=0x2000\n2=0x2001\n"},
+      {"wrong-list",
+       std::string{test::base} + "[OptionalObjects]\nSupportedObjects=2\n1=0x2000\n2=0x1008\n" +
+           plain + object("1008", u16),
+       "[OptionalObjects]\nSupportedObjects=1\n1=0x1008\n"},
       {"hex-without-prefix", with_objects("SupportedObjects=1\n1=2000\n", plain), "\n1=0x2000\n"},
       {"sub-number-wrong", with_objects(list, changed(record, "SubNumber=2", "SubNumber=9")),
        "SubNumber=2\n"},
