@@ -123,8 +123,11 @@ class FixPass {
   bool section_finding(const Finding& finding, const IniSection& section) {
     const std::string_view rule = finding.rule;
     if (rule == "section-spelling") return replace(section.name, "DeviceComissioning");
-    if (rule == "section-not-closed") return replace(section.name, std::string{section.name} + ']');
-    if (rule == "decimal-sub-index") return hexadecimal_subs(classify_section(section).index);
+    if (rule == "section-not-closed") {
+      return touched_.insert(section.pos.line).second &&
+             replace(section.name, std::string{section.name} + ']');
+    }
+    if (rule == "decimal-sub-index") return hexadecimal_subs();
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule == "inline-comment" || rule == "octal-number") return named_entry(finding, section);
     if (rule != "section-name-form") return false;
@@ -137,14 +140,20 @@ class FixPass {
     return replace(section.name, name);
   }
 
-  bool hexadecimal_subs(std::uint16_t index) {
-    for (const IniSection& each : file_.sections) {
-      const SectionName name = classify_section(each);
-      if (!each.has_decimal_sub || name.index != index) continue;
-      const std::string_view start = each.name.substr(0, std::string_view{"2000sub"}.size());
-      replace(each.name, std::string{start} + hex(name.sub, 1).substr(2));
+  /// All of the file or none: those that are left would no longer be taken for decimal.
+  bool hexadecimal_subs() {
+    if (subs_mended_) return *subs_mended_;
+    const auto is_free = [this](const IniSection& section) {
+      return !section.has_decimal_sub || !touched_.contains(section.pos.line);
+    };
+    subs_mended_ = std::ranges::all_of(file_.sections, is_free);
+    for (const IniSection& section : file_.sections) {
+      if (!*subs_mended_ || !section.has_decimal_sub) continue;
+      const std::string_view start = section.name.substr(0, std::string_view{"2000sub"}.size());
+      touched_.insert(section.pos.line);
+      replace(section.name, std::string{start} + hex(classify_section(section).sub, 1).substr(2));
     }
-    return true;
+    return *subs_mended_;
   }
 
   /// A finding at the section whose message begins with the key: `ObjectType: ...`.
@@ -277,6 +286,7 @@ class FixPass {
   std::map<std::uint32_t, Place> entry_at_;
   std::vector<std::size_t> line_starts_;
   std::map<std::uint16_t, std::set<std::uint8_t>> subs_;
+  std::optional<bool> subs_mended_;  ///< sub-indices in decimal; none: not tried yet
 };
 
 bool same(const std::optional<Value>& old, const std::optional<Value>& now) {

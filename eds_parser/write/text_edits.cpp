@@ -32,6 +32,7 @@ std::string TextEdits::apply() && {
   std::string out;
   std::size_t taken = 0;
   for (const auto& edit : edits_) {
+    if (edit.at < taken) continue;
     out += text_.substr(taken, edit.at - taken);
     const bool open = edit.is_line && !out.empty() && out.back() != '\n' && out.back() != '\r';
     if (open) out += line_end_;

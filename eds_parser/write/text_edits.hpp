@@ -12,7 +12,7 @@ class TextEdits {
  public:
   explicit TextEdits(std::string_view text);
 
-  /// `part` and `anchor` below are views into the text.
+  /// `part` and `anchor` below are views into the text. Of two edits of one place the first counts.
   void replace(std::string_view part, std::string with);
   /// Adds a line behind that which holds `anchor`; of two behind one line the first added is first.
   void insert_line_after(std::string_view anchor, std::string_view line);

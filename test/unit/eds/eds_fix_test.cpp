@@ -128,6 +128,24 @@ TEST(EdsFix, MendsEachRuleAndFindsItNoMore) {
   }
 }
 
+TEST(EdsFix, TwoFaultsOfOneSectionNameAreMendedOneAfterTheOther) {
+  std::string text{test::base};
+  text +=
+      "[ManufacturerObjects]\nSupportedObjects=1\n1=0x2000\n[2000]\nParameterName=r\n"
+      "ObjectType=9\nSubNumber=3\n";
+  for (const auto* header : {"[2000sub10", "[2000sub20]", "[2000sub100"}) {
+    text += std::string{header} + "\nParameterName=v\nDataType=6\nAccessType=rw\n";
+  }
+
+  const FixedEds fixed = fix_eds(text, "t.eds");
+
+  for (const auto* header : {"\n[2000subA]\n", "\n[2000sub14]\n", "\n[2000sub64]\n"}) {
+    EXPECT_THAT(fixed.text, HasSubstr(header));
+  }
+  EXPECT_FALSE(has(fixed.left, "section-not-closed"));
+  EXPECT_FALSE(has(fixed.left, "decimal-sub-index"));
+}
+
 TEST(EdsFix, EveryRuleThatIsSaidToBeMendedHasItsCase) {
   const std::vector<Case> all = cases();
   for (const std::string_view rule : fixable_rules) {
