@@ -35,8 +35,31 @@ std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootF
          "channel";
 }
 
+/// The newest reset before the failure, where the node has answered in this boot before it.
+const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootFailure& failure) {
+  const auto& steps = node.boot_plan.steps;
+  const BootStep* reset = nullptr;
+  bool answered = false;
+  for (std::size_t i = 0; i < steps.size() && i < failure.step; ++i) {
+    const bool is_reset =
+        steps[i].action == BootAction::nmt && (steps[i].command == NmtCommand::reset_node ||
+                                               steps[i].command == NmtCommand::reset_communication);
+    if (is_reset && answered) reset = &steps[i];
+    answered = answered || steps[i].action == BootAction::probe;
+  }
+  return reset;
+}
+
 std::string against_silence(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const std::string id = std::to_string(int{node.id.value()});
+  const BootStep* const reset = reset_of_a_node_that_was_there(node, failure);
+  if (failure.node_state == NmtState::unknown && reset != nullptr) {
+    const bool whole = reset->command == NmtCommand::reset_node;
+    return "the node was there, and did not come back from NMT reset " +
+           std::string{whole ? "node" : "communication"} + " (" + reset->purpose +
+           "): does it need longer to start (raise `boot_timeout_ms`), or has it another node id "
+           "now (`takt scan`)? Else switch it off and on";
+  }
   const std::string channel = about_channel(plan, node, failure);
   if (failure.node_state == NmtState::unknown && node.lss) {
     return against_missing_id(plan, node) + channel;

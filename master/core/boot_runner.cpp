@@ -80,7 +80,8 @@ void BootRunner::nmt_sent(Time /*now*/, SdoClient& client) noexcept {
   if (is_reset(current().command)) {
     client.drop();
     reset_sent_ = true;
-    guards_ = false;
+    guards_ = bootup_seen_ = false;
+    heard_ = NmtState::unknown;
     cob_id_object_.reset();
   }
   next();

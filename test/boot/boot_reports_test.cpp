@@ -135,6 +135,7 @@ std::vector<Case> cases() {
        "tpdo: {1: {event_timer: 50}}",
        {on(refuse_write, {0x1800, 5}, 0x0609'0031)}},
       // configuration
+      {"gone after the restore", "restore_configuration: 1", {fault(power_off, 72ms)}, 10s},
       {"restore refused", "restore_configuration: 1", {on(refuse_write, {0x1011, 1}, 0x0800'0020)}},
       {"store refused",
        "store_configuration: 1, " + setting,
