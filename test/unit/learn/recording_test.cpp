@@ -1,0 +1,167 @@
+// What lines a recording may hold, and who on the bus is a node or the master.
+#include "apps/learn/recording.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <random>
+#include <sstream>
+#include <unistd.h>
+
+#include "apps/learn/network_text.hpp"
+#include "eds_parser/eds.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+LearnedBus heard(const std::string& text, const std::string& interface = {}) {
+  std::istringstream in{text};
+  return read_recording(in, "boot.log", interface);
+}
+
+LearnedNetwork learned(const std::string& text) { return learned_network(heard(text), {}, {}); }
+
+std::string rules(const Findings& findings) {
+  std::string text;
+  for (const Finding& finding : findings) text += to_string(finding) + '\n';
+  return text;
+}
+
+/// A folder that is gone after the test.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("takt_recording_" + std::to_string(getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+};
+
+TEST(Learn, WhoStaysSilentWhenAllAreResetIsTheMaster) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 701#00\n(1.01) can0 000#8200\n(1.02) can0 702#00\n"
+      "(1.03) can0 602#4000100000000000\n(1.04) can0 582#4300100092010200\n");
+
+  EXPECT_THAT(network.text, HasSubstr("master:\n  node_id: 1\n"));
+  EXPECT_THAT(network.text, Not(HasSubstr("node_1:")));
+  EXPECT_THAT(rules(network.findings), Not(HasSubstr("no-master-id")));
+}
+
+TEST(Learn, ADeviceThatComesBackAfterTheResetOfAllIsNotTheMaster) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 703#00\n(1.01) can0 000#8200\n(1.02) can0 702#00\n(1.03) can0 703#00\n"
+      "(1.04) can0 602#4000100000000000\n(1.05) can0 582#4300100092010200\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_3:"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("no-master-id"));
+}
+
+TEST(Learn, NodeIdsThatAScanAsksInVainAreNoNodes) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 602#4000100000000000\n(1.01) can0 603#4000100000000000\n"
+      "(1.02) can0 583#4300100092010200\n(1.03) can0 604#4000100000000000\n"
+      "(1.20) can0 602#8000100000000405\n(1.21) can0 604#8000100000000405\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_3:"));
+  EXPECT_THAT(network.text, Not(HasSubstr("node_2:")));
+  EXPECT_EQ(network.made_files.size(), 1u);
+  EXPECT_THAT(rules(network.findings),
+              HasSubstr("2 node ids were asked by SDO and never heard (2, 4)"));
+}
+
+TEST(Learn, ANodeThatTheMasterCommandsByNameIsOneWithoutAnAnswerToo) {
+  const LearnedNetwork network =
+      learned("(1.00) can0 000#8202\n(1.01) can0 602#4000100000000000\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_2:"));
+}
+
+TEST(Learn, ReadsTheTerminalFormatToo) {
+  const LearnedNetwork network = learned(
+      " (009.100000)  can0  708   [1]  00\n (009.200000)  can0  608   [8]  2B 17 10 00 64 00 00 "
+      "00\n"
+      " (009.200500)  can0  588   [8]  60 17 10 00 00 00 00 00\n");
+
+  EXPECT_THAT(network.text, HasSubstr("heartbeat_producer: 100\n"));
+}
+
+TEST(Learn, AStrangeInterfaceNameStaysAName) {
+  const LearnedNetwork network = learned("(1.0) x\"},{ 701#00\n");
+
+  EXPECT_THAT(network.text, HasSubstr("bus: {interface: \"x\\\"},{\", bitrate_kbit: 1000}\n"));
+}
+
+TEST(Learn, LeavesOtherInterfacesOutAndSaysSo) {
+  const std::string log = "(1.0) can0 701#00\n(1.1) can1 702#00\n";
+
+  const LearnedBus first = heard(log);
+  const LearnedBus second = heard(log, "can1");
+
+  EXPECT_TRUE(first.nodes.contains(1) && !first.nodes.contains(2));
+  EXPECT_THAT(rules(first.findings), HasSubstr("--bus can1 learns from them"));
+  EXPECT_TRUE(second.nodes.contains(2) && !second.nodes.contains(1));
+}
+
+TEST(Learn, NamesTheLinesThatAreNoFrames) {
+  const LearnedBus bus = heard("hello\n(1.0) can0 701#00\n(1.1) can0 701##100\n\n");
+
+  EXPECT_EQ(bus.frames, 1u);
+  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:1:0: warning: not a frame of candump"));
+  EXPECT_THAT(rules(bus.findings), HasSubstr("boot.log:3:0: warning: not a frame of candump"));
+}
+
+TEST(Learn, ReadsDatedStampsAndPcanTraces) {
+  const LearnedBus dated = heard(
+      " (2023-01-31 23:59:59.900000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.000000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.100000)  can0  705   [1]  05\n"
+      " (2023-02-01 00:00:00.200000)  can0  705   [1]  05\n");
+  const LearnedBus traced = heard(
+      ";$FILEVERSION=1.1\n"
+      "     1)     100.0  Rx         0705  1  05\n     2)     200.0  Rx         0705  1  05\n"
+      "     3)     300.0  Rx         0705  1  05\n     4)     400.0  Rx         0705  1  05\n");
+
+  EXPECT_EQ(dated.nodes.at(5).heartbeats.median(), 100'000);
+  EXPECT_EQ(traced.nodes.at(5).heartbeats.median(), 100'000);
+  EXPECT_TRUE(traced.findings.empty());
+}
+
+TEST(Learn, SurvivesARecordingOfNoise) {
+  std::mt19937 random{7};
+  const auto any = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
+  std::string log;
+  for (int i = 0; i < 30'000; ++i) {
+    std::ostringstream line;
+    const unsigned id = any(4) == 0 ? any(0x800) : 0x580 + any(2) * 0x80 + 1 + any(3);
+    line << '(' << any(5) << '.' << any(1000) << ") can0 " << std::hex << std::uppercase;
+    line << hex(id, 3).substr(2) << '#';
+    const unsigned length = any(3) == 0 ? any(9) : 8;
+    for (unsigned b = 0; b < length; ++b) line << hex(any(256), 2).substr(2);
+    log += line.str() + (any(100) == 0 ? "\xFF\n" : "\n");
+  }
+
+  const LearnedNetwork network = learned(log);
+
+  Folder folder;
+  for (const auto& [name, content] : network.made_files) {
+    std::ofstream{folder.path / name} << content;
+    EXPECT_TRUE(read_eds(content, name).readable);
+  }
+  std::ofstream{folder.path / "net.yaml"} << network.text;
+  for (const Finding& finding : load_network(folder.path / "net.yaml").findings) {
+    EXPECT_NE(finding.rule, "syntax") << to_string(finding);
+    EXPECT_NE(finding.rule, "unknown-key") << to_string(finding);
+  }
+}
+
+TEST(Learn, ALineOfAnyLengthCostsNoMemory) {
+  const LearnedBus bus = heard(std::string(5'000'000, 'A') + "\n(1.0) can0 701#00\n");
+
+  EXPECT_EQ(bus.frames, 1u);
+}
+
+}  // namespace
+}  // namespace takt
