@@ -10,7 +10,8 @@ namespace {
 
 constexpr unsigned longest_data = 8;
 constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
-constexpr std::uint16_t most_service_frames = 16;
+constexpr Time::rep usual_service_frames = 16;  // in each 10 ms, unless the file says otherwise
+constexpr Time long_cycle = std::chrono::milliseconds{50};  // the master serves it each 10 ms
 constexpr int event_share = 4;  ///< event-driven outputs get at most a quarter of the period
 constexpr Time longest_window = std::chrono::milliseconds{50};
 constexpr Time shortest_margin = std::chrono::microseconds{20};
@@ -86,9 +87,11 @@ class CycleCompiler {
     const Time left =
         cycle_.period - wire.inputs_wire - wire.outputs_wire - cycle_.quiet_before_sync;
     const Time pair = wire_time(service_pair_bits, plan_.bitrate);
-    const Time::rep pairs = left / pair;
+    const Time span = cycle_.period < long_cycle ? cycle_.period : Time{0};
+    const Time::rep usual =
+        usual_service_frames * std::max<Time::rep>(span / std::chrono::milliseconds{10}, 1);
     cycle_.service_frames = spec_.master.service_frames.value_or(
-        static_cast<std::uint16_t>(std::clamp<Time::rep>(pairs, 1, most_service_frames)));
+        static_cast<std::uint16_t>(std::clamp<Time::rep>(left / pair, 1, usual)));
   }
 
   void judge(const TimeBudget& wire) {

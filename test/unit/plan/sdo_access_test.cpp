@@ -115,6 +115,18 @@ TEST(SdoAccess, RefusesWhatIsIncompleteOrOutOfRange) {
   EXPECT_EQ(net.complaints().size(), 6U);
 }
 
+TEST(SdoAccess, ServiceFramesAreSixteenInEachTenMilliseconds) {
+  const auto frames = [](const std::string& period) {
+    return compile("master: {sync_period: " + period + "}\nnodes: {arm: {node_id: 5, dcf: x}}\n")
+        .plan.cycle.service_frames;
+  };
+  EXPECT_EQ(frames("10000"), 16);
+  EXPECT_EQ(frames("19000"), 16);
+  EXPECT_EQ(frames("40000"), 64);
+  EXPECT_EQ(frames("49999"), 64);
+  EXPECT_EQ(frames("50000"), 16);  // served each 10 ms
+}
+
 TEST(SdoAccess, ServiceFramesOfACycleCanBeChosen) {
   const auto net = compile(
       "master: {sync_period: 10000, service_frames: 40}\n"
