@@ -43,10 +43,10 @@ struct LearnedNode {
   std::uint32_t first_line = 0;
   bool booted_up = false;
   bool deaf_to_reset = false;  ///< no boot-up message since the newest reset of all nodes
-  bool reset_node = false;    ///< newest reset was by NMT reset node, else communication
-  bool started = false;       ///< by an NMT command of its own
-  bool addressed = false;     ///< any NMT command of its own
-  std::uint64_t answers = 0;  ///< SDO frames of the device
+  bool reset_node = false;     ///< newest reset was by NMT reset node, else communication
+  bool started = false;        ///< by an NMT command of its own
+  bool addressed = false;      ///< any NMT command of its own
+  std::uint64_t answers = 0;   ///< SDO frames of the device
   PeriodMeter heartbeats;
   PeriodMeter guard_requests;
   std::vector<LearnedBoot> boots;
