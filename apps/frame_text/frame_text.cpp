@@ -1,5 +1,6 @@
 #include "apps/frame_text/frame_text.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 
@@ -66,12 +67,14 @@ std::string_view master_text(std::uint32_t id) {
 }  // namespace
 
 FrameMeaning FrameText::nmt(const Frame& frame) const {
-  const auto message = decode_nmt(frame);
+  Frame command = frame;
+  command.length = std::min<std::uint8_t>(frame.length, 2);
+  const auto message = decode_nmt(command);
   if (!message) return {.service = "NMT", .text = "not a command: " + bytes_text(frame.payload())};
   const std::string who = message->node == 0 ? "all nodes" : names_.node(message->node);
-  return {.service = "NMT",
-          .node = message->node,
-          .text = fmt::format("{} {}", command_text(message->command), who)};
+  std::string text = fmt::format("{} {}", command_text(message->command), who);
+  if (frame.length > 2) text += fmt::format(" ({} bytes, always 2)", frame.length);
+  return {.service = "NMT", .node = message->node, .text = std::move(text)};
 }
 
 FrameMeaning FrameText::sync(const Frame& frame) const {
