@@ -14,24 +14,34 @@ constexpr std::string_view of_nodes = "has no effect: write it to the nodes, or 
 
 constexpr std::array<std::uint32_t, 9> standard_rates{10, 20, 50, 100, 125, 250, 500, 800, 1000};
 
-/// kbit/s; a value in bit/s is recognised and refused with a sentence.
+bool is_standard_rate(std::uint32_t kbit) {
+  return std::ranges::find(standard_rates, kbit) != standard_rates.end();
+}
+
+/// kbit/s. What can only be bit/s is taken for that in `baudrate`, which does not say its unit.
 void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_t>& out) {
   Sourced<std::uint32_t> rate;
   reader.integer(key, rate, {1, 100'000'000, " kbit/s"});
   if (!rate.given) return;
+  NetworkReport& report = reader.report();
   const std::string written = "`" + std::string{key} + "` is in kbit/s";
-  if (*rate > 1000) {
-    const bool is_bits = std::ranges::find(standard_rates, *rate / 1000) != standard_rates.end();
-    reader.report().error(rate.pos, "unit",
-                          written + ": " + std::to_string(*rate) + " would be " +
-                              std::to_string(*rate / 1000) + " Mbit/s; CAN ends at 1000" +
-                              (is_bits ? ", write " + std::to_string(*rate / 1000) : ""));
+  const std::uint32_t kbit = *rate / 1000;
+  const bool is_bits = *rate > 1000 && *rate % 1000 == 0 && is_standard_rate(kbit);
+  if (is_bits && key == "baudrate") {
+    report.warning(rate.pos, "unit",
+                   written + ": " + std::to_string(*rate) + " is taken for bit/s, CAN ends at " +
+                       "1000 kbit/s; write " + std::to_string(kbit));
+    rate.value = kbit;
+  } else if (*rate > 1000) {
+    report.error(rate.pos, "unit",
+                 written + ": " + std::to_string(*rate) + " would be " + std::to_string(kbit) +
+                     " Mbit/s; CAN ends at 1000" +
+                     (is_bits ? ", write " + std::to_string(kbit) : ""));
     return;
-  }
-  if (std::ranges::find(standard_rates, *rate) == standard_rates.end()) {
-    reader.report().warning(rate.pos, "bit-rate",
-                            written + " and " + std::to_string(*rate) +
-                                " is no CANopen rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
+  } else if (!is_standard_rate(*rate)) {
+    report.warning(rate.pos, "bit-rate",
+                   written + " and " + std::to_string(*rate) +
+                       " is no CANopen rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
   }
   out = rate;
 }

@@ -218,7 +218,7 @@ TEST_F(Import, PutsAnErrorToItsKey) {
       "      tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6099}]}}}\n");
 
   EXPECT_FALSE(bus.usable);
-  EXPECT_EQ(key(bus, "master.baudrate").fate, KeyFate::wrong);
+  EXPECT_EQ(key(bus, "master.baudrate").fate, KeyFate::suspicious);
   EXPECT_THAT(key(bus, "master.baudrate").why, HasSubstr("write 1000"));
   EXPECT_EQ(key(bus, "arm.sync_perod").fate, KeyFate::wrong);
   EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[1]").fate, KeyFate::used);

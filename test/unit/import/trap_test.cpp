@@ -127,7 +127,7 @@ TEST_F(Trap, AnUnknownKeyIsAnErrorWithTheKeyThatWasMeant) {
 
 TEST_F(Trap, AValueInTheWrongUnitIsRefused) {
   EXPECT_THAT(errors(load("", "sync_period: 10")), HasSubstr("for 10 ms write 10000"));
-  EXPECT_THAT(errors(load("", "baudrate: 500000")), HasSubstr("write 500"));
+  EXPECT_THAT(errors(load("", "baudrate: 512000")), HasSubstr("CAN ends at 1000"));
 }
 
 TEST_F(Trap, AQuotedFalseIsFalse) {

@@ -102,12 +102,22 @@ TEST(ReadNetwork, UnknownKeysGetASuggestion) {
   EXPECT_THAT(net.said("unknown-key"), HasSubstr("did you mean `master`?"));
 }
 
-TEST(ReadNetwork, ABitRateInBitsPerSecondIsRefusedWithASentence) {
+TEST(ReadNetwork, ABaudrateThatCanOnlyBeBitsPerSecondIsTakenForThat) {
   const auto net = read(with_node("master: {baudrate: 500000}\n"));
 
-  EXPECT_THAT(net.complaints(), ElementsAre("1:20 error [unit]"));
+  EXPECT_THAT(net.complaints(), ElementsAre("1:20 warning [unit]"));
   EXPECT_THAT(net.said("unit"), HasSubstr("kbit/s"));
   EXPECT_THAT(net.said("unit"), HasSubstr("write 500"));
+  EXPECT_EQ(*net.spec.master.baudrate_kbit, 500U);
+}
+
+TEST(ReadNetwork, ABitRateOutOfRangeIsRefusedWithASentence) {
+  const auto odd = read(with_node("master: {baudrate: 512000}\n"));
+  const auto own = read(with_node("bus: {bitrate_kbit: 500000}\n"));
+
+  EXPECT_THAT(odd.complaints(), ElementsAre("1:20 error [unit]"));
+  EXPECT_THAT(own.complaints(), ElementsAre("1:21 error [unit]"));
+  EXPECT_THAT(own.said("unit"), HasSubstr("write 500"));
 }
 
 TEST(ReadNetwork, ASyncPeriodInMillisecondsIsRefusedWithASentence) {
