@@ -31,6 +31,7 @@ constexpr std::uint32_t default_boot_timeout_ms = 3000;
 constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint8_t stand_in_id = 127;
+constexpr int stop_cycles = 10;  // an ordered stop without axes takes five
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
@@ -102,10 +103,13 @@ class NetworkCompiler {
                                                          : MandatoryLoss::only_it,
                     .boot_time = milliseconds(*master.boot_time_ms),
                     .nmt_inhibit = std::chrono::microseconds{100} * *master.nmt_inhibit_time};
-    bus.stop_timeout = milliseconds(*master.stop_timeout_ms);
     bus.cycle.sync = *master.sync_period_us != 0;
     bus.cycle.period =
         std::chrono::microseconds{bus.cycle.sync ? *master.sync_period_us : *master.cycle_us};
+    bus.stop_timeout = milliseconds(*master.stop_timeout_ms);
+    if (!master.stop_timeout_ms.given) {
+      bus.stop_timeout = std::max(bus.stop_timeout, stop_cycles * bus.cycle.period);
+    }
     bus.cycle.sync_cob_id = CobId::base(*master.sync_cob_id);
     bus.cycle.sync_overflow = *master.sync_overflow;
     bus.time = {.period = milliseconds(*master.time_period_ms),

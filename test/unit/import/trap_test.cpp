@@ -130,6 +130,14 @@ TEST_F(Trap, AValueInTheWrongUnitIsRefused) {
   EXPECT_THAT(errors(load("", "baudrate: 512000")), HasSubstr("CAN ends at 1000"));
 }
 
+// The tutorial of Lely: a SYNC each second, and outputs that have to be safe before the end.
+TEST_F(Trap, AnOrderedStopHasTheTimeThatASlowCycleNeeds) {
+  EXPECT_GE(load("", "sync_period: 1000000").plan.stop_timeout, std::chrono::seconds{10});
+  EXPECT_EQ(load("", "sync_period: 10000").plan.stop_timeout, std::chrono::seconds{5});
+  EXPECT_EQ(load("", "sync_period: 1000000, stop_timeout: 3000").plan.stop_timeout,
+            std::chrono::seconds{3});
+}
+
 TEST_F(Trap, AQuotedFalseIsFalse) {
   const auto network = load("tpdo: {1: {enabled: \"false\"}}");
 
