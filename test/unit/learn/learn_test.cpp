@@ -322,56 +322,6 @@ TEST(Learn, AnObjectWrittenTwiceStaysTwiceInItsOrder) {
                         "      - {index: 0x2000, sub_index: 0, value: 2, again: true}"));
 }
 
-TEST(Learn, ADeviceWhoseHeartbeatIsHeardHas1017ThoughNobodyWroteIt) {
-  const Folder folder;
-  std::string log = "(1.0) can0 000#8206\n(1.1) can0 706#00\n";
-  for (int i = 12; i < 30; ++i) log += "(" + std::to_string(i) + ".0) can0 706#05\n";
-  const LearnedNetwork network = learned(log);
-  std::ofstream{folder.path / "net.yaml"} << network.text;
-  for (const auto& [name, text] : network.made_files) std::ofstream{folder.path / name} << text;
-
-  const LoadedNetwork again = load_network(folder.path / "net.yaml");
-
-  EXPECT_THAT(network.text, HasSubstr("    heartbeat_producer: 1000   # as measured\n"));
-  EXPECT_FALSE(has_error(again.findings)) << rules(again.findings);
-}
-
-TEST(Learn, APdoThatIsOnWithoutAMappingIsNotTaken) {
-  const std::string log =
-      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
-      "(1.2) can0 606#2F001A0000000000\n(1.3) can0 586#60001A0000000000\n"
-      "(1.4) can0 606#2F00180201000000\n(1.5) can0 586#6000180200000000\n"
-      "(1.6) can0 606#2300180186010000\n(1.7) can0 586#6000180100000000\n";
-
-  EXPECT_THAT(
-      learned(log).text,
-      HasSubstr(
-          "      # 1: {cob_id: 0x186, transmission: 1}  its mapping is not in the recording\n"));
-  EXPECT_THAT(learned(log).text, Not(HasSubstr("mapping: []")));
-}
-
-TEST(Learn, WhatAMadeDeviceFileHoldsStandsInTheNetworkFileToo) {
-  const LearnedNetwork network = learned(
-      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
-      "(1.2) can0 606#2F001A0001000000\n(1.3) can0 586#60001A0000000000\n"
-      "(1.4) can0 606#23001A0110004160\n(1.5) can0 586#60001A0100000000\n"
-      "(1.6) can0 606#2F00180602000000\n(1.7) can0 586#6000180600000000\n"
-      "(1.8) can0 606#2B0018030A000000\n(1.9) can0 586#6000180300000000\n");
-
-  EXPECT_THAT(network.text, HasSubstr("inhibit_time: 10, sync_start: 2"));
-}
-
-TEST(Learn, AnInterpolationPeriodStaysWhereTheDeviceFileShowsNoDrive) {
-  std::string log =
-      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
-      "(1.2) can0 606#4000100000000000\n(1.3) can0 586#4300100092010200\n"
-      "(1.4) can0 606#2FC260010A000000\n(1.5) can0 586#60C2600100000000\n"
-      "(1.6) can0 000#0106\n";
-  for (int i = 10; i < 60; ++i) log += "(2." + std::to_string(i) + ") can0 080#\n";
-
-  EXPECT_THAT(learned(log).text, HasSubstr("{index: 0x60C2, sub_index: 1, value: 10}"));
-}
-
 TEST(PeriodMeter, FindsTheTimeThatSomebodyWrote) {
   EXPECT_EQ(as_configured(1999), 2000);
   EXPECT_EQ(as_configured(10'012), 10'000);

@@ -1,0 +1,78 @@
+// Recordings that begin in the middle, lack frames, or leave things unsaid.
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <unistd.h>
+
+#include "apps/learn/network_text.hpp"
+#include "apps/learn/recording.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+LearnedNetwork learned(const std::string& text) {
+  std::istringstream in{text};
+  return learned_network(read_recording(in, "boot.log", {}), {}, {});
+}
+
+TEST(IncompleteRecording, ADeviceWhoseHeartbeatIsHeardHas1017ThoughNobodyWroteIt) {
+  std::string log = "(1.0) can0 000#8206\n(1.1) can0 706#00\n";
+  for (int i = 12; i < 30; ++i) log += "(" + std::to_string(i) + ".0) can0 706#05\n";
+  const LearnedNetwork network = learned(log);
+  const fs::path folder = fs::temp_directory_path() / ("takt_cut_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream{folder / "net.yaml"} << network.text;
+  for (const auto& [name, text] : network.made_files) std::ofstream{folder / name} << text;
+
+  const LoadedNetwork again = load_network(folder / "net.yaml");
+  fs::remove_all(folder);
+
+  EXPECT_THAT(network.text, HasSubstr("    heartbeat_producer: 1000   # as measured\n"));
+  EXPECT_FALSE(has_error(again.findings)) << network.text;
+}
+
+TEST(IncompleteRecording, APdoThatIsOnWithoutAMappingIsNotTaken) {
+  const std::string log =
+      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+      "(1.2) can0 606#2F001A0000000000\n(1.3) can0 586#60001A0000000000\n"
+      "(1.4) can0 606#2F00180201000000\n(1.5) can0 586#6000180200000000\n"
+      "(1.6) can0 606#2300180186010000\n(1.7) can0 586#6000180100000000\n";
+
+  EXPECT_THAT(
+      learned(log).text,
+      HasSubstr(
+          "      # 1: {cob_id: 0x186, transmission: 1}  its mapping is not in the recording\n"));
+  EXPECT_THAT(learned(log).text, Not(HasSubstr("mapping: []")));
+}
+
+TEST(IncompleteRecording, WhatAMadeDeviceFileHoldsStandsInTheNetworkFileToo) {
+  const LearnedNetwork network = learned(
+      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+      "(1.2) can0 606#2F001A0001000000\n(1.3) can0 586#60001A0000000000\n"
+      "(1.4) can0 606#23001A0110004160\n(1.5) can0 586#60001A0100000000\n"
+      "(1.6) can0 606#2F00180602000000\n(1.7) can0 586#6000180600000000\n"
+      "(1.8) can0 606#2B0018030A000000\n(1.9) can0 586#6000180300000000\n");
+
+  EXPECT_THAT(network.text, HasSubstr("inhibit_time: 10, sync_start: 2"));
+}
+
+TEST(IncompleteRecording, AnInterpolationPeriodStaysWhereTheDeviceFileShowsNoDrive) {
+  std::string log =
+      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+      "(1.2) can0 606#4000100000000000\n(1.3) can0 586#4300100092010200\n"
+      "(1.4) can0 606#2FC260010A000000\n(1.5) can0 586#60C2600100000000\n"
+      "(1.6) can0 000#0106\n";
+  for (int i = 10; i < 60; ++i) log += "(2." + std::to_string(i) + ") can0 080#\n";
+
+  EXPECT_THAT(learned(log).text, HasSubstr("{index: 0x60C2, sub_index: 1, value: 10}"));
+}
+
+}  // namespace
+}  // namespace takt
