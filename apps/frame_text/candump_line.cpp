@@ -67,6 +67,19 @@ bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& l
   return true;
 }
 
+/// Colours of `-c`.
+std::string without_escapes(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\x1b') {
+      plain += text[i];
+      continue;
+    }
+    while (i < text.size() && text[i] != 'm') ++i;
+  }
+  return plain;
+}
+
 /// `(1436509052.249713)`, or `(2015-07-10 08:17:32.249713)` of -tA. False: it has no end.
 bool read_stamp(std::span<const std::string_view>& words, CandumpLine& line) {
   if (words.empty() || !words[0].starts_with('(')) return true;
@@ -90,9 +103,11 @@ std::span<const std::string_view> without_direction(std::span<const std::string_
 }  // namespace
 
 std::optional<CandumpLine> parse_candump(std::string_view text) {
-  const std::vector<std::string_view> all = words_of(text);
-  std::span<const std::string_view> words{all};
+  const bool coloured = text.find('\x1b') != std::string_view::npos;
+  const std::string plain = coloured ? without_escapes(text) : std::string{};
+  const std::vector<std::string_view> all = words_of(coloured ? plain : text);
   CandumpLine line;
+  std::span<const std::string_view> words{all};
   if (!read_stamp(words, line)) return {};
   if (words.size() < 2) return {};
   line.interface = words[0];
