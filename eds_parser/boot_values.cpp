@@ -160,7 +160,7 @@ class ValueSteps {
   std::int64_t exponent_of(ObjectKey key) const {
     const SdoSpec* own = configured_value(key);
     const auto* power = own == nullptr ? nullptr : std::get_if<std::int64_t>(&own->value);
-    if (power != nullptr) return *power;
+    if (power != nullptr) return static_cast<std::int8_t>(*power);  // 253 in a file of UNSIGNED8
     const SubObject* sub = dictionary_.find(key);
     const bool of_dcf = dictionary_.is_dcf && sub != nullptr;
     return of_dcf ? integer_of(sub->parameter_value).value_or(-3) : -3;

@@ -103,6 +103,19 @@ TEST(WithoutDeviceData, AFileWithoutDeviceTypeIsOfADriveByItsObjects) {
   EXPECT_EQ(denied.said("profile"), "");
 }
 
+// A file that takt learn makes has UNSIGNED8 for what it saw: 253 is -3.
+TEST(WithoutDeviceData, AnExponentOfUnsignedTypeHasASign) {
+  std::string eds = test::tiny_eds();
+  const std::size_t type = eds.find("DataType=", eds.find("[60C2sub2]"));
+  eds.replace(type, eds.find('\n', type) - type, "DataType=0x0005");
+  const std::string sdo =
+      ", sdo: [{index: 0x60C2, sub_index: 1, value: 20}, {index: 0x60C2, sub_index: 2, value: "
+      "253}]";
+
+  EXPECT_THAT(compile(arm(sdo), eds).said("interpolation-period"),
+              testing::HasSubstr("makes 20000 us"));
+}
+
 // Joystick receivers send their TPDOs by themselves, and an NMT command would silence them.
 TEST(WithoutDeviceData, ANodeThatIsNotBootedIsHeardAllTheSame) {
   const auto net = compile(arm(", boot: false"));
