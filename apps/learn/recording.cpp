@@ -82,7 +82,8 @@ void Recording::add(std::string_view text, std::uint32_t line) {
     return;
   }
   ++bus_.frames;
-  us_ = microseconds(parsed->stamp);
+  const auto before = std::exchange(us_, microseconds(parsed->stamp));
+  if (before && us_ && *us_ < *before) ++backward_;
   if (us_ && !first_us_) first_us_ = us_;
   if (us_ && *us_ >= *first_us_) bus_.seconds = static_cast<double>(*us_ - *first_us_) / 1e6;
   if (parsed->error_frame) {
@@ -235,6 +236,11 @@ LearnedBus Recording::take() {
   if (strange_ > 3) {
     tell(Severity::warning, "not-candump", 0,
          std::to_string(strange_) + " lines are no frames and were left out");
+  }
+  if (backward_ > bus_.frames / 8) {
+    tell(Severity::error, "no-times", 0,
+         "the times go back again and again, as differences do (candump -td): no period is right; "
+         "record with `candump -L`");
   }
   if (foreign_ != 0) {
     tell(Severity::note, "other-interface", 0,

@@ -36,7 +36,8 @@ class Recording {
   std::uint32_t line_ = 0;
   bool all_reset_ = false;  // newest reset of all was by NMT reset node
   std::uint64_t strange_ = 0;
-  std::uint64_t foreign_ = 0;  // frames of other interfaces
+  std::uint64_t foreign_ = 0;   // frames of other interfaces
+  std::uint64_t backward_ = 0;  // frames with an earlier time than the one before
   std::string foreign_name_;
   std::optional<std::int64_t> us_;
   std::optional<std::int64_t> first_us_;

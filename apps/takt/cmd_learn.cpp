@@ -94,7 +94,8 @@ int run(const Options& options) {
   }
   const auto written = write_whole_file(options.out, network.text);
   if (!written) return complain(written.error(), 1);
-  return to_stdout ? 0 : judge(options.out);
+  const int judged = to_stdout ? 0 : judge(options.out);
+  return has_error(network.findings) ? 1 : judged;
 }
 
 }  // namespace

@@ -74,5 +74,24 @@ TEST(IncompleteRecording, AnInterpolationPeriodStaysWhereTheDeviceFileShowsNoDri
   EXPECT_THAT(learned(log).text, HasSubstr("{index: 0x60C2, sub_index: 1, value: 10}"));
 }
 
+TEST(IncompleteRecording, TimesThatAreDifferencesAreAnError) {
+  std::string log = "(000.000000) can0 000#8206\n(000.100000) can0 706#00\n";
+  for (int i = 0; i < 20; ++i) log += "(000.009500) can0 080#\n(000.000500) can0 186#11\n";
+
+  std::istringstream in{log};
+  EXPECT_TRUE(has_error(read_recording(in, "boot.log", {}).findings));
+}
+
+TEST(IncompleteRecording, DatesAreTimesOfTheWallClock) {
+  std::string log =
+      "(2026-01-31 23:59:59.000000) can0 000#8206\n"
+      "(2026-01-31 23:59:59.100000) can0 706#00\n";
+  for (int i = 10; i < 60; ++i) {
+    log += "(2026-02-01 00:00:00." + std::to_string(i) + "0000) can0 080#\n";
+  }
+
+  EXPECT_THAT(learned(log).text, HasSubstr("sync_period: 10000\n"));
+}
+
 }  // namespace
 }  // namespace takt
