@@ -18,7 +18,8 @@ std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, s
   std::vector<std::uint32_t> list;
   for (std::uint8_t sub = 1; sub <= count; ++sub) {
     const auto entry = at<std::uint32_t>(values, {index, sub});
-    if (!entry) return {};
+    const std::uint32_t bits = entry.value_or(0) & 0xFFU;
+    if (bits == 0 || bits > 64) return {};
     list.push_back(*entry);
   }
   return list;

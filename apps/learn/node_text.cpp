@@ -216,7 +216,8 @@ class NodeText {
     }
     const std::string mapping = mapping_text(pdo);
     const bool unknown = mapping.empty() && what_.made;
-    text_ += fmt::format("      {}{}: {{{}{}}}{}\n", unknown ? "# " : "", pdo.number, keys, mapping,
+    if (!mapping.empty()) add(mapping);
+    text_ += fmt::format("      {}{}: {{{}}}{}\n", unknown ? "# " : "", pdo.number, keys,
                          unknown ? "  its mapping is not in the recording" : "");
   }
 
@@ -247,7 +248,7 @@ class NodeText {
       if (!multiplexed) unmapped_ += fmt::format(" {}PDO{}", pdo.is_tpdo ? 'T' : 'R', pdo.number);
       return {};
     }
-    std::string text = ", mapping: [";
+    std::string text = "mapping: [";
     for (std::size_t i = 0; i < pdo.mapping->size(); ++i) {
       const std::uint32_t entry = (*pdo.mapping)[i];
       const ObjectKey key{static_cast<std::uint16_t>(entry >> 16U),

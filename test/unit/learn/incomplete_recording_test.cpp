@@ -74,6 +74,26 @@ TEST(IncompleteRecording, AnInterpolationPeriodStaysWhereTheDeviceFileShowsNoDri
   EXPECT_THAT(learned(log).text, HasSubstr("{index: 0x60C2, sub_index: 1, value: 10}"));
 }
 
+TEST(IncompleteRecording, AMappingAloneIsAPdo) {
+  const std::string text = learned(
+                               "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+                               "(1.2) can0 606#2F001A0001000000\n(1.3) can0 586#60001A0000000000\n"
+                               "(1.4) can0 606#23001A0110004160\n(1.5) can0 586#60001A0100000000\n")
+                               .text;
+
+  EXPECT_THAT(text, HasSubstr("      1: {mapping: [{index: 0x6041}]}\n"));
+}
+
+TEST(IncompleteRecording, AnEntryThatNoPdoHoldsIsNoMapping) {
+  const std::string text = learned(
+                               "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+                               "(1.2) can0 606#2F001A0001000000\n(1.3) can0 586#60001A0000000000\n"
+                               "(1.4) can0 606#23001A01C8004160\n(1.5) can0 586#60001A0100000000\n")
+                               .text;
+
+  EXPECT_THAT(text, HasSubstr("# 1: {}  its mapping is not in the recording\n"));
+}
+
 TEST(IncompleteRecording, TimesThatAreDifferencesAreAnError) {
   std::string log = "(000.000000) can0 000#8206\n(000.100000) can0 706#00\n";
   for (int i = 0; i < 20; ++i) log += "(000.009500) can0 080#\n(000.000500) can0 186#11\n";
