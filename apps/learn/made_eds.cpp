@@ -84,6 +84,10 @@ class EdsMaker {
     cia402_ = type == 402;
     add_standard();
     if (node.heartbeats.median()) sub({0x1017, 0}, DataType::unsigned16, Access::rw);
+    if (makes_sync()) {
+      sub({0x1005, 0}, DataType::unsigned32, Access::rw);
+      sub({0x1006, 0}, DataType::unsigned32, Access::rw);
+    }
     for (const auto& [key, value] : values_) add_seen(key, value);
     for (const LearnedPdo& pdo : learned_pdos(values_)) add_pdo(pdo);
   }
@@ -123,6 +127,12 @@ class EdsMaker {
     if (object == nullptr) return fmt::format("Object {:04X}", index);
     const int axis = (index - 0x6000) / 0x800;
     return axis == 0 ? std::string{object->name} : fmt::format("{} {}", object->name, axis + 1);
+  }
+
+  /// Bit 30 of 0x1005. Such a device has a period that can be set, whoever set it.
+  bool makes_sync() const {
+    const auto found = values_.find({0x1005, 0});
+    return found != values_.end() && (found->second.number().value_or(0) >> 30U & 1U) != 0;
   }
 
   void add_standard() {

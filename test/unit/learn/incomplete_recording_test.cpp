@@ -94,6 +94,19 @@ TEST(IncompleteRecording, AnEntryThatNoPdoHoldsIsNoMapping) {
   EXPECT_THAT(text, HasSubstr("# 1: {}  its mapping is not in the recording\n"));
 }
 
+TEST(IncompleteRecording, ADeviceThatMakesSyncHasAPeriodThatCanBeSet) {
+  const LearnedNetwork network = learned(
+      "(1.0) can0 000#8206\n(1.1) can0 706#00\n"
+      "(1.2) can0 606#2305100080000040\n(1.3) can0 586#6005100000000000\n"
+      "(1.4) can0 606#4006100000000000\n(1.5) can0 586#4306100010270000\n");
+
+  ASSERT_EQ(network.made_files.size(), 1U);
+  const std::string& eds = network.made_files.begin()->second;
+  const std::size_t period = eds.find("[1006]");
+  ASSERT_NE(period, std::string::npos);
+  EXPECT_THAT(eds.substr(period, 100), HasSubstr("AccessType=rw"));
+}
+
 TEST(IncompleteRecording, TimesThatAreDifferencesAreAnError) {
   std::string log = "(000.000000) can0 000#8206\n(000.100000) can0 706#00\n";
   for (int i = 0; i < 20; ++i) log += "(000.009500) can0 080#\n(000.000500) can0 186#11\n";
