@@ -80,7 +80,7 @@ BlockReceiver::Then BlockReceiver::on_end(const SdoBytes& frame, std::vector<std
   if ((frame[0] & 0xE3) != 0xC1) return refuse(Abort::command);
   const std::size_t unused = frame[0] >> 2 & 7u;
   if (unused > data.size()) return refuse(Abort::command);
-  data.resize(data.size() - unused);
+  data.erase(data.end() - static_cast<std::ptrdiff_t>(unused), data.end());
   if (size_known_ && size_ != 0 && data.size() != size_) {
     return refuse(data.size() > size_ ? Abort::too_long : Abort::too_short);
   }
