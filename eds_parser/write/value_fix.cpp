@@ -24,14 +24,13 @@ const std::optional<Value>* value_of(const SubObject& sub, Keyword keyword) {
 }
 
 std::string magnitude_text(const ParsedNumber& number) {
-  return number.hex ? hex(0, 1).substr(0, 2) +
-                          [&] {
-                            std::string digits;
-                            for (std::uint64_t rest = number.magnitude; rest != 0; rest >>= 4U) {
-                              digits.insert(digits.begin(), "0123456789ABCDEF"[rest & 0xFU]);
-                            }
-                            return digits.empty() ? std::string{"0"} : digits;
-                          }()
+  return number.hex ? hex(0, 1).substr(0, 2) + [&] {
+    std::string digits;
+    for (std::uint64_t rest = number.magnitude; rest != 0; rest >>= 4U) {
+      digits.insert(digits.begin(), "0123456789ABCDEF"[rest & 0xFU]);
+    }
+    return digits.empty() ? std::string{"0"} : digits;
+  }()
                     : std::to_string(number.magnitude);
 }
 
