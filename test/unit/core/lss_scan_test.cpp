@@ -159,7 +159,7 @@ Outcome scan_with_fault(Slaves slaves, int missed, bool late) {
 constexpr int last_question = 132;  // after its answer the device is in configuration state
 
 TEST(LssFastScan, FindsADeviceWhicheverAnswerIsLost) {
-  for (const std::uint32_t serial : {0xA4, 0xA5}) {
+  for (const std::uint32_t serial : {0xA4U, 0xA5U}) {
     const LssAddress only{0x15A, 2, 0x0001'0003, serial};
     for (int lost = 0; lost < last_question; ++lost) {
       const Outcome outcome = scan_with_fault({{{.address = only}}}, lost, false);
@@ -172,7 +172,7 @@ TEST(LssFastScan, FindsADeviceWhicheverAnswerIsLost) {
 }
 
 TEST(LssFastScan, FindsADeviceWhoseAnswerIsTakenForThatOfTheNextQuestion) {
-  for (const std::uint32_t serial : {0xA4, 0xA5}) {
+  for (const std::uint32_t serial : {0xA4U, 0xA5U}) {
     const LssAddress only{0x15A, 2, 0x0001'0003, serial};
     for (int late = 0; late <= last_question; ++late) {
       const Outcome outcome = scan_with_fault({{{.address = only}}}, late, true);
