@@ -59,14 +59,20 @@ void LssFastScan::on_confirm(bool answered) noexcept {
     if (part >= confirmed_) doubtful_ = false;
     confirmed_ = std::max(confirmed_, static_cast<std::uint8_t>(part + 1));
     if (part + 1 < parts) return begin_part(static_cast<std::uint8_t>(part + 1));
-    state_ = question_.number > unheard_ ? LssScanState::lost : LssScanState::found;
+    state_ = unheard_ && address_ > *unheard_ ? LssScanState::lost : LssScanState::found;
   } else if (!doubtful_ || part < confirmed_) {
     confirmed_ = std::min(confirmed_, part);
-    if (part + 1 == parts) unheard_ = std::min(unheard_, question_.number);
+    if (part + 1 == parts) keep_unheard();
     start_over();
   } else {
     state_ = mask_[part] != 0 ? LssScanState::nobody : LssScanState::lost;
   }
+}
+
+void LssFastScan::keep_unheard() noexcept {
+  LssAddress asked = address_;
+  asked[parts - 1] = question_.number;
+  if (!unheard_ || asked < *unheard_) unheard_ = asked;
 }
 
 /// What is confirmed needs one question for each part, and leads the devices to where it was.

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "eds_parser/table/lss_plan.hpp"
 #include "master/wire/lss.hpp"
@@ -37,6 +38,7 @@ class LssFastScan {
  private:
   bool at_the_end() const noexcept { return question_.bit_check == 0 && question_.part == 3; }
   void start_over() noexcept;
+  void keep_unheard() noexcept;
   void begin_part(std::uint8_t part) noexcept;
   void ask_below(int bit) noexcept;
   void on_anybody(bool answered) noexcept;
@@ -51,7 +53,7 @@ class LssFastScan {
   bool doubtful_ = false;
   std::uint8_t confirmed_ = 0;  // parts of address_
   std::uint8_t restarts_ = 0;
-  std::uint32_t unheard_ = ~0U;  // lowest serial number that nobody has confirmed
+  std::optional<LssAddress> unheard_;  // the lowest that nobody has confirmed
   bool may_have_switched_ = false;
 };
 

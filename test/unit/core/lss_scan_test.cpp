@@ -188,14 +188,18 @@ TEST(LssFastScan, FindsADeviceWhoseAnswerIsTakenForThatOfTheNextQuestion) {
 
 /// Two of them would get the same node id.
 TEST(LssFastScan, DoesNotFindASecondDeviceWhereTheFirstOneHasSwitchedUnheard) {
-  const Slaves both{{{.address = sample}, {.address = {0x15A, 2, 0x0001'0003, 0xA6}}}};
+  const LssAddress others[] = {
+      {0x15A, 2, 0x0001'0003, 0xA6}, {0x15A, 2, 0x0001'0004, 3}, {0x15A, 3, 0x0001'0003, 0x10}};
+  for (const LssAddress& other : others) {
+    const Slaves both{{{.address = sample}, {.address = other}}};
 
-  EXPECT_EQ(scan_with_fault(both, last_question, false).state, LssScanState::lost);
+    EXPECT_EQ(scan_with_fault(both, last_question, false).state, LssScanState::lost);
 
-  for (int fault = 0; fault < 2 * last_question; ++fault) {
-    const Outcome outcome = scan_with_fault(both, fault / 2, fault % 2 != 0);
-    if (outcome.state != LssScanState::found) continue;
-    EXPECT_EQ(outcome.in_configuration, std::vector{outcome.address}) << fault;
+    for (int fault = 0; fault < 2 * last_question; ++fault) {
+      const Outcome outcome = scan_with_fault(both, fault / 2, fault % 2 != 0);
+      if (outcome.state != LssScanState::found) continue;
+      EXPECT_EQ(outcome.in_configuration, std::vector{outcome.address}) << fault;
+    }
   }
 }
 
