@@ -35,7 +35,8 @@ std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootF
          "channel";
 }
 
-/// The newest reset before the failure, where the node has answered in this boot before it.
+/// The newest reset before the failure, where the node has answered in this boot before it and not
+/// since.
 const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootFailure& failure) {
   const auto& steps = node.boot_plan.steps;
   const BootStep* reset = nullptr;
@@ -45,7 +46,9 @@ const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootF
         steps[i].action == BootAction::nmt && (steps[i].command == NmtCommand::reset_node ||
                                                steps[i].command == NmtCommand::reset_communication);
     if (is_reset && answered) reset = &steps[i];
-    answered = answered || steps[i].action == BootAction::probe;
+    if (steps[i].action != BootAction::probe) continue;
+    answered = true;
+    reset = nullptr;
   }
   return reset;
 }

@@ -64,8 +64,8 @@ std::string against_refused_mapping(const BootStep& step, const BootFailure& fai
 
 std::string against_length(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
   const std::string object = to_string(failure.object);
-  const bool is_text = step.eds_note.find("STRING") != std::string::npos ||
-                       step.eds_note.find("DOMAIN") != std::string::npos;
+  const bool is_text = step.eds_note.find("_STRING, ") != std::string::npos ||
+                       step.eds_note.find(", DOMAIN, ") != std::string::npos;
   if (!is_text || !failure.downloading) {
     return "the device holds " + object + " in another data type than " + node.description_file +
            " says: use the EDS of this firmware, or correct `DataType` in a copy of it";

@@ -136,6 +136,10 @@ std::vector<Case> cases() {
        {on(refuse_write, {0x1800, 5}, 0x0609'0031)}},
       // configuration
       {"gone after the restore", "restore_configuration: 1", {fault(power_off, 72ms)}, 10s},
+      {"mute after the restore",
+       "restore_configuration: 1",
+       {fault(no_bootup), on(mute_sdo, {0x1017, 0})},
+       10s},
       {"restore refused", "restore_configuration: 1", {on(refuse_write, {0x1011, 1}, 0x0800'0020)}},
       {"store refused",
        "store_configuration: 1, " + setting,
