@@ -65,7 +65,8 @@ class Waits {
           "segments still under way when a device aborts a block download");
     }
     add("sdo_sub_block", waits::sub_block_end,
-        "service frames of the master while a device sends a sub-block of a block upload");
+        "service frames of the master while a device sends a sub-block of a block upload, for each "
+        "upload under way");
     add("sdo_server", waits::own_server, "next frame of an SDO client of the master itself");
   }
 

@@ -17,7 +17,8 @@ inline constexpr Time poll_pause = std::chrono::milliseconds{100};  ///< CiA 302
 inline constexpr Time sdo_settle = std::chrono::milliseconds{20};
 inline constexpr Time own_server = std::chrono::seconds{1};
 /// The segments of a block upload have priority over most that the master sends: a sub-block lasts
-/// no longer on a free wire, and service frames wait for its end, twice as long at most.
+/// no longer on a free wire, and service frames wait for its end, twice as long at most for each
+/// upload that is under way.
 inline constexpr Time sub_block = std::chrono::milliseconds{20};
 inline constexpr Time sub_block_end = 2 * sub_block;
 /// In a block upload the client speaks up before a server loses its own patience.

@@ -15,6 +15,7 @@ enum class Answer : std::uint8_t {
   comes,
   none,
   stream,  ///< many frames one after another: nothing of less priority gets through beside them
+  after_stream,  ///< none, to a device that may still be in the middle of one
 };
 
 /// Frames that machines want to send, in order; fixed room. Bus thread only.

@@ -57,7 +57,9 @@ void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   last_sent_ = {};
   last_received_ = {};
   done_ = 0;
+  announced_.reset();
   block_unheard_ = false;
+  left_stream_ = false;
   if (state != State::block_upload && state != State::block_download) return begin_plain(state);
   state_ = state;
   deadline_ = never;
@@ -96,6 +98,7 @@ void SdoClient::drop() noexcept {
   block_refused_ = false;
   block_ended_ = false;
   late_segments_ = false;
+  left_stream_ = false;
   to_send_.reset();
   result_.reset();
   no_block_.reset();
@@ -115,10 +118,7 @@ std::size_t SdoClient::progress() const noexcept {
   return done_;
 }
 
-std::size_t SdoClient::announced() const noexcept {
-  const bool by_block = state_ == State::block_upload;
-  return (by_block ? block_upload_.announced() : announced_).value_or(0);
-}
+std::size_t SdoClient::announced() const noexcept { return announced_.value_or(0); }
 
 std::optional<Frame> SdoClient::next_frame() const noexcept {
   if (to_send_) return to_send_;
@@ -129,7 +129,8 @@ std::optional<Frame> SdoClient::next_frame() const noexcept {
 
 Answer SdoClient::answer_to_next() const noexcept {
   // An abort, or the end of a block upload.
-  if (state_ == State::idle || state_ == State::falling_back) return Answer::none;
+  if (state_ == State::idle) return left_stream_ ? Answer::after_stream : Answer::none;
+  if (state_ == State::falling_back) return Answer::none;
   if (state_ == State::block_upload && block_upload_.asks_for_sub_block()) return Answer::stream;
   const bool burst = state_ == State::block_download && !block_download_.answered();
   return burst ? Answer::none : Answer::comes;
@@ -184,6 +185,7 @@ void SdoClient::finish(SdoResult result) noexcept {
 
 void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
   const bool segments = state_ == State::block_upload;
+  left_stream_ = awaits_sub_block();
   to_send_ = sdo_abort(channel_.request, object_, code);
   finish({.fault = fault, .abort_code = code, .size = progress()});
   given_up_ = object_;
@@ -291,6 +293,7 @@ void SdoClient::on_block(const Frame& frame, Time now) noexcept {
   const bool upload = state_ == State::block_upload;
   const SdoBlockStep step =
       upload ? block_upload_.on_frame(frame) : block_download_.on_frame(frame);
+  if (upload) announced_ = block_upload_.announced();
   if (step.kind == SdoBlockStep::Kind::stranger) return;
   last_received_ = frame;
   switch (step.kind) {

@@ -149,6 +149,7 @@ class SdoClient {
   bool block_refused_ = false;  ///< the device knows no block transfer
   bool block_unheard_ = false;  ///< this transfer was begun by block, and found no answer
   bool block_ended_ = false;    ///< well, by the transfer before this one
+  bool left_stream_ = false;    ///< given up in the middle of a sub-block
   bool late_segments_ = false;  ///< of a block upload that was given up may still come
   ObjectKey object_;
   std::optional<ObjectKey> given_up_;  ///< object of a transfer whose answer may still come

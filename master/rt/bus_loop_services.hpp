@@ -115,21 +115,23 @@ void BusLoop<P, N>::serve_round() noexcept {
   give_replies();
 }
 
-/// A device sends a sub-block: a frame of less priority would wait for its end in the queue of the
-/// controller, and SYNC behind it.
+/// A device sends a sub-block, or has not ended one that was given up: a frame of less priority
+/// would wait for its end in the queue of the controller, and SYNC behind it.
 template <Port P, class N>
 bool BusLoop<P, N>::behind_stream(Time now) const noexcept {
-  return now < stream_end_ && network_.awaited_sub_blocks() > services_.stream_requests();
+  return now < stream_end_ &&
+         network_.awaited_sub_blocks() + services_.count(Answer::after_stream) >
+             services_.count(Answer::stream);
 }
 
 /// The first service frames, as many as the port takes.
 template <Port P, class N>
 std::size_t BusLoop<P, N>::hand_over(std::size_t most) noexcept {
-  const std::size_t streams = services_.stream_requests();
+  const std::size_t streams = services_.count(Answer::stream);
   const std::size_t count = send(services_.first(most));
   if (services_.unanswered(count)) wire_free_ += wire_.mean(services_.first(count));
   services_.drop(count);
-  if (services_.stream_requests() != streams) stream_end_ = port_.now() + waits::sub_block_end;
+  if (services_.count(Answer::stream) != streams) stream_end_ = port_.now() + waits::sub_block_end;
   return count;
 }
 

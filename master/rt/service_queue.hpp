@@ -21,9 +21,8 @@ class ServiceQueue {
   bool has(CobId id) const noexcept {
     return std::ranges::find(outbox_.frames(), id, &Frame::id) != outbox_.frames().end();
   }
-  /// Frames that ask for a stream.
-  std::size_t stream_requests() const noexcept {
-    return static_cast<std::size_t>(std::ranges::count(outbox_.answers(), Answer::stream));
+  std::size_t count(Answer answer) const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(outbox_.answers(), answer));
   }
   /// How many of the first `most` frames end within `room`, answers included. A stream has priority
   /// over what would follow it.
@@ -31,7 +30,7 @@ class ServiceQueue {
     Time needed{};
     std::size_t count = 0;
     for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
-      needed += answer == Answer::none ? wire.worst_dialogue() / 2 : wire.worst_dialogue();
+      needed += awaited(answer) ? wire.worst_dialogue() : wire.worst_dialogue() / 2;
       if (needed > room) break;
       ++count;
       if (answer == Answer::stream) break;
@@ -41,7 +40,7 @@ class ServiceQueue {
   /// Nobody answers any of the first `count` frames.
   bool unanswered(std::size_t count) const noexcept {
     return std::ranges::all_of(outbox_.answers().first(std::min(count, size())),
-                               [](Answer answer) { return answer == Answer::none; });
+                               [](Answer answer) { return !awaited(answer); });
   }
   std::span<const Frame> first(std::size_t count) const noexcept {
     return outbox_.frames().first(std::min(count, size()));
@@ -59,6 +58,10 @@ class ServiceQueue {
   void clear() noexcept { outbox_.clear(); }
 
  private:
+  static constexpr bool awaited(Answer answer) noexcept {
+    return answer == Answer::comes || answer == Answer::stream;
+  }
+
   Outbox outbox_;
   std::array<Frame, Outbox::capacity> rest_{};
   std::array<Answer, Outbox::capacity> answers_{};

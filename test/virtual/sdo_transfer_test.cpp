@@ -112,6 +112,7 @@ TEST_F(SdoTransfers, ABlockDownloadFillsTheWireOfAQuietBus) {
 TEST_F(SdoTransfers, ABlockUploadFillsTheWireOfAQuietBus) {
   start();
   expect_uploaded(65536);
+  EXPECT_EQ(buffer().announced, 65536U);
   EXPECT_GE(wire_share(), 0.90);
   std::printf("block upload: %.2f %% of the wire\n", 100 * wire_share());
 }
@@ -141,42 +142,58 @@ TEST_F(SdoTransfers, SyncStaysOnTheBeatBesideABlockDownload) {
   }
 }
 
+constexpr CobId sync_id = CobId::base(0x080);
+constexpr CobId heartbeat_id = CobId::base(0x77F);
+
 /// The segments of the device have priority over the heartbeat of the master, which stands before
 /// SYNC in the queue of its controller.
-TEST_F(SdoTransfers, SyncAndHeartbeatStayOnTheBeatBesideABlockUploadOfASlowBus) {
-  BusPlan plan = test::axes({.nodes = 2, .period = 10ms});
-  plan.bitrate = 125'000;
-  plan.master_heartbeat = 50ms;
-  plan.cycle.service_frames = 4;
-  test::RigOptions options;
-  options.world.bitrate = plan.bitrate;
-  const CobId heartbeat = CobId::base(0x700U + plan.master_id.value());
-  rig.emplace(std::move(plan), options);
-  ASSERT_TRUE(rig->boot());
-  rig->recorder.frames.clear();
-  expect_uploaded(20000);
-
-  constexpr Time longest_frame = 135 * 8us;
-  const auto expect_beat = [&](CobId id, Time period, Time late) {
+class SlowBus : public SdoTransfers {
+ protected:
+  SlowBus() {
+    BusPlan plan = test::axes({.nodes = 2, .period = 10ms});
+    plan.bitrate = 125'000;
+    plan.master_heartbeat = 50ms;
+    plan.cycle.service_frames = 4;
+    test::RigOptions options;
+    options.world.bitrate = plan.bitrate;
+    rig.emplace(std::move(plan), options);
+    EXPECT_TRUE(rig->boot());
+    rig->recorder.frames.clear();
+  }
+  void expect_beat(CobId id, Time period, Time late) const {
     const auto frames = rig->recorder.with(id.id());
     ASSERT_GT(frames.size(), 10U);
     for (std::size_t i = 1; i < frames.size(); ++i) {
       EXPECT_LE(frames[i].start - frames[i - 1].start, period + late);
     }
-  };
-  expect_beat(CobId::base(0x080), 10ms, longest_frame);
-  expect_beat(heartbeat, 50ms, 40ms);
+  }
+  static constexpr Time longest_frame = 135 * 8us;
+};
+
+TEST_F(SlowBus, SyncAndHeartbeatStayOnTheBeatBesideABlockUpload) {
+  expect_uploaded(20000);
+
+  expect_beat(sync_id, 10ms, longest_frame);
+  expect_beat(heartbeat_id, 50ms, 40ms);
+}
+
+TEST_F(SlowBus, SyncStaysOnTheBeatWhereABlockUploadIsCalledOff) {
+  for (call_off_at = 500; call_off_at < 1500; call_off_at += 35) {
+    EXPECT_EQ(upload(3000).fault, SdoFault::cancelled);
+    rig->run(10);
+  }
+
+  expect_beat(sync_id, 10ms, longest_frame);
 }
 
 TEST_F(SdoTransfers, AServerThatFallsSilentHoldsTheHeartbeatUpForAMoment) {
   BusPlan plan = quiet_plan();
   plan.master_heartbeat = 20ms;
-  const CobId heartbeat = CobId::base(0x700U + plan.master_id.value());
   start(std::move(plan));
   timeout = 1s;
   faults().silent_after = 20;
   EXPECT_EQ(upload(1000).fault, SdoFault::timeout);
-  const auto frames = rig->recorder.with(heartbeat.id());
+  const auto frames = rig->recorder.with(heartbeat_id.id());
   ASSERT_GT(frames.size(), 20U);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     EXPECT_LE(frames[i].start - frames[i - 1].start, 80ms);
