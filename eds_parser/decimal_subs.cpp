@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "eds_parser/eds_lists.hpp"
+#include "eds_parser/eds_section.hpp"
+#include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -32,23 +35,40 @@ bool is_beyond_ff(const IniSection& section) noexcept {
   return name.size() == sub_at + 3 && name[sub_at] != '0' && decimal_sub(section).has_value();
 }
 
+/// What sub 0 says; none where it has no number.
+std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
+  for (const IniEntry& entry : entries) {
+    if (classify_key(entry.key) != Keyword::default_value) continue;
+    const auto number = parse_number(entry.value);
+    return number ? std::optional{number->magnitude} : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 /// The sections of the sub-objects of one index, in order of the file.
 struct Subs {
   std::vector<IniSection*> sections;
+  std::set<std::uint32_t> numbers;  ///< in decimal, but 0
+  std::optional<std::uint64_t> said_highest;
   bool all_decimal = true;
   bool beyond_ff = false;
-  bool has_9 = false;
-  bool has_10 = false;
 
-  void add(IniSection& section) {
+  void add(IniSection& section, const IniFile& file) {
     const auto sub = decimal_sub(section);
     sections.push_back(&section);
     all_decimal = all_decimal && sub.has_value();
     beyond_ff = beyond_ff || is_beyond_ff(section);
-    has_9 = has_9 || sub == 9U;
-    has_10 = has_10 || sub == 10U;
+    if (sub == 0U) said_highest = default_value(file.entries(section));
+    if (sub.value_or(0) != 0) numbers.insert(*sub);
   }
-  bool is_decimal() const noexcept { return all_decimal && (beyond_ff || (has_9 && has_10)); }
+  bool is_decimal() const noexcept { return all_decimal && (beyond_ff || shows_decimal()); }
+
+ private:
+  /// In hexadecimal the numbers would have a gap from 9 to 10, or not end where sub 0 says.
+  bool shows_decimal() const noexcept {
+    if (numbers.empty() || *numbers.rbegin() < 10) return false;
+    return numbers.size() == *numbers.rbegin() || said_highest == *numbers.rbegin();
+  }
 };
 
 }  // namespace
@@ -60,7 +80,7 @@ void mark_decimal_subs(IniFile& file, Report& report) {
     if (sub_text(section.name).empty()) continue;
     std::string index{section.name.substr(0, index_digits)};
     std::ranges::transform(index, index.begin(), fold);
-    objects[std::move(index)].add(section);
+    objects[std::move(index)].add(section, file);
   }
   for (const auto& [index, subs] : objects) {
     if (!subs.is_decimal()) continue;

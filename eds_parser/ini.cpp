@@ -173,6 +173,7 @@ class Reader {
 
   /// What follows belongs to this section, whatever it is, and not to the one before.
   void read_open_header(std::string_view rest) {
+    rest = trim(rest.substr(0, rest.find(';')));
     if (report_.wants("section-not-closed")) {
       report_.warning(here(rest), "section-not-closed",
                       "']' is missing behind " + quoted(rest) + "; read as if it were there");

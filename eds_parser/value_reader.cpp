@@ -131,15 +131,13 @@ bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept {
   return true;
 }
 
-/// Of normal numbers and 0. 0xFFFF in a REAL32 would be 9.2e-41, which nobody means.
+/// Of normal numbers and 0. 0xFFFF in a REAL32 would be 9.2e-41: who means that writes all digits.
 bool is_pattern(std::uint64_t bits, DataType type) noexcept {
   const unsigned fraction = type == DataType::real32 ? 23 : 52;
   return bits == 0 || bits >> fraction != 0;
 }
 
-/// A hexadecimal number of a REAL: its bit pattern, or the number itself.
 double real_of(std::uint64_t bits, DataType type) noexcept {
-  if (!is_pattern(bits, type)) return static_cast<double>(bits);
   return type == DataType::real32 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
                                   : std::bit_cast<double>(bits);
 }
@@ -223,11 +221,14 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
       unreadable(text, name(type), place);
       return std::nullopt;
     }
-    const double value = real_of(pattern->magnitude, type);
+    const bool all_digits = bare.size() - 2 >= bit_width(type) / 4;
+    const bool as_bits = all_digits || is_pattern(pattern->magnitude, type);
+    const double value =
+        as_bits ? real_of(pattern->magnitude, type) : static_cast<double>(pattern->magnitude);
     report_.warning(place.pos, "real-bit-pattern",
                     to_string(place) + ": hexadecimal was taken for " +
-                        (is_pattern(pattern->magnitude, type) ? "the bit pattern of " : "") +
-                        shortest(value) + "; write a decimal number");
+                        (as_bits ? "the bit pattern of " : "") + shortest(value) +
+                        "; write a decimal number");
     return value;
   }
   if (bare.empty()) return std::nullopt;

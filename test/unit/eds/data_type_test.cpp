@@ -171,6 +171,10 @@ TEST(DataType, HexadecimalOfARealIsItsBitPatternUnlessThatIsNextToNothing) {
   EXPECT_EQ(value("0x0008", "0xFFFF"), Value{65535.0});
   EXPECT_EQ(value("0x0011", "0x3FF0000000000000"), Value{1.0});
   EXPECT_EQ(value("0x0011", "0xFFFFFFFF"), Value{4294967295.0});
+  EXPECT_EQ(value("0x0008", "0x1"), Value{1.0});
+  EXPECT_EQ(value("0x0008", "0x00000001"), Value{0x1p-149}) << "all digits of a pattern";
+  EXPECT_EQ(value("0x0011", "0x00000001"), Value{1.0});
+  EXPECT_EQ(value("0x0011", "0x0000000000000001"), Value{0x1p-1074});
 }
 
 TEST(DataType, MayBeAWordAsObjectTypeMay) {

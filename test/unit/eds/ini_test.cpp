@@ -107,5 +107,14 @@ TEST(Ini, ReadsUtf16AndSkipsTheMark) {
   EXPECT_EQ(marked.file.sections[0].pos, (SourcePos{1, 1}));
 }
 
+TEST(Ini, AnOpenHeaderEndsBeforeAComment) {
+  Read read{"[2000 ;foo\nx=1\n[;\n"};
+
+  ASSERT_EQ(read.file.sections.size(), 2U);
+  EXPECT_EQ(read.file.sections[0].name, "2000");
+  EXPECT_EQ(read.file.sections[1].name, "");
+  EXPECT_EQ(read.entries(0).size(), 1U);
+}
+
 }  // namespace
 }  // namespace takt

@@ -97,15 +97,31 @@ TEST(SectionName, SubIndicesBeyondFfAreDecimal) {
 
 TEST(SectionName, DecimalSubIndicesGoForOtherObjectsThatShowThem) {
   const auto proof = record_of("2000", {"100"});
-  const auto file = read(proof + record_of("2001", {"9", "10"}) + record_of("2002", {"0", "10"}) +
+  const std::vector<std::string> to_10{"1", "2", "3", "4", "5", "6", "7", "8", "9", "10"};
+  const auto file = read(proof + record_of("2001", to_10) + record_of("2002", {"0", "10"}) +
                          record_of("2003", {"9", "A", "10"}) + record_of("2004", {"A", "100"}));
 
-  EXPECT_EQ(integer(file, {0x2001, 10}), 1);
+  EXPECT_EQ(integer(file, {0x2001, 10}), 9);
   EXPECT_EQ(integer(file, {0x2002, 0x10}), 1);
   EXPECT_EQ(integer(file, {0x2003, 0x10}), 2);
   EXPECT_EQ(integer(file, {0x2004, 10}), 0);
   EXPECT_TRUE(has(file.findings, "unknown-section"));
-  EXPECT_EQ(integer(read(record_of("2001", {"9", "10"})), {0x2001, 0x10}), 1);
+  EXPECT_EQ(integer(read(record_of("2001", to_10)), {0x2001, 0x10}), 9);
+}
+
+TEST(SectionName, OneSlipDoesNotMakeASparseRecordDecimal) {
+  const std::string slip = record_of("2001", {"0", "100"});
+  const auto sparse = [](unsigned highest) {
+    return "[2000]\nParameterName=r\nObjectType=9\nSubNumber=4\n" + entry("2000sub0", highest) +
+           entry("2000sub8", 8) + entry("2000sub9", 9) + entry("2000sub10", 7);
+  };
+  const auto hexadecimal = read(sparse(16) + slip);
+  const auto decimal = read(sparse(10) + slip);
+
+  EXPECT_EQ(integer(hexadecimal, {0x2000, 0x10}), 7);
+  EXPECT_EQ(integer(hexadecimal, {0x2000, 10}), std::nullopt);
+  EXPECT_EQ(integer(decimal, {0x2000, 10}), 7);
+  EXPECT_EQ(integer(decimal, {0x2001, 100}), 1);
 }
 
 TEST(SectionName, AFileWithDecimalSubIndicesIsMendedAndConfigured) {
