@@ -281,9 +281,7 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
     }
     return;
   }
-  const auto object_type = read_object_type_code(
-      fields, fields.pos(Keyword::object_type, section.pos), values_, report_);
-  const bool is_domain = object_type == 2U;
+  const bool is_domain = is_domain_object(fields);
   sub.type = is_domain ? DataType::domain : standard_type(key);
   sub.type_code = static_cast<std::uint16_t>(sub.type);
   if (is_domain) return;

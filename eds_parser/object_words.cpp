@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "eds_parser/number.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/text.hpp"
 
@@ -51,11 +52,25 @@ std::optional<DataType> data_type_of_word(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-/// The number of a word, which is told.
-std::uint32_t told(std::uint32_t code, std::string_view text, SourcePos pos, Report& report) {
+struct CodeKey {
+  Keyword keyword;
+  std::string_view name;
+  std::uint32_t highest;
+};
+
+std::optional<std::uint32_t> read_code(const ObjectFields& fields, const CodeKey& key,
+                                       SourcePos pos, ValueReader& values, Report& report) {
+  const auto text = fields.text(key.keyword);
+  const auto code = code_of_word(key.keyword, text);
+  if (!code) return values.read_count(text, key.highest, key.name, pos);
+  const auto bare = without_comment(text);
   if (report.wants("type-word")) {
     report.warning(pos, "type-word",
-                   quoted(text) + " was read as " + hex(code) + "; CiA 306 has the number here");
+                   quoted(bare) + " was read as " + hex(*code) + "; CiA 306 has the number here");
+  }
+  if (bare.size() != text.size()) {
+    report.warning(pos, "inline-comment",
+                   std::string{key.name} + ": text behind ';' or '#' was taken for a comment");
   }
   return code;
 }
@@ -66,22 +81,33 @@ std::optional<Access> access_of_word(std::string_view text) noexcept {
   return meaning_of<Access>(text, access_words);
 }
 
+std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text) noexcept {
+  const auto word = without_comment(text);
+  if (keyword == Keyword::object_type) {
+    const auto type = object_type_of(word);
+    return type ? std::optional{static_cast<std::uint32_t>(*type)} : std::nullopt;
+  }
+  if (keyword != Keyword::data_type) return std::nullopt;
+  const auto type = data_type_of_word(word);
+  return type ? std::optional{static_cast<std::uint32_t>(*type)} : std::nullopt;
+}
+
 std::optional<std::uint32_t> read_object_type_code(const ObjectFields& fields, SourcePos pos,
                                                    ValueReader& values, Report& report) {
-  const auto text = fields.text(Keyword::object_type);
-  if (const auto type = object_type_of(text)) {
-    return told(static_cast<std::uint32_t>(*type), text, pos, report);
-  }
-  return values.read_count(text, 0xFF, "ObjectType", pos);
+  return read_code(fields, {Keyword::object_type, "ObjectType", 0xFF}, pos, values, report);
 }
 
 std::optional<std::uint32_t> read_data_type_code(const ObjectFields& fields, SourcePos pos,
                                                  ValueReader& values, Report& report) {
-  const auto text = fields.text(Keyword::data_type);
-  if (const auto type = data_type_of_word(text)) {
-    return told(static_cast<std::uint32_t>(*type), text, pos, report);
-  }
-  return values.read_count(text, 0xFFFF, "DataType", pos);
+  return read_code(fields, {Keyword::data_type, "DataType", 0xFFFF}, pos, values, report);
+}
+
+bool is_domain_object(const ObjectFields& fields) noexcept {
+  constexpr auto domain = static_cast<std::uint32_t>(ObjectType::domain);
+  const auto text = fields.text(Keyword::object_type);
+  if (const auto code = code_of_word(Keyword::object_type, text)) return *code == domain;
+  const auto number = parse_number(text);
+  return number && !number->negative && !number->relative() && number->magnitude == domain;
 }
 
 }  // namespace takt

@@ -191,5 +191,30 @@ TEST(DataType, MayBeAWordAsObjectTypeMay) {
   EXPECT_FALSE(has(file.findings, "sub-objects-of-var"));
 }
 
+TEST(DataType, AWordBeforeACommentCountsAndBothAreTold) {
+  const auto file = read(
+      "[2000]\nParameterName=r\nObjectType=RECORD ; foo\nSubNumber=1\n"
+      "[2000sub0]\nParameterName=n\nDataType=UNSIGNED8 # foo\nAccessType=ro\n");
+
+  EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::record);
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x2000, 0})->type, DataType::unsigned8);
+  EXPECT_EQ(std::ranges::count(file.findings, "type-word", &Finding::rule), 2);
+  EXPECT_EQ(std::ranges::count(file.findings, "inline-comment", &Finding::rule), 2);
+  EXPECT_FALSE(has(file.findings, "number-unreadable"));
+}
+
+TEST(DataType, AnObjectTypeIsToldOnceWhereThereIsNoDataType) {
+  const auto count = [](const std::string& type, std::string_view rule) {
+    const auto file = read("[2000]\nParameterName=d\nAccessType=rw\nObjectType=" + type + "\n");
+    return std::ranges::count(file.findings, rule, &Finding::rule);
+  };
+
+  EXPECT_EQ(count("DOMAIN", "type-word"), 1);
+  EXPECT_EQ(count("DOMAIN", "data-type-missing"), 0);
+  EXPECT_EQ(count("0x2", "data-type-missing"), 0);
+  EXPECT_EQ(count("sometimes", "number-unreadable"), 1);
+  EXPECT_EQ(count("2 ; foo", "inline-comment"), 1);
+}
+
 }  // namespace
 }  // namespace takt
