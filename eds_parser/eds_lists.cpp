@@ -39,6 +39,10 @@ std::optional<std::uint32_t> entry_number(std::string_view key) noexcept {
   return small_number(key);
 }
 
+bool is_mandatory(std::uint16_t index) noexcept {
+  return index == 0x1000 || index == 0x1001 || index == 0x1018;
+}
+
 ObjectLists::ObjectLists(const IndexSet& described, Report& report)
     : described_{described}, report_{report}, membership_(65536, ObjectList::unlisted) {}
 
@@ -130,7 +134,10 @@ void ObjectLists::check_place(ObjectList list, std::uint16_t index, const IniEnt
   if (manufacturer == (list == ObjectList::manufacturer) || !report_.wants("wrong-list")) return;
   report_.warning(entry.pos(), "wrong-list",
                   "object " + hex(index) + " belongs into [" +
-                      (manufacturer ? "ManufacturerObjects" : "OptionalObjects") + ']');
+                      (manufacturer          ? "ManufacturerObjects"
+                       : is_mandatory(index) ? "MandatoryObjects"
+                                             : "OptionalObjects") +
+                      ']');
 }
 
 void ObjectLists::tell_unlisted(const Object& object) const {

@@ -17,6 +17,8 @@ using IndexSet = std::bitset<65536>;
 bool is_count_key(std::string_view key) noexcept;
 /// Key of an entry of an object list or value list: always decimal, zeros in front do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
+/// The objects of [MandatoryObjects]. CiA 306, 4.6.3.1.
+bool is_mandatory(std::uint16_t index) noexcept;
 
 /// [MandatoryObjects], [OptionalObjects], [ManufacturerObjects] against the sections of the file.
 /// The sections are the truth; the lists only say where an object belongs. CiA 306, 4.6.3.1.

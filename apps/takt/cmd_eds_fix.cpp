@@ -26,7 +26,7 @@ std::optional<std::string> recoded(const std::string& source) {
   return *file.recoded;
 }
 
-/// What `patch` would make of the difference.
+/// Says that the difference is not for `patch`.
 void tell_unpatchable(const Options& options) {
   std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference is that of "
             << "the text and can't be applied with patch, "

@@ -8,6 +8,7 @@
 #include "eds_parser/decimal_subs.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/number.hpp"
+#include "eds_parser/object_words.hpp"
 #include "eds_parser/suggest.hpp"
 #include "eds_parser/text.hpp"
 #include "eds_parser/write/list_fix.hpp"
@@ -80,7 +81,7 @@ class FixPass {
     } else if (finding.rule == "list-numbers-gap") {
       lists_.renumber(line);
     } else if (finding.rule == "wrong-list" && entry_at_.contains(line)) {
-      lists_.move(entry_at_[line].entry);
+      return lists_.move(entry_at_[line].entry);
     } else if (finding.rule == "object-not-listed" && section_at_.contains(line)) {
       lists_.add(classify_section(*section_at_[line]).index);
     } else {
@@ -122,7 +123,10 @@ class FixPass {
 
   bool section_finding(const Finding& finding, const IniSection& section) {
     const std::string_view rule = finding.rule;
-    if (rule == "section-spelling") return replace(section.name, "DeviceComissioning");
+    if (rule == "section-spelling") {
+      return touched_.insert(section.pos.line).second &&
+             replace(section.name, "DeviceComissioning");
+    }
     if (rule == "section-not-closed") {
       return touched_.insert(section.pos.line).second &&
              replace(section.name, std::string{section.name} + ']');
@@ -131,7 +135,9 @@ class FixPass {
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule == "inline-comment" || rule == "octal-number") return named_entry(finding, section);
     if (rule != "section-name-form") return false;
-    if (!touched_.insert(section.pos.line).second) return true;  // both forms at once
+    const std::uint32_t line = section.pos.line;
+    if (!touched_.insert(line).second) return done_.contains(line);  // both forms at once
+    done_.insert(line);
     std::string name{section.name};
     if (name.starts_with("0x") || name.starts_with("0X")) name.erase(0, 2);
     const std::size_t sub = name.find_first_of("sS");
@@ -177,6 +183,7 @@ class FixPass {
     if (rule == "compact-and-sub-number") return compact(at);
     if (rule == "baudrate-unit") return baudrate(at);
     if (rule == "unknown-key") return slip(at);
+    if (rule == "wrong-list") return false;  // its object is not clear yet
     if (std::ranges::find(fixable_rules, rule) == fixable_rules.end()) return false;
     return value(rule, at);
   }
@@ -243,6 +250,8 @@ class FixPass {
       plain = plain_flag(bare);
     } else if (rule == "hex-without-prefix" && in_list(*at.section)) {
       plain = "0x" + std::string{bare};
+    } else if (const auto code = code_of_word(classify_key(at.entry.key), bare)) {
+      plain = hex(*code, classify_key(at.entry.key) == Keyword::object_type ? 1 : 4);
     } else if (same_word(at.entry.key, "accesstype")) {
       plain = std::string{bare};
     } else {
@@ -280,7 +289,7 @@ class FixPass {
   SectionIndex sections_;
   TextEdits edits_;
   std::set<std::uint32_t> touched_;  ///< lines that have their edit
-  std::set<std::uint32_t> done_;     ///< of these, values made plain: for all their findings
+  std::set<std::uint32_t> done_;     ///< of these, values and names made plain for all findings
   ListFix lists_;
   std::map<std::uint32_t, const IniSection*> section_at_;
   std::map<std::uint32_t, Place> entry_at_;

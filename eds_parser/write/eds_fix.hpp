@@ -9,7 +9,7 @@ namespace takt {
 
 /// Rules of `takt eds check` whose findings have only one sensible reading, so that fix_eds() can
 /// mend them. Of unknown keys only slips of some known ones; of those in brackets not every case.
-inline constexpr std::array<std::string_view, 29> fixable_rules{"baudrate-unit",
+inline constexpr std::array<std::string_view, 30> fixable_rules{"baudrate-unit",
                                                                 "blank-in-key",
                                                                 "boolean-word",
                                                                 "byte-order-mark",
@@ -37,6 +37,7 @@ inline constexpr std::array<std::string_view, 29> fixable_rules{"baudrate-unit",
                                                                 "section-spelling",
                                                                 "sub-number-missing",
                                                                 "sub-number-wrong",
+                                                                "type-word",
                                                                 "wrong-list"};
 
 struct FixedEds {

@@ -23,18 +23,20 @@ bool is_number(std::string_view key) {
 
 }  // namespace
 
-SectionKind ListFix::kind_of(std::uint16_t index) const {
+SectionKind ListFix::kind_of(std::uint16_t index) {
   const bool manufacturer = index >= 0x2000 && index < 0x6000;
-  const bool mandatory = index == 0x1000 || index == 0x1001 || index == 0x1018;
-  if (mandatory && sections_.other(kinds[0]) != nullptr) return kinds[0];
+  if (is_mandatory(index)) return kinds[0];
   return manufacturer ? kinds[2] : kinds[1];
 }
 
-void ListFix::move(const IniEntry& entry) {
-  const auto index = parse_number(without_comment(entry.value));
-  if (!index || !index->hex || index->magnitude > 0xFFFF) return;  // else when 0x is there
+bool ListFix::move(const IniEntry& entry) {
+  const auto number = parse_number(without_comment(entry.value));
+  if (!number || number->magnitude > 0xFFFF) return false;
+  const auto index = static_cast<std::uint16_t>(number->magnitude);
+  if (!number->hex && sections_.object(index) == nullptr) return false;  // else when 0x is there
   drop(entry.line);
-  add(static_cast<std::uint16_t>(index->magnitude));
+  add(index);
+  return true;
 }
 
 void ListFix::remove_line(const IniEntry& entry) {

@@ -21,8 +21,8 @@ class ListFix {
 
   /// The entry on this line says what another one has said.
   void drop(std::uint32_t line) { dropped_.insert(line); }
-  /// The object of this entry belongs into another list.
-  void move(const IniEntry& entry);
+  /// The object of this entry belongs into another list. False: it is not clear which object.
+  bool move(const IniEntry& entry);
   /// No list has this object.
   void add(std::uint16_t index) { added_.insert(index); }
   /// The list whose count or name is on this line is wrong in its count, or in its numbers.
@@ -35,7 +35,7 @@ class ListFix {
   void create(SectionKind kind, const std::vector<std::uint16_t>& more);
   void set_count(const IniSection& section, std::size_t number);
   void remove_line(const IniEntry& entry);
-  SectionKind kind_of(std::uint16_t index) const;
+  static SectionKind kind_of(std::uint16_t index);
   bool within(const IniSection& section, const std::set<std::uint32_t>& lines) const;
 
   std::string_view text_;

@@ -1,6 +1,7 @@
 #include "eds_parser/write/text_edits.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 
@@ -28,7 +29,9 @@ void TextEdits::add_line(std::size_t at, std::string_view line) {
 }
 
 std::string TextEdits::apply() && {
-  std::ranges::stable_sort(edits_, {}, &Edit::at);
+  // what is added comes before what is removed at the same place
+  std::ranges::stable_sort(edits_, {},
+                           [](const Edit& edit) { return std::pair{edit.at, edit.length != 0}; });
   std::string out;
   std::size_t taken = 0;
   for (const auto& edit : edits_) {

@@ -87,6 +87,9 @@ std::vector<Case> cases() {
        std::string{test::base} + "[OptionalObjects]\nSupportedObjects=2\n1=0x2000\n2=0x1008\n" +
            plain + object("1008", u16),
        "[OptionalObjects]\nSupportedObjects=1\n1=0x1008\n"},
+      {"wrong-list",
+       std::string{test::base} + "[OptionalObjects]\nSupportedObjects=1\n1=8192\n" + plain,
+       "[ManufacturerObjects]\nSupportedObjects=1\n1=0x2000\n"},
       {"hex-without-prefix", with_objects("SupportedObjects=1\n1=2000\n", plain), "\n1=0x2000\n"},
       {"sub-number-wrong", with_objects(list, changed(record, "SubNumber=2", "SubNumber=9")),
        "SubNumber=2\n"},
@@ -98,6 +101,11 @@ std::vector<Case> cases() {
       {"decimal-sub-index", with_objects(list, changed(record, "[2000sub1]", "[2000sub100]")),
        "\n[2000sub64]\n"},
       {"section-not-closed", with_objects(list, changed(plain, "[2000]", "[2000")), "\n[2000]\n"},
+      {"section-not-closed", with_objects(list, changed(plain, "[2000]", "[2000 ;foo")),
+       "\n[2000] ;foo\n"},
+      {"type-word",
+       with_objects(list, changed(changed(plain, "=0x7", "=VAR ; foo"), "0x0006", "UNSIGNED16")),
+       "ObjectType=0x7\n; foo\nAccessType=rw\nDataType=0x0006\n"},
       {"section-spelling",
        std::string{test::base} + "\n[DeviceCommissioning]\nNodeID=5\nBaudrate=500\n",
        "[DeviceComissioning]\n"},
@@ -144,6 +152,54 @@ TEST(EdsFix, TwoFaultsOfOneSectionNameAreMendedOneAfterTheOther) {
   }
   EXPECT_FALSE(has(fixed.left, "section-not-closed"));
   EXPECT_FALSE(has(fixed.left, "decimal-sub-index"));
+}
+
+TEST(EdsFix, AnObjectMovesInWhereTheLastOneGoes) {
+  const std::string u16 = "DataType=0x0006\n";
+  const FixedEds fixed =
+      fix_eds(with_objects("SupportedObjects=2\n1=0x2001\n2=0x1009\n",
+                           "[OptionalObjects]\nSupportedObjects=2\n1=0x1008\n2=0x2000\n" +
+                               object("1008", u16) + object("1009", u16) + object("2000", u16) +
+                               object("2001", u16)),
+              "t.eds");
+
+  EXPECT_THAT(fixed.text, HasSubstr("SupportedObjects=2\n1=0x2001\n2=0x2000\n[Opt"));
+  EXPECT_THAT(fixed.text, HasSubstr("SupportedObjects=2\n1=0x1008\n2=0x1009\n[1008]"));
+  EXPECT_EQ(fixed.fixed.size(), 2U) << "none that the mending itself made";
+}
+
+TEST(EdsFix, AMandatoryObjectGetsItsListWhereThereIsNone) {
+  const std::string list = "SupportedObjects=3\n1=0x1000\n2=0x1001\n3=0x1018\n";
+  std::string text{test::base};
+  text.replace(text.find("[MandatoryObjects]\n" + list), 19 + list.size(),
+               "[OptionalObjects]\nSupportedObjects=2\n1=0x1001\n2=0x1018\n"
+               "[ManufacturerObjects]\nSupportedObjects=1\n1=0x1000\n");
+
+  EXPECT_THAT(fix_eds(text, "t.eds").text,
+              HasSubstr("[MandatoryObjects]\nSupportedObjects=1\n1=0x1000\n"));
+}
+
+TEST(EdsFix, WhatIsNotMendedIsNotCounted) {
+  const std::string lists =
+      std::string{test::base} + "[OptionalObjects]\nSupportedObjects=1\n1=8192\n";
+
+  const FixedEds fixed = fix_eds("# remark\n" + lists, "t.eds");
+
+  EXPECT_EQ(fixed.text, "; remark\n" + lists);
+  EXPECT_TRUE(has(fixed.left, "wrong-list"));
+  EXPECT_FALSE(has(fixed.fixed, "wrong-list"));
+}
+
+TEST(EdsFix, EachFindingOfASectionNameIsCountedOnce) {
+  const std::string u16 = "DataType=0x0006\n";
+  const std::string list = "SupportedObjects=1\n1=0x2000\n";
+
+  EXPECT_EQ(
+      fix_eds(std::string{test::base} + "[DeviceCommissioning\nNodeID=5\n", "t.dcf").fixed.size(),
+      2U);
+  std::string both = object("2000", u16);
+  both.replace(0, std::string{"[2000]"}.size(), "[0x2000");
+  EXPECT_EQ(fix_eds(with_objects(list, both), "t.eds").fixed.size(), 2U);
 }
 
 TEST(EdsFix, EveryRuleThatIsSaidToBeMendedHasItsCase) {

@@ -226,6 +226,18 @@ TEST(Eds, KeepsSubObjectsWhateverSubNumberSays) {
   EXPECT_EQ(as_var.dictionary.find(std::uint16_t{0x2001})->type, ObjectType::record);
 }
 
+TEST(Eds, TheThreeMandatoryObjectsBelongIntoTheirList) {
+  const auto said = [](const std::string& index) {
+    const auto file = read("[ManufacturerObjects]\nSupportedObjects=1\n1=" + index + "\n");
+    return find(file.findings, "wrong-list")->message;
+  };
+
+  for (const auto* index : {"0x1000", "0x1001", "0x1018"}) {
+    EXPECT_TRUE(said(index).ends_with("belongs into [MandatoryObjects]")) << said(index);
+  }
+  EXPECT_TRUE(said("0x1008").ends_with("belongs into [OptionalObjects]"));
+}
+
 TEST(Eds, ListsOnlySayWhereAnObjectBelongs) {
   const auto file = read("[OptionalObjects]\nSupported Objects=3\n1=0x2000\n3=0x2000\n4=0x3000\n" +
                          var("6", "5"));
