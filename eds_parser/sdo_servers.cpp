@@ -161,7 +161,11 @@ void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
   const Sourced<SdoChannel>& wanted = node.spec->sdo_channel;
   if (!wanted.given || *wanted == default_sdo_channel(node.id)) return;
   const ServersOfFile servers{*node.dictionary, *wanted};
+  const auto of_device_data = [&](const SdoServer& server) {
+    return !server.doubt.empty() && server.channel == *wanted;
+  };
   if (servers.has_wanted()) return;
+  if (std::ranges::any_of(active_sdo_servers(node), of_device_data)) return;
   const std::string request = to_string(wanted->request);
   const std::string start = "`sdo_channel` of node `" + node.spec->name + "`: ";
   const std::string& file = node.dictionary->file;

@@ -23,7 +23,8 @@ std::vector<SdoServer> active_sdo_servers(const NodeSource& node);
 /// is that of the node it was taken from.
 std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key);
 
-/// Warns where no SDO server of the device file has the COB-IDs of `sdo_channel`.
+/// Warns where no SDO server of the device file or the device data has the COB-IDs of
+/// `sdo_channel`.
 void check_sdo_channel(const NodeSource& node, NetworkReport& report);
 
 }  // namespace takt

@@ -119,6 +119,21 @@ TEST(SdoServers, OneThatOnlyTheDeviceDataHaveOnIsAWarning) {
   }
 }
 
+TEST(SdoServers, AChannelThatOnlyTheDeviceDataHaveIsTaken) {
+  const auto said = [](const std::string& channel, const std::string& eds) {
+    return test::compile_with_shipped("nodes:\n  arm: {node_id: 5, dcf: x" + identity +
+                                          ", sdo_channel: " + channel + "}\n",
+                                      eds)
+        .said("no-sdo-server");
+  };
+  const std::string second = "{request: 0x645, answer: 0x5C5}";
+
+  EXPECT_EQ(said(second, test::tiny_objects()), "");
+  EXPECT_EQ(said(second, lenze_eds("0x80000000")), "");
+  EXPECT_THAT(said("{request: 0x646, answer: 0x5C5}", test::tiny_objects()),
+              HasSubstr("has no SDO server besides the first"));
+}
+
 TEST(SdoServers, OfTheDeviceDataNeedIndexAndBothIdentifiers) {
   const std::string entry = "name: x\nmatch: none\nsdo_servers:\n";
 
