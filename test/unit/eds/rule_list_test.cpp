@@ -21,6 +21,10 @@ TEST(RuleList, IsSortedAndGivesEachRuleAMeaningAndAnExample) {
   }
 }
 
+TEST(RuleList, SaysThatAValueOutsideItsLimitsMayBeANote) {
+  EXPECT_TRUE(rule("value-outside-limits")->meaning.ends_with("(a note where nothing writes it)"));
+}
+
 TEST(RuleList, KnowsEveryRuleThatANastyFileBreaks) {
   const auto file = read_eds_file(TAKT_SOURCE_DIR "/test/unit/eds/data/chaos.eds", 5_node);
   auto findings = check(file.dictionary);
