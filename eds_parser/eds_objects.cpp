@@ -150,6 +150,8 @@ void ObjectReader::read_subs(Object& object, const Parts& parts) {
       report_.warning(section.pos, "parameter-name-missing",
                       section_text(section) + " has no ParameterName");
     }
+    const auto type_pos = fields.pos(Keyword::object_type, section.pos);
+    read_object_type_code(fields, type_pos, values_, report_);  // it only matters how it is written
     keep_reference(fields, part.index(), part.sub());
     read_sub(object.subs.emplace_back(), fields, {part.index(), part.sub()}, section);
   }

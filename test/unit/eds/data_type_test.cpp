@@ -186,7 +186,7 @@ TEST(DataType, MayBeAWordAsObjectTypeMay) {
   EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::record);
   EXPECT_EQ(file.dictionary.find(ObjectKey{0x2000, 0})->type, DataType::unsigned8);
   EXPECT_EQ(file.dictionary.find(ObjectKey{0x2001, 0})->default_value, Value{0.5});
-  EXPECT_EQ(std::ranges::count(file.findings, "type-word", &Finding::rule), 3);
+  EXPECT_EQ(std::ranges::count(file.findings, "type-word", &Finding::rule), 4);
   EXPECT_FALSE(has(file.findings, "number-unreadable"));
   EXPECT_FALSE(has(file.findings, "sub-objects-of-var"));
 }
@@ -214,6 +214,7 @@ TEST(DataType, AnObjectTypeIsToldOnceWhereThereIsNoDataType) {
   EXPECT_EQ(count("0x2", "data-type-missing"), 0);
   EXPECT_EQ(count("sometimes", "number-unreadable"), 1);
   EXPECT_EQ(count("2 ; foo", "inline-comment"), 1);
+  EXPECT_EQ(count("9\n[2000sub0]\nObjectType=VAR", "type-word"), 1) << "of a sub-object too";
 }
 
 }  // namespace
