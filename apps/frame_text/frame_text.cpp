@@ -73,7 +73,7 @@ FrameMeaning FrameText::nmt(const Frame& frame) const {
   if (!message) return {.service = "NMT", .text = "not a command: " + bytes_text(frame.payload())};
   const std::string who = message->node == 0 ? "all nodes" : names_.node(message->node);
   std::string text = fmt::format("{} {}", command_text(message->command), who);
-  if (frame.length > 2) text += fmt::format(" ({} bytes, always 2)", frame.length);
+  if (frame.length > 2) text += fmt::format(" ({} bytes; CiA 301 has 2)", frame.length);
   return {.service = "NMT", .node = message->node, .text = std::move(text)};
 }
 

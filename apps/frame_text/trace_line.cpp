@@ -38,7 +38,7 @@ std::string interface_of(std::string_view channel) {
 }
 
 /// A length, then its bytes, or `RTR`; what follows is not read.
-bool read_payload(Words words, Frame& frame) {
+bool read_payload(Words words, Frame& frame, int base = 16) {
   if (words.empty()) return false;
   const auto length = number_in<std::uint8_t>(words[0], 10);
   if (!length || *length > 8) return false;
@@ -47,8 +47,8 @@ bool read_payload(Words words, Frame& frame) {
   if (frame.rtr) return true;
   if (words.size() < 1U + *length) return false;
   for (std::size_t i = 0; i < *length; ++i) {
-    const auto byte = number_in<std::uint8_t>(words[1 + i], 16);
-    if (!byte || words[1 + i].size() != 2) return false;
+    const auto byte = number_in<std::uint8_t>(words[1 + i], base);
+    if (!byte || (base == 16 && words[1 + i].size() != 2)) return false;
     frame.data[i] = *byte;
   }
   return true;
@@ -103,20 +103,20 @@ std::optional<CandumpLine> parse_pcan_2(Words words) {
 }
 
 /// `1.001000 1  601  Tx  d 8 40 ...`; `x` behind the identifier: 29 bits; `r`: remote.
-std::optional<CandumpLine> parse_vector(Words words) {
+std::optional<CandumpLine> parse_vector(Words words, int base) {
   if (words.size() < 5 || !is_time(words[0]) || !is_time(words[1])) return {};
   if (!is_direction(words[3]) || (words[4] != "d" && words[4] != "r")) return {};
   CandumpLine line{.stamp = std::string{words[0]}, .interface = interface_of(words[1])};
   std::string_view digits = words[2];
   const bool extended = digits.ends_with('x');
   if (extended) digits.remove_suffix(1);
-  const auto id = number_in<std::uint32_t>(digits, 16);
+  const auto id = number_in<std::uint32_t>(digits, base);
   if (!id || *id > (extended ? 0x1FFF'FFFFU : 0x7FFU)) return {};
   line.frame.id = extended ? CobId::extended(*id) : CobId::base(*id);
   line.frame.rtr = words[4] == "r";
   words = words.subspan(5);
   if (line.frame.rtr && words.empty()) return line;
-  if (!read_payload(words, line.frame)) return {};
+  if (!read_payload(words, line.frame, base)) return {};
   return line;
 }
 
@@ -126,10 +126,11 @@ std::optional<CandumpLine> parse_python_can(Words words) {
   if (words.size() < 7 || words[0] != "Timestamp:" || words[2] != "ID:") return {};
   CandumpLine line{.stamp = std::string{words[1]}, .interface = interface_of({})};
   const auto id = number_in<std::uint32_t>(words[3], 16);
+  const Words rest = words.subspan(4);
   const auto length = std::ranges::find_if(
-      words, [](std::string_view word) { return word == "DL:" || word == "DLC:"; });
-  if (!id || length == words.end()) return {};
-  const auto letters = words.subspan(4, static_cast<std::size_t>(length - words.begin()) - 4);
+      rest, [](std::string_view word) { return word == "DL:" || word == "DLC:"; });
+  if (!id || length == rest.end()) return {};
+  const auto letters = rest.first(static_cast<std::size_t>(length - rest.begin()));
   const auto has = [&](std::string_view letter) {
     return std::ranges::find(letters, letter) != letters.end();
   };
@@ -139,27 +140,55 @@ std::optional<CandumpLine> parse_python_can(Words words) {
   line.frame.rtr = has("R");
   const auto name = std::ranges::find(words, std::string_view{"Channel:"});
   if (name != words.end() && name + 1 != words.end()) line.interface = *(name + 1);
-  words = words.subspan(static_cast<std::size_t>(length - words.begin()) + 1);
+  words = rest.subspan(letters.size() + 1);
   if (!read_payload(words, line.frame)) return {};
   return line;
 }
 
+/// `date Sat Sep 30 22:06:13.191 2017`, in some language.
+bool is_date(Words words) {
+  return words.size() >= 5 && words[0] == "date" && words.back().size() == 4 &&
+         number_in<unsigned>(words.back(), 10);
+}
+
+/// `0.000000 Start of measurement`, `1.004000 1  Statistic: D 0 ...`.
+bool is_vector_event(Words words) {
+  if (words.size() < 3 || !is_time(words[0])) return false;
+  return words[2] == "Statistic:" || (words[1] == "Start" && words[2] == "of");
+}
+
+/// `2)  1060.0  Warng  FFFFFFFF ...`, `3)  1061.0 1  Error  0008 ...`: of the controller.
+bool is_pcan_state(Words words) {
+  if (words.size() < 4 || !words[0].ends_with(')') || !is_time(words[1])) return false;
+  const std::string_view type = is_time(words[2]) ? words[3] : words[2];
+  return type == "Warng" || type == "Error";
+}
+
 }  // namespace
 
-std::optional<CandumpLine> parse_recorded(std::string_view text) {
+std::optional<CandumpLine> parse_recorded(std::string_view text, int vector_base) {
   if (auto line = parse_candump(text)) return line;
   const std::vector<std::string_view> words = words_of(text);
-  for (const auto parse : {parse_pcan_1, parse_pcan_2, parse_vector, parse_python_can}) {
+  for (const auto parse : {parse_pcan_1, parse_pcan_2, parse_python_can}) {
     if (auto line = parse(words)) return line;
   }
-  return {};
+  return parse_vector(words, vector_base);
+}
+
+std::optional<int> vector_base(std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.size() < 2 || words[0] != "base") return {};
+  if (words[1] == "dec") return 10;
+  return words[1] == "hex" ? std::optional{16} : std::nullopt;
 }
 
 bool is_remark(std::string_view text) {
   const std::vector<std::string_view> words = words_of(text);
   if (words.empty() || words[0].starts_with(';') || words[0].starts_with("//")) return true;
-  constexpr std::array heads{"date", "base", "internal", "Begin", "End", "no"};
-  return std::ranges::find(heads, words[0]) != heads.end();
+  if (words[0] == "no") return words.size() >= 2 && words[1] == "internal";
+  constexpr std::array heads{"base", "internal", "Begin", "End"};
+  return std::ranges::find(heads, words[0]) != heads.end() || is_date(words) ||
+         is_vector_event(words) || is_pcan_state(words);
 }
 
 }  // namespace takt

@@ -143,9 +143,11 @@ int dump_log(std::istream& in, const std::string& name, Printer& printer) {
   std::uint64_t line_number = 0;
   std::uint64_t frames = 0;
   std::uint64_t strange = 0;
+  int base = 16;
   while (std::getline(in, text)) {
     ++line_number;
-    if (const auto line = parse_recorded(text)) {
+    base = vector_base(text).value_or(base);
+    if (const auto line = parse_recorded(text, base)) {
       ++frames;
       if (!printer.print(*line)) break;
     } else if (!is_remark(text) && ++strange <= 3) {

@@ -13,7 +13,8 @@ TEST_F(FrameTextTest, NmtCommandsNameTheirNode) {
   EXPECT_EQ(named(0x000, {0x82, 0x05}), "NMT reset communication shoulder");
   EXPECT_EQ(plain(0x000, {0x07, 0x05}), "NMT not a command: 07 05");
   EXPECT_EQ(plain(0x000, {0x01}), "NMT not a command: 01");
-  EXPECT_EQ(plain(0x000, {0x01, 0x05, 0, 0, 0, 0, 0, 0}), "NMT start node 5 (8 bytes, always 2)");
+  EXPECT_EQ(plain(0x000, {0x01, 0x05, 0, 0, 0, 0, 0, 0}),
+            "NMT start node 5 (8 bytes; CiA 301 has 2)");
 }
 
 TEST_F(FrameTextTest, SyncShowsItsCounter) {

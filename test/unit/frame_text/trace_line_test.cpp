@@ -51,6 +51,20 @@ TEST(TraceLine, ReadsAVectorLog) {
   EXPECT_EQ(extended->frame.id, CobId::extended(0x12345));
 }
 
+TEST(TraceLine, ReadsADecimalVectorLog) {
+  const auto line = parse_recorded("   1.001000 1  1409  Rx  d 8 67 0 16 00 146 1 2 0", 10);
+  const auto hex = parse_recorded("   1.001000 1  1409  Rx  d 1 00");
+
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->frame, device_type);
+  EXPECT_FALSE(hex);
+  EXPECT_FALSE(parse_recorded("1.0 1 701 Rx d 1 256", 10));
+  EXPECT_EQ(vector_base("base dec  timestamps absolute"), 10);
+  EXPECT_EQ(vector_base("base hex  timestamps absolute"), 16);
+  EXPECT_FALSE(vector_base("base"));
+  EXPECT_FALSE(vector_base("1.0 1 701 Rx d 1 00"));
+}
+
 TEST(TraceLine, ReadsWhatPythonCanPrints) {
   const auto line = parse_recorded(
       "Timestamp:     1572363931.183001    ID: 0701    S Rx                DL:  1    00    "
@@ -73,14 +87,28 @@ TEST(TraceLine, ReadsCandumpToo) {
 }
 
 TEST(TraceLine, RefusesWhatIsNoFrame) {
-  for (const char* text :
-       {"hello", "2) 46268.0 Rx", "2) 46268.0 Rx 0581", "2) 46268.0 Rx 0581 8 43 00",
-        "2) 46268.0 Rx 0581 9 43 00 10 00 92 01 02 00 00", "2) 46268.0 Rx 0881 1 00",
-        "2) 46268.0 Rx 581 1 00", "2 46268.0 FD 0581 Rx 1 00", "2 46268.0 ST Rx 00 00 00 00",
-        "2) 46268.0  Warng FFFFFFFF 4 00 00 00 08 BUSHEAVY", "1.0 1 701 Rx d 1",
-        "1.0 1 801 Rx d 1 00", "1.0 CANFD 1 Rx 701 1 0 1 1 00", "1.0 1 ErrorFrame",
-        "Timestamp: 1.0 ID: 0701 S Rx", "Timestamp: 1.0 ID: 0701 S F Rx DL: 1 00",
-        "Timestamp: 1.0 ID: 0701 S Rx DL: 1", ") 1 0701 1 00 2)", "1..0 1 701 Rx d 1 00"}) {
+  for (const char* text : {"hello",
+                           "2) 46268.0 Rx",
+                           "2) 46268.0 Rx 0581",
+                           "2) 46268.0 Rx 0581 8 43 00",
+                           "2) 46268.0 Rx 0581 9 43 00 10 00 92 01 02 00 00",
+                           "2) 46268.0 Rx 0881 1 00",
+                           "2) 46268.0 Rx 581 1 00",
+                           "2 46268.0 FD 0581 Rx 1 00",
+                           "2 46268.0 ST Rx 00 00 00 00",
+                           "2) 46268.0  Warng FFFFFFFF 4 00 00 00 08 BUSHEAVY",
+                           "1.0 1 701 Rx d 1",
+                           "1.0 1 801 Rx d 1 00",
+                           "1.0 CANFD 1 Rx 701 1 0 1 1 00",
+                           "1.0 1 ErrorFrame",
+                           "Timestamp: 1.0 ID: 0701 S Rx",
+                           "Timestamp: 1.0 ID: 0701 S F Rx DL: 1 00",
+                           "Timestamp: 1.0 ID: 0701 S Rx DL: 1",
+                           "Timestamp: DL: ID: 601 a b c d",
+                           "Timestamp: DLC: ID: 601 a b c d",
+                           "Timestamp: 1.0 ID: DL: 1 00 S Rx",
+                           ") 1 0701 1 00 2)",
+                           "1..0 1 701 Rx d 1 00"}) {
     EXPECT_FALSE(parse_recorded(text)) << text;
   }
 }
@@ -89,10 +117,18 @@ TEST(TraceLine, KnowsWhatStandsBesideFrames) {
   for (const char* text :
        {"", "  \r", ";$FILEVERSION=1.1", ";   Message   Number", "// version 13.0.0",
         "date Sat Sep 30 22:06:13.191 2017", "base hex  timestamps absolute",
-        "internal events logged", "Begin Triggerblock", "End TriggerBlock"}) {
+        "date Mit Okt 7 03:05:05 pm 2015", "no internal events logged", "internal events logged",
+        "Begin Triggerblock", "End TriggerBlock", "0.000000 Start of measurement",
+        "1.004000 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
+        " 2) 1060.0  Warng  FFFFFFFF  4  00 00 00 08  BUSHEAVY",
+        "3) 1061.0 Error 0008 4 00 19 08 08", "3) 1061.0 1 Error 0008 - 4 00 19 08 08"}) {
     EXPECT_TRUE(is_remark(text)) << text;
   }
-  EXPECT_FALSE(is_remark("2) 46268.0 Rx"));
+  for (const char* text : {"2) 46268.0 Rx", "no", "no frame", "date", "date 12",
+                           "date of the frame 185 37", "Start of", "x Start of measurement",
+                           "1.0 1 701 Rx d 1", "2) Warng", "Warng", "1.0 1 ErrorFrame"}) {
+    EXPECT_FALSE(is_remark(text)) << text;
+  }
 }
 
 }  // namespace
