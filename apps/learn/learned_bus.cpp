@@ -1,6 +1,9 @@
 #include "apps/learn/learned_bus.hpp"
 
 #include <algorithm>
+#include <array>
+
+#include "apps/learn/learned_pdos.hpp"
 
 namespace takt {
 namespace {
@@ -54,9 +57,9 @@ bool LearnedNode::is_there() const noexcept {
 }
 
 std::optional<std::uint8_t> LearnedBus::master() const {
-  std::vector<std::uint8_t> silent;  // it lives, but has no SDO server and is never told anything
+  std::vector<std::uint8_t> silent;  // it lives, but nobody tells or asks it anything
   for (const auto& [id, node] : nodes) {
-    const bool told = node.answers != 0 || node.addressed || node.guarded();
+    const bool told = node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();
     const bool lives = node.heartbeats.count() != 0 || (node.booted_up && node.deaf_to_reset);
     if (!told && lives) silent.push_back(id);
   }
@@ -79,11 +82,28 @@ std::optional<std::uint8_t> LearnedBus::master() const {
   return {};
 }
 
+/// Or it sends an EMCY, or a TPDO by the predefined set that is no other node's.
+bool LearnedBus::is_there(const LearnedNode& node) const {
+  if (node.is_there()) return true;
+  const auto is_sent = [&](unsigned function) {
+    const CobId id = CobId::base(function + node.id);
+    const auto found = traffic.find(id);
+    if (found == traffic.end() || found->second.frames.count() == 0) return false;
+    return std::ranges::none_of(nodes, [&](const auto& entry) {
+      return std::ranges::any_of(learned_pdos(entry.second.values()), [&](const LearnedPdo& pdo) {
+        return pdo.is_tpdo && pdo.identifier() == id;
+      });
+    });
+  };
+  constexpr std::array functions{0x080U, 0x180U, 0x280U, 0x380U, 0x480U};
+  return std::ranges::any_of(functions, is_sent);
+}
+
 std::vector<const LearnedNode*> LearnedBus::devices() const {
   const auto own = master();
   std::vector<const LearnedNode*> list;
   for (const auto& [id, node] : nodes) {
-    if (node.is_there() && (!own || id != *own)) list.push_back(&node);
+    if (is_there(node) && (!own || id != *own)) list.push_back(&node);
   }
   return list;
 }
@@ -91,7 +111,7 @@ std::vector<const LearnedNode*> LearnedBus::devices() const {
 std::vector<std::uint8_t> LearnedBus::strangers() const {
   std::vector<std::uint8_t> list;
   for (const auto& [id, node] : nodes) {
-    if (!node.is_there()) list.push_back(id);
+    if (!is_there(node)) list.push_back(id);
   }
   return list;
 }

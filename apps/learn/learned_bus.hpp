@@ -47,6 +47,7 @@ struct LearnedNode {
   bool started = false;        ///< by an NMT command of its own
   bool addressed = false;      ///< any NMT command of its own
   std::uint64_t answers = 0;   ///< SDO frames of the device
+  std::uint64_t requests = 0;  ///< SDO frames to it
   PeriodMeter heartbeats;
   PeriodMeter guard_requests;
   std::vector<LearnedBoot> boots;
@@ -55,7 +56,8 @@ struct LearnedNode {
   SdoObserver sdo;
 
   bool guarded() const noexcept { return guard_requests.count() > 2; }
-  /// It sent something, or the master counts on it: more than reads that nobody answered.
+  /// It has SDO answers, boot-up messages or heartbeats, or the master counts on it: more than
+  /// reads that nobody answered.
   bool is_there() const noexcept;
   /// The writes of the fullest boot, with those that only other boots have.
   std::vector<LearnedWrite> configuration() const;
@@ -99,6 +101,9 @@ struct LearnedBus {
   std::vector<const LearnedNode*> devices() const;
   /// Ids that were asked by SDO and never heard, as by a scan.
   std::vector<std::uint8_t> strangers() const;
+
+ private:
+  bool is_there(const LearnedNode& node) const;
 };
 
 }  // namespace takt

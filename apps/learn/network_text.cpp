@@ -81,9 +81,12 @@ class NetworkText {
     }
     if (const auto strangers = bus_.strangers(); !strangers.empty()) {
       tell(Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
-           fmt::format("{} node ids were asked by SDO and never heard ({}{}): they are left out",
-                       strangers.size(), fmt::join(strangers | std::views::take(8), ", "),
-                       strangers.size() > 8 ? " ..." : ""));
+           fmt::format("{} asked by SDO and never heard ({}{}): {} left out",
+                       strangers.size() == 1 ? "1 node id was"
+                                             : fmt::format("{} node ids were", strangers.size()),
+                       fmt::join(strangers | std::views::take(8), ", "),
+                       strangers.size() > 8 ? " ..." : "",
+                       strangers.size() == 1 ? "it is" : "they are"));
     }
     if (devices_.empty()) {
       tell(Severity::warning, "no-nodes", 0, "no device answers in this recording");

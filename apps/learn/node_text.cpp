@@ -8,6 +8,7 @@
 #include "apps/learn/sdo_value_text.hpp"
 #include "apps/learn/yaml_text.hpp"
 #include "eds_parser/integer_of.hpp"
+#include "eds_parser/object_units.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {
@@ -300,8 +301,7 @@ class NodeText {
   bool is_own_cycle(ObjectKey key) const {
     if ((identity_of(values_).device_type & 0xFFFFU) != 402 || what_.sync_us == 0) return false;
     if (described({0x6040, 0}) == nullptr || described({0x6041, 0}) == nullptr) return false;
-    if (key.index < 0x60C2 || key.index >= 0xA000 || (key.index - 0x60C2) % 0x800 != 0)
-      return false;
+    if (first_axis(key.index) != 0x60C2) return false;
     const auto count = number({key.index, 1});
     const auto exponent = number({key.index, 2});
     if (key.sub > 2 || !count) return false;

@@ -68,7 +68,8 @@ void Recording::tell(Severity severity, std::string_view rule, std::uint32_t lin
 
 void Recording::add(std::string_view text, std::uint32_t line) {
   line_ = line;
-  const auto parsed = parse_recorded(text);
+  vector_base_ = vector_base(text).value_or(vector_base_);
+  const auto parsed = parse_recorded(text, vector_base_);
   if (!parsed) {
     if (!is_remark(text) && ++strange_ <= 3) {
       tell(Severity::warning, "not-candump", line,
@@ -115,6 +116,7 @@ void Recording::frame(const CandumpLine& line) {
   const unsigned function = frame.id.is_extended() ? 0x7FFU : id & 0x780U;
   if (!frame.id.is_extended() && id == 0) return nmt(frame);
   if (function == 0x600 && is_node(node_id) && !frame.rtr) {
+    ++node(node_id).requests;
     return transfer(node(node_id), node(node_id).sdo.request(frame));
   }
   if (function == 0x580 && is_node(node_id) && !frame.rtr) {
@@ -237,7 +239,7 @@ LearnedBus Recording::take() {
     tell(Severity::warning, "not-candump", 0,
          std::to_string(strange_) + " lines are no frames and were left out");
   }
-  if (backward_ > bus_.frames / 8) {
+  if (backward_ >= 4 && backward_ > bus_.frames / 8) {
     tell(Severity::error, "no-times", 0,
          "the times go back again and again, as differences do (candump -td): no period is right; "
          "record with `candump -L`");

@@ -34,6 +34,7 @@ class Recording {
 
   LearnedBus bus_;
   std::uint32_t line_ = 0;
+  int vector_base_ = 16;    // of the numbers of a Vector log
   bool all_reset_ = false;  // newest reset of all was by NMT reset node
   std::uint64_t strange_ = 0;
   std::uint64_t foreign_ = 0;   // frames of other interfaces

@@ -115,6 +115,11 @@ TEST(IncompleteRecording, TimesThatAreDifferencesAreAnError) {
   EXPECT_TRUE(has_error(read_recording(in, "boot.log", {}).findings));
 }
 
+TEST(IncompleteRecording, OneStepBackInAFewFramesIsNoError) {
+  std::istringstream in{"(2.0) can0 000#8206\n(1.9) can0 706#00\n(2.1) can0 706#05\n"};
+  EXPECT_FALSE(has_error(read_recording(in, "boot.log", {}).findings));
+}
+
 TEST(IncompleteRecording, DatesAreTimesOfTheWallClock) {
   std::string log =
       "(2026-01-31 23:59:59.000000) can0 000#8206\n"

@@ -1,6 +1,7 @@
 // What lines a recording may hold, and who on the bus is a node or the master.
 #include "apps/learn/recording.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -57,6 +58,37 @@ TEST(Learn, ADeviceThatComesBackAfterTheResetOfAllIsNotTheMaster) {
 
   EXPECT_THAT(network.text, HasSubstr("node_3:"));
   EXPECT_THAT(rules(network.findings), HasSubstr("no-master-id"));
+}
+
+TEST(Learn, WhoIsAskedBySdoIsNotTheMasterThoughItStaysSilent) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 705#00\n(1.01) can0 706#00\n(2.00) can0 000#8100\n(2.01) can0 705#00\n"
+      "(2.20) can0 605#4000100000000000\n(2.21) can0 585#4300100092010200\n"
+      "(2.22) can0 606#4000100000000000\n(2.72) can0 606#4000100000000000\n");
+
+  EXPECT_THAT(network.text, HasSubstr("node_6:"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("no-master-id"));
+}
+
+TEST(Learn, WhoSendsEmcyOrTpdosIsThereThoughItsSdoServerIsSilent) {
+  const std::string asked =
+      "(1.00) can0 605#4000100000000000\n(1.01) can0 585#4300100092010200\n"
+      "(1.10) can0 606#4000100000000000\n";
+
+  EXPECT_THAT(learned(asked + "(1.2) can0 086#0010810000000000\n").text, HasSubstr("node_6:"));
+  EXPECT_THAT(learned(asked + "(1.2) can0 486#0102\n").text, HasSubstr("node_6:"));
+  EXPECT_THAT(learned(asked + "(1.2) can0 206#0102\n").text, Not(HasSubstr("node_6:")));
+  EXPECT_THAT(learned(asked + "(1.2) can0 186#R\n").text, Not(HasSubstr("node_6:")));
+  EXPECT_THAT(rules(learned(asked).findings),
+              HasSubstr("1 node id was asked by SDO and never heard (6): it is left out"));
+}
+
+TEST(Learn, ATpdoOfAnotherNodeDoesNotMakeANode) {
+  const LearnedNetwork network = learned(
+      "(1.00) can0 605#2301180186010000\n(1.01) can0 585#6001180100000000\n"
+      "(1.10) can0 606#4000100000000000\n(1.20) can0 186#0102\n");
+
+  EXPECT_THAT(network.text, Not(HasSubstr("node_6:")));
 }
 
 TEST(Learn, NodeIdsThatAScanAsksInVainAreNoNodes) {
@@ -127,6 +159,56 @@ TEST(Learn, ReadsDatedStampsAndPcanTraces) {
   EXPECT_EQ(dated.nodes.at(5).heartbeats.median(), 100'000);
   EXPECT_EQ(traced.nodes.at(5).heartbeats.median(), 100'000);
   EXPECT_TRUE(traced.findings.empty());
+}
+
+TEST(Learn, ReadsADecimalVectorLog) {
+  const LearnedBus bus = heard(
+      "date Mon Nov 23 10:00:00 2026\nbase dec  timestamps absolute\n"
+      "   1.001000 1  389  Rx  d 2 55 64\n   1.1 1 1797 Rx d 1 05\n");
+
+  EXPECT_EQ(bus.frames, 2u);
+  EXPECT_TRUE(bus.traffic.contains(CobId::base(0x185)));
+  EXPECT_TRUE(bus.nodes.contains(5));
+  EXPECT_TRUE(bus.findings.empty()) << rules(bus.findings);
+}
+
+// Words of all formats in any order: nothing is expected but that it ends.
+TEST(Learn, SurvivesNoiseInTheFormsOfTraces) {
+  const std::array<std::string_view, 40> words{
+      "1)",  "2)",   "12",  "1",    "8",   "0",        "1060.0", "1.001",      "0601",     "581",
+      "701", "00",   "40",  "FF",   "Rx",  "Tx",       "DT",     "RR",         "-",        "d",
+      "r",   "RTR",  "12x", "base", "dec", "hex",      "date",   "Timestamp:", "ID:",      "DL:",
+      "S",   "DLC:", "X",   "R",    "E",   "Channel:", "can0",   "Warng",      "00012345", "Start"};
+  std::mt19937 random{11};
+  std::string log;
+  for (int i = 0; i < 30'000; ++i) {
+    std::vector<std::string_view> line;
+    switch (random() % 5) {
+      case 0:
+        line = {"1)", "1060.0", "Rx", "0601", "8", "40", "00", "10", "00", "00", "00", "00", "00"};
+        break;
+      case 1:
+        line = {"1", "1060.0", "DT", "0581", "Rx", "4", "40", "00", "10", "00"};
+        break;
+      case 2:
+        line = {"1.001", "1", "601", "Rx", "d", "4", "40", "00", "10", "00"};
+        break;
+      case 3:
+        line = {"Timestamp:", "1.0", "ID:", "0601", "S", "Rx", "DL:", "2", "40", "00"};
+        break;
+      default:
+        line.assign(random() % 12, "ID:");
+        for (auto& word : line) word = words[random() % words.size()];
+    }
+    for (auto& word : line) {
+      if (random() % 6 == 0) word = words[random() % words.size()];
+    }
+    line.resize(line.size() - (random() % 4 == 0 && !line.empty() ? 1 : 0));
+    for (const std::string_view word : line) log += std::string{word} + ' ';
+    log += '\n';
+  }
+
+  EXPECT_GT(heard(log).frames, 500u);  // those of the first interface
 }
 
 TEST(Learn, SurvivesARecordingOfNoise) {
