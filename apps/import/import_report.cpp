@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <set>
+#include <unordered_map>
 
 #include "apps/import/key_table.hpp"
 #include "apps/import/unasked.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/number.hpp"
 
 namespace takt {
 namespace {
@@ -32,8 +35,8 @@ std::string value_text(const YamlNode& node) {
       for (const char c : node.text) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
       break;
     case YamlNode::Kind::sequence:
-      for (const YamlNode* item : node.items) {
-        text += (text.empty() ? "" : ", ") + value_text(*item);
+      for (const YamlNode* const& item : node.items) {
+        text += (&item == node.items.data() ? "" : ", ") + value_text(*item);
         if (text.size() > longest_value) break;
       }
       text = '[' + text + ']';
@@ -83,7 +86,7 @@ class RowCollector {
     if (node.kind == YamlNode::Kind::map) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       map(node, path, pair.key);
-    } else if (node.kind == YamlNode::Kind::sequence && is_list_of_maps(node)) {
+    } else if (places_left_ != 0 && is_list_of_maps(node)) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       items(node, pair.key, path);
     } else {
@@ -102,7 +105,7 @@ class RowCollector {
   }
 
   void items(const YamlNode& list, std::string_view word, const std::string& path) {
-    for (std::size_t i = 0; i < list.items.size(); ++i) {
+    for (std::size_t i = 0; i < list.items.size() && places_left_ != 0; ++i) {
       std::set<SourcePos> places;
       places_of(*list.items[i], places);
       add(path + '[' + std::to_string(i + 1) + ']', word, value_text(*list.items[i]),
@@ -110,8 +113,10 @@ class RowCollector {
     }
   }
 
-  static void places_of(const YamlNode& node, std::set<SourcePos>& places) {
-    places.insert(node.pos);
+  void places_of(const YamlNode& node, std::set<SourcePos>& places) {
+    if (places_left_ == 0) return;
+    --places_left_;
+    if (!places.insert(node.pos).second) return;  // by alias once more
     for (const YamlPair& pair : node.pairs) {
       places.insert(pair.key_pos);
       places_of(*pair.value, places);
@@ -132,6 +137,7 @@ class RowCollector {
   }
 
   std::vector<Row> rows_;
+  std::size_t places_left_ = 2 * YamlTree::max_nodes;  ///< aliases may name a long list often
   std::set<std::pair<SourcePos, std::string>> seen_;
 };
 
@@ -172,7 +178,9 @@ void apply(Row& row, const Finding& finding) {
 }
 
 bool is_within(const Row& row, const std::string& path) {
-  return row.key.path.starts_with(path + '.') || row.key.path.starts_with(path + '[');
+  const std::string& own = row.key.path;
+  return own.size() > path.size() && own.starts_with(path) &&
+         (own[path.size()] == '.' || own[path.size()] == '[');
 }
 
 void ignore(Row& row, const std::string& why) {
@@ -244,14 +252,37 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   }
 }
 
-bool same(const YamlNode& a, const YamlNode& b) {
-  const auto same_pair = [](const YamlPair& x, const YamlPair& y) {
-    return x.key == y.key && same(*x.value, *y.value);
-  };
-  const auto same_item = [](const YamlNode* x, const YamlNode* y) { return same(*x, *y); };
-  return a.kind == b.kind && a.text == b.text && std::ranges::equal(a.pairs, b.pairs, same_pair) &&
-         std::ranges::equal(a.items, b.items, same_item);
-}
+/// Compares values. Two that aliases name again and again are compared once.
+class Comparison {
+ public:
+  bool same(const YamlNode& a, const YamlNode& b) {
+    if (&a == &b) return true;
+    if (a.kind != b.kind) return false;
+    if (a.kind == YamlNode::Kind::scalar) return same_scalar(a.text, b.text);
+    const auto [known, is_new] = known_.try_emplace({&a, &b}, false);
+    if (is_new) known->second = same_parts(a, b);
+    return known->second;
+  }
+
+ private:
+  static bool same_scalar(const std::string& a, const std::string& b) {
+    const auto x = parse_number(a);
+    const auto y = parse_number(b);
+    return a == b || (x && y && x->magnitude == y->magnitude && x->negative == y->negative &&
+                      x->node_ids == y->node_ids && (x->quirks | y->quirks) == 0);
+  }
+
+  bool same_parts(const YamlNode& a, const YamlNode& b) {
+    const auto same_pair = [this](const YamlPair& x, const YamlPair& y) {
+      return x.key == y.key && same(*x.value, *y.value);
+    };
+    const auto same_item = [this](const YamlNode* x, const YamlNode* y) { return same(*x, *y); };
+    return std::ranges::equal(a.pairs, b.pairs, same_pair) &&
+           std::ranges::equal(a.items, b.items, same_item);
+  }
+
+  std::map<std::pair<const YamlNode*, const YamlNode*>, bool> known_;
+};
 
 /// The generator of ros2_canopen copies `defaults` over the keys of each node under `nodes`: there
 /// the node's own value has never been in effect.
@@ -259,16 +290,18 @@ void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
   const YamlNode* defaults = root.find("defaults");
   const YamlNode* nodes = root.find("nodes");
   if (defaults == nullptr || nodes == nullptr) return;
+  std::unordered_map<std::string, Row*> row_at;
+  for (Row& row : rows) row_at.try_emplace(row.key.path, &row);
+  Comparison comparison;
   for (const YamlPair& node : nodes->pairs) {
     for (const YamlPair& own : node.value->pairs) {
       const YamlNode* common = defaults->find(own.key);
-      if (common == nullptr || same(*common, *own.value)) continue;
-      const auto row = std::ranges::find_if(rows, [&](const Row& candidate) {
-        return candidate.key.path == "nodes." + node.key + '.' + own.key;
-      });
-      if (row == rows.end() || row->key.fate != KeyFate::used) continue;
-      row->key.fate = KeyFate::suspicious;
-      row->key.why =
+      if (common == nullptr || comparison.same(*common, *own.value)) continue;
+      const auto found = row_at.find("nodes." + node.key + '.' + own.key);
+      if (found == row_at.end() || found->second->key.fate != KeyFate::used) continue;
+      ImportedKey& key = found->second->key;
+      key.fate = KeyFate::suspicious;
+      key.why =
           "takt takes this one; ros2_canopen (cogen) lets the one of `defaults` win: the machine "
           "has run with " +
           (value_text(*common).empty() ? "that" : '`' + value_text(*common) + '`');

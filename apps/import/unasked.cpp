@@ -5,20 +5,17 @@
 #include <string_view>
 #include <utility>
 
+#include "eds_parser/object_units.hpp"
+
 namespace takt {
 namespace {
-
-/// Sub 1 of 0x60C2 of any axis of CiA 402.
-bool is_interpolation(ObjectKey key) {
-  return key.index >= 0x60C2 && key.index < 0xA000 && (key.index - 0x60C2) % 0x800 == 0 &&
-         key.sub == 1;
-}
 
 /// The key that would have said it; empty: nothing to tell of this object.
 std::string_view key_of(ObjectKey object) {
   if (object == ObjectKey{0x1017, 0}) return "heartbeat_producer";
   if (object.index == 0x1016) return "heartbeat_consumer";
-  return is_interpolation(object) ? "sdo" : std::string_view{};
+  const bool is_interpolation = first_axis(object.index) == 0x60C2 && object.sub == 1;
+  return is_interpolation ? "sdo" : std::string_view{};
 }
 
 std::string_view remedy(std::string_view key) {

@@ -71,6 +71,60 @@ TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
   EXPECT_THAT(key(bus, "arm.sdo[2]").why, HasSubstr("meant for another object?"));
 }
 
+/// Anchors of which each holds the one before eight times.
+std::string bomb(char name, const std::string& first, bool maps) {
+  std::string text = std::string{"  "} + name + "0: &" + name + "0 " + first + "\n";
+  for (int level = 1; level < 20; ++level) {
+    const std::string below = std::string{"*"} + name + std::to_string(level - 1);
+    const std::string own = name + std::to_string(level);
+    text += "  " + own + ": &" + own + (maps ? " {" : " [");
+    for (int i = 0; i < 8; ++i) {
+      text += (i == 0 ? "" : ", ") + (maps ? "k" + std::to_string(i) + ": " : "") + below;
+    }
+    text += maps ? "}\n" : "]\n";
+  }
+  return text;
+}
+
+TEST_F(Import, AliasesOfAliasesTakeNoTime) {
+  const std::string head = "master: {node_id: 127}\n";
+  const std::string tail = "nodes: {arm: {node_id: 5, dcf: drive.eds, x: ";
+
+  const auto maps = report(".a:\n" + bomb('a', "{k: 1}", true) + bomb('b', "{k: 1}", true) + head +
+                           "defaults: {x: *a19}\n" + tail + "*b19}}\n");
+  const auto lists = report(".a:\n" + bomb('a', "[1, 2]", false) + bomb('b', "[1, 2]", false) +
+                            head + "defaults: {x: *a19}\n" + tail + "*b19}}\n");
+
+  EXPECT_EQ(key(maps, "nodes.arm.dcf").fate, KeyFate::used);
+  EXPECT_EQ(key(maps, "nodes.arm.x.k0").fate, KeyFate::ignored);
+  EXPECT_EQ(key(lists, "nodes.arm.dcf").fate, KeyFate::used);
+  EXPECT_EQ(key(lists, "nodes.arm.x").fate, KeyFate::wrong);
+}
+
+TEST_F(Import, ALongListThatManyKeysNameTakesNoTime) {
+  std::string list;
+  for (int i = 0; i < 20'000; ++i) list += "{a: 1},";
+  std::string keys;
+  for (int i = 0; i < 20'000; ++i) keys += "k" + std::to_string(i) + ": *l,";
+
+  const auto bus = report("arm: {node_id: 5, dcf: drive.eds}\n.l: &l [" + list + "]\n.k: {x: 1}\n" +
+                          "leg: {node_id: 6, dcf: drive.eds, " + keys + "}\n");
+
+  EXPECT_EQ(key(bus, "arm.dcf").fate, KeyFate::used);
+}
+
+TEST_F(Import, TheSameNumberWrittenOtherwiseIsNoOtherValue) {
+  const auto bus = report(
+      "master: {sync_period: 10000}\n"
+      "defaults: {dcf: drive.eds, boot_timeout_ms: 500}\n"
+      "nodes:\n"
+      "  arm: {node_id: 5, boot_timeout_ms: 0x1F4}\n"
+      "  leg: {node_id: 6, boot_timeout_ms: 0x1F5}\n");
+
+  EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "nodes.leg.boot_timeout_ms").fate, KeyFate::suspicious);
+}
+
 TEST_F(Import, AKeyThatOnlyTheDriverClassCanKnowIsSuspiciousASlipIsWrong) {
   const auto bus = report(
       "master: {name: main, driver: x::Master, sync_period: 10000}\n"
