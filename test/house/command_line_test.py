@@ -102,10 +102,11 @@ def dump_chooses(tools, folder):
     tools.says("--only wants services", ["takt", "dump", log, "--only", "SDOO"], 2, "no service 'SDOO'; there are NMT, ", ", GFC, ERROR, ?")
     tools.says("a folder is no recording", ["takt", "dump", folder], 2, f"{folder}: cannot be read: Is a directory")
     pcan = folder / "trace.trc"
-    pcan.write_text(";$FILEVERSION=1.1\n;\n     1)     10.2  Rx         0701  1  00\n     2)     11.2  Warng  FFFFFFFF  4  00 00 00 08  BUSHEAVY\n")
+    pcan.write_text(";$FILEVERSION=1.1\n;\n     1)     10.2  Rx         0701  1  00\n     2)     11.2  Warng  FFFFFFFF  4  00 00 00 08  BUSHEAVY\n     3)     12.2  Rx\n")
     done = tools.run(["takt", "dump", pcan])
     check("a PCAN trace", done.returncode == 0 and done.stdout.startswith("(0.010200)  can0  701   [1]  00"), done.stdout)
-    check("what is no frame in it is told", f"{pcan}:4: not a frame" in done.stderr and ":1:" not in done.stderr, done.stderr)
+    check("what is no frame in it is told", f"{pcan}:5: not a frame" in done.stderr and ":1:" not in done.stderr, done.stderr)
+    check("a state of the controller is no frame, and no fault", ":4:" not in done.stderr, done.stderr)
     pcan.write_text("nothing\nof the kind\n")
     tools.says("no recording at all", ["takt", "dump", pcan], 2, "no frame in it; `candump -L can0 > FILE`")
     tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is no node id 1..127")
