@@ -78,10 +78,9 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->footer(
       "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss, duplicate,\n"
       "error_frames (probability), delay (time), babble (cob_id, data, time), power_off, drift\n"
-      "(ppm), mute_sdo (object), refuse_object and refuse_write (object, abort_code), "
-      "ignore_write\n"
-      "(object), override_value (object, value), fixed_mapping, late_bootup and bootup_storm "
-      "(time),\n"
+      "(ppm), mute_sdo (object), slow_sdo (time), refuse_object and refuse_write (object,\n"
+      "abort_code), ignore_write (object), override_value (object, value), fixed_mapping,\n"
+      "late_bootup and bootup_storm (time),\n"
       "no_bootup, self_start, no_start, no_heartbeat, no_guarding, stuck_toggle, mute_pdo,\n"
       "device_error (emcy_code), lss_silent, lss_no_store, reset, bus_off, stall_master,\n"
       "interface_down. share/doc/faults.md has a line of each.\n\n"

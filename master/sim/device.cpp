@@ -20,6 +20,7 @@ Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
     : node_{table.node},
       address_{table.node},
       times_{times},
+      delays_{random.fork(1)},
       dummy_usage_{table.dummy_usage},
       store_{table},
       emcy_{store_, table.node},
@@ -155,8 +156,7 @@ void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept
       if (communicates()) on_sync(frame, now);
       return;
     case RouteKind::sdo:
-      if (communicates() && !faults_.mute_sdo) sdo_[route.index].on_frame(frame, now, out_);
-      return;
+      return ask(sdo_[route.index], frame, now);
     case RouteKind::rpdo:
       return on_rpdo(rpdos_[route.index], frame, now);
     case RouteKind::heartbeat:
@@ -318,6 +318,14 @@ void Device::plan_tick() noexcept {
 }
 
 /// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
+void Device::ask(SdoServer& server, const Frame& frame, Time now) noexcept {
+  if (!communicates() || faults_.mute_sdo) return;
+  const auto delay = static_cast<std::uint64_t>(faults_.sdo_delay.count());
+  const Time late{delay == 0 ? 0 : static_cast<Time::rep>(delays_.next() % delay)};
+  server.set_times(times_.sdo + late, times_.segment);
+  server.on_frame(frame, now, out_);
+}
+
 void Device::route_sdo_servers() noexcept {
   for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
     if (n != 0) {

@@ -125,6 +125,7 @@ class Device final : private Dictionary {
 
   void dispatch(const Route& route, const Frame& frame, Time now) noexcept;
   void on_request(const Route& route, Time now) noexcept;
+  void ask(SdoServer& server, const Frame& frame, Time now) noexcept;
   void on_nmt(const Frame& frame, Time now) noexcept;
   void on_sync(const Frame& frame, Time now) noexcept;
   void make_sync(Time now) noexcept;
@@ -160,6 +161,7 @@ class Device final : private Dictionary {
   NodeId node_;
   NodeId address_;
   DeviceTimes times_;
+  Random delays_;
   std::uint8_t dummy_usage_;
   ObjectStore store_;
   Transmitter out_;

@@ -32,6 +32,7 @@ struct DeviceFaults {
   bool fixed_mapping = false;
   SdoFaults sdo{};
   Time bootup_delay{};
+  Time sdo_delay{};     ///< of an answer, at most
   Time storm_period{};  ///< of boot-up messages; 0 = no storm
 
   void add(Access access) noexcept {

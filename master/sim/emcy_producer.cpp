@@ -111,8 +111,10 @@ Abort EmcyProducer::check_read(ObjectKey key) const noexcept {
 Abort EmcyProducer::check_write(const Object& object, std::uint64_t raw) const noexcept {
   if (object.key == ObjectKey{history, 0}) return raw == 0 ? Abort::none : Abort::value;
   if (object.key == ObjectKey{0x1014, 0}) {
+    // a device whose limits forbid bit 31 can't be told to switch EMCY off first
+    const bool has_off_bit = !object.high || *object.high >= std::int64_t{cob_invalid};
     const bool stays_valid = ((object.value | raw) & cob_invalid) == 0;
-    if (stays_valid && raw != object.value) return Abort::value;
+    if (has_off_bit && stays_valid && raw != object.value) return Abort::value;
     if (has_stray_bits(raw)) return Abort::value;
     if ((raw & cob_invalid) == 0 && is_restricted(cob_id(raw))) return Abort::value;
   }

@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::array<std::pair<FaultKind, std::string_view>, 29> names{{
+constexpr std::array<std::pair<FaultKind, std::string_view>, 30> names{{
     {FaultKind::loss, "loss"},
     {FaultKind::duplicate, "duplicate"},
     {FaultKind::delay, "delay"},
@@ -15,6 +15,7 @@ constexpr std::array<std::pair<FaultKind, std::string_view>, 29> names{{
     {FaultKind::power_off, "power_off"},
     {FaultKind::drift, "drift"},
     {FaultKind::mute_sdo, "mute_sdo"},
+    {FaultKind::slow_sdo, "slow_sdo"},
     {FaultKind::refuse_object, "refuse_object"},
     {FaultKind::refuse_write, "refuse_write"},
     {FaultKind::ignore_write, "ignore_write"},

@@ -22,6 +22,7 @@ enum class FaultKind : std::uint8_t {
   power_off,       ///< the node is without power
   drift,           ///< the node's clock runs `ppm` fast
   mute_sdo,        ///< the SDO server does not answer (`object` set: for this object only)
+  slow_sdo,        ///< each answer of the SDO server comes up to `time` later
   refuse_object,   ///< SDO access to `object` is aborted with `abort_code`
   refuse_write,    ///< the same for writing only
   ignore_write,    ///< writing `object` is confirmed, but changes nothing

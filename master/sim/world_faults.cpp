@@ -138,6 +138,9 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::mute_sdo:
       if (!fault.object) faults.mute_sdo = begins;
       return set_access(faults, fault, begins);
+    case FaultKind::slow_sdo:
+      faults.sdo_delay = begins ? fault.time : Time{};
+      return;
     case FaultKind::refuse_object:
     case FaultKind::refuse_write:
     case FaultKind::ignore_write:

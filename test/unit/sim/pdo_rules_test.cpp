@@ -178,6 +178,13 @@ TEST_F(PdoRules, RefuseANewEmcyIdentifierWhileValid) {
   EXPECT_EQ(write(0x1014, 0, 0x86, 4), 0u);
 }
 
+TEST_F(PdoRules, TakeANewEmcyIdentifierWhereTheLimitsForbidBit31) {
+  device_.objects().find({0x1014, 0})->high = 0x1FFF'FFFF;
+
+  EXPECT_EQ(write(0x1014, 0, 0x8000'0085, 4), 0x0609'0031u);
+  EXPECT_EQ(write(0x1014, 0, 0x86, 4), 0u);
+}
+
 TEST_F(PdoRules, RefuseEveryMappingWriteOfAFixedMapping) {
   device_.faults().fixed_mapping = true;
   disable(0x1800, 0x185);

@@ -115,6 +115,28 @@ TEST_F(WorldFaults, OverrideValueReadsAsAnotherVendorUntilItEnds) {
   EXPECT_EQ(of(0x585)[1].frame.data[4], 0x5A);
 }
 
+TEST_F(WorldFaults, SlowServerAnswersWithinItsTime) {
+  build({{.kind = FaultKind::slow_sdo, .node = 5_node, .at = 100ms, .until = 1s, .time = 9ms}});
+  for (Time at = 110ms; at < 1s; at += 10ms) {
+    port_->sleep_until(at);
+    read_vendor(5);
+  }
+  port_->sleep_until(1s);
+  read_vendor(5);
+  port_->sleep_until(1010ms);
+
+  const auto requests = of(0x605);
+  const auto answers = of(0x585);
+  ASSERT_EQ(answers.size(), requests.size());
+  Time longest{};
+  for (std::size_t i = 0; i + 1 < answers.size(); ++i) {
+    longest = std::max(longest, answers[i].start - requests[i].end);
+  }
+  EXPECT_GT(longest, 8ms);
+  EXPECT_LE(longest, 10ms);
+  EXPECT_LT(answers.back().start - requests.back().end, 1ms);
+}
+
 TEST_F(WorldFaults, LateBootUpComesLate) {
   build({{.kind = FaultKind::late_bootup, .node = 5_node, .time = 700ms}});
   port_->sleep_until(1s);
