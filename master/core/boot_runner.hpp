@@ -46,6 +46,10 @@ class BootRunner {
   void nmt_sent(Time now, SdoClient& client) noexcept;
 
   State state() const noexcept { return state_; }
+  /// Asks whether the node is there at all: it owes no answer.
+  bool probing() const noexcept {
+    return step_ < plan_->steps.size() && current().action == BootAction::probe;
+  }
   std::uint16_t step() const noexcept {
     return asks_ ? static_cast<std::uint16_t>(after_reset_) : step_;
   }

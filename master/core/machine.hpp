@@ -13,6 +13,7 @@ namespace takt {
 /// Whether somebody answers a frame soon: the bus loop leaves time for it.
 enum class Answer : std::uint8_t {
   comes,
+  by_server,  ///< of SDO: however late it is, the machine waits for it
   none,
   stream,  ///< many frames one after another: nothing of less priority gets through beside them
   after_stream,  ///< none, to a device that may still be in the middle of one

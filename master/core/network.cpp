@@ -6,6 +6,16 @@
 #include "master/wire/nmt.hpp"
 
 namespace takt {
+namespace {
+
+/// Keeps `sum` the number of those that are true; `known` is what this one was.
+void recount(bool now, std::vector<bool>::reference known, std::size_t& sum) noexcept {
+  if (now == known) return;
+  known = now;
+  sum += now ? 1U : static_cast<std::size_t>(-1);
+}
+
+}  // namespace
 
 Network::Network(const BusPlan& plan, NetworkOptions options)
     : plan_{plan},
@@ -34,6 +44,7 @@ Network::Network(const BusPlan& plan, NetworkOptions options)
                             .sub_block_segments = sub_block_segments(plan.bitrate)});
   }
   streams_.resize(sessions_.size());
+  awaits_.resize(sessions_.size());
   deadlines_.resize(sessions_.size(), never);
 }
 
@@ -51,9 +62,8 @@ void Network::touched(std::size_t index, Time now) noexcept {
   if (sessions_[index].take_loss()) on_loss(index, now);
   statuses_[index] = sessions_[index].status();
   deadlines_[index] = sessions_[index].deadline();
-  if (sessions_[index].streams() == streams_[index]) return;
-  streams_[index] = !streams_[index];
-  streaming_ += streams_[index] ? 1U : static_cast<std::size_t>(-1);
+  recount(sessions_[index].streams(), streams_[index], streaming_);
+  recount(sessions_[index].awaits_answer(), awaits_[index], awaited_);
 }
 
 std::size_t Network::awaited_sub_blocks() const noexcept {

@@ -71,6 +71,8 @@ class Network {
   bool streams() const noexcept { return streaming_ != 0; }
   /// Sub-blocks of block uploads that were asked for, frames still to be sent included.
   std::size_t awaited_sub_blocks() const noexcept;
+  /// SDO answers that servers owe, to frames still to be sent included.
+  std::size_t awaited_answers() const noexcept { return awaited_; }
 
   /// The master has left Stopped, or begins anew: the counter of its SYNC starts at 1; told once.
   /// CiA 301, 7.2.5.2.
@@ -138,6 +140,8 @@ class Network {
   std::vector<NodeStatus> statuses_;      // copies, one block for the reader
   std::vector<bool> streams_;             // of the sessions
   std::size_t streaming_ = 0;             // how many of them
+  std::vector<bool> awaits_;              // an SDO answer, of the sessions
+  std::size_t awaited_ = 0;               // how many of them
   std::vector<Time> deadlines_;           // of the sessions, one block to search
   std::array<std::uint8_t, 128> index_;   // node id -> session
   std::vector<std::pair<CobId, std::uint8_t>>

@@ -97,6 +97,10 @@ class NodeSession {
   bool streams() const noexcept { return client_.streams(); }
   /// The node sends a sub-block of a block upload, or was asked to.
   bool awaits_sub_block() const noexcept { return client_.awaits_sub_block(); }
+  /// Its SDO server owes an answer. A node that is probed may not be there at all.
+  bool awaits_answer() const noexcept {
+    return client_.awaits_answer() && !(booting() && runner_.probing());
+  }
   const NodeStatus& status() const noexcept { return status_; }
   /// No boot, no transfer and no command is under way.
   bool idle() const noexcept {

@@ -133,7 +133,7 @@ Answer SdoClient::answer_to_next() const noexcept {
   if (state_ == State::falling_back) return Answer::none;
   if (state_ == State::block_upload && block_upload_.asks_for_sub_block()) return Answer::stream;
   const bool burst = state_ == State::block_download && !block_download_.answered();
-  return burst ? Answer::none : Answer::comes;
+  return burst ? Answer::none : Answer::by_server;
 }
 
 Time SdoClient::deadline() const noexcept { return result_ || next_frame() ? at_once : deadline_; }

@@ -86,6 +86,8 @@ class SdoClient {
   bool awaits_sub_block() const noexcept {
     return state_ == State::block_upload && !to_send_ && block_upload_.awaits_sub_block();
   }
+  /// A frame was sent, and the server has not answered it.
+  bool awaits_answer() const noexcept { return deadline_ != never && !next_frame(); }
   const SdoChannel& channel() const noexcept { return channel_; }
   /// The newest frames of the newest transfer, for reports. Length 0: there is none.
   const Frame& last_sent() const noexcept { return last_sent_; }

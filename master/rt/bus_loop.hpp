@@ -105,6 +105,7 @@ class BusLoop {
     requests,  ///< answers will come soon
     burst,     ///< nobody answers, more may follow as the wire takes them
   };
+  Time under_way(std::size_t open) const noexcept;
   Handed send_services(std::size_t& budget, Time under_way) noexcept;
   std::size_t hand_over(std::size_t most) noexcept;
   bool behind_stream(Time now) const noexcept;
@@ -167,6 +168,7 @@ class BusLoop {
   bool followed_ = false;   ///< the followed SYNC began this cycle
   bool sync_lost_ = false;  ///< and is lost; its reaction is in force
   Time wire_free_{};        ///< the service frames handed over in this cycle have ended
+  std::size_t asked_ = 0;   ///< SDO requests handed over since the last round
   Time stream_end_{};       ///< of the newest that was asked for, at the latest
   unsigned starved_ = 0;    ///< cycles in which service frames found no room
   std::uint64_t held_ = 0;  ///< cycles since it was open

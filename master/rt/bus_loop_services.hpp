@@ -82,6 +82,7 @@ void BusLoop<P, N>::serve_round() noexcept {
   }
   std::size_t budget = plan_.cycle.service_frames;
   std::size_t open = 0;  // dialogues of this round without an answer so far
+  bool idle = true;      // nothing of this round was handed over
   services_.inbox().set_limit(budget);
   if (const Time now = port_.now(); !stalled(now)) {
     pdo_requests_.on_time(exchanging_, status_.beats, now, services_.inbox());
@@ -94,9 +95,11 @@ void BusLoop<P, N>::serve_round() noexcept {
     if (options_.observe) services_.clear();
     expect_started_nodes();
     const std::size_t left = budget;
-    const Handed handed = send_services(budget, wire_.worst_dialogue() * open);
+    const Handed handed = send_services(budget, under_way(open));
+    idle = idle && handed == Handed::nothing;
     if (handed == Handed::requests && !hearing_) open += left - budget;
-    const bool awaited = handed != Handed::nothing || network_.streams() || open != 0;
+    const bool held_back = !services_.empty() && network_.awaited_answers() != 0;
+    const bool awaited = handed != Handed::nothing || network_.streams() || open != 0 || held_back;
     if (!awaited || (budget == 0 && open == 0) || follower_.arrived()) break;
     if (handed == Handed::burst) {
       const Time dry = wire_free_ - wire_.worst_dialogue() / 2 * burst_ahead;
@@ -112,6 +115,8 @@ void BusLoop<P, N>::serve_round() noexcept {
     open -= answered;
     budget += answered;
   }
+  asked_ = 0;
+  starved_ += idle && !services_.empty() && !behind_stream(port_.now());
   give_replies();
 }
 
@@ -124,12 +129,27 @@ bool BusLoop<P, N>::behind_stream(Time now) const noexcept {
              services_.count(Answer::stream);
 }
 
+/// What may still be under way: in operation all that servers owe, so that it finds room before
+/// the outputs even if it comes at once. `open`: dialogues of this round.
+template <Port P, class N>
+Time BusLoop<P, N>::under_way(std::size_t open) const noexcept {
+  if (!hearing_) return wire_.worst_dialogue() * open;
+  const std::size_t queued = services_.to_servers(services_.size());
+  const std::size_t owed = std::max(network_.awaited_answers(), queued) - queued;
+  return wire_.worst_dialogue() / 2 * (owed + std::min(owed, asked_));
+}
+
 /// The first service frames, as many as the port takes.
 template <Port P, class N>
 std::size_t BusLoop<P, N>::hand_over(std::size_t most) noexcept {
   const std::size_t streams = services_.count(Answer::stream);
   const std::size_t count = send(services_.first(most));
-  if (services_.unanswered(count)) wire_free_ += wire_.mean(services_.first(count));
+  if (services_.unanswered(count)) {
+    wire_free_ += wire_.mean(services_.first(count));
+  } else if (hearing_) {
+    wire_free_ += services_.to_others(count, wire_);
+  }
+  asked_ += services_.to_servers(count);
   services_.drop(count);
   if (services_.count(Answer::stream) != streams) stream_end_ = port_.now() + waits::sub_block_end;
   return count;
@@ -146,7 +166,6 @@ auto BusLoop<P, N>::send_services(std::size_t& budget, Time under_way) noexcept 
   const bool burst = services_.unanswered(std::min(fitting, burst_frames));
   if (burst) fitting = std::min(fitting, burst_frames);
   if (services_.first(fitting).empty()) {
-    starved_ += wire_free_ == now;
     return Handed::nothing;
   }
   starved_ = 0;

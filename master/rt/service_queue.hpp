@@ -30,12 +30,25 @@ class ServiceQueue {
     Time needed{};
     std::size_t count = 0;
     for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
-      needed += awaited(answer) ? wire.worst_dialogue() : wire.worst_dialogue() / 2;
+      needed += dialogue(answer, wire);
       if (needed > room) break;
       ++count;
       if (answer == Answer::stream) break;
     }
     return count;
+  }
+  /// Of the first `most` frames those to SDO servers.
+  std::size_t to_servers(std::size_t most) const noexcept {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(outbox_.answers().first(std::min(most, size())), by_server));
+  }
+  /// What the others of them take, with their answers.
+  Time to_others(std::size_t most, const WireTime& wire) const noexcept {
+    Time sum{};
+    for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
+      if (!by_server(answer)) sum += dialogue(answer, wire);
+    }
+    return sum;
   }
   /// Nobody answers any of the first `count` frames.
   bool unanswered(std::size_t count) const noexcept {
@@ -59,7 +72,13 @@ class ServiceQueue {
 
  private:
   static constexpr bool awaited(Answer answer) noexcept {
-    return answer == Answer::comes || answer == Answer::stream;
+    return answer == Answer::comes || by_server(answer);
+  }
+  static constexpr bool by_server(Answer answer) noexcept {
+    return answer == Answer::by_server || answer == Answer::stream;
+  }
+  static Time dialogue(Answer answer, const WireTime& wire) noexcept {
+    return awaited(answer) ? wire.worst_dialogue() : wire.worst_dialogue() / 2;
   }
 
   Outbox outbox_;

@@ -42,7 +42,7 @@ class SdoClientBlock : public testing::Test {
   void hears(const Frame& frame) { client.on_frame(frame, now); }
 
   Time now = 1s;
-  Answer answer = Answer::comes;
+  Answer answer = Answer::by_server;
   std::array<std::byte, 256> buffer{};
   std::vector<std::byte> value_;
   SdoClient client{5_node};

@@ -11,7 +11,7 @@ TEST_F(SdoClientBlock, ChoosesBlockFor128BytesAndSegmentsFor127) {
   client.drop();
   download(128);
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
-  EXPECT_EQ(answer, Answer::comes);
+  EXPECT_EQ(answer, Answer::by_server);
 }
 
 TEST_F(SdoClientBlock, NeverUsesBlockWhereItIsForbidden) {
@@ -40,7 +40,7 @@ TEST_F(SdoClientBlock, SaysWhichFramesGetNoAnswer) {
   ASSERT_EQ(out.frames().size(), 19U);
   EXPECT_EQ(out.answers()[0], Answer::none);
   EXPECT_EQ(out.answers()[17], Answer::none);
-  EXPECT_EQ(out.answers()[18], Answer::comes);
+  EXPECT_EQ(out.answers()[18], Answer::by_server);
   EXPECT_EQ(client.deadline(), now + 500ms);
 }
 

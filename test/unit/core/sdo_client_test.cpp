@@ -51,6 +51,21 @@ TEST_F(SdoClientTest, WritesTheHeartbeatTimeExpedited) {
   EXPECT_EQ(client.deadline(), never);
 }
 
+TEST_F(SdoClientTest, IsOwedAnAnswerFromItsRequestToTheAnswerOrTheTimeOut) {
+  upload({0x1008, 0});
+  EXPECT_FALSE(client.awaits_answer());
+  sends(tx({0x40, 0x08, 0x10, 0x00}));
+  EXPECT_TRUE(client.awaits_answer());
+  hears(rx({0x41, 0x08, 0x10, 0x00, 0x0A}));
+  EXPECT_FALSE(client.awaits_answer());
+  sends(tx({0x60}));
+  EXPECT_TRUE(client.awaits_answer());
+
+  now += 501ms;
+  sends(tx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
+  EXPECT_FALSE(client.awaits_answer());
+}
+
 TEST_F(SdoClientTest, ReadsTheVendorIdExpedited) {
   upload({0x1018, 1});
   sends(tx({0x40, 0x18, 0x10, 0x01}));

@@ -107,6 +107,7 @@ class FakeNetwork {
   void on_absence(Time away) noexcept { absences.push_back(away); }
   bool streams() const noexcept { return false; }
   std::size_t awaited_sub_blocks() const noexcept { return 0; }
+  std::size_t awaited_answers() const noexcept { return owed; }
   bool submit(const Request& request, Time) noexcept {
     if (refuse) return false;
     submitted.push_back(request);
@@ -136,6 +137,7 @@ class FakeNetwork {
   std::vector<std::uint64_t> withdrawn;
   std::vector<Reply> replies;
   std::vector<Time> absences;
+  std::size_t owed = 0;
   std::optional<std::size_t> starting;
   bool refuse = false;
   bool stopping = false;
