@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -62,15 +63,37 @@ int report(const Options& options, const LoadedNetwork& network, const WhatIf& c
   return fits ? 0 : 1;
 }
 
+/// What the key of a change takes; nothing: no key is as this one.
+std::string values_of(std::string_view key) {
+  if (key == "period") return "a whole number of us, ms or s, 200us to 60s";
+  if (key == "bitrate") return "10, 20, 50, 100, 125, 250, 500, 800 or 1000 (kbit/s)";
+  if (key == "services") return "1 to 250 frames a cycle";
+  if (key == "counter") return "0 (none) or 2 to 240";
+  const bool tpdo = key.find(".tpdo") != std::string_view::npos;
+  if (!tpdo && key.find(".rpdo") == std::string_view::npos) return {};
+  if (key.ends_with(".start")) return "0 to 240, the SYNC counter of the first one";
+  if (key.ends_with(".inhibit")) return "a whole number of us or ms in steps of 100us, to 6553ms";
+  if (key.ends_with(".cob_id")) return "a COB-ID as 0x1C0";
+  if (!std::isdigit(static_cast<unsigned char>(key.back()))) return {};
+  return std::string{"a transmission type, 0 to 240"} + (tpdo ? " or 252 to 255" : ", 254 or 255") +
+         ", or `off`; of PDO 1 to 512";
+}
+
+int wrong_change(const std::string& text) {
+  const std::string values = values_of(std::string_view{text}.substr(0, text.find('=')));
+  return complain("--what-if " + text +
+                      (values.empty() ? ": not as period=1ms, bitrate=500, services=2, counter=60, "
+                                        "arm.tpdo2=10 (transmission), arm.tpdo2=off, "
+                                        "arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
+                                        "arm.tpdo2.cob_id=0x1C0"
+                                      : ": expected " + values),
+                  wrong_use);
+}
+
 int run(const Options& options) {
   WhatIf changes;
   for (const auto& text : options.what_if) {
-    if (add_change(text, changes)) continue;
-    return complain("--what-if " + text +
-                        ": not as period=1ms, bitrate=500, services=2, counter=60, arm.tpdo2=10 "
-                        "(transmission), arm.tpdo2=off, arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
-                        "arm.tpdo2.cob_id=0x1C0",
-                    wrong_use);
+    if (!add_change(text, changes)) return wrong_change(text);
   }
   const auto device_time = parse_duration(options.device_time);
   if (!device_time) {

@@ -52,16 +52,19 @@ Time BusyChains::behind_next_sync(const Busy& busy, Time waited) const {
   }
 }
 
-BusyChains::Busy BusyChains::busy_since_outputs(std::size_t at, int cycles) const {
+BusyChains::Busy BusyChains::busy_since_outputs(std::size_t at, int cycles, bool services) const {
   const int inputs = cycles - (inputs_may_follow_outputs() ? 0 : 1);
   Busy busy{
       .at = at,
       .since = plan_.cycle.output_deadline - cycles * plan_.cycle.period + sync_jitter_,
       .work = outputs_blocking_ + cycles * (outputs_work_ + sync_frame()) + inputs * inputs_work_};
-  if (services_count(at)) {
+  if (services) {
     busy.since -= 2 * services_in(1);
     busy.work += services_in(cycles);
     busy.rounds = cycles + 1;
+  } else if (services_count(at)) {
+    busy.work += services_in(cycles - 1);
+    busy.rounds = cycles;
   } else {
     busy.since += outputs_wait();
   }
@@ -85,7 +88,7 @@ BusyChains::Busy BusyChains::busy_since_sync(std::size_t at, int cycles) const {
 }
 
 BusyChains::Busy BusyChains::busy_until_outputs(std::size_t at, int cycles) const {
-  Busy busy = busy_since_outputs(at, cycles);
+  Busy busy = busy_since_outputs(at, cycles, true);
   const Time since = -cycles * plan_.cycle.period;
   busy.work += busy.since - since;
   busy.since = since;
@@ -102,14 +105,17 @@ Time BusyChains::follow_up(const Busy& busy, int cycles) const {
 std::optional<std::vector<BusyChains::Busy>> BusyChains::busy_before(std::size_t at) const {
   std::vector<Busy> all{busy_since_sync(at, 0)};
   for (int cycles = 1; cycles <= longest_chain; ++cycles) {
-    const Busy outputs = busy_since_outputs(at, cycles);
+    const Busy outputs = busy_since_outputs(at, cycles, false);
     const Busy sync = busy_since_sync(at, cycles);
     all.push_back(outputs);
     all.push_back(sync);
     auto end = later(end_of(outputs), end_of(sync));
     if (services_count(at)) {
-      all.push_back(busy_until_outputs(at, cycles));
-      end = later(end, end_of(all.back()));
+      for (const auto& busy :
+           {busy_since_outputs(at, cycles, true), busy_until_outputs(at, cycles)}) {
+        all.push_back(busy);
+        end = later(end, end_of(busy));
+      }
     }
     if (end && *end <= sync_frame()) return all;
   }

@@ -53,8 +53,8 @@ class BusyChains : protected CycleFrames {
   }
 
   /// The bus has been busy since the outputs so many cycles ago: with them, with SYNC, and with all
-  /// of the cycles between.
-  Busy busy_since_outputs(std::size_t at, int cycles) const;
+  /// of the cycles between; with the service frames before them, or as if there were none.
+  Busy busy_since_outputs(std::size_t at, int cycles, bool services) const;
 
   /// The bus has been busy since SYNC so many cycles ago, and the devices have computed since.
   Busy busy_since_sync(std::size_t at, int cycles) const;

@@ -5,12 +5,10 @@
 #include <utility>
 
 #include "eds_parser/budget/busy_chains.hpp"
-#include "eds_parser/frame_time.hpp"
 
 namespace takt {
 namespace {
 
-constexpr unsigned longest_data = 8;
 constexpr int most_rounds = 16;
 
 using Bounds = std::vector<std::optional<Time>>;
@@ -41,16 +39,6 @@ class CycleAnalysis : BusyChains {
   }
 
   void bound_inputs() {
-    relieved_ = false;
-    bound_each_input();
-    // A cycle without room for a dialogue lets a request out right behind SYNC.
-    const auto last = last_input();
-    const Time dialogue = wire_time(2 * worst_frame_bits(longest_data), plan_.bitrate);
-    relieved_ = !last || *last + dialogue > plan_.cycle.output_deadline;
-    if (relieved_) bound_each_input();
-  }
-
-  void bound_each_input() {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if (!is_input(frames_[i])) continue;
       std::optional<Time> worst{Time{0}};
@@ -76,17 +64,16 @@ class CycleAnalysis : BusyChains {
   }
 
   /// One frame of lower priority may have begun while the device computed; or the one that the
-  /// master sends right behind SYNC.
+  /// master sends right behind SYNC, when servers or a full cycle leave no room for long.
   Time begun_before_input(std::size_t at, std::size_t cycle) const {
-    const bool by_master = relieved_ || !frames_[at].awaited;
     Time begun{};
-    for (std::size_t k = 0; k < at && relieved_; ++k) {
+    for (std::size_t k = 0; k < at; ++k) {
       if (is_service(frames_[k])) begun = std::max(begun, frames_[k].frame);
     }
     if (options_.device_time == Time{0}) return begun;
     const Time lower = blocking(at, [&](const TrafficFrame& other) {
       if (is_input(other)) return has_turn(other, cycle);
-      return comes_by_itself(other) || (other.kind == Traffic::sdo && by_master);
+      return comes_by_itself(other) || other.kind == Traffic::sdo;
     });
     return std::max(begun, lower);
   }
@@ -103,16 +90,6 @@ class CycleAnalysis : BusyChains {
       end = later(end, end_of(busy));
     }
     return end;
-  }
-
-  std::optional<Time> last_input() const {
-    Time last{};
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-      if (!is_input(frames_[i])) continue;
-      if (!bounds_[i]) return std::nullopt;
-      last = std::max(last, *bounds_[i]);
-    }
-    return last;
   }
 
   /// A SYNC that is waited for is not told from one that was queued later: those before and behind
@@ -238,14 +215,12 @@ class CycleAnalysis : BusyChains {
   /// TPDOs that need not have begun before the outputs.
   void find_late_inputs() {
     late_inputs_.assign(frames_.size(), false);
-    relieved_ = true;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if (!is_input(frames_[i])) continue;
       const auto end = end_of_input(i, any_cycle, input_work(i, any_cycle));
       late_inputs_[i] = !end || *end > plan_.cycle.output_deadline;
       if (!end || *end > plan_.cycle.period) late_input_ = std::max(late_input_, frames_[i].frame);
     }
-    relieved_ = false;
   }
 
   Time longest_late_input(std::size_t lowest) const {
@@ -270,7 +245,6 @@ class CycleAnalysis : BusyChains {
   std::vector<std::optional<Time>> bounds_;
   std::vector<bool> late_inputs_;                  ///< before the outputs are
   std::optional<std::vector<Busy>> before_queue_;  ///< that may be, as of this round
-  bool relieved_ = false;
 };
 
 }  // namespace

@@ -78,6 +78,12 @@ class Svg {
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
         left_ + width + 2 * numbers_width + edge, height);
     head();
+    if (plan_.cycle.sync) cycle();
+    out_ << "</svg>\n";
+  }
+
+ private:
+  void cycle() {
     legend();
     phases();
     axis();
@@ -87,10 +93,8 @@ class Svg {
       y += row_height;
     }
     marks();
-    out_ << "</svg>\n";
   }
 
- private:
   double x(Time at) const { return left_ + width * us(at) / us(picture_.end); }
 
   void text(double at, double y, std::string_view anchor, std::string_view what,
@@ -112,13 +116,15 @@ class Svg {
 
   void head() {
     text(edge, 24, "start",
-         fmt::format("{}: {} kbit/s, SYNC every {:g} ms", plan_.name, plan_.bitrate / 1000,
+         fmt::format("{}: {} kbit/s, {} {:g} ms", plan_.name, plan_.bitrate / 1000,
+                     plan_.cycle.sync ? "SYNC every" : "no SYNC, a cycle of",
                      us(plan_.cycle.period) / 1000),
          "font-size=\"15\" font-weight=\"bold\"");
     text(edge, 43, "start",
-         fmt::format("Bus load {:.0f} % typical, {:.0f} % with worst stuffing. {} Each frame as "
-                     "late as it can be.",
-                     100 * budget_.load.typical, 100 * budget_.load.worst, verdict()));
+         fmt::format("Bus load {:.0f} % typical, {:.0f} % with worst stuffing. {} {}",
+                     100 * budget_.load.typical, 100 * budget_.load.worst, verdict(),
+                     plan_.cycle.sync ? "Each frame as late as it can be."
+                                      : "No frame has a place in the cycle: there is no picture."));
   }
 
   void legend() {

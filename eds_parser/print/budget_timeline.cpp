@@ -104,8 +104,12 @@ class Timeline {
 }  // namespace
 
 void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget) {
+  if (!plan.cycle.sync) {
+    out << "\nno SYNC: no frame has a place in the cycle, so there is no picture of it\n";
+    return;
+  }
   const auto picture = cycle_picture(plan, budget);
-  if (plan.cycle.sync && !picture.bars.empty()) Timeline{out, picture}.run();
+  if (!picture.bars.empty()) Timeline{out, picture}.run();
 }
 
 }  // namespace takt

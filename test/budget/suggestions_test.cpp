@@ -226,6 +226,21 @@ TEST(Pictures, WhatIsTooLateIsRedInTheSvgAndHasItsMargin) {
   EXPECT_THAT(out.str(), testing::HasSubstr(">receive window ends 400 us</text>"));
 }
 
+TEST(Pictures, SayThatThereIsNoCycleWithoutSync) {
+  auto plan = hand_made_bus(1, 2ms);
+  plan.cycle.sync = false;
+  std::ostringstream text;
+  std::ostringstream svg;
+  print_budget_timeline(text, plan, bus_budget(plan));
+  print_budget_svg(svg, plan, bus_budget(plan));
+
+  EXPECT_EQ(text.str(),
+            "\nno SYNC: no frame has a place in the cycle, so there is no picture of it\n");
+  EXPECT_THAT(svg.str(), testing::HasSubstr("no SYNC, a cycle of 2 ms"));
+  EXPECT_THAT(svg.str(), testing::Not(testing::HasSubstr("outputs go out")));
+  EXPECT_THAT(svg.str(), testing::EndsWith("</svg>\n"));
+}
+
 TEST(Pictures, NamesDoNotBreakTheSvg) {
   auto plan = hand_made_bus(1, 2ms);
   plan.nodes[0].name = "<a&b>";

@@ -139,7 +139,10 @@ def budget(tools):
                "It does not fit", "TOO LATE", "1000 kbit/s instead of 250", "--what-if period=")
     tools.says("a PDO of a node that there is not", ["takt", "budget", DEMO, "--what-if", "wrist.tpdo1=2"], 2, "wrist", "elbow")
     tools.says("a PDO less", ["takt", "budget", DEMO, "--what-if", "io.tpdo2=off", "--timeline"], 0, "It fits", "receive window ends 1")
-    tools.says("a bit rate that there is not", ["takt", "budget", DEMO, "--what-if", "bitrate=300"], 2, "bitrate=300")
+    tools.says("a bit rate that there is not", ["takt", "budget", DEMO, "--what-if", "bitrate=300"], 2, "bitrate=300",
+               "125, 250, 500")
+    tools.says("a type that is reserved", ["takt", "budget", DEMO, "--what-if", "io.rpdo2=252"], 2, "0 to 240, 254 or 255")
+    tools.says("a time without a unit", ["takt", "budget", DEMO, "--what-if", "period=1000"], 2, "us, ms or s")
 
 
 def babble(path, stop):
