@@ -5,6 +5,7 @@
 #include <cctype>
 #include <fmt/format.h>
 #include <span>
+#include <utility>
 
 #include "apps/frame_text/words.hpp"
 
@@ -33,8 +34,10 @@ std::string seconds_of(std::string_view milliseconds) {
   return fmt::format("{}.{:03}{}", whole / 1000, whole % 1000, micros);
 }
 
+/// Where there is no channel other words take its place.
 std::string interface_of(std::string_view channel) {
-  return channel.empty() ? unnamed_interface : fmt::format("can{}", channel);
+  const bool is_channel = channel.size() <= 3 && number_in<std::uint8_t>(channel, 10);
+  return is_channel ? fmt::format("can{}", channel) : unnamed_interface;
 }
 
 /// A length, then its bytes, or `RTR`; what follows is not read.
@@ -63,11 +66,25 @@ bool read_padded_id(std::string_view text, Frame& frame) {
   return true;
 }
 
+CandumpLine error_frame(std::string stamp, std::string_view channel) {
+  CandumpLine line{.stamp = std::move(stamp), .interface = interface_of(channel)};
+  line.error_frame = true;
+  line.frame.id = CobId::extended(0);
+  return line;
+}
+
+bool is_numbered(Words words) {
+  return words.size() >= 4 && words[0].ends_with(')') && is_time(words[1]) &&
+         number_in<std::uint64_t>(words[0].substr(0, words[0].size() - 1), 10);
+}
+
 /// `13)  45412.6  Tx  0601  8  40 ...`; since 1.2 with a channel before `Tx`, since 1.3 with a `-`
 /// before the length, 1.0 without a direction.
 std::optional<CandumpLine> parse_pcan_1(Words words) {
-  if (words.size() < 4 || !words[0].ends_with(')') || !is_time(words[1])) return {};
-  if (!number_in<std::uint64_t>(words[0].substr(0, words[0].size() - 1), 10)) return {};
+  if (!is_numbered(words)) return {};
+  if (words[2] == "Error") return error_frame(seconds_of(words[1]), {});
+  if (words[3] == "Error") return error_frame(seconds_of(words[1]), words[2]);
+  if (words.size() >= 5 && words[4] == "ERROR") return error_frame(seconds_of(words[1]), {});
   CandumpLine line{.stamp = seconds_of(words[1]), .interface = interface_of({})};
   words = words.subspan(2);
   if (words.size() >= 2 && words[0].size() <= 2 && is_direction(words[1])) {
@@ -83,9 +100,11 @@ std::optional<CandumpLine> parse_pcan_1(Words words) {
 }
 
 /// `904  4023.599 DT  0601 Rx 8  40 ...`; 2.1 with a channel before the identifier and a `-` before
-/// the length. `RR` is a remote frame.
+/// the length. `RR` is a remote frame, `ER` an error frame.
 std::optional<CandumpLine> parse_pcan_2(Words words) {
-  if (words.size() < 6 || !is_time(words[1]) || (words[2] != "DT" && words[2] != "RR")) return {};
+  if (words.size() < 6 || !is_time(words[1])) return {};
+  if (words[2] == "ER") return error_frame(seconds_of(words[1]), words[3]);
+  if (words[2] != "DT" && words[2] != "RR") return {};
   CandumpLine line{.stamp = seconds_of(words[1]), .interface = interface_of({})};
   line.frame.rtr = words[2] == "RR";
   words = words.subspan(3);
@@ -103,7 +122,11 @@ std::optional<CandumpLine> parse_pcan_2(Words words) {
 }
 
 /// `1.001000 1  601  Tx  d 8 40 ...`; `x` behind the identifier: 29 bits; `r`: remote.
+/// `1.001000 1  ErrorFrame`, with words behind it or none.
 std::optional<CandumpLine> parse_vector(Words words, int base) {
+  if (words.size() >= 3 && is_time(words[0]) && is_time(words[1]) && words[2] == "ErrorFrame") {
+    return error_frame(std::string{words[0]}, words[1]);
+  }
   if (words.size() < 5 || !is_time(words[0]) || !is_time(words[1])) return {};
   if (!is_direction(words[3]) || (words[4] != "d" && words[4] != "r")) return {};
   CandumpLine line{.stamp = std::string{words[0]}, .interface = interface_of(words[1])};
@@ -151,17 +174,27 @@ bool is_date(Words words) {
          number_in<unsigned>(words.back(), 10);
 }
 
-/// `0.000000 Start of measurement`, `1.004000 1  Statistic: D 0 ...`.
+/// `0.000000 Start of measurement`, `1.004000 1  Statistic: D 0 ...`, `1.0 CAN 1 Status:chip ...`,
+/// `1.0 SV: 2 0 1 ::Env = 1`.
 bool is_vector_event(Words words) {
   if (words.size() < 3 || !is_time(words[0])) return false;
-  return words[2] == "Statistic:" || (words[1] == "Start" && words[2] == "of");
+  if (words[1] == "SV:" || words[2] == "Statistic:") return true;
+  if (words[1] == "CAN") return words.size() >= 4 && words[3].starts_with("Status:");
+  return words[1] == "Start" && words[2] == "of";
 }
 
-/// `2)  1060.0  Warng  FFFFFFFF ...`, `3)  1061.0 1  Error  0008 ...`: of the controller.
+/// Of the controller: `2)  1060.0  Warng  FFFFFFFF ...` and, since 2.0, `2  1060.0 ST ...` (its
+/// state), `EC` (its error counters), `EV` (of the user).
 bool is_pcan_state(Words words) {
-  if (words.size() < 4 || !words[0].ends_with(')') || !is_time(words[1])) return false;
-  const std::string_view type = is_time(words[2]) ? words[3] : words[2];
-  return type == "Warng" || type == "Error";
+  if (is_numbered(words)) {
+    const auto begin = words.first(std::min<std::size_t>(words.size(), 5));
+    const auto has = [&](std::string_view word) {
+      return std::ranges::find(begin, word) != begin.end();
+    };
+    return has("Warng") || has("FFFFFFFF");
+  }
+  return words.size() >= 3 && number_in<std::uint64_t>(words[0], 10) && is_time(words[1]) &&
+         (words[2] == "ST" || words[2] == "EC" || words[2] == "EV");
 }
 
 }  // namespace
@@ -175,11 +208,12 @@ std::optional<CandumpLine> parse_recorded(std::string_view text, int vector_base
   return parse_vector(words, vector_base);
 }
 
-std::optional<int> vector_base(std::string_view text) {
+std::optional<VectorHead> vector_head(std::string_view text) {
   const std::vector<std::string_view> words = words_of(text);
   if (words.size() < 2 || words[0] != "base") return {};
-  if (words[1] == "dec") return 10;
-  return words[1] == "hex" ? std::optional{16} : std::nullopt;
+  if (words[1] != "dec" && words[1] != "hex") return {};
+  const bool relative = words.size() >= 4 && words[2] == "timestamps" && words[3] == "relative";
+  return VectorHead{.base = words[1] == "dec" ? 10 : 16, .relative = relative};
 }
 
 bool is_remark(std::string_view text) {

@@ -96,6 +96,12 @@ DeviceFiles::Match DeviceFiles::match(const fs::path& path, std::uint8_t node) {
           .dictionary = std::make_shared<const ObjectDictionary>(std::move(eds.dictionary))};
 }
 
+std::vector<std::uint8_t> DeviceFiles::assigned() const {
+  std::vector<std::uint8_t> nodes;
+  for (const auto& [node, file] : assigned_) nodes.push_back(node);
+  return nodes;
+}
+
 DeviceFiles::Match DeviceFiles::find(std::uint8_t node, const SeenIdentity& identity) const {
   if (const auto own = assigned_.find(node); own != assigned_.end()) {
     return match(own->second, node);

@@ -35,6 +35,9 @@ class DeviceFiles {
   /// `file` is that of this node whatever its identity is.
   bool assign(std::uint8_t node, const std::filesystem::path& file, Findings& findings);
 
+  /// Nodes that have a file by assign().
+  std::vector<std::uint8_t> assigned() const;
+
   struct Match {
     std::filesystem::path path;
     std::shared_ptr<const ObjectDictionary> dictionary;  ///< read with the node's id

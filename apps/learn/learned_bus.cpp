@@ -57,11 +57,15 @@ bool LearnedNode::is_there() const noexcept {
 }
 
 std::optional<std::uint8_t> LearnedBus::master() const {
+  constexpr std::uint8_t usual = 127;
   std::vector<std::uint8_t> silent;  // it lives, but nobody tells or asks it anything
   for (const auto& [id, node] : nodes) {
     const bool told = node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();
-    const bool lives = node.heartbeats.count() != 0 || (node.booted_up && node.deaf_to_reset);
-    if (!told && lives) silent.push_back(id);
+    if (told) continue;
+    const bool lives =
+        node.heartbeats.count() != 0 ||
+        (node.booted_up && (node.deaf_to_reset || (id == usual && !sends_as_device(id))));
+    if (lives) silent.push_back(id);
   }
   const auto watched = [&](std::uint8_t id) {
     return std::ranges::any_of(nodes, [&](const auto& entry) {
@@ -78,15 +82,17 @@ std::optional<std::uint8_t> LearnedBus::master() const {
   const bool served =
       std::ranges::any_of(nodes, [](const auto& entry) { return entry.second.answers != 0; });
   if (served && silent.size() == 1) return silent.front();
-  if (std::ranges::find(silent, std::uint8_t{127}) != silent.end()) return std::uint8_t{127};
+  if (std::ranges::find(silent, usual) != silent.end()) return usual;
   return {};
 }
 
-/// Or it sends an EMCY, or a TPDO by the predefined set that is no other node's.
 bool LearnedBus::is_there(const LearnedNode& node) const {
-  if (node.is_there()) return true;
+  return node.is_there() || sends_as_device(node.id);
+}
+
+bool LearnedBus::sends_as_device(std::uint8_t node_id) const {
   const auto is_sent = [&](unsigned function) {
-    const CobId id = CobId::base(function + node.id);
+    const CobId id = CobId::base(function + node_id);
     const auto found = traffic.find(id);
     if (found == traffic.end() || found->second.frames.count() == 0) return false;
     return std::ranges::none_of(nodes, [&](const auto& entry) {

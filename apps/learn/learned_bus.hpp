@@ -104,6 +104,8 @@ struct LearnedBus {
 
  private:
   bool is_there(const LearnedNode& node) const;
+  /// It sends an EMCY, or a TPDO by the predefined set that is no other node's.
+  bool sends_as_device(std::uint8_t node_id) const;
 };
 
 }  // namespace takt

@@ -22,6 +22,8 @@ constexpr std::uint64_t makes_sync = 0x4000'0000;
 constexpr std::size_t most_unknown = 200;
 constexpr std::uint64_t shortest_sync_us = 200;
 constexpr std::uint64_t longest_sync_us = 60'000'000;
+constexpr std::int64_t shortest_time_ms = 100;
+constexpr std::int64_t longest_time_ms = 86'400'000;
 constexpr std::uint8_t least_overflow = 2;  // 1 is reserved. CiA 301, 7.5.2.22
 constexpr std::uint8_t most_overflow = 240;
 
@@ -43,6 +45,7 @@ class NetworkText {
 
   LearnedNetwork run() {
     find_master();
+    tell_files_of_nobody();
     for (const LearnedNode* node : devices_) find_file(*node);
     learn_sync();
     learn_time();
@@ -69,15 +72,49 @@ class NetworkText {
     out_.findings.push_back({bus_.file, {line, 0}, severity, rule, std::move(message)});
   }
 
+  std::uint8_t highest_free_id() const {
+    std::uint8_t id = 127;
+    while (id > 1 && std::ranges::find(devices_, id, &LearnedNode::id) != devices_.end()) --id;
+    return id;
+  }
+
+  /// `--eds 5=FILE` where there is no node 5.
+  void tell_files_of_nobody() {
+    for (const std::uint8_t id : files_.assigned()) {
+      if (std::ranges::find(devices_, id, &LearnedNode::id) != devices_.end()) continue;
+      tell(Severity::warning, "nobody-there", 0,
+           fmt::format("a device file was given for node {}, which is not in the recording", id));
+    }
+  }
+
+  /// As measured. Else a third of what those wait who watch it, the time between two of a few, or
+  /// the default if there is any heartbeat.
+  std::int64_t heartbeat_of_master(const LearnedNode& master) const {
+    const PeriodMeter& heartbeats = master.heartbeats;
+    if (const auto ms = as_configured_ms(heartbeats.median())) return *ms;
+    std::int64_t shortest = 0;
+    for (const LearnedNode* node : devices_) {
+      for (const auto& [key, value] : node->values()) {
+        const auto entry = static_cast<std::int64_t>(value.number().value_or(0));
+        const std::int64_t ms = entry & 0xFFFF;
+        if (key.index != 0x1016 || key.sub == 0 || (entry >> 16 & 0x7F) != master.id) continue;
+        if (ms != 0 && (shortest == 0 || ms < shortest)) shortest = ms;
+      }
+    }
+    if (shortest != 0) return std::max<std::int64_t>(1, shortest / 3);
+    if (const auto ms = as_configured_ms(heartbeats.shortest())) return *ms;
+    return heartbeats.count() != 0 ? 100 : 0;
+  }
+
   void find_master() {
     const auto own = bus_.master();
-    master_id_ = own.value_or(127);
+    master_id_ = own.value_or(highest_free_id());
     if (own) {
-      const auto period = bus_.nodes.at(*own).heartbeats.median();
-      heartbeat_ms_ = period ? as_configured(*period) / 1000 : 0;
+      heartbeat_ms_ = heartbeat_of_master(bus_.nodes.at(*own));
     } else {
       tell(Severity::note, "no-master-id", 0,
-           "nothing in the recording says which node id the master has: 127 is taken");
+           fmt::format("nothing in the recording says which node id the master has: {} is taken",
+                       master_id_));
     }
     if (const auto strangers = bus_.strangers(); !strangers.empty()) {
       tell(Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
@@ -207,12 +244,18 @@ class NetworkText {
     const auto period = bus_.time.median();
     const auto shortest = bus_.time.shortest();
     if (!shortest) return;
-    time_ms_ = std::max<std::int64_t>(1, as_configured(period.value_or(*shortest)) / 1000);
-    if (period) return;
-    tell(Severity::note, "few-frames", 0,
-         fmt::format(
-             "{} frames of TIME do not show `time_period`: it is the shortest time between two",
-             bus_.time.count()));
+    const std::int64_t ms = as_configured(period.value_or(*shortest)) / 1000;
+    const std::string count =
+        fmt::format("{} frames of TIME do not show `time_period`: ", bus_.time.count());
+    if (ms < shortest_time_ms || ms > longest_time_ms) {
+      tell(Severity::warning, "few-frames", 0,
+           count + fmt::format("{} ms is none that it can be, it is left out", ms));
+      return;
+    }
+    time_ms_ = ms;
+    if (!period) {
+      tell(Severity::note, "few-frames", 0, count + "it is the shortest time between two");
+    }
   }
 
   void header() {

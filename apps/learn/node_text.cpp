@@ -109,10 +109,8 @@ class NodeText {
     heartbeat();
     watch_master();
     if (node_.guarded()) {
-      const auto measured = node_.guard_requests.median();
-      const auto ms =
-          written({0x100C, 0})
-              .value_or(static_cast<std::uint64_t>(as_configured(measured.value_or(0)) / 1000));
+      const auto measured = as_configured_ms(node_.guard_requests.median()).value_or(0);
+      const auto ms = written({0x100C, 0}).value_or(static_cast<std::uint64_t>(measured));
       if (ms != 0) line("guard_time: {}", ms);
       if (const auto factor = written({0x100D, 0})) line("life_time_factor: {}", *factor);
     }
@@ -131,7 +129,9 @@ class NodeText {
     if (set && *set <= 65535) {
       line("heartbeat_producer: {}", *set);
     } else if (measured && !node_.guarded()) {
-      line("heartbeat_producer: {}   # as measured", as_configured(*measured) / 1000);
+      const auto ms = as_configured_ms(measured);
+      line("heartbeat_producer: {}   # {}", ms.value_or(0),
+           ms ? "as measured" : "measured is none that 0x1017 can hold");
     } else {
       line("heartbeat_producer: 0   # none in the recording");
     }

@@ -54,4 +54,10 @@ std::int64_t as_configured(std::int64_t measured) noexcept {
   return measured;
 }
 
+std::optional<std::int64_t> as_configured_ms(std::optional<std::int64_t> measured_us) noexcept {
+  if (!measured_us) return {};
+  const std::int64_t ms = as_configured(*measured_us) / 1000;
+  return ms >= 1 && ms <= 65535 ? std::optional{ms} : std::nullopt;
+}
+
 }  // namespace takt

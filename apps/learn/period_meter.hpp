@@ -30,4 +30,7 @@ class PeriodMeter {
 /// where it becomes 1, 2, 2.5, 4, 5 or 8 times a power of ten: masters in software are that slow.
 std::int64_t as_configured(std::int64_t measured) noexcept;
 
+/// That of microseconds, in milliseconds; none: it is no time of an UNSIGNED16 but 0.
+std::optional<std::int64_t> as_configured_ms(std::optional<std::int64_t> measured_us) noexcept;
+
 }  // namespace takt

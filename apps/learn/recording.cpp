@@ -16,6 +16,7 @@ constexpr std::size_t most_boots = 16;
 constexpr std::size_t most_writes = 4096;   // of one boot
 constexpr std::size_t most_objects = 8192;  // of one boot
 constexpr std::size_t most_line = 512;
+constexpr std::size_t most_early = 16;  // interfaces of error frames before the first data frame
 
 /// `1436509052.249713` in microseconds.
 std::optional<std::int64_t> seconds_in_us(std::string_view stamp) {
@@ -68,8 +69,7 @@ void Recording::tell(Severity severity, std::string_view rule, std::uint32_t lin
 
 void Recording::add(std::string_view text, std::uint32_t line) {
   line_ = line;
-  vector_base_ = vector_base(text).value_or(vector_base_);
-  const auto parsed = parse_recorded(text, vector_base_);
+  const auto parsed = lines_.parse(text);
   if (!parsed) {
     if (!is_remark(text) && ++strange_ <= 3) {
       tell(Severity::warning, "not-candump", line,
@@ -77,11 +77,11 @@ void Recording::add(std::string_view text, std::uint32_t line) {
     }
     return;
   }
-  if (bus_.interface.empty()) bus_.interface = parsed->interface;
-  if (parsed->interface != bus_.interface) {
-    if (++foreign_ == 1) foreign_name_ = parsed->interface;
-    return;
+  if (bus_.interface.empty()) {
+    if (parsed->error_frame) return early_error(parsed->interface);
+    choose(parsed->interface);
   }
+  if (parsed->interface != bus_.interface) return foreign(parsed->interface, 1);
   ++bus_.frames;
   const auto before = std::exchange(us_, microseconds(parsed->stamp));
   if (before && us_ && *us_ < *before) ++backward_;
@@ -92,6 +92,35 @@ void Recording::add(std::string_view text, std::uint32_t line) {
   } else {
     frame(*parsed);
   }
+}
+
+/// It is counted where a frame that says more has chosen the interface.
+void Recording::early_error(const std::string& interface) {
+  const auto known = std::ranges::find(early_, interface, &EarlyErrors::interface);
+  if (known != early_.end()) {
+    ++known->count;
+  } else if (early_.size() < most_early) {
+    early_.push_back({interface, 1});
+  } else {
+    foreign(interface, 1);
+  }
+}
+
+void Recording::choose(std::string interface) {
+  bus_.interface = std::move(interface);
+  for (const EarlyErrors& errors : std::exchange(early_, {})) {
+    if (errors.interface != bus_.interface) {
+      foreign(errors.interface, errors.count);
+    } else {
+      bus_.frames += errors.count;
+      bus_.error_frames += errors.count;
+    }
+  }
+}
+
+void Recording::foreign(const std::string& interface, std::uint64_t frames) {
+  if (foreign_ == 0) foreign_name_ = interface;
+  foreign_ += frames;
 }
 
 LearnedNode& Recording::node(std::uint8_t id) {
@@ -235,6 +264,7 @@ void Recording::other(const Frame& frame) {
 }
 
 LearnedBus Recording::take() {
+  if (!early_.empty()) choose(early_.front().interface);
   if (strange_ > 3) {
     tell(Severity::warning, "not-candump", 0,
          std::to_string(strange_) + " lines are no frames and were left out");

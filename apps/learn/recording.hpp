@@ -4,8 +4,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/frame_text/candump_line.hpp"
+#include "apps/frame_text/recorded_lines.hpp"
 #include "apps/learn/learned_bus.hpp"
 
 namespace takt {
@@ -13,13 +15,22 @@ namespace takt {
 /// Listens to a recorded bus frame by frame. Memory is bounded whatever the recording says.
 class Recording {
  public:
-  /// `interface`: frames of others are left out; empty: that of the first frame.
+  /// `interface`: frames of others are left out; empty: that of the first frame which is no error
+  /// frame.
   Recording(std::string file, std::string interface);
 
   void add(std::string_view text, std::uint32_t line);
   LearnedBus take();
 
  private:
+  struct EarlyErrors {
+    std::string interface;
+    std::uint64_t count = 0;
+  };
+
+  void early_error(const std::string& interface);
+  void choose(std::string interface);
+  void foreign(const std::string& interface, std::uint64_t frames);
   void frame(const CandumpLine& line);
   void nmt(const Frame& frame);
   void reset(LearnedNode& node, bool whole_node);
@@ -34,12 +45,13 @@ class Recording {
 
   LearnedBus bus_;
   std::uint32_t line_ = 0;
-  int vector_base_ = 16;    // of the numbers of a Vector log
+  RecordedLines lines_;
   bool all_reset_ = false;  // newest reset of all was by NMT reset node
   std::uint64_t strange_ = 0;
   std::uint64_t foreign_ = 0;   // frames of other interfaces
   std::uint64_t backward_ = 0;  // frames with an earlier time than the one before
   std::string foreign_name_;
+  std::vector<EarlyErrors> early_;  // before an interface is chosen
   std::optional<std::int64_t> us_;
   std::optional<std::int64_t> first_us_;
 };

@@ -16,6 +16,7 @@
 #include "apps/frame_text/candump_line.hpp"
 #include "apps/frame_text/error_frame_text.hpp"
 #include "apps/frame_text/frame_text.hpp"
+#include "apps/frame_text/recorded_lines.hpp"
 #include "apps/frame_text/trace_line.hpp"
 #include "apps/frame_text/value_text.hpp"
 #include "apps/takt/commands.hpp"
@@ -143,11 +144,10 @@ int dump_log(std::istream& in, const std::string& name, Printer& printer) {
   std::uint64_t line_number = 0;
   std::uint64_t frames = 0;
   std::uint64_t strange = 0;
-  int base = 16;
+  RecordedLines lines;
   while (std::getline(in, text)) {
     ++line_number;
-    base = vector_base(text).value_or(base);
-    if (const auto line = parse_recorded(text, base)) {
+    if (const auto line = lines.parse(text)) {
       ++frames;
       if (!printer.print(*line)) break;
     } else if (!is_remark(text) && ++strange <= 3) {

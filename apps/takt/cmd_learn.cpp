@@ -74,7 +74,16 @@ int run(const Options& options) {
   if (!good || has_error(findings)) return 2;
   const auto bus = listen(options);
   if (!bus) return complain(options.log + ": can't be read", 2);
-  if (bus->frames == 0) return complain(options.log + ": holds no frame of candump", 1);
+  if (bus->frames == 0 && !options.interface.empty()) {
+    print(bus->findings, false);
+    return complain(options.log + ": holds no frame of interface " + options.interface, 2);
+  }
+  if (bus->frames == 0) {
+    return complain(options.log +
+                        ": holds no frame; what candump, PCAN (.trc), Vector (.asc) and python-can "
+                        "record is read",
+                    2);
+  }
 
   const bool to_stdout = options.out == "-";
   const fs::path out{options.out};
@@ -105,7 +114,8 @@ void add_learn(CLI::App& app, int& exit_code) {
   auto* command =
       app.add_subcommand("learn", "a network file from a recorded boot of another master");
   command
-      ->add_option("LOG", options->log, "recording of candump (-L, or its ordinary output), or -")
+      ->add_option("LOG", options->log,
+                   "recording of candump (-L, or its ordinary output), .trc, .asc or -")
       ->required();
   command->add_option("-o,--output", options->out, "the network file; - for stdout")
       ->type_name("NET.yaml")

@@ -108,6 +108,9 @@ def dump_chooses(tools, folder):
     check("what is no frame in it is told", f"{pcan}:5: not a frame" in done.stderr and ":1:" not in done.stderr, done.stderr)
     check("a state of the controller is no frame, and no fault", ":4:" not in done.stderr, done.stderr)
     pcan.write_text("nothing\nof the kind\n")
+    tools.says("nothing to learn from", ["takt", "learn", pcan, "-o", folder / "x.yaml"], 2, "holds no frame", ".trc")
+    tools.says("nothing to learn from on that interface", ["takt", "learn", log, "--bus", "can7", "-o", folder / "x.yaml"], 2,
+               "no frame of interface can7", "--bus can0")
     tools.says("no recording at all", ["takt", "dump", pcan], 2, "no frame in it; `candump -L can0 > FILE`")
     tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is no node id 1..127")
 

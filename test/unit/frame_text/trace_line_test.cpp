@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/frame_text/recorded_lines.hpp"
+
 namespace takt {
 namespace {
 
@@ -59,10 +61,60 @@ TEST(TraceLine, ReadsADecimalVectorLog) {
   EXPECT_EQ(line->frame, device_type);
   EXPECT_FALSE(hex);
   EXPECT_FALSE(parse_recorded("1.0 1 701 Rx d 1 256", 10));
-  EXPECT_EQ(vector_base("base dec  timestamps absolute"), 10);
-  EXPECT_EQ(vector_base("base hex  timestamps absolute"), 16);
-  EXPECT_FALSE(vector_base("base"));
-  EXPECT_FALSE(vector_base("1.0 1 701 Rx d 1 00"));
+  EXPECT_FALSE(vector_head("base"));
+  EXPECT_FALSE(vector_head("base oct"));
+  EXPECT_FALSE(vector_head("1.0 1 701 Rx d 1 00"));
+}
+
+TEST(TraceLine, KnowsAnErrorFrame) {
+  for (const char* text :
+       {"3) 1061 0008 4 ERROR 00 19 08 08", "3) 1061.0 Error 0008 4 00 19 08 08",
+        "3) 1061.0 1 Error 0008 - 4 00 19 08 08", "5 1061.000 ER          Rx 5  04 00 02 00 00",
+        "5 1061.000 ER     -    Rx 5  04 00 02 00 00",
+        "5 1061.000 ER 1         - Rx -  5    04 00 02 00 00", "1.061000 1  ErrorFrame",
+        "1.061000 1  ErrorFrame Flags = 0xe CodeExt = 0x20a2 ID = 0 DLC = 0"}) {
+    const auto line = parse_recorded(text);
+
+    ASSERT_TRUE(line) << text;
+    EXPECT_TRUE(line->error_frame) << text;
+    EXPECT_EQ(line->stamp, "1.061000") << text;
+    EXPECT_EQ(line->frame.length, 0) << text;
+  }
+}
+
+TEST(TraceLine, OnlyAChannelNamesAnInterface) {
+  for (const char* text :
+       {"1 1061.0 ER - Rx 5 04 00 02 00 00", "1 1061.0 ER Rx 5 04 00 02 00 00",
+        "1 1061.0 ER 0008 Rx 5 04 00 02 00 00", "3) 1061.0 Rx Error 0008 - 4 00 19 08 08",
+        "3) 1061 0008 4 ERROR 00 19 08 08", "2 1061.0 DT - 0581 Rx 1 00"}) {
+    const auto line = parse_recorded(text);
+
+    ASSERT_TRUE(line) << text;
+    EXPECT_EQ(line->interface, "can0") << text;
+  }
+  EXPECT_EQ(parse_recorded("5 1061.0 ER 2 - Rx - 5 04 00 02 00 00")->interface, "can2");
+  EXPECT_EQ(parse_recorded("3) 1061.0 2 Error 0008 - 4 00 19 08 08")->interface, "can2");
+}
+
+TEST(RecordedLines, TakeTheNumbersOfAVectorLogAsItsHeadSays) {
+  RecordedLines lines;
+  EXPECT_EQ(lines.parse("1.0 1  701  Rx  d 1 00")->frame, boot_up);
+  EXPECT_FALSE(lines.parse("base dec  timestamps absolute"));
+  EXPECT_EQ(lines.parse("2.5 1  1793  Rx  d 1 00")->frame, boot_up);
+  EXPECT_EQ(lines.parse("2.5 1  1793  Rx  d 1 00")->stamp, "2.5");
+}
+
+// Whatever has a time is counted, also what is no frame.
+TEST(RecordedLines, AddUpTheRelativeTimesOfAVectorLog) {
+  RecordedLines lines;
+  lines.parse("base hex  timestamps relative");
+  lines.parse("   0.000000 Start of measurement");
+
+  EXPECT_EQ(lines.parse("   1.500000 1  701  Rx  d 1 00")->stamp, "1.500000");
+  EXPECT_FALSE(lines.parse("   0.25 1  Statistic: D 3 R 0 XD 0 XR 0 E 0 O 0 B 0.02%"));
+  EXPECT_EQ(lines.parse("   0.250001 1  ErrorFrame")->stamp, "2.000001");
+  EXPECT_FALSE(lines.parse("End TriggerBlock"));
+  EXPECT_EQ(lines.parse("   0.000009 1  701  Rx  d 1 00")->stamp, "2.000010");
 }
 
 TEST(TraceLine, ReadsWhatPythonCanPrints) {
@@ -100,7 +152,7 @@ TEST(TraceLine, RefusesWhatIsNoFrame) {
                            "1.0 1 701 Rx d 1",
                            "1.0 1 801 Rx d 1 00",
                            "1.0 CANFD 1 Rx 701 1 0 1 1 00",
-                           "1.0 1 ErrorFrame",
+                           "1.0 ErrorFrame",
                            "Timestamp: 1.0 ID: 0701 S Rx",
                            "Timestamp: 1.0 ID: 0701 S F Rx DL: 1 00",
                            "Timestamp: 1.0 ID: 0701 S Rx DL: 1",
@@ -114,19 +166,34 @@ TEST(TraceLine, RefusesWhatIsNoFrame) {
 }
 
 TEST(TraceLine, KnowsWhatStandsBesideFrames) {
-  for (const char* text :
-       {"", "  \r", ";$FILEVERSION=1.1", ";   Message   Number", "// version 13.0.0",
-        "date Sat Sep 30 22:06:13.191 2017", "base hex  timestamps absolute",
-        "date Mit Okt 7 03:05:05 pm 2015", "no internal events logged", "internal events logged",
-        "Begin Triggerblock", "End TriggerBlock", "0.000000 Start of measurement",
-        "1.004000 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
-        " 2) 1060.0  Warng  FFFFFFFF  4  00 00 00 08  BUSHEAVY",
-        "3) 1061.0 Error 0008 4 00 19 08 08", "3) 1061.0 1 Error 0008 - 4 00 19 08 08"}) {
+  for (const char* text : {"",
+                           "  \r",
+                           ";$FILEVERSION=1.1",
+                           ";   Message   Number",
+                           "// version 13.0.0",
+                           "date Sat Sep 30 22:06:13.191 2017",
+                           "base hex  timestamps absolute",
+                           "date Mit Okt 7 03:05:05 pm 2015",
+                           "no internal events logged",
+                           "internal events logged",
+                           "Begin Triggerblock",
+                           "End TriggerBlock",
+                           "0.000000 Start of measurement",
+                           "1.004000 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
+                           " 2) 1060.0  Warng  FFFFFFFF  4  00 00 00 08  BUSHEAVY",
+                           "2) 1060.0  Rx  FFFFFFFF  4  00 00 00 08  BUSHEAVY",
+                           "2 1283.231 ST Rx 00 00 00 08",
+                           "2 1283.231 ST 1 - Rx - 4 00 00 00 08",
+                           "4 1323.201 EC Rx 2 02 04",
+                           "7 1334.522 EV 1  User-defined event for bus 1",
+                           "1.0 CAN 1 Status:chip status error active",
+                           "1.0 SV: 2 0 1 ::Env = 1"}) {
     EXPECT_TRUE(is_remark(text)) << text;
   }
-  for (const char* text : {"2) 46268.0 Rx", "no", "no frame", "date", "date 12",
-                           "date of the frame 185 37", "Start of", "x Start of measurement",
-                           "1.0 1 701 Rx d 1", "2) Warng", "Warng", "1.0 1 ErrorFrame"}) {
+  for (const char* text :
+       {"2) 46268.0 Rx", "no", "no frame", "date", "date 12", "date of the frame 185 37",
+        "Start of", "x Start of measurement", "1.0 1 701 Rx d 1", "2) Warng", "Warng", "1.0 CAN 1",
+        "x 1283.231 ST Rx", "1.0 1 ErrorFrame"}) {
     EXPECT_FALSE(is_remark(text)) << text;
   }
 }

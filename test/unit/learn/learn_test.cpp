@@ -241,6 +241,19 @@ TEST(Learn, FewFramesOfTimeAreAPeriodOrListed) {
   EXPECT_THAT(one.text, HasSubstr("# 1 frames of TIME (0x100)"));
 }
 
+TEST(Learn, TimesThatNoNetworkFileMayHaveAreListed) {
+  const std::string first = "(1.0) can0 100#FF5B26054D39\n";
+
+  for (const char* second : {"1.05", "200000.0"}) {
+    const LearnedNetwork network =
+        learned(first + "(" + second + ") can0 100#FF5B26054D39\n(300000.0) can0 706#05\n");
+
+    EXPECT_THAT(network.text, Not(HasSubstr("  time_period:"))) << second;
+    EXPECT_THAT(network.text, HasSubstr("# 2 frames of TIME (0x100)")) << second;
+    EXPECT_THAT(rules(network.findings), HasSubstr("2 frames of TIME do not show")) << second;
+  }
+}
+
 std::string syncs(const std::vector<std::string>& counters) {
   std::string log;
   for (std::size_t i = 0; i < counters.size(); ++i) {

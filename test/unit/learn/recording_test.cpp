@@ -137,6 +137,26 @@ TEST(Learn, LeavesOtherInterfacesOutAndSaysSo) {
   EXPECT_TRUE(second.nodes.contains(2) && !second.nodes.contains(1));
 }
 
+TEST(Learn, AnErrorFrameDoesNotChooseTheInterface) {
+  const LearnedBus bus = heard(
+      "(1.0) can1 20000008#0000190000000000\n(1.1) can0 20000008#0000190000000000\n"
+      "(1.2) can0 701#00\n(1.3) can0 20000008#0000190000000000\n");
+
+  EXPECT_EQ(bus.interface, "can0");
+  EXPECT_TRUE(bus.nodes.contains(1));
+  EXPECT_EQ(bus.frames, 3U);
+  EXPECT_EQ(bus.error_frames, 2U);
+  EXPECT_THAT(rules(bus.findings), HasSubstr("1 frames of other interfaces (can1)"));
+}
+
+TEST(Learn, ARecordingOfErrorFramesAloneIsThatOfTheFirst) {
+  const LearnedBus bus =
+      heard("(1.0) can1 20000008#0000190000000000\n(1.1) can0 20000008#0000190000000000\n");
+
+  EXPECT_EQ(bus.interface, "can1");
+  EXPECT_EQ(bus.error_frames, 1U);
+}
+
 TEST(Learn, NamesTheLinesThatAreNoFrames) {
   const LearnedBus bus = heard("hello\n(1.0) can0 701#00\n(1.1) can0 701##100\n\n");
 

@@ -1,0 +1,48 @@
+#include "apps/frame_text/recorded_lines.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <string>
+
+#include "apps/frame_text/trace_line.hpp"
+#include "apps/frame_text/words.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint64_t longest_pause_s = 1'000'000'000;
+
+/// `12.5` in microseconds; what is no time takes none.
+std::uint64_t microseconds(std::string_view seconds) {
+  const std::size_t dot = std::min(seconds.find('.'), seconds.size());
+  const auto whole = number_in<std::uint64_t>(seconds.substr(0, dot), 10);
+  std::string digits{seconds.substr(std::min(dot + 1, seconds.size()))};
+  digits.resize(6, '0');
+  const auto micros = number_in<std::uint64_t>(digits, 10);
+  if (!whole || !micros || *whole > longest_pause_s) return 0;
+  return *whole * 1'000'000 + *micros;
+}
+
+}  // namespace
+
+/// Each line with a time counts from the one before, whether it is a frame or not.
+void RecordedLines::advance(std::string_view text) {
+  const auto words = words_of(text);
+  if (!words.empty()) us_ += microseconds(words[0]);
+}
+
+std::optional<CandumpLine> RecordedLines::parse(std::string_view text) {
+  if (const auto head = vector_head(text)) {
+    base_ = head->base;
+    relative_ = head->relative;
+    us_ = 0;
+    return {};
+  }
+  auto line = parse_recorded(text, base_);
+  if (!relative_) return line;
+  advance(text);
+  if (line) line->stamp = fmt::format("{}.{:06}", us_ / 1'000'000, us_ % 1'000'000);
+  return line;
+}
+
+}  // namespace takt
