@@ -249,7 +249,7 @@ class ValueSteps {
 
   void missing(const SdoSpec& sdo) {
     const Object* object = dictionary_.find(sdo.object.index);
-    std::string hint;
+    std::string hint = without_0x(dictionary_, sdo.object.index);
     if (object != nullptr && !object->subs.empty()) {
       hint = "; " + hex(object->index) + " " + object->name + " has sub-index " +
              std::to_string(object->subs.front().sub) + ".." +

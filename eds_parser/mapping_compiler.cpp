@@ -1,6 +1,7 @@
 #include "eds_parser/mapping_compiler.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 
 namespace takt {
@@ -19,6 +20,7 @@ std::string suggestion(const ObjectDictionary& dictionary, ObjectKey key) {
     }
     return "; " + hex(key.index) + " " + object->name + " has sub-index " + subs;
   }
+  if (const std::string slip = without_0x(dictionary, key.index); !slip.empty()) return slip;
   const Object* best = nullptr;
   for (const Object& object : dictionary.objects) {
     const bool mappable = std::ranges::any_of(object.subs, &SubObject::pdo_mappable);
@@ -205,6 +207,16 @@ std::string object_name(const ObjectDictionary& dictionary, ObjectKey key) {
 std::string label(const ObjectDictionary& dictionary, ObjectKey key) {
   const std::string text = object_name(dictionary, key);
   return to_string(key) + (text.empty() ? "" : " " + text);
+}
+
+std::string without_0x(const ObjectDictionary& dictionary, std::uint16_t index) {
+  const std::string digits = std::to_string(index);
+  std::uint16_t meant = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), meant, 16);
+  const Object* object = digits.size() == 4 ? dictionary.find(meant) : nullptr;
+  if (object == nullptr) return {};
+  return "; " + digits + " is " + hex(index) + ": did you mean " + hex(meant) + " " + object->name +
+         "?";
 }
 
 }  // namespace takt

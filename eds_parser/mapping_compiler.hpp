@@ -22,5 +22,7 @@ std::vector<EffectiveEntry> mapping_of(const NodeSource& node, const PdoDescript
 std::string object_name(const ObjectDictionary& dictionary, ObjectKey key);
 /// `6064:00 Position actual value`.
 std::string label(const ObjectDictionary& dictionary, ObjectKey key);
+/// The end of a sentence on a missing object whose index would be right with 0x; else empty.
+std::string without_0x(const ObjectDictionary& dictionary, std::uint16_t index);
 
 }  // namespace takt

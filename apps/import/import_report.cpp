@@ -86,7 +86,7 @@ class RowCollector {
     if (node.kind == YamlNode::Kind::map) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       map(node, path, pair.key);
-    } else if (places_left_ != 0 && is_list_of_maps(node)) {
+    } else if (places_left_ != 0 && holds_maps(node)) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       items(node, pair.key, path);
     } else {
@@ -98,10 +98,9 @@ class RowCollector {
     }
   }
 
-  static bool is_list_of_maps(const YamlNode& node) {
-    return !node.items.empty() && std::ranges::all_of(node.items, [](const YamlNode* item) {
-      return item->kind == YamlNode::Kind::map;
-    });
+  static bool holds_maps(const YamlNode& node) {
+    return std::ranges::any_of(
+        node.items, [](const YamlNode* item) { return item->kind == YamlNode::Kind::map; });
   }
 
   void items(const YamlNode& list, std::string_view word, const std::string& path) {

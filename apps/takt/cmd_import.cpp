@@ -118,12 +118,6 @@ Imported import_project(const Options& options) {
   return {std::move(imported.report), written};
 }
 
-/// Else there is nothing to report on.
-bool can_be_read(const std::string& file) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(file, error) && std::ifstream{file}.is_open();
-}
-
 int run(const Options& options) {
   if (!is_nodelist(options) && !options.out.empty()) {
     return complain("-o is for a nodelist.cpj: taktd runs a bus.yml as it is", 2);
@@ -136,7 +130,7 @@ int run(const Options& options) {
     print_text(options, imported);
   }
   if (imported.report.usable) return 0;
-  return can_be_read(options.file) ? 1 : 2;
+  return imported.report.keys.empty() ? 2 : 1;  // none: it could not be read
 }
 
 }  // namespace

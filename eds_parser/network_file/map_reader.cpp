@@ -111,7 +111,15 @@ std::optional<bool> read_bool(const YamlNode& node, std::string_view key, Networ
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (text == "true" || text == "yes" || text == "on" || text == "1") return true;
-  if (text == "false" || text == "no" || text == "off" || text == "0") return false;
+  if (text == "false" || text == "no" || text == "off" || text == "0") {
+    if (node.quoted) {
+      report.warning(node.pos, "quoted",
+                     "`" + std::string{key} + "`: " + quote(node.text) +
+                         " in quotes is taken for false; generators of other masters take any "
+                         "text for true: write it without quotes");
+    }
+    return false;
+  }
   report.error(node.pos, "wrong-type",
                "`" + std::string{key} + "` is true or false, not " + quote(node.text));
   return {};

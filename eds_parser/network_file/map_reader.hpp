@@ -26,7 +26,7 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view 
                                          IntegerRange range, NetworkReport& report);
 std::optional<double> read_number(const YamlNode& node, std::string_view key,
                                   NetworkReport& report);
-/// true/false, yes/no, on/off, also quoted; 0 and 1.
+/// true/false, yes/no, on/off, also quoted (a false with a warning); 0 and 1.
 std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report);
 std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
                                      NetworkReport& report);

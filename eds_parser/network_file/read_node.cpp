@@ -41,12 +41,27 @@ constexpr std::array<std::string_view, 32> keys_of_others{"driver",
                                                           "container_name",
                                                           "description",
                                                           "comment"};
-constexpr std::array<std::string_view, 14> scales{
-    "scale_pos_to_dev",  "scale_pos_from_dev",  "scale_vel_to_dev",  "scale_vel_from_dev",
-    "scale_eff_to_dev",  "scale_eff_from_dev",  "offset_pos_to_dev", "offset_pos_from_dev",
-    "offset_vel_to_dev", "offset_vel_from_dev", "offset_eff_to_dev", "offset_eff_from_dev",
-    "scale_acc_to_dev",  "scale_acc_from_dev"};
+constexpr std::array<std::string_view, 4> position_scales{
+    "scale_pos_to_dev", "scale_pos_from_dev", "offset_pos_to_dev", "offset_pos_from_dev"};
+constexpr std::array<std::string_view, 4> velocity_scales{
+    "scale_vel_to_dev", "scale_vel_from_dev", "offset_vel_to_dev", "offset_vel_from_dev"};
+constexpr std::array<std::string_view, 4> torque_scales{"scale_eff_to_dev", "scale_eff_from_dev",
+                                                        "offset_eff_to_dev", "offset_eff_from_dev"};
+constexpr std::array<std::string_view, 2> acceleration_scales{"scale_acc_to_dev",
+                                                              "scale_acc_from_dev"};
 constexpr std::array<std::string_view, 1> not_supported{"time_cobid"};
+
+/// Of ros2_canopen.
+void ignore_scales(MapReader& reader) {
+  const auto ignore = [&reader](std::span<const std::string_view> keys, const std::string& unit) {
+    reader.ignore(keys,
+                  "is left alone: takt scales by `units: {" + unit + "}}`, from counts to SI");
+  };
+  ignore(position_scales, "position: {scale: ..., offset: ..., unit: rad");
+  ignore(velocity_scales, "velocity: {scale: ..., unit: rad/s");
+  ignore(torque_scales, "torque: {scale: ..., unit: Nm");
+  ignore(acceleration_scales, "acceleration: {scale: ..., unit: rad/s^2");
+}
 
 void read_firmware(MapReader& reader, Sourced<std::string>& out) {
   reader.text("firmware", out);
@@ -287,8 +302,7 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   read_timeout(reader, spec);
   read_sim(reader, spec);
   reader.ignore(keys_of_others, "means nothing to takt and is left alone");
-  reader.ignore(scales,
-                "is left alone: takt scales by `units: {position: {scale: ..., unit: rad}}`");
+  ignore_scales(reader);
   reader.ignore(not_supported, "is not acted on by this version of takt");
   const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
   reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});

@@ -186,6 +186,34 @@ TEST_F(Import, TellsWhereDefaultsWouldHaveWon) {
   EXPECT_EQ(key(bus, "nodes.arm.boot_timeout_ms").fate, KeyFate::used);
 }
 
+TEST_F(Import, AnIndexWithout0xIsToldWithTheObjectThatWasMeant) {
+  const auto bus = report(
+      "arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 6083, value: 1}], tpdo: {1: {mapping: "
+      "[{index: 6041}]}}}\n");
+
+  EXPECT_THAT(key(bus, "arm.sdo[1]").why,
+              HasSubstr("6083 is 0x17C3: did you mean 0x6083 Profile acceleration?"));
+  EXPECT_THAT(key(bus, "arm.tpdo.1.mapping[1]").why, HasSubstr("did you mean 0x6041 Statusword?"));
+}
+
+TEST_F(Import, AnEntryThatIsNoMapLeavesTheOthersTheirLines) {
+  const auto bus =
+      report("arm: {node_id: 2, dcf: drive.eds, sdo: [{index: 0x6083, value: 1}, [0x6084, 2]]}\n");
+
+  EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::used);
+  EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::wrong);
+}
+
+TEST_F(Import, ScalesOfADriverNameTheUnitsThatTakeTheirPlace) {
+  const auto bus = report(
+      "arm: {node_id: 2, dcf: drive.eds, scale_pos_from_dev: 0.1, scale_vel_from_dev: 0.1, "
+      "scale_eff_from_dev: 0.1}\n");
+
+  EXPECT_THAT(key(bus, "arm.scale_pos_from_dev").why, HasSubstr("units: {position:"));
+  EXPECT_THAT(key(bus, "arm.scale_vel_from_dev").why, HasSubstr("units: {velocity:"));
+  EXPECT_THAT(key(bus, "arm.scale_eff_from_dev").why, HasSubstr("units: {torque:"));
+}
+
 TEST_F(Import, AMapWhereAWordBelongsIsWrongAsAWhole) {
   const auto bus = report(
       "master:\n"

@@ -1,4 +1,5 @@
 // What other generators do to a bus.yml in silence does not happen here.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -138,10 +139,13 @@ TEST_F(Trap, AnOrderedStopHasTheTimeThatASlowCycleNeeds) {
             std::chrono::seconds{3});
 }
 
-TEST_F(Trap, AQuotedFalseIsFalse) {
+TEST_F(Trap, AQuotedFalseIsFalseAndTold) {
   const auto network = load("tpdo: {1: {enabled: \"false\"}}");
 
   ASSERT_EQ(errors(network), "");
+  EXPECT_TRUE(std::ranges::any_of(network.findings, [](const Finding& finding) {
+    return finding.rule == "quoted" && finding.severity == Severity::warning;
+  }));
   EXPECT_EQ(steps(network, {0x1800, 1}, BootAction::disable_pdo).size(), 1u);
   EXPECT_EQ(steps(network, {0x1800, 1}, BootAction::enable_pdo).size(), 0u);
 }

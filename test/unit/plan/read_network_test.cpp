@@ -83,7 +83,7 @@ TEST(ReadNetwork, QuotedNumbersAndBooleansAreRead) {
       "    dcf: a.eds\n"
       "    tpdo: {\"1\": {enabled: \"false\", transmission: \"0x01\"}}\n");
 
-  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(net.complaints(), ElementsAre("5:27 warning [quoted]"));
   EXPECT_EQ(*net.spec.nodes[0].id, 5);
   EXPECT_FALSE(*net.spec.nodes[0].tpdos[0].enabled);
   EXPECT_EQ(*net.spec.nodes[0].tpdos[0].transmission, 1);
