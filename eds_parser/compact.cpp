@@ -5,6 +5,7 @@
 #include <string>
 
 #include "eds_parser/eds_lists.hpp"
+#include "eds_parser/eds_section.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -32,6 +33,10 @@ void apply_entry(SubObject& sub, ObjectKey key, CompactList list, const IniEntry
           {.key = key, .what = "Value", .pos = entry.pos(), .unreadable = Severity::error});
       return;
   }
+}
+
+std::string name_of(CompactList list) {
+  return list == CompactList::names ? "Name" : list == CompactList::values ? "Value" : "Denotation";
 }
 
 }  // namespace
@@ -85,8 +90,12 @@ void merge_objects(std::vector<Object>& objects, std::vector<Object> made) {
 void apply_compact_list(Object& object, CompactList list, const IniEntries& entries,
                         ValueReader& values, Report& report) {
   std::bitset<256> applied;
+  std::optional<IniEntry> count;
   for (const auto& entry : entries) {
-    if (same_word(entry.key, "nrofentries")) continue;
+    if (same_word(entry.key, "nrofentries")) {
+      if (!count) count = entry;
+      continue;
+    }
     const auto number = entry_number(entry.key);
     auto* sub = number ? find_sub(object, *number) : nullptr;
     if (sub == nullptr) {
@@ -106,6 +115,9 @@ void apply_compact_list(Object& object, CompactList list, const IniEntries& entr
     applied.set(sub->sub);
     apply_entry(*sub, {object.index, sub->sub}, list, entry, values);
   }
+  if (!count) return;
+  check_entry_count(*count, numbered_entries(entries), hex(object.index).substr(2) + name_of(list),
+                    report);
 }
 
 }  // namespace takt

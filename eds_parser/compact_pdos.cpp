@@ -84,10 +84,18 @@ Object mapping_record(std::uint16_t number, bool is_tpdo) {
   return object;
 }
 
+/// What the file only counts stands where it is counted.
+void place(Object& object, SourcePos pos) noexcept {
+  object.pos = pos;
+  for (auto& sub : object.subs) sub.pos = sub.default_pos = pos;
+}
+
 /// The records of one direction that the file leaves out.
 void add_missing(const ObjectDictionary& dictionary, bool is_tpdo, std::uint16_t total,
                  std::vector<Object>& made) {
   const std::uint16_t first = is_tpdo ? 0x1800 : 0x1400;
+  const auto& device = dictionary.device;
+  const SourcePos pos = is_tpdo ? device.nr_tx_pdo_pos : device.nr_rx_pdo_pos;
   const auto described = static_cast<std::size_t>(
       std::ranges::count_if(dictionary.objects, [first](const Object& object) {
         return object.index >= first && object.index < first + 0x200;
@@ -98,8 +106,10 @@ void add_missing(const ObjectDictionary& dictionary, bool is_tpdo, std::uint16_t
     const auto index = static_cast<std::uint16_t>(first + number - 1);
     if (dictionary.find(index) != nullptr) continue;
     made.push_back(communication_record(number, is_tpdo, dictionary));
+    place(made.back(), pos);
     if (dictionary.find(static_cast<std::uint16_t>(index + 0x200)) == nullptr) {
       made.push_back(mapping_record(number, is_tpdo));
+      place(made.back(), pos);
     }
     --missing;
   }

@@ -35,7 +35,8 @@ struct Outline {
   const IniSection* channels = nullptr;
   std::array<const IniSection*, 3> lists{};  ///< by ObjectList
   std::vector<ObjectSection> objects;        ///< ascending index and role, no duplicates
-  std::vector<const IniSection*> tools;
+  const IniSection* tool_list = nullptr;     ///< [Tools]
+  std::vector<const IniSection*> tools;      ///< [ToolN]
   std::vector<ObjectSection> links;
   std::vector<std::pair<std::uint16_t, const IniSection*>> modules;  ///< [MxModuleInfo] by x
 };
@@ -54,6 +55,7 @@ class EdsReader {
     read_headers(dictionary, node);
     read_objects(dictionary);
     expand_compact_pdos(dictionary);
+    read_object_links(dictionary);
     result.readable = !dictionary.objects.empty();
     if (!result.readable) {
       report_.error(file_start, "not-an-eds",
@@ -124,7 +126,8 @@ class EdsReader {
       case SectionKind::comments:
         return keep(outline_.comments, section);
       case SectionKind::tools:
-        if (!same_word(section.name, "tools")) outline_.tools.push_back(&section);
+        if (same_word(section.name, "tools")) return keep(outline_.tool_list, section);
+        outline_.tools.push_back(&section);
         return;
       case SectionKind::object_links:
         outline_.links.push_back(ObjectSection::of(name, at));
@@ -132,8 +135,9 @@ class EdsReader {
       case SectionKind::dynamic_channels:
         return keep(outline_.channels, section);
       case SectionKind::short_object:
-      case SectionKind::supported_modules:
         return;
+      case SectionKind::supported_modules:
+        return modules_.set_supported(section);
       case SectionKind::connected_modules:
         return modules_.set_connected(section);
       case SectionKind::module:
@@ -188,9 +192,9 @@ class EdsReader {
     } else {
       report_.warning(file_start, "device-info-missing", "the file has no section [DeviceInfo]");
     }
-    read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values);
+    read_dummy_usage(dictionary.dummy_usage, entries(outline_.dummy_usage), values, report_);
     read_channels(dictionary, values);
-    read_notes(dictionary, values);
+    read_notes(dictionary);
   }
 
   void read_channels(ObjectDictionary& dictionary, ValueReader& values) {
@@ -208,17 +212,30 @@ class EdsReader {
     dictionary.channels = read_dynamic_channels(entries(section), section->pos, values, report_);
   }
 
-  void read_notes(ObjectDictionary& dictionary, ValueReader& values) {
+  void read_notes(ObjectDictionary& dictionary) {
     read_file_info(dictionary.notes.info, entries(outline_.file_info), report_);
-    dictionary.notes.comments = read_comments(entries(outline_.comments));
+    dictionary.notes.comments = read_comments(entries(outline_.comments), report_);
     for (const auto* tool : outline_.tools) {
-      dictionary.notes.tools.push_back(read_tool(entries(tool), report_));
+      dictionary.notes.tools.push_back(read_tool(*tool, entries(tool), report_));
     }
+    check_tools(entries(outline_.tool_list), outline_.tools.size(), report_);
+    read_modules(dictionary);
+  }
+
+  void read_object_links(ObjectDictionary& dictionary) {
+    const auto is_described = [&](std::uint16_t index) {
+      return dictionary.find(index) != nullptr || modules_.describes(index);
+    };
     for (const auto& link : outline_.links) {
       const auto& section = file_.sections[link.section];
-      dictionary.links.push_back(read_links(link.index(), entries(&section), values));
+      if (!is_described(link.index())) {
+        tell_lonely_list(section, report_);
+        continue;
+      }
+      auto links = read_links(section, entries(&section), is_described, report_);
+      const bool is_there = dictionary.find(link.index()) != nullptr;
+      if (is_there) dictionary.links.push_back(std::move(links));
     }
-    read_modules(dictionary);
   }
 
   void read_modules(ObjectDictionary& dictionary) {
@@ -228,7 +245,7 @@ class EdsReader {
       if (!dictionary.modules.empty() && dictionary.modules.back().number == number) {
         tell_duplicate(*outline_.modules[at - 1].second, *section);
       } else {
-        dictionary.modules.push_back(read_module_info(number, entries(section), report_));
+        dictionary.modules.push_back(read_module_info(number, *section, entries(section), report_));
       }
     }
   }
@@ -266,6 +283,7 @@ class EdsReader {
       at = end;
     }
     modules_.expand(dictionary, reader, report_);
+    modules_.check(dictionary, report_);
     dictionary.domain_files = reader.take_domain_files();
     dictionary.parameter_references = reader.take_references();
     std::ranges::stable_sort(dictionary.parameter_references, {}, &ParameterReference::index);

@@ -39,6 +39,17 @@ std::optional<std::uint32_t> entry_number(std::string_view key) noexcept {
   return small_number(key);
 }
 
+bool is_numbered(std::string_view key, std::string_view lower_word) noexcept {
+  return key.size() > lower_word.size() &&
+         same_word(key.substr(0, lower_word.size()), lower_word) &&
+         entry_number(key.substr(lower_word.size())).has_value();
+}
+
+std::size_t numbered_entries(const IniEntries& entries, std::string_view lower_word) noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      entries, [&](const IniEntry& entry) { return is_numbered(entry.key, lower_word); }));
+}
+
 bool is_mandatory(std::uint16_t index) noexcept {
   return index == 0x1000 || index == 0x1001 || index == 0x1018;
 }

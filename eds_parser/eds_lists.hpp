@@ -1,5 +1,6 @@
 #pragma once
 #include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -17,6 +18,10 @@ using IndexSet = std::bitset<65536>;
 bool is_count_key(std::string_view key) noexcept;
 /// Key of an entry of an object list or value list: always decimal, zeros in front do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
+/// `Line12` with the word `line`: the word and a number as above.
+bool is_numbered(std::string_view key, std::string_view lower_word) noexcept;
+/// Entries whose key is a number behind `lower_word`: what NrOfEntries, Lines ... count.
+std::size_t numbered_entries(const IniEntries& entries, std::string_view lower_word = {}) noexcept;
 /// The objects of [MandatoryObjects]. CiA 306, 4.6.3.1.
 bool is_mandatory(std::uint16_t index) noexcept;
 

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "eds_parser/eds_limits.hpp"
-#include "eds_parser/number.hpp"
 #include "eds_parser/object_words.hpp"
 #include "eds_parser/standard_types.hpp"
+#include "eds_parser/table/access_name.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -30,19 +29,6 @@ std::uint32_t role_of(const SectionName& name) noexcept {
     default:
       return ObjectSection::main_role;
   }
-}
-
-bool inverted(const Value& low, const Value& high) noexcept {
-  if (low.index() != high.index() || std::holds_alternative<BoxedText>(low)) return false;
-  return high < low;
-}
-
-/// A negative limit written without a sign.
-bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexcept {
-  const auto* number = limit ? std::get_if<std::int64_t>(&*limit) : nullptr;
-  if (number == nullptr || *number >= 0) return false;
-  const auto written = parse_number(text);
-  return written && !written->negative;
 }
 
 }  // namespace
@@ -87,7 +73,7 @@ Object ObjectReader::read(std::span<const ObjectSection> group) {
                         " has sub-objects but no section of its own; taken for a RECORD");
     read_subs(object, parts);
   } else {
-    read_main(object, parts);
+    if (!read_main(object, parts)) return object;
   }
   apply_lists(object, parts);
   return object;
@@ -97,6 +83,7 @@ SubExtension ObjectReader::read_extension(const IniSection& section, std::uint16
   const ObjectFields fields{file_.entries(section), section.name, report_};
   SubExtension extension;
   extension.count = fields.text(Keyword::module_count);
+  extension.count_pos = fields.pos(Keyword::module_count, section.pos);
   read_sub(extension.pattern, fields, {index, 1}, section);
   const auto extend = values_.read_count(fields.text(Keyword::module_extend), 254, "ObjExtend",
                                          fields.pos(Keyword::module_extend, section.pos));
@@ -104,7 +91,7 @@ SubExtension ObjectReader::read_extension(const IniSection& section, std::uint16
   return extension;
 }
 
-void ObjectReader::read_main(Object& object, const Parts& parts) {
+bool ObjectReader::read_main(Object& object, const Parts& parts) {
   const auto& section = *parts.main;
   const ObjectFields fields{file_.entries(section), section.name, report_};
   object.name = to_utf8(fields.text(Keyword::parameter_name));
@@ -116,19 +103,23 @@ void ObjectReader::read_main(Object& object, const Parts& parts) {
   const auto compact =
       values_.read_count(fields.text(Keyword::compact_sub_obj), 0xFF, "CompactSubObj",
                          fields.pos(Keyword::compact_sub_obj, section.pos));
-  if (compact.value_or(0) == 0 && !is_structured(object.type)) {
+  if (compact.value_or(0) != 0 && !is_structured(object.type)) {
+    report_.warning(fields.pos(Keyword::object_type, section.pos), "sub-objects-of-var",
+                    "object " + hex(object.index) +
+                        " is no ARRAY or RECORD but has CompactSubObj; taken for an ARRAY");
+    object.type = ObjectType::array;
+  }
+  if (!is_structured(object.type)) {
     keep_reference(fields, object.index, 0);
     read_single(object, fields, section);
-    return;
+    return true;
   }
   keep_reference(fields, object.index, {});
   object.denotation = to_utf8(fields.text(Keyword::denotation));
   read_subs(object, parts);
-  if (compact.value_or(0) != 0) {
-    expand(object, fields, section, parts);
-  } else {
-    check_sub_number(object, fields, section);
-  }
+  if (compact.value_or(0) != 0) return expand(object, fields, section, parts, *compact);
+  check_sub_number(object, fields, section);
+  return true;
 }
 
 void ObjectReader::read_single(Object& object, const ObjectFields& fields,
@@ -157,40 +148,41 @@ void ObjectReader::read_subs(Object& object, const Parts& parts) {
   }
 }
 
-void ObjectReader::expand(Object& object, const ObjectFields& fields, const IniSection& section,
-                          const Parts& parts) {
+bool ObjectReader::expand(Object& object, const ObjectFields& fields, const IniSection& section,
+                          const Parts& parts, std::uint32_t count) {
   const auto pos = fields.pos(Keyword::compact_sub_obj, section.pos);
-  auto count = values_.read_count(fields.text(Keyword::compact_sub_obj), 0xFF, "CompactSubObj", pos)
-                   .value_or(0);
   if (!fields.has(Keyword::data_type) && standard_type({object.index, 1}) == DataType::unknown) {
     report_.error(pos, "compact-without-type",
                   section_text(section) +
                       " has CompactSubObj but no DataType; its sub-objects were left out");
-    return;
+    return true;
   }
   if (count > 0xFE) {
     report_.warning(pos, "compact-too-many", "CompactSubObj is at most 254; read as 254");
     count = 0xFE;
   }
-  if (!budget_.take(count + 1U)) {
+  const bool fits = budget_.take(count + 1U);
+  if (!fits && beyond_ == BeyondBudget::error) {
     report_.error(pos, "too-many-sub-objects",
                   "more than " + std::to_string(ExpansionBudget::most) +
                       " sub-objects by CompactSubObj; those of " + section_text(section) +
                       " were left out");
-    return;
+    return false;
   }
   if (!parts.subs.empty()) {
     report_.warning(pos, "compact-and-sections",
                     section_text(section) +
                         " has CompactSubObj and sections of sub-objects; the sections count");
-  } else if (values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", section.pos)
+  } else if (const auto at = fields.pos(Keyword::sub_number, section.pos);
+             values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", at)
                  .value_or(0) != 0) {
-    report_.warning(fields.pos(Keyword::sub_number, section.pos), "compact-and-sub-number",
+    report_.warning(at, "compact-and-sub-number",
                     "SubNumber is 0 or missing beside CompactSubObj; it was left out");
   }
   SubObject pattern;
   read_sub(pattern, fields, {object.index, 1}, section);
-  expand_compact_subs(object, pattern, static_cast<std::uint8_t>(count));
+  if (fits) expand_compact_subs(object, pattern, static_cast<std::uint8_t>(count));
+  return fits;
 }
 
 void ObjectReader::check_sub_number(const Object& object, const ObjectFields& fields,
@@ -305,12 +297,15 @@ Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
                     to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
     return *access;
   }
-  if (!(is_domain && bare.empty())) {
-    report_.warning(pos, bare.empty() ? "access-type-missing" : "access-type-unknown",
-                    to_string(key) + ": AccessType " +
-                        (bare.empty() ? std::string{"is missing"} : quoted(bare) + " is unknown") +
-                        "; read as rw");
+  const auto tell = [&](std::string_view rule, const std::string& what) {
+    report_.warning(pos, rule, to_string(key) + ": AccessType " + what);
+  };
+  if (const auto access = access_of_letter(bare)) {
+    tell("access-type-letter", quoted(bare) + " was read as " + std::string{access_name(*access)});
+    return *access;
   }
+  if (!bare.empty()) tell("access-type-unknown", quoted(bare) + " is unknown; read as rw");
+  if (bare.empty() && !is_domain) tell("access-type-missing", "is missing; read as rw");
   return Access::rw;
 }
 
@@ -334,47 +329,6 @@ void ObjectReader::read_values(SubObject& sub, const ObjectFields& fields, Objec
   sub.low_limit = read(Keyword::low_limit, "LowLimit", Severity::warning);
   sub.high_limit = read(Keyword::high_limit, "HighLimit", Severity::warning);
   judge_limits(sub, fields, key, section);
-}
-
-/// A limit that closes a range to values that the file means is none. CiA 306 does not say how a
-/// limit of a signed type is written: vendors write bit patterns, and numbers above the type.
-void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
-                                const IniSection& section) {
-  if (sub.low_limit && sub.high_limit && inverted(*sub.low_limit, *sub.high_limit)) {
-    report_.warning(fields.pos(Keyword::low_limit, section.pos), "limits-inverted",
-                    to_string(key) + ": LowLimit " + quoted(fields.text(Keyword::low_limit)) +
-                        " is above HighLimit " + quoted(fields.text(Keyword::high_limit)) + " in " +
-                        std::string{name(sub.type)} + "; both were left out");
-    sub.low_limit.reset();
-    sub.high_limit.reset();
-    return;
-  }
-  const auto drop = [&](std::optional<Value>& limit, Keyword keyword, std::string_view what) {
-    report_.warning(fields.pos(keyword, section.pos), "limit-above-type",
-                    to_string(key) + ": " + std::string{what} + ' ' + quoted(fields.text(keyword)) +
-                        " would be " + std::to_string(std::get<std::int64_t>(*limit)) + " in " +
-                        std::string{name(sub.type)} + "; it was left out");
-    limit.reset();
-  };
-  const bool low = is_pattern(sub.low_limit, fields.text(Keyword::low_limit));
-  const bool high = is_pattern(sub.high_limit, fields.text(Keyword::high_limit));
-  const bool one_value = low && high && sub.low_limit == sub.high_limit;
-  if (one_value && (!sub.default_value || sub.default_value == sub.low_limit)) return;
-  const bool holds_default = low && sub.default_value && !outside_limits(*sub.default_value, sub);
-  if (high && !holds_default &&
-      (!sub.low_limit || sub.low_limit == sub.high_limit ||
-       sub.high_limit == Value{std::int64_t{-1}} ||
-       !parse_number(fields.text(Keyword::high_limit))->hex)) {
-    drop(sub.high_limit, Keyword::high_limit, "HighLimit");
-  }
-  const auto& value = sub.default_value;
-  if (!value) return;
-  if (high && sub.high_limit && inverted(*value, *sub.high_limit)) {
-    drop(sub.high_limit, Keyword::high_limit, "HighLimit");
-  }
-  if (low && inverted(*sub.low_limit, *value)) {
-    drop(sub.low_limit, Keyword::low_limit, "LowLimit");
-  }
 }
 
 void ObjectReader::keep_reference(const ObjectFields& fields, std::uint16_t index,

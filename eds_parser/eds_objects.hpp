@@ -34,14 +34,22 @@ struct ObjectSection {
 struct SubExtension {
   SubObject pattern;
   std::string_view count;  ///< Count, as written
+  SourcePos count_pos;     ///< of Count, or of the section
   unsigned last_sub = 0;   ///< ObjExtend: behind this sub-index the next object goes on; 0: never
+};
+
+/// What a reader does with a CompactSubObj where its ExpansionBudget is used up.
+enum class BeyondBudget : std::uint8_t {
+  error,  ///< tells that sub-objects are left out
+  shape,  ///< reads what the section says and makes no sub-objects: for findings alone
 };
 
 /// Builds objects from their sections.
 class ObjectReader {
  public:
-  ObjectReader(const IniFile& file, ValueReader& values, Report& report) noexcept
-      : file_{file}, values_{values}, report_{report} {}
+  ObjectReader(const IniFile& file, ValueReader& values, Report& report,
+               BeyondBudget beyond = BeyondBudget::error) noexcept
+      : file_{file}, values_{values}, report_{report}, beyond_{beyond} {}
 
   /// `group`: all sections of one index in ascending order. A false `Object::subs.empty()` is not
   /// promised: a record without sub-objects stays in the dictionary.
@@ -56,11 +64,12 @@ class ObjectReader {
   struct Parts;
 
   Parts split(std::span<const ObjectSection> group);
-  void read_main(Object& object, const Parts& parts);
+  /// False: sub-objects were left out, so lists of them say nothing.
+  bool read_main(Object& object, const Parts& parts);
   void read_single(Object& object, const ObjectFields& fields, const IniSection& section);
   void read_subs(Object& object, const Parts& parts);
-  void expand(Object& object, const ObjectFields& fields, const IniSection& section,
-              const Parts& parts);
+  bool expand(Object& object, const ObjectFields& fields, const IniSection& section,
+              const Parts& parts, std::uint32_t count);
   void check_sub_number(const Object& object, const ObjectFields& fields,
                         const IniSection& section);
   ObjectType read_object_type(const ObjectFields& fields, const IniSection& section,
@@ -82,6 +91,7 @@ class ObjectReader {
   const IniFile& file_;
   ValueReader& values_;
   Report& report_;
+  BeyondBudget beyond_;
   ExpansionBudget budget_;
   std::vector<DomainFiles> domain_files_;
   std::vector<ParameterReference> references_;

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "eds_parser/eds_lists.hpp"
+#include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
 
 namespace takt {
@@ -224,6 +225,26 @@ void tell_lonely_list(const IniSection& list, Report& report) {
                      " belongs to an object that has no section; it was left out");
 }
 
+void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& report) {
+  if (!report.wants("unknown-key")) return;
+  report.warning(entry.key_pos(), "unknown-key",
+                 "key " + quoted(entry.key) + " of [" + to_utf8(section) +
+                     "] is not one of CiA 306; it was left out");
+}
+
+void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,
+                       Report& report) {
+  const auto said = parse_number(count.value);
+  if (said && said->magnitude == found && !said->negative) return;
+  if (!said && said.error() == NumberFault::empty && found == 0) return;
+  report.warning(count.pos(), "entry-count-wrong",
+                 to_utf8(count.key) + " of [" + to_utf8(section) + "] is " + quoted(count.value) +
+                     ", but " +
+                     (found == 0   ? "there are no entries"
+                      : found == 1 ? "1 is there; it was read"
+                                   : std::to_string(found) + " are there; all were read"));
+}
+
 Keyword classify_key(std::string_view key) noexcept {
   if (key.size() < 4 || key.size() > 16) return Keyword::unknown;
   const FoldedWord word{key};
@@ -237,12 +258,7 @@ ObjectFields::ObjectFields(const IniEntries& entries, std::string_view section, 
     const auto keyword = classify_key(spot.key_in(text_));
     if (keyword == Keyword::other_known) continue;
     if (keyword == Keyword::unknown) {
-      if (report.wants("unknown-key")) {
-        const auto entry = spot.entry_in(text_);
-        report.warning(entry.key_pos(), "unknown-key",
-                       "key " + quoted(entry.key) + " of [" + to_utf8(section) +
-                           "] is not one of CiA 306; it was left out");
-      }
+      tell_unknown_key(spot.entry_in(text_), section, report);
       continue;
     }
     auto& first = slots_[static_cast<std::size_t>(keyword)];

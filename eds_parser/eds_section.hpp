@@ -55,6 +55,11 @@ SectionName classify_section(const IniSection& section) noexcept;
 void tell_blank_in_name(const IniSection& section, Report& report);
 /// Says that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
 void tell_lonely_list(const IniSection& list, Report& report);
+/// Says that CiA 306 does not have such a key in `section`.
+void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& report);
+/// Says that an entry that counts others (`NrOfEntries`, `Lines` ...) has not the number `found`.
+void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,
+                       Report& report);
 
 /// Keys of an object's section. CiA 306, 4.6.3.2 and 5.3.3.
 enum class Keyword : std::uint8_t {

@@ -45,6 +45,16 @@ Count read_count(std::string_view text) noexcept {
   return count;
 }
 
+/// Numbers, and not so large that they are cut.
+bool brings_something(std::string_view text) noexcept {
+  const auto separator = text.find(';');
+  const auto subs = parse_number(trim(text.substr(0, separator)));
+  if (!subs || subs->negative || subs->relative() || subs->magnitude > 254) return false;
+  if (separator == std::string_view::npos) return subs->magnitude != 0;
+  const unsigned bits = small(text.substr(separator + 1), 65);
+  return bits >= 1 && bits <= 64;
+}
+
 /// An array without elements, for the extensions of modules.
 Object extended_object(std::uint16_t index, const SubObject& pattern) {
   Object object;
@@ -64,15 +74,20 @@ Object extended_object(std::uint16_t index, const SubObject& pattern) {
   return object;
 }
 
+/// One that the file describes by itself stays. Sub 0 counts it either way.
 void add_sub(Object& object, const SubObject& pattern, unsigned sub) {
   const auto at = std::ranges::lower_bound(object.subs, sub, {}, &SubObject::sub);
-  if (at != object.subs.end() && at->sub == sub) return;
-  auto made = pattern;
-  made.sub = static_cast<std::uint8_t>(sub);
-  made.name += std::to_string(sub);
-  object.subs.insert(at, std::move(made));
+  if (at == object.subs.end() || at->sub != sub) {
+    auto made = pattern;
+    made.sub = static_cast<std::uint8_t>(sub);
+    made.name += std::to_string(sub);
+    object.subs.insert(at, std::move(made));
+  }
   auto& count = object.subs.front();
   if (count.sub != 0) return;
+  const bool told =
+      count.default_value && std::holds_alternative<std::uint64_t>(*count.default_value);
+  if (told && std::get<std::uint64_t>(*count.default_value) >= object.subs.back().sub) return;
   count.default_value = std::uint64_t{object.subs.back().sub};
   count.default_text = std::to_string(object.subs.back().sub);
 }
@@ -86,8 +101,11 @@ bool ModuleSections::add(const SectionName& name, std::uint32_t section, Report&
   const bool is_fixed = first == 'f';
   if (!is_fixed && first != 's') return true;  // [MxModuleInfo], [MxComments]
   const auto rest = name.module_part.substr(is_fixed ? fixed.size() : extension.size());
-  // lists of what has sections: the sections are the truth
-  if (same_word(rest, is_fixed ? "objects" : "ends")) return true;
+  const Part part = is_fixed ? Part::fixed : Part::extension;
+  if (same_word(rest, is_fixed ? "objects" : "ends")) {
+    lists_.add_list(name.module, part, file_.sections[section]);
+    return true;
+  }
   const auto object = classify_section(rest);
   if (!(is_fixed ? belongs_to_object(object.kind) : object.kind == SectionKind::object)) {
     return false;
@@ -95,18 +113,19 @@ bool ModuleSections::add(const SectionName& name, std::uint32_t section, Report&
   if (object.blank && !file_.sections[section].padded()) {
     tell_blank_in_name(file_.sections[section], report);
   }
-  sections_.push_back({.module = name.module,
-                       .part = is_fixed ? Part::fixed : Part::extension,
-                       .object = ObjectSection::of(object, section)});
+  lists_.add_object(name.module, part, object.index, file_.sections[section]);
+  indices_.insert(object.index);
+  sections_.push_back(
+      {.module = name.module, .part = part, .object = ObjectSection::of(object, section)});
   return true;
 }
 
 void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, Report& report) {
-  if (connected_ == nullptr) return;
   const auto order = [](const ModuleSection& section) { return section.order(); };
   std::ranges::stable_sort(sections_, {}, order);
   const auto repeated = std::ranges::unique(sections_, {}, order);
   sections_.erase(repeated.begin(), repeated.end());
+  if (connected_ == nullptr) return;
   if (!add_modules(dictionary, reader, report)) {
     report.error(connected_->pos, "too-many-sub-objects",
                  "the connected modules need too many sub-objects; the rest was left out");
@@ -117,6 +136,31 @@ void ModuleSections::expand(ObjectDictionary& dictionary, ObjectReader& reader, 
   for (auto& [index, object] : made_) made.push_back(std::move(object));
   made_.clear();
   merge_objects(dictionary.objects, std::move(made));
+}
+
+void ModuleSections::check(const ObjectDictionary& dictionary, Report& report) {
+  lists_.check(file_, dictionary.modules.size(), report);
+  ValueReader values{report, dictionary.node_id};
+  ObjectReader reader{file_, values, report, BeyondBudget::shape};
+  std::vector<ObjectSection> group;
+  for (std::size_t at = 0; at < sections_.size(); ++at) {
+    const auto& section = sections_[at];
+    if (std::ranges::find(dictionary.connected_modules, section.module) !=
+        dictionary.connected_modules.end()) {
+      continue;
+    }
+    if (section.part == Part::extension) {
+      extension_of(section, reader, report);
+      continue;
+    }
+    group.push_back(section.object);
+    const bool goes_on = at + 1 < sections_.size() && sections_[at + 1].part == Part::fixed &&
+                         sections_[at + 1].module == section.module &&
+                         sections_[at + 1].object.index() == section.object.index();
+    if (goes_on) continue;
+    if (!group.front().is_list()) reader.read(group);
+    group.clear();
+  }
 }
 
 /// False: the budget is used up.
@@ -232,8 +276,7 @@ Object* ModuleSections::find(std::uint16_t index, ObjectDictionary& dictionary) 
 /// False: the budget is used up.
 bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dictionary,
                             ObjectReader& reader, Report& report) {
-  const auto& source = file_.sections[section.object.section];
-  const auto extension = reader.read_extension(source, section.object.index());
+  const auto& extension = extension_of(section, reader, report);
   const auto count = read_count(extension.count);
   const unsigned last_sub = extension.last_sub == 0 ? 254 : extension.last_sub;
   if (!budget_.take(count.subs + 1U)) return false;
@@ -259,6 +302,20 @@ bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dict
   if (fill.bits_used == 0 || fill.bits_used + count.bits > width) next_sub();
   fill.bits_used += count.bits;
   return true;
+}
+
+const SubExtension& ModuleSections::extension_of(const ModuleSection& section, ObjectReader& reader,
+                                                 Report& report) {
+  const auto [at, is_new] = extensions_.try_emplace(section.object.section);
+  if (!is_new) return at->second;
+  const auto& source = file_.sections[section.object.section];
+  at->second = reader.read_extension(source, section.object.index());
+  if (!brings_something(at->second.count)) {
+    report.warning(at->second.count_pos, "number-unreadable",
+                   "Count of [" + to_utf8(source.name) + "] is " + quoted(at->second.count) +
+                       ", not a number of 1..254 or, for bits, as 0;2");
+  }
+  return at->second;
 }
 
 ModuleSections::Fill& ModuleSections::fill_of(std::uint16_t index, ObjectDictionary& dictionary) {

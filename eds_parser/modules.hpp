@@ -1,12 +1,14 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "eds_parser/eds_objects.hpp"
 #include "eds_parser/ini.hpp"
+#include "eds_parser/module_lists.hpp"
 #include "eds_parser/object_dictionary.hpp"
 #include "eds_parser/report.hpp"
 
@@ -18,17 +20,24 @@ class ModuleSections {
  public:
   explicit ModuleSections(const IniFile& file) noexcept : file_{file} {}
 
-  /// A section [Mx...]; others than fixed objects and sub-index extensions are of no use here.
+  /// A section [Mx...]; others than fixed objects, sub-index extensions and lists of them are of no
+  /// use here.
   /// False: not one of CiA 306.
   bool add(const SectionName& name, std::uint32_t section, Report& report);
+  void set_supported(const IniSection& section) noexcept { lists_.set_supported(section); }
   void set_connected(const IniSection& section) noexcept { connected_ = &section; }
 
   /// Adds the objects of the connected modules to a dictionary, in physical order. Without
   /// [ConnectedModules] (in an EDS) nothing is plugged in.
   void expand(ObjectDictionary& dictionary, ObjectReader& reader, Report& report);
+  /// A section of some module, connected or not, is about this object.
+  bool describes(std::uint16_t index) const { return indices_.contains(index); }
+  /// Judges the lists, and reads the sections of modules that are not connected for their findings
+  /// alone. After expand().
+  void check(const ObjectDictionary& dictionary, Report& report);
 
  private:
-  enum class Part : std::uint8_t { fixed, extension };
+  using Part = ModulePart;
 
   struct ModuleSection {
     std::uint16_t module = 0;
@@ -60,6 +69,8 @@ class ModuleSections {
                  Report& report);
   bool extend(const ModuleSection& section, ObjectDictionary& dictionary, ObjectReader& reader,
               Report& report);
+  const SubExtension& extension_of(const ModuleSection& section, ObjectReader& reader,
+                                   Report& report);
   Object* find(std::uint16_t index, ObjectDictionary& dictionary);
   Fill& fill_of(std::uint16_t index, ObjectDictionary& dictionary);
   unsigned described_subs(std::uint16_t index, ObjectDictionary& dictionary);
@@ -68,6 +79,9 @@ class ModuleSections {
   const IniFile& file_;
   const IniSection* connected_ = nullptr;
   std::vector<ModuleSection> sections_;
+  std::set<std::uint16_t> indices_;                   ///< of these sections
+  std::map<std::uint32_t, SubExtension> extensions_;  ///< by section
+  ModuleLists lists_;
   std::vector<Fill> fills_;               ///< ascending first_index
   std::map<std::uint16_t, Object> made_;  ///< what the dictionary does not have yet
   ExpansionBudget budget_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "eds_parser/mapping_compiler.hpp"
+
 namespace takt {
 namespace {
 
@@ -56,7 +58,8 @@ class ValueCheck {
     if (sub == nullptr) {
       report_.error(pos, "no-such-object",
                     list + " of " + owner() + ": object " + to_string(object) + " is not in " +
-                        node_.node.dictionary->file);
+                        node_.node.dictionary->file +
+                        without_0x(*node_.node.dictionary, object.index));
     }
     return sub;
   }

@@ -87,7 +87,7 @@ struct DeviceInfo {
   std::vector<std::uint16_t> baud_rates_kbit;  ///< ascending
   bool simple_boot_up_master = false;
   bool simple_boot_up_slave = false;
-  std::uint8_t granularity = 8;
+  std::uint8_t granularity = 8;  ///< in bits; 0: mapping is fixed, which the records may belie
   std::uint8_t dynamic_channels = 0;
   bool group_messaging = false;
   std::uint16_t nr_rx_pdo = 0;
@@ -97,6 +97,7 @@ struct DeviceInfo {
   SourcePos pos;            ///< of the section, 0:0 where the file has none
   SourcePos nr_rx_pdo_pos;  ///< of NrOfRXPDO, or of the section
   SourcePos nr_tx_pdo_pos;
+  SourcePos granularity_pos;
 };
 
 /// [DeviceComissioning] of a DCF. CiA 306, 5.3.
@@ -105,6 +106,7 @@ struct Commissioning {
   std::string node_name;
   std::string node_refd;  ///< NodeRefd: what the node is called elsewhere, in a drawing for example
   std::uint16_t baudrate_kbit = 0;
+  SourcePos baudrate_pos;  ///< 0:0 where there is none
   std::uint32_t net_number = 0;
   std::string network_name;
   std::string net_refd;

@@ -27,6 +27,8 @@ constexpr Word<Access> access_words[] = {{"ro", Access::ro},   {"wo", Access::wo
                                          {"rw", Access::rw},   {"rwr", Access::rwr},
                                          {"rww", Access::rww}, {"const", Access::constant}};
 
+constexpr Word<Access> access_letters[] = {{"r", Access::ro}, {"w", Access::wo}};
+
 constexpr Word<ObjectType> object_type_words[] = {
     {"null", ObjectType::null},       {"domain", ObjectType::domain},
     {"deftype", ObjectType::deftype}, {"defstruct", ObjectType::defstruct},
@@ -79,6 +81,10 @@ std::optional<std::uint32_t> read_code(const ObjectFields& fields, const CodeKey
 
 std::optional<Access> access_of_word(std::string_view text) noexcept {
   return meaning_of<Access>(text, access_words);
+}
+
+std::optional<Access> access_of_letter(std::string_view text) noexcept {
+  return meaning_of<Access>(text, access_letters);
 }
 
 std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text) noexcept {

@@ -12,6 +12,9 @@ namespace takt {
 /// `ro`, `rw` ... of AccessType, in any case. CiA 306, 4.6.3.2.
 std::optional<Access> access_of_word(std::string_view text) noexcept;
 
+/// `R` and `W`, in any case, which some tools write for ro and wo.
+std::optional<Access> access_of_letter(std::string_view text) noexcept;
+
 /// Number of a word of ObjectType or DataType, whatever comment is behind it.
 std::optional<std::uint32_t> code_of_word(Keyword keyword, std::string_view text) noexcept;
 

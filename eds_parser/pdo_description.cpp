@@ -91,6 +91,16 @@ PdoDescription describe(const ObjectDictionary& dictionary, bool is_tpdo, std::u
 
 }  // namespace
 
+const Object* mappable_record(const ObjectDictionary& dictionary) noexcept {
+  const auto it = std::ranges::find_if(dictionary.objects, [](const Object& object) {
+    const bool is_mapping = (object.index & 0xFE00) == 0x1600 || (object.index & 0xFE00) == 0x1A00;
+    if (!is_mapping || object.subs.empty()) return false;
+    const SubObject& count = object.subs.front();
+    return count.sub == 0 && count.access != Access::ro && count.access != Access::constant;
+  });
+  return it == dictionary.objects.end() ? nullptr : &*it;
+}
+
 std::vector<PdoDescription> describe_pdos(const ObjectDictionary& dictionary) {
   std::vector<PdoDescription> pdos;
   for (const bool is_tpdo : {false, true}) {

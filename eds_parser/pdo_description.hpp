@@ -50,6 +50,9 @@ struct PdoDescription {
   }
 };
 
+/// First mapping record whose count the device lets write; null where all mapping is fixed.
+const Object* mappable_record(const ObjectDictionary& dictionary) noexcept;
+
 /// All PDOs that have a communication record, RPDOs first, each in ascending number.
 std::vector<PdoDescription> describe_pdos(const ObjectDictionary& dictionary);
 

@@ -20,6 +20,8 @@ class SectionKeys {
   /// As UTF-8, empty where the key is missing.
   std::string text(std::string_view key) const;
   void flag(bool& out, std::string_view key, ValueReader& values) const;
+  /// Tells the keys that nobody has asked for, but those that are `reserved`.
+  void tell_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
 
   template <class T>
   void number(T& out, std::string_view key, ValueReader& values) const {
@@ -31,7 +33,12 @@ class SectionKeys {
   }
 
  private:
-  std::vector<IniEntry> entries_;
+  struct Slot {
+    IniEntry entry;
+    mutable bool asked = false;
+  };
+
+  std::vector<Slot> slots_;
   Report& report_;
 };
 

@@ -4,8 +4,8 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
+#include "eds_parser/fitted_number.hpp"
 #include "eds_parser/number.hpp"
 #include "eds_parser/text.hpp"
 
@@ -53,42 +53,6 @@ void say(Report& report, Severity severity, SourcePos pos, std::string_view rule
   }
 }
 
-std::uint64_t highest_unsigned(unsigned bits) noexcept {
-  return bits >= 64 ? std::numeric_limits<std::uint64_t>::max() : (std::uint64_t{1} << bits) - 1;
-}
-
-/// A bit pattern of `bits` bits as the signed number it stands for.
-std::int64_t sign_extend(std::uint64_t pattern, unsigned bits) noexcept {
-  const unsigned shift = 64 - bits;
-  return std::bit_cast<std::int64_t>(pattern << shift) >> shift;
-}
-
-struct Fitted {
-  std::optional<Value> value;
-  bool wrapped = false;  ///< a bit pattern for a signed type, or a negative number for an unsigned
-};
-
-Fitted fit_signed(const ParsedNumber& number, unsigned bits) noexcept {
-  const std::uint64_t half = std::uint64_t{1} << (bits - 1);
-  if (number.negative) {
-    if (number.magnitude > half) return {};
-    return {static_cast<std::int64_t>(~number.magnitude + 1), false};
-  }
-  if (number.magnitude < half) return {static_cast<std::int64_t>(number.magnitude), false};
-  if (number.magnitude > highest_unsigned(bits)) return {};
-  return {sign_extend(number.magnitude, bits), true};
-}
-
-Fitted fit_unsigned(const ParsedNumber& number, unsigned bits) noexcept {
-  const std::uint64_t highest = highest_unsigned(bits);
-  if (!number.negative) {
-    if (number.magnitude > highest) return {};
-    return {number.magnitude, false};
-  }
-  if (number.magnitude > (std::uint64_t{1} << (bits - 1))) return {};
-  return {(~number.magnitude + 1) & highest, true};
-}
-
 /// `true` and its relatives, in files made by hand.
 std::optional<bool> boolean_word(std::string_view text) noexcept {
   for (const auto* word : {"true", "yes", "on"}) {
@@ -98,37 +62,6 @@ std::optional<bool> boolean_word(std::string_view text) noexcept {
     if (same_word(text, word)) return false;
   }
   return std::nullopt;
-}
-
-std::string_view describe(NumberFault fault) noexcept {
-  switch (fault) {
-    case NumberFault::empty:
-    case NumberFault::not_a_number:
-      return "is not a number";
-    case NumberFault::unknown_name:
-      return "holds a name other than $NODEID";
-    case NumberFault::too_big:
-      return "needs more than 64 bits";
-  }
-  return "is not a number";
-}
-
-/// Adds node_ids x node; false where the node id is needed and unknown, or the sum needs more than
-/// 64 bits.
-bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept {
-  if (!number.relative()) return true;
-  if (!node) return false;
-  const std::uint64_t offset = std::uint64_t{node->value()} * number.node_ids;
-  if (!number.negative) {
-    if (number.magnitude > std::numeric_limits<std::uint64_t>::max() - offset) return false;
-    number.magnitude += offset;
-  } else if (number.magnitude >= offset) {
-    number.magnitude -= offset;
-  } else {
-    number.magnitude = offset - number.magnitude;
-    number.negative = false;
-  }
-  return true;
 }
 
 /// Of normal numbers and 0. 0xFFFF in a REAL32 would be 9.2e-41: who means that writes all digits.
@@ -190,10 +123,12 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
     if (number.error() == NumberFault::empty) return std::nullopt;
     if (number.error() == NumberFault::not_a_number) {
       unreadable(text, name(type), place);
+    } else if (number.error() == NumberFault::too_big) {
+      exceeds(text, type, place);
     } else {
       report_.error(place.pos, "value-unreadable",
-                    to_string(place) + ": " + quoted(text) + ' ' +
-                        std::string{describe(number.error())} + "; it has no value now");
+                    to_string(place) + ": " + quoted(text) +
+                        " holds a name other than $NODEID; it has no value now");
     }
     return std::nullopt;
   }
@@ -212,7 +147,7 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
 
 std::optional<Value> ValueReader::read_real(std::string_view text, DataType type,
                                             const ValuePlace& place) {
-  const auto bare = without_comment(text);
+  const auto bare = without_told_comment(text, place);
   if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
     const auto pattern = parse_number(bare);
     const bool fits =
@@ -235,16 +170,17 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
   const auto value = parse_real(bare);
   if (!value) unreadable(text, name(type), place);
   if (!value) return std::nullopt;
-  constexpr double highest = std::numeric_limits<float>::max();
-  if (type == DataType::real32 && std::isfinite(*value) && std::abs(*value) > highest) {
-    exceeds(text, type, place);
-    return std::nullopt;
+  if (fold(bare.back()) == 'f' && std::isfinite(*value)) {
+    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::suffix), text, place);
   }
-  return *value;
+  if (type == DataType::real64 || !std::isfinite(*value)) return *value;
+  const auto fitted = fit_real32(*value);
+  if (!fitted) exceeds(text, type, place);
+  return fitted;
 }
 
 std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
-  auto digits = without_comment(text);
+  auto digits = without_told_comment(text, place);
   // how some tools write "nothing"
   if (digits == "0" || digits == "0x0") return std::nullopt;
   bool odd_form = false;
@@ -286,6 +222,7 @@ std::optional<Value> ValueReader::read_time(std::string_view text, DataType type
   const auto bare = without_comment(text);
   const auto gap = bare.find_first_of(" \t");
   if (gap == std::string_view::npos) return read_integer(text, type, place);
+  without_told_comment(text, place);
   const auto first = parse_number(bare.substr(0, gap));
   const auto second = parse_number(bare.substr(gap));
   const auto in_bits = [](const Expected& number, unsigned bits) {
@@ -328,11 +265,17 @@ std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std:
                     std::string{key} + ": " + quoted(text) + " was read as octal, " +
                         std::to_string(number->magnitude) + ", as CiA 306 says; drop the zero");
   }
+  for (const auto& known : quirk_texts) {
+    const bool told = known.quirk == NumberQuirk::comment || known.quirk == NumberQuirk::octal;
+    if (told || !number->has(known.quirk)) continue;
+    report_.warning(pos, known.rule,
+                    std::string{key} + ": " + quoted(text) + ": " + std::string{known.message});
+  }
   return static_cast<std::uint32_t>(number->magnitude);
 }
 
 bool ValueReader::read_flag(std::string_view text, std::string_view key, SourcePos pos) {
-  if (const auto number = parse_number(text)) return number->magnitude != 0;
+  if (const auto number = parse_number(text)) return flag_of(*number, text, key, pos);
   const auto bare = without_comment(text);
   if (bare.empty()) return false;
   const auto word = boolean_word(bare);
@@ -340,6 +283,21 @@ bool ValueReader::read_flag(std::string_view text, std::string_view key, SourceP
                   std::string{key} + ": " + quoted(text) + " was read as " +
                       (word.value_or(false) ? "1" : "0") + "; write 0 or 1");
   return word.value_or(false);
+}
+
+bool ValueReader::flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
+                          SourcePos pos) {
+  const bool set = number.magnitude != 0 || number.relative();
+  if (number.magnitude > 1 || number.negative || number.relative()) {
+    report_.warning(pos, "boolean-word",
+                    std::string{key} + ": " + quoted(text) + " was read as " + (set ? "1" : "0") +
+                        "; write 0 or 1");
+  } else if (number.has(NumberQuirk::comment)) {
+    report_.warning(
+        pos, "inline-comment",
+        std::string{key} + ": text behind ';' or '#' was taken for a comment: " + quoted(text));
+  }
+  return set;
 }
 
 void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
@@ -350,6 +308,14 @@ void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
     say(report_, known.severity, place.pos, known.rule,
         to_string(place) + ": " + quoted(text) + ": " + std::string{known.message});
   }
+}
+
+std::string_view ValueReader::without_told_comment(std::string_view text, const ValuePlace& place) {
+  const auto bare = without_comment(text);
+  if (bare.size() != trim(text).size()) {
+    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::comment), text, place);
+  }
+  return bare;
 }
 
 void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace& place) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "eds_parser/number.hpp"
 #include "eds_parser/object_dictionary.hpp"
 #include "eds_parser/report.hpp"
 
@@ -37,7 +38,11 @@ class ValueReader {
   std::optional<Value> read_bytes(std::string_view text, const ValuePlace& place);
   std::optional<Value> read_time(std::string_view text, DataType type, const ValuePlace& place);
   std::optional<Value> read_untyped(std::string_view text);
+  bool flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
+               SourcePos pos);
   void tell_quirks(std::uint16_t quirks, std::string_view text, const ValuePlace& place);
+  /// The text before a comment; that there is one is told.
+  std::string_view without_told_comment(std::string_view text, const ValuePlace& place);
   void exceeds(std::string_view text, DataType type, const ValuePlace& place);
   void tell_wrapped(std::string_view text, DataType type, const Value& value,
                     const ValuePlace& place);

@@ -212,6 +212,13 @@ void check_remote_of_rpdo(const CobIdEntry& entry, Report& report) {
                   " has bit 30 set (no remote requests), which means nothing for an RPDO");
 }
 
+/// Bit 30 of EMCY. CiA 301, 7.5.2.17.
+void check_reserved_bit(const CobIdEntry& entry, Report& report) {
+  if ((entry.constant & no_remote_flag) == 0) return;
+  report.warning(entry.pos, "cob-id-bits",
+                 start(entry) + written(entry) + " has bit 30 set, which is reserved (0) for EMCY");
+}
+
 void check_absolute(const CobIdEntry& entry, bool is_dcf, Report& report) {
   if (entry.relative || is_dcf) return;
   report.note(entry.pos, "cob-id-absolute",
@@ -297,8 +304,10 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     auto entry = entry_of(dictionary, {index, 0});
     if (!entry || entry->id() == 0) continue;
     if (index == 0x1014 && !entry->on()) continue;
-    entry->constant &= 0x3FFF'FFFF;
+    if (index == 0x1014) check_reserved_bit(*entry, report);
+    entry->constant &= ~(off_flag | no_remote_flag);
     check_restricted(*entry, dictionary.node_id, report);
+    check_bits(*entry, report);
     if (index == 0x1014) check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }

@@ -39,16 +39,35 @@ void check_transmission(const ObjectDictionary& dictionary, const PdoDescription
   }
 }
 
+bool is_on_request(unsigned type) noexcept { return type == 252 || type == 253; }
+
+std::string what_sends(unsigned type) {
+  return is_on_request(type) ? ", which is sent on remote request only"
+                             : ", which follows the SYNC";
+}
+
+void check_inhibit_use(const ObjectDictionary& dictionary, const PdoDescription& pdo,
+                       ObjectKey inhibit, Report& report) {
+  if (!pdo.transmission_type || pdo.inhibit_time_us == 0) return;
+  const unsigned type = *pdo.transmission_type;
+  if (type > 240 && !is_on_request(type)) return;
+  report.note(pos_of(dictionary, inhibit), "pdo-inhibit-unused",
+              section_name(inhibit) + ": the inhibit time has no effect beside transmission type " +
+                  std::to_string(type) + what_sends(type));
+}
+
 /// Inhibit time and event timer of a TPDO. CiA 301, 7.5.2.37.
 void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
-  if (!pdo.is_tpdo || pdo.event_timer_ms == 0) return;
+  if (!pdo.is_tpdo) return;
   const ObjectKey inhibit{pdo.communication_index(), 3};
+  check_inhibit_use(dictionary, pdo, inhibit, report);
+  if (pdo.event_timer_ms == 0) return;
   const ObjectKey timer{pdo.communication_index(), 5};
   const unsigned type = pdo.transmission_type.value_or(0);
-  if (type >= 1 && type <= 240) {
+  if ((type >= 1 && type <= 240) || is_on_request(type)) {
     report.note(pos_of(dictionary, timer), "pdo-event-timer-unused",
                 section_name(timer) + ": the event timer has no effect beside transmission type " +
-                    std::to_string(type) + ", which follows the SYNC");
+                    std::to_string(type) + what_sends(type));
   } else if (pdo.inhibit_time_us > pdo.event_timer_ms * 1000U) {
     report.warning(pos_of(dictionary, inhibit), "pdo-inhibit-too-long",
                    section_name(inhibit) + ": the inhibit time of " +
@@ -61,7 +80,7 @@ void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
 /// The types that are only sent on remote request. CiA 301, 7.5.2.37.
 void check_remote(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   const unsigned type = pdo.transmission_type.value_or(0);
-  const bool on_request = pdo.is_tpdo && (type == 252 || type == 253);
+  const bool on_request = pdo.is_tpdo && is_on_request(type);
   if (!on_request || !pdo.valid || pdo.rtr_allowed) return;
   const ObjectKey key{pdo.communication_index(), 2};
   report.warning(pos_of(dictionary, key), "pdo-rtr",
@@ -96,6 +115,15 @@ void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t 
                      ", but " + std::to_string(found) + " are described; the records count");
 }
 
+void check_granularity(const ObjectDictionary& dictionary, Report& report) {
+  if (dictionary.device.granularity != 0) return;
+  const Object* record = mappable_record(dictionary);
+  if (record == nullptr) return;
+  report.warning(dictionary.device.granularity_pos, "granularity",
+                 "Granularity 0 says that the mapping of PDOs is fixed, but " +
+                     to_string(ObjectKey{record->index, 0}) + " can be written; the records count");
+}
+
 }  // namespace
 
 void check_pdos(const ObjectDictionary& dictionary, Report& report) {
@@ -107,6 +135,7 @@ void check_pdos(const ObjectDictionary& dictionary, Report& report) {
     check_mapping(dictionary, pdo, report);
   }
   check_partners(dictionary, report);
+  check_granularity(dictionary, report);
   const auto tpdos =
       static_cast<std::size_t>(std::ranges::count_if(pdos, &PdoDescription::is_tpdo));
   check_number(dictionary, false, pdos.size() - tpdos, report);

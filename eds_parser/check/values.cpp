@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+
 #include "eds_parser/check/rules.hpp"
 #include "eds_parser/eds_limits.hpp"
 #include "eds_parser/integer_of.hpp"
@@ -6,15 +10,31 @@
 namespace takt {
 namespace {
 
+std::string number_text(const Value& value) {
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
+  if (const auto* number = std::get_if<std::uint64_t>(&value)) return std::to_string(*number);
+  std::array<char, 32> text;
+  const auto* real = std::get_if<double>(&value);
+  return {text.data(), std::to_chars(text.begin(), text.end(), real ? *real : 0.0).ptr};
+}
+
+/// Of a value that is outside its limits.
+std::string broken_limit(const Value& value, const SubObject& sub) {
+  const bool low =
+      sub.low_limit && sub.low_limit->index() == value.index() && value < *sub.low_limit;
+  return low ? " is below LowLimit " + number_text(*sub.low_limit)
+             : " is above HighLimit " + number_text(*sub.high_limit);
+}
+
 void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
   if (sub.default_value && outside_limits(*sub.default_value, sub)) {
     report.warning(sub.default_pos, "default-outside-limits",
                    section_name(key) + ": DefaultValue " + quoted(sub.default_text) +
-                       " is outside LowLimit and HighLimit; it is kept");
+                       broken_limit(*sub.default_value, sub) + "; it is kept");
   }
   if (!sub.parameter_value || !outside_limits(*sub.parameter_value, sub)) return;
   const auto text = section_name(key) + ": ParameterValue " + quoted(sub.parameter_text) +
-                    " is outside LowLimit and HighLimit; ";
+                    broken_limit(*sub.parameter_value, sub) + "; ";
   if (sub.is_configurable()) {
     report.error(sub.parameter_pos, "value-outside-limits", text + "the device would refuse it");
   } else {
@@ -49,6 +69,17 @@ void check_count(const Object& object, Report& report) {
   }
 }
 
+void check_bit_rate(const ObjectDictionary& dictionary, Report& report) {
+  const auto& rates = dictionary.device.baud_rates_kbit;
+  const auto said = dictionary.commissioning.baudrate_kbit;
+  if (said == 0 || rates.empty() || std::ranges::binary_search(rates, said)) return;
+  std::string known;
+  for (const auto rate : rates) known += (known.empty() ? "" : ", ") + std::to_string(rate);
+  report.warning(
+      dictionary.commissioning.baudrate_pos, "baudrate-unsupported",
+      "Baudrate is " + std::to_string(said) + " kbit/s; by [DeviceInfo] the device has " + known);
+}
+
 }  // namespace
 
 void check_values(const ObjectDictionary& dictionary, Report& report) {
@@ -63,6 +94,7 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
     }
     check_count(object, report);
   }
+  check_bit_rate(dictionary, report);
   if (!dictionary.is_dcf && parameter_values != 0) {
     report.note(first_parameter_value, "parameter-value-in-eds",
                 "an EDS has no ParameterValue, only a DCF; " + std::to_string(parameter_values) +
@@ -71,7 +103,7 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
   if (dictionary.is_dcf && !dictionary.commissioning.node_id) {
     const auto& section = dictionary.commissioning.pos;
     report.warning(section.line == 0 ? SourcePos{1, 1} : section, "dcf-without-node-id",
-                   "a DCF says its NodeID in [DeviceComissioning]; this one does not");
+                   "a DCF says its NodeID in [DeviceComissioning]; this one has none of 1..127");
   }
 }
 

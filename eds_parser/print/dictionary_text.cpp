@@ -175,9 +175,11 @@ void print_device(std::ostream& out, const ObjectDictionary& dictionary) {
   print_fact(out, "order code", device.order_code);
   print_fact(out, "profile", profile_text(dictionary));
   print_fact(out, "bit rates", bit_rates(device));
-  print_fact(out, "PDOs",
-             std::to_string(device.nr_rx_pdo) + " RPDOs, " + std::to_string(device.nr_tx_pdo) +
-                 " TPDOs" + (device.granularity == 0 ? ", mapping is fixed" : ""));
+  print_fact(
+      out, "PDOs",
+      std::to_string(device.nr_rx_pdo) + " RPDOs, " + std::to_string(device.nr_tx_pdo) + " TPDOs" +
+          (device.granularity == 0 && mappable_record(dictionary) == nullptr ? ", mapping is fixed"
+                                                                             : ""));
   print_commissioning(out, dictionary.commissioning);
   for (const auto& channel : dictionary.channels) {
     print_fact(out, "channels",

@@ -64,6 +64,8 @@ TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsTold) {
 
   EXPECT_TRUE(told({.type = 1, .timer = 100}));
   EXPECT_TRUE(told({.type = 240, .timer = 100}));
+  EXPECT_TRUE(told({.type = 252, .timer = 100}));
+  EXPECT_TRUE(told({.type = 253, .timer = 100}));
   EXPECT_FALSE(told({.type = 1}));
   EXPECT_FALSE(told({.type = 0, .timer = 100}));  // some devices take it for the event
   EXPECT_FALSE(told({.type = 254, .timer = 100}));
@@ -71,6 +73,19 @@ TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsTold) {
   const auto findings = judged({.type = 1, .timer = 100});
   EXPECT_EQ(find(findings, "pdo-event-timer-unused")->severity, Severity::note);
   EXPECT_EQ(find(findings, "pdo-event-timer-unused")->pos, (SourcePos{line_of(20), 14}));
+}
+
+TEST(CheckPdo, AnInhibitTimeWithoutEffectIsTold) {
+  const auto told = [](const Record& record) { return has(judged(record), "pdo-inhibit-unused"); };
+
+  for (const int type : {0, 1, 240, 252, 253}) EXPECT_TRUE(told({.type = type, .inhibit = 1}));
+  EXPECT_FALSE(told({.type = 1}));
+  EXPECT_FALSE(told({.type = 254, .inhibit = 1}));
+  EXPECT_FALSE(told({.index = "1400", .type = 1, .inhibit = 1}));
+  EXPECT_FALSE(has(check(read(sub("1800sub3", 6, "100")).dictionary), "pdo-inhibit-unused"));
+  const auto findings = judged({.type = 1, .inhibit = 1});
+  EXPECT_EQ(find(findings, "pdo-inhibit-unused")->severity, Severity::note);
+  EXPECT_EQ(find(findings, "pdo-inhibit-unused")->pos, (SourcePos{line_of(15), 14}));
 }
 
 TEST(CheckPdo, ATypeOnRequestNeedsTheRequestAllowed) {

@@ -156,6 +156,27 @@ TEST(Check, AbsoluteCobIdsOf29BitsAreToldToo) {
   EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x38000180"), "cob-id-absolute"));
 }
 
+TEST(Check, BitsOfSyncTimeAndEmcyAreLookedAtToo) {
+  const auto rules = [](std::string_view index, std::string_view cob_id) {
+    const auto text = '[' + std::string{index} + "]\nParameterName=x\nDataType=7\nAccessType=rw\n" +
+                      "DefaultValue=" + std::string{cob_id} + "\n";
+    const auto findings = check(read(text).dictionary);
+    return std::pair{has(findings, "cob-id-extended"), has(findings, "cob-id-bits")};
+  };
+
+  for (const auto* index : {"1005", "1012", "1014"}) {
+    EXPECT_EQ(rules(index, "0x200000F0"), (std::pair{true, false})) << index;
+    EXPECT_EQ(rules(index, "0x000100F0"), (std::pair{false, true})) << index;
+    EXPECT_EQ(rules(index, "0x200100F0"), (std::pair{false, false})) << index;
+    EXPECT_EQ(rules(index, "0xF0"), (std::pair{false, false})) << index;
+  }
+  EXPECT_EQ(rules("1005", "0xC0000080"),
+            (std::pair{false, false}));  // makes SYNC; 31 means nothing
+  EXPECT_EQ(rules("1012", "0xC0000100"), (std::pair{false, false}));  // takes and makes TIME
+  EXPECT_EQ(rules("1014", "$NODEID+0x40000080"), (std::pair{false, true}));
+  EXPECT_EQ(rules("1014", "$NODEID+0xC0000080"), (std::pair{false, false}));  // off
+}
+
 TEST(Check, Bit30IsToldOfRpdosOnly) {
   const auto findings = rpdo("0x60400010", "$NODEID+0x40000200");
   ASSERT_TRUE(has(findings, "pdo-rtr-of-rpdo"));
@@ -227,6 +248,43 @@ TEST(Check, ComparesValuesWithLimits) {
       check(read(entry("2000", "3", "0") + limits + "ParameterValue=6\n").dictionary);
   EXPECT_EQ(find(value, "value-outside-limits")->severity, Severity::error);
   EXPECT_TRUE(has(value, "parameter-value-in-eds"));
+}
+
+TEST(Check, TellsABitRateThatTheDeviceHasNot) {
+  const auto told = [](std::string_view rates, std::string_view rate) {
+    const auto file =
+        read_eds("[DeviceInfo]\n" + std::string{rates} + "[DeviceComissioning]\n" +
+                     "NodeID=5\nBaudrate=" + std::string{rate} + "\n[1000]\nDataType=7\n",
+                 "t.dcf");
+    const auto findings = check(file.dictionary);
+    const auto* finding = find(findings, "baudrate-unsupported");
+    return finding == nullptr ? std::string{} : to_string(*finding);
+  };
+
+  EXPECT_EQ(told("BaudRate_500=1\nBaudRate_125=1\nBaudRate_250=0\n", "250"),
+            "t.dcf:7:10: warning: Baudrate is 250 kbit/s; by [DeviceInfo] the device has 125, 500 "
+            "[baudrate-unsupported]");
+  EXPECT_EQ(told("BaudRate_500=1\n", "500"), "");
+  EXPECT_EQ(told("BaudRate_500=1\n", "500000"), "") << "taken for bit/s";
+  EXPECT_EQ(told("", "250"), "") << "the file says nothing of them";
+  EXPECT_EQ(told("BaudRate_500=1\n", ""), "");
+}
+
+TEST(Check, NamesTheLimitThatAValueBreaks) {
+  const auto message = [](std::string_view type, std::string_view value, std::string_view limits) {
+    const auto findings = check(read(entry("2000", type, value) + std::string{limits}).dictionary);
+    const auto* finding = find(findings, "default-outside-limits");
+    return finding == nullptr ? std::string{} : finding->message;
+  };
+
+  EXPECT_EQ(message("3", "-6", "LowLimit=-5\nHighLimit=5\n"),
+            "2000sub0: DefaultValue '-6' is below LowLimit -5; it is kept");
+  EXPECT_EQ(message("7", "0xFF", "HighLimit=0x10\n"),
+            "2000sub0: DefaultValue '0xFF' is above HighLimit 16; it is kept");
+  EXPECT_EQ(message("0x1B", "0", "LowLimit=0xFFFFFFFFFFFFFFFF\n"),
+            "2000sub0: DefaultValue '0' is below LowLimit 18446744073709551615; it is kept");
+  EXPECT_EQ(message("8", "1.5", "LowLimit=0\nHighLimit=0.25\n"),
+            "2000sub0: DefaultValue '1.5' is above HighLimit 0.25; it is kept");
 }
 
 TEST(Check, AValueThatIsNeverWrittenIsNotRefused) {

@@ -92,6 +92,18 @@ TEST(Compact, SkipsAnObjectWithoutTypeButKeepsTheFile) {
   EXPECT_NE(file.dictionary.find(std::uint16_t{0x1000}), nullptr);
 }
 
+TEST(Compact, ImplicitPdosStandWhereTheyAreCounted) {
+  const auto file = read_eds(
+      "[DeviceInfo]\nCompactPDO=3\nNrOfRXPDO=1\nNrOfTXPDO=1\n[Comments]\nLines=0\n", "t.eds");
+
+  ASSERT_EQ(file.dictionary.objects.size(), 4U);
+  EXPECT_EQ(file.dictionary.objects[0].pos, (SourcePos{3, 11}));
+  EXPECT_EQ(file.dictionary.find(ObjectKey{0x1A00, 1})->default_pos, (SourcePos{4, 11}));
+  for (const auto& finding : check(file.dictionary)) {
+    EXPECT_GT(finding.pos.line, 0U) << finding.message;
+  }
+}
+
 TEST(Compact, FillsImplicitPdosFromTheBottom) {
   constexpr std::string_view text = R"([DeviceInfo]
 CompactPDO=0x17
@@ -130,6 +142,16 @@ DefaultValue=0x333
   EXPECT_EQ(made.subs.back().sub, 5);
   EXPECT_EQ(integer(file, {0x1400, 0}), 5);
   EXPECT_EQ(integer(file, {0x1600, 0}), 0);
+}
+
+TEST(Compact, WhatIsOddAboutItsNumberIsToldOnceAndInItsPlace) {
+  const auto file = read(
+      "[3100]\nParameterName=Gain\nObjectType=0x8\nDataType=6\nAccessType=rw\n"
+      "CompactSubObj=0A\nSubNumber=010\n");
+
+  ASSERT_EQ(std::ranges::count(file.findings, "hex-without-prefix", &Finding::rule), 1);
+  EXPECT_EQ(find(file.findings, "hex-without-prefix")->pos.line, line_of(6));
+  EXPECT_EQ(find(file.findings, "octal-number")->pos.line, line_of(7));
 }
 
 }  // namespace

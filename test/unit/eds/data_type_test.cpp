@@ -158,6 +158,19 @@ TEST(ObjectTypes, ADefstructInShortNotationIsExpanded) {
             Value{std::uint64_t{72057594037927935}});
 }
 
+TEST(ObjectTypes, AVarInShortNotationIsTakenForAnArrayAndTold) {
+  for (const auto* type : {"7", "2", "5"}) {
+    const auto file = read("[2000]\nParameterName=s\nObjectType=" + std::string{type} +
+                           "\nDataType=6\nAccessType=rw\nCompactSubObj=2\n");
+
+    const auto* told = test::find(file.findings, "sub-objects-of-var");
+    ASSERT_NE(told, nullptr) << type;
+    EXPECT_EQ(told->pos, (SourcePos{test::line_of(3), 12}));
+    EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->type, ObjectType::array);
+    EXPECT_EQ(file.dictionary.find(std::uint16_t{0x2000})->subs.size(), 3U);
+  }
+}
+
 TEST(DataType, HexadecimalOfARealIsItsBitPatternUnlessThatIsNextToNothing) {
   const auto value = [](std::string_view type, std::string_view text) {
     const auto file = read(var(type, text));
@@ -175,6 +188,51 @@ TEST(DataType, HexadecimalOfARealIsItsBitPatternUnlessThatIsNextToNothing) {
   EXPECT_EQ(value("0x0008", "0x00000001"), Value{0x1p-149}) << "all digits of a pattern";
   EXPECT_EQ(value("0x0011", "0x00000001"), Value{1.0});
   EXPECT_EQ(value("0x0011", "0x0000000000000001"), Value{0x1p-1074});
+}
+
+TEST(DataType, ANumberOfMoreThan64BitsFitsNoType) {
+  for (const auto* type : {"0x1B", "0x15", "7"}) {
+    const auto file = read(var(type, "18446744073709551616"));
+
+    const auto* told = test::find(file.findings, "value-exceeds-type");
+    ASSERT_NE(told, nullptr) << type;
+    EXPECT_EQ(told->severity, Severity::error);
+    EXPECT_FALSE(has(file.findings, "value-unreadable"));
+  }
+  const auto limit = read(var("0x1B", "1") + "HighLimit=0x1FFFFFFFFFFFFFFFF\n");
+  EXPECT_EQ(test::find(limit.findings, "value-exceeds-type")->severity, Severity::warning);
+}
+
+TEST(DataType, TheLargestReal32IsOneInAnyRounding) {
+  const auto value = [](std::string_view text) {
+    const auto file = read(var("0x0008", text));
+    EXPECT_EQ(has(file.findings, "value-exceeds-type"),
+              !file.dictionary.objects.back().subs[0].value());
+    return file.dictionary.find(ObjectKey{0x2000, 0})->value();
+  };
+
+  EXPECT_EQ(value("3.40282347E+38"), Value{0x1.fffffep127});
+  EXPECT_EQ(value("-3.4028235e38"), Value{-0x1.fffffep127});
+  EXPECT_EQ(value("3.4028234663852886e38"), Value{0x1.fffffep127});
+  EXPECT_EQ(value("3.4028236e38"), std::nullopt) << "rounds to infinity";
+  EXPECT_EQ(value("-1e39"), std::nullopt);
+}
+
+TEST(DataType, WhatStandsBehindARealOrARowOfBytesIsTold) {
+  const auto finding = [](std::string_view type, std::string_view text) {
+    const auto file = read(var(type, text));
+    const auto* told = test::find(file.findings, "inline-comment");
+    EXPECT_EQ(told == nullptr ? 14U : told->pos.column, 14U);
+    return told != nullptr;
+  };
+
+  EXPECT_TRUE(finding("0x0008", "0.5 ; gain"));
+  EXPECT_TRUE(finding("0x0011", "0x3FF0000000000000 # one"));
+  EXPECT_TRUE(finding("0x000A", "0102 ; bytes"));
+  EXPECT_TRUE(finding("0x000C", "5 100 ; days"));
+  EXPECT_FALSE(finding("0x0008", "0.5"));
+  EXPECT_FALSE(finding("0x0009", "text ; text"));
+  EXPECT_TRUE(has(read(var("0x0008", "0.5f")).findings, "number-suffix"));
 }
 
 TEST(DataType, MayBeAWordAsObjectTypeMay) {

@@ -281,6 +281,11 @@ TEST(Eds, ReadsAccessInAnyCaseAndSaysWhatItAssumed) {
   EXPECT_EQ(of(access("")), Access::rw);
   EXPECT_TRUE(has(access("").findings, "access-type-missing"));
   EXPECT_TRUE(has(access("sometimes").findings, "access-type-unknown"));
+  EXPECT_EQ(of(access("sometimes")), Access::rw);
+  EXPECT_EQ(of(access("R")), Access::ro);
+  EXPECT_EQ(of(access("w ; by the configuration tool")), Access::wo);
+  EXPECT_TRUE(has(access("R").findings, "access-type-letter"));
+  EXPECT_FALSE(has(access("R").findings, "access-type-unknown"));
 }
 
 TEST(Eds, OrderOfSectionsDoesNotMatter) {

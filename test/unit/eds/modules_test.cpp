@@ -23,6 +23,21 @@ std::string connected(int modules) {
   return text;
 }
 
+TEST(Modules, SubZeroCountsWhatTheyBringWhetherTheFileDescribesItOrNot) {
+  const std::string module = extension("1") + connected(1);
+  const std::string own =
+      "[6000]\nParameterName=x\nObjectType=9\n[6000sub0]\nDataType=5\nAccessType=ro\n";
+  const std::string first = "[6000sub1]\nDataType=5\nAccessType=ro\n";
+  for (const auto* count : {"DefaultValue=0\n", "DefaultValue=two\n", ""}) {
+    const auto brought = read(module + own + count);
+    const auto described = read(module + own + count + first);
+    ASSERT_TRUE(brought.dictionary.find({0x6000, 0}));
+    EXPECT_EQ(brought.dictionary.find({0x6000, 0})->default_value,
+              described.dictionary.find({0x6000, 0})->default_value)
+        << count;
+  }
+}
+
 TEST(Modules, SayWhatTheyAreAndWhichAreConnected) {
   const auto file = read(
       "[M10ModuleInfo]\nProductName=Analogue\n"
@@ -210,6 +225,25 @@ TEST(Modules, HostileListsAreBounded) {
 
   EXPECT_TRUE(test::has(file.findings, "too-many-modules"));
   EXPECT_TRUE(test::has(file.findings, "too-many-sub-objects"));
+}
+
+TEST(Modules, ThatAreNotConnectedMayHaveAnyNumberOfCompactObjects) {
+  std::string text;
+  for (int type = 1; type <= 1100; ++type) {
+    const std::string object = "[M" + std::to_string(type) + "Fixed2000";
+    text += object +
+            "]\nParameterName=a\nObjectType=8\nDataType=5\nAccessType=rw\nCompactSubObj=254\n" +
+            object + "Name]\nNrOfEntries=1\n1=first\n";
+  }
+  text +=
+      "[M1101Fixed2000]\nParameterName=a\nObjectType=8\nDataType=5\nAccessType=rw\n"
+      "CompactSubObj=254\nDefaultValue=010\n";
+
+  const auto findings = read(text).findings;
+
+  EXPECT_FALSE(test::has(findings, "too-many-sub-objects"));
+  EXPECT_FALSE(test::has(findings, "unknown-sub-object"));
+  EXPECT_TRUE(test::has(findings, "octal-number"));
 }
 
 }  // namespace

@@ -31,9 +31,12 @@ std::vector<Example> examples() {
   };
   const auto connected = [](unsigned i) { return std::to_string(i + 1) + "=1\n"; };
   return {
+      {"access-type-letter", Kind::objects, "[2000]\nDataType=0x0006\nAccessType=R\n"},
       {"access-type-missing", Kind::objects, "[2000]\nDataType=0x0006\nAccessType=\n"},
       {"access-type-unknown", Kind::objects, "[2000]\nDataType=0x0006\nAccessType=sometimes\n"},
       {"baudrate-unit", Kind::dcf, "[DeviceComissioning]\nBaudrate=500000\n"},
+      {"baudrate-unsupported", Kind::dcf,
+       "[DeviceInfo]\nBaudRate_500=1\n[DeviceComissioning]\nNodeID=5\nBaudrate=250\n"},
       {"bit-pattern", Kind::objects, "[2000]\nDataType=0x0004\nDefaultValue=0x80000001\n"},
       {"blank-in-key", Kind::whole, "[OptionalObjects]\nSupported Objects=3\n"},
       {"boolean-word", Kind::objects, "[2000]\nDataType=0x0006\nPDOMapping=true\n"},
@@ -80,7 +83,11 @@ std::vector<Example> examples() {
       {"encoding-assumed", Kind::objects,
        "[2000]\nParameterName=Z\xE4"
        "hler\n"},
+      {"entry-count-wrong", Kind::objects,
+       "[2000]\nObjectType=8\nDataType=5\nCompactSubObj=3\n[2000Name]\nNrOfEntries=1\n1=a\n2=b\n"},
       {"entry-outside-section", Kind::whole, "FileName=a.eds\n"},
+      {"granularity", Kind::whole,
+       "[DeviceInfo]\nGranularity=0\n[1600sub0]\nDataType=5\nAccessType=rw\n"},
       {"hash-comment", Kind::whole, "# text\n"},
       {"hex-without-prefix", Kind::objects, "[2000]\nDataType=0x0006\nDefaultValue=1F\n"},
       {"identity-mismatch", Kind::whole,
@@ -105,6 +112,7 @@ std::vector<Example> examples() {
       {"module-count", Kind::objects,
        "[M1SubExt6000]\nDataType=5\nAccessType=ro\nCount=1\n[ConnectedModules]\nNrOfEntries=1\n1="
        "1\n2=1\n"},
+      {"module-list", Kind::objects, "[M1SubExtends]\nNrOfEntries=1\n1=0x6001\n"},
       {"module-sub-objects", Kind::objects,
        "[6000sub0]\nDataType=5\nDefaultValue=2\n[6000sub1]\nDataType=5\nDefaultValue=0\n[6000sub2]"
        "\nDataType=5\nDefaultValue=0\n[M1SubExt6000]\nDataType=5\nAccessType=ro\nCount=2\n["
@@ -149,6 +157,8 @@ std::vector<Example> examples() {
       {"pdo-inhibit-of-rpdo", Kind::objects, "[1400sub3]\nDataType=6\nDefaultValue=100\n"},
       {"pdo-inhibit-too-long", Kind::objects,
        "[1800sub3]\nDataType=6\nDefaultValue=1001\n[1800sub5]\nDataType=6\nDefaultValue=100\n"},
+      {"pdo-inhibit-unused", Kind::objects,
+       "[1800sub2]\nDataType=5\nDefaultValue=1\n[1800sub3]\nDataType=6\nDefaultValue=100\n"},
       {"pdo-mapping-count", Kind::objects,
        "[1A00sub0]\nDataType=5\nDefaultValue=3\n[1A00sub1]\nDataType=7\nDefaultValue=0x60410010\n["
        "1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x180\n"},
