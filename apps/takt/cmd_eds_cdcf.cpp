@@ -26,12 +26,27 @@ std::string line_of(const ConciseEntry& entry) {
   return line;
 }
 
+std::size_t size_of(const std::vector<ConciseEntry>& entries) {
+  constexpr std::size_t count = 4;
+  constexpr std::size_t head = 7;
+  std::size_t size = count;
+  for (const auto& entry : entries) size += head + entry.value.size();
+  return size;
+}
+
 int decode(const Options& options) {
   const auto content = read_whole_file(options.file);
   if (!content) return complain(content.error(), 1);
   const auto entries = decode_concise_dcf(std::as_bytes(std::span{*content}));
   if (!entries) return complain(options.file + ": the concise DCF " + entries.error(), 1);
   for (const auto& entry : *entries) std::cout << line_of(entry) << '\n';
+  const auto used = size_of(*entries);
+  if (content->size() > used) {
+    complain(options.file + ": " + std::to_string(content->size() - used) +
+                 " bytes behind the last of " + std::to_string(entries->size()) +
+                 " entries; devices ignore them",
+             0);
+  }
   return 0;
 }
 

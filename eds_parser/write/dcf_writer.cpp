@@ -100,10 +100,12 @@ class DcfWriter {
     const auto read =
         values_.read(value.text, sub.type, {value.object, "new value", sub.pos, Severity::error});
     if (!read) {
+      const auto number = parse_number(value.text);
+      const bool needs_node =
+          number && number->relative() && !options_.node && !dictionary_.node_id;
       return refuse(sub.pos, "value-unreadable",
                     to_string(value.object) + ": " + takt::quoted(value.text) + " is no value of " +
-                        std::string{name(sub.type)} +
-                        (parse_number(value.text) ? " (or $NODEID without --node)" : ""));
+                        std::string{name(sub.type)} + (needs_node ? ": $NODEID needs --node" : ""));
     }
     if (!outside_limits(*read, sub)) return true;
     const auto limit = [&](const std::optional<Value>& end) {
@@ -193,16 +195,37 @@ class DcfWriter {
     if (implied_.empty()) return;
     add_pdo_partners();
     for (const auto& [index, values] : implied_) {
-      const auto* object = dictionary_.find(index);
-      list_object(*object);
-      const auto lines = object_sections(*object);
-      for (std::size_t i = 0; i < lines.size(); ++i) {
-        edits_.append_line(lines[i]);
-        if (!lines[i].starts_with("DefaultValue=")) continue;
-        const auto value = values.find(sub_of(lines, i));
-        if (value != values.end()) edits_.append_line(value->second);
-      }
+      const auto& object = *dictionary_.find(index);
+      const auto* main = sections_.object(index);
+      if (main == nullptr) list_object(object);
+      const std::size_t added = append_sections(object, values);
+      if (main != nullptr) add_to_count(*main, "subnumber", added);
     }
+  }
+
+  /// What the file describes of the object stays; returns the number of new sub-objects.
+  std::size_t append_sections(const Object& object,
+                              const std::map<std::uint8_t, std::string>& values) {
+    std::size_t added = 0;
+    bool there = false;
+    std::uint8_t sub = 0;
+    for (const auto& line : object_sections(object)) {
+      if (line.starts_with('[')) {
+        const auto name = classify_section(std::string_view{line}.substr(1, line.size() - 2));
+        const bool of_sub = name.kind == SectionKind::sub_object;
+        sub = name.sub;
+        there = (of_sub ? sections_.sub_object({object.index, sub})
+                        : sections_.object(object.index)) != nullptr;
+        if (!there) edits_.append_line("");
+        added += of_sub && !there;
+      }
+      if (there || line.empty()) continue;
+      edits_.append_line(line);
+      if (!line.starts_with("DefaultValue=")) continue;
+      const auto value = values.find(sub);
+      if (value != values.end()) edits_.append_line(value->second);
+    }
+    return added;
   }
 
   /// Communication and mapping of a PDO that CompactPDO implies stand or fall together.
@@ -221,11 +244,6 @@ class DcfWriter {
   }
 
   /// Sub-index that line i of an object's sections belongs to.
-  static std::uint8_t sub_of(const std::vector<std::string>& lines, std::size_t i) {
-    while (!lines[i].starts_with('[')) --i;
-    return classify_section(std::string_view{lines[i]}.substr(1, lines[i].size() - 2)).sub;
-  }
-
   void list_object(const Object& object) {
     const bool manufacturer = object.index >= 0x2000 && object.index < 0x6000;
     const auto* list = sections_.other(manufacturer ? SectionKind::manufacturer_objects

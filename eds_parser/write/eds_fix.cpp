@@ -8,9 +8,10 @@
 #include "eds_parser/decimal_subs.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/number.hpp"
-#include "eds_parser/object_words.hpp"
 #include "eds_parser/suggest.hpp"
 #include "eds_parser/text.hpp"
+#include "eds_parser/write/changed_objects.hpp"
+#include "eds_parser/write/entry_counts.hpp"
 #include "eds_parser/write/list_fix.hpp"
 #include "eds_parser/write/value_fix.hpp"
 
@@ -18,6 +19,8 @@ namespace takt {
 namespace {
 
 constexpr int most_passes = 40;  // each rule speaks a thousand times at most in one
+
+constexpr int most_tries = 8;  // of one pass, each with more objects left as they are
 
 constexpr std::uint32_t most_keys = 256;  // of a section in which a key is looked for
 
@@ -28,16 +31,19 @@ constexpr std::array<std::string_view, 11> object_keys{
 /// Of these, slips are mended; what stands behind the others would begin to count then.
 constexpr auto mended_keys = std::span{object_keys}.first<2>();
 
-enum class Slips : std::uint8_t { mended, left };
+/// What is not mended of an object, as the file would say something else.
+enum class Left : std::uint8_t { slips, all };
+
+using LeftObjects = std::map<std::uint16_t, Left>;
 
 /// One reading of the file and the edits that follow from its findings.
 class FixPass {
  public:
-  FixPass(std::string_view text, const IniFile& file, const EdsFile& eds, Slips slips)
+  FixPass(std::string_view text, const IniFile& file, const EdsFile& eds, const LeftObjects& left)
       : text_{text},
         file_{file},
         eds_{eds},
-        slips_{slips},
+        left_{left},
         sections_{file},
         edits_{text},
         lists_{text, file, sections_, edits_, touched_} {
@@ -53,6 +59,7 @@ class FixPass {
   std::string run(Findings& fixed) {
     std::vector<const Finding*> rest;
     for (const Finding& finding : eds_.findings) {
+      rules_at_[finding.pos.line].insert(finding.rule);
       if (list_finding(finding)) {
         fixed.push_back(finding);
       } else {
@@ -95,10 +102,26 @@ class FixPass {
     if (rule == "byte-order-mark") return replace(text_.substr(0, 3), "");
     if (rule == "hash-comment") return hash_comment(finding.pos.line);
     const auto section = section_at_.find(finding.pos.line);
-    if (section != section_at_.end()) return section_finding(finding, *section->second);
+    if (section != section_at_.end()) {
+      return !is_left(*section->second, rule) && section_finding(finding, *section->second);
+    }
     const auto at = entry_at_.find(finding.pos.line);
-    if (at == entry_at_.end() || touched_.contains(finding.pos.line)) return false;
+    if (at == entry_at_.end() || is_left(*at->second.section, rule)) return false;
+    if (touched_.contains(finding.pos.line)) {
+      return done_.contains(finding.pos.line) && is_value_rule(rule);
+    }
     return entry_finding(rule, at->second);
+  }
+
+  /// Nothing tells whether the objects of modules stay what they are: they are not connected.
+  bool is_left(const IniSection& section, std::string_view rule) const {
+    const SectionName name = classify_section(section);
+    if (name.kind == SectionKind::module) {
+      return rule != "entry-count-wrong" && rule != "section-not-closed";
+    }
+    if (name.index == 0) return false;
+    const auto left = left_.find(name.index);
+    return left != left_.end() && left->second == Left::all;
   }
 
   bool replace(std::string_view part, std::string with) {
@@ -133,7 +156,6 @@ class FixPass {
     }
     if (rule == "decimal-sub-index") return hexadecimal_subs();
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
-    if (rule == "inline-comment" || rule == "octal-number") return named_entry(finding, section);
     if (rule != "section-name-form") return false;
     const std::uint32_t line = section.pos.line;
     if (!touched_.insert(line).second) return done_.contains(line);  // both forms at once
@@ -150,7 +172,8 @@ class FixPass {
   bool hexadecimal_subs() {
     if (subs_mended_) return *subs_mended_;
     const auto is_free = [this](const IniSection& section) {
-      return !section.has_decimal_sub || !touched_.contains(section.pos.line);
+      return !section.has_decimal_sub ||
+             (!touched_.contains(section.pos.line) && !is_left(section, "decimal-sub-index"));
     };
     subs_mended_ = std::ranges::all_of(file_.sections, is_free);
     for (const IniSection& section : file_.sections) {
@@ -162,30 +185,15 @@ class FixPass {
     return *subs_mended_;
   }
 
-  /// A finding at the section whose message begins with the key: `ObjectType: ...`.
-  bool named_entry(const Finding& finding, const IniSection& section) {
-    const std::string_view key = std::string_view{finding.message}.substr(
-        0, std::min(finding.message.find(':'), finding.message.size()));
-    if (section.count > most_keys) return false;
-    for (const IniEntry& entry : file_.entries(section)) {
-      if (classify_key(entry.key) == Keyword::unknown) continue;
-      if (classify_key(entry.key) == classify_key(key)) {
-        return value(finding.rule, {entry, &section});
-      }
-    }
-    return false;
-  }
-
   bool entry_finding(std::string_view rule, const Place& at) {
     if (rule == "blank-in-key") return touch(at) && replace(at.entry.key, "SupportedObjects");
     if (rule == "sub-number-wrong") return touch(at) && sub_number(*at.section, &at.entry);
     if (rule == "sub-number-missing") return touch(at) && sub_number(*at.section, &at.entry);
     if (rule == "compact-and-sub-number") return compact(at);
     if (rule == "baudrate-unit") return baudrate(at);
+    if (rule == "entry-count-wrong" || rule == "module-count") return entry_count(at);
     if (rule == "unknown-key") return slip(at);
-    if (rule == "wrong-list") return false;  // its object is not clear yet
-    if (std::ranges::find(fixable_rules, rule) == fixable_rules.end()) return false;
-    return value(rule, at);
+    return is_value_rule(rule) && value(at);
   }
 
   bool touch(const Place& at) { return touched_.insert(at.entry.line).second; }
@@ -218,6 +226,12 @@ class FixPass {
     return replace(without_comment(at.entry.value), "0");
   }
 
+  bool entry_count(const Place& at) {
+    const auto number = counted_entries(file_, *at.section);
+    if (!number || !touch(at)) return false;
+    return replace(without_comment(at.entry.value), std::to_string(*number));
+  }
+
   bool baudrate(const Place& at) {
     const std::string_view bare = without_comment(at.entry.value);
     const auto rate = parse_number(bare);
@@ -229,7 +243,7 @@ class FixPass {
   bool slip(const Place& at) {
     const SectionName name = classify_section(*at.section);
     if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return false;
-    if (slips_ == Slips::left || at.section->count > most_keys) return false;
+    if (left_.contains(name.index) || at.section->count > most_keys) return false;
     if (at.entry.key.find_first_of("0123456789") != std::string_view::npos) return false;
     const std::string_view meant = nearest(at.entry.key, object_keys);
     if (std::ranges::find(mended_keys, meant) == mended_keys.end()) return false;
@@ -239,28 +253,13 @@ class FixPass {
     return touch(at) && replace(at.entry.key, std::string{meant});
   }
 
-  bool value(std::string_view rule, const Place& at) {
-    if (touched_.contains(at.entry.line)) return done_.contains(at.entry.line);
+  bool value(const Place& at) {
     const std::string_view bare = without_comment(at.entry.value);
-    std::optional<std::string> plain;
-    if (rule == "real-bit-pattern" || rule == "octet-string-form" || rule == "negative-unsigned") {
-      plain = value_as_read(eds_.dictionary, *at.section, at.entry.key);
-      if (rule == "octet-string-form") return plain && touch(at) && replace(at.entry.value, *plain);
-    } else if (rule == "boolean-word") {
-      plain = plain_flag(bare);
-    } else if (rule == "hex-without-prefix" && in_list(*at.section)) {
-      plain = "0x" + std::string{bare};
-    } else if (const auto code = code_of_word(classify_key(at.entry.key), bare)) {
-      plain = hex(*code, classify_key(at.entry.key) == Keyword::object_type ? 1 : 4);
-    } else if (same_word(at.entry.key, "accesstype")) {
-      plain = std::string{bare};
-    } else {
-      plain = plain_number(bare);
-    }
+    const auto& rules = rules_at_[at.entry.line];
+    const auto plain = plain_value(eds_.dictionary, *at.section, at.entry, rules);
     if (!plain || bare.empty()) return false;
     touch(at);
     done_.insert(at.entry.line);
-    if (rule_keeps(rule, bare)) plain = std::string{bare};
     replace(at.entry.value, *plain);
     const std::string_view comment = trim(at.entry.value.substr(bare.size()));
     if (!comment.empty()) {
@@ -269,23 +268,10 @@ class FixPass {
     return true;
   }
 
-  /// A comment goes, what stands before it stays as it is where it is sound.
-  static bool rule_keeps(std::string_view rule, std::string_view bare) {
-    if (rule != "inline-comment") return false;
-    const auto number = parse_number(bare);
-    return number && number->quirks == 0;
-  }
-
-  static bool in_list(const IniSection& section) {
-    const SectionKind kind = classify_section(section).kind;
-    return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
-           kind == SectionKind::manufacturer_objects;
-  }
-
   std::string_view text_;
   const IniFile& file_;
   const EdsFile& eds_;
-  Slips slips_;
+  const LeftObjects& left_;
   SectionIndex sections_;
   TextEdits edits_;
   std::set<std::uint32_t> touched_;  ///< lines that have their edit
@@ -293,37 +279,21 @@ class FixPass {
   ListFix lists_;
   std::map<std::uint32_t, const IniSection*> section_at_;
   std::map<std::uint32_t, Place> entry_at_;
+  std::map<std::uint32_t, std::set<std::string_view>> rules_at_;
   std::vector<std::size_t> line_starts_;
   std::map<std::uint16_t, std::set<std::uint8_t>> subs_;
   std::optional<bool> subs_mended_;  ///< sub-indices in decimal; none: not tried yet
 };
 
-bool same(const std::optional<Value>& old, const std::optional<Value>& now) {
-  return old == now ||
-         (old && now && std::holds_alternative<double>(*old));  // a NaN equals nothing
-}
-
-bool same(const SubObject& old, const SubObject& now) {
-  if (old.access != now.access || old.pdo_mappable != now.pdo_mappable) return false;
-  if (old.type == DataType::unknown && now.type != DataType::unknown) {
-    return old.default_text == now.default_text && old.parameter_text == now.parameter_text;
+/// False: all of these are left already.
+bool leave(const std::set<std::uint16_t>& objects, LeftObjects& left) {
+  bool more = false;
+  for (const std::uint16_t index : objects) {
+    const auto [at, is_new] = left.try_emplace(index, Left::slips);
+    more = more || is_new || at->second != Left::all;
+    if (!is_new) at->second = Left::all;
   }
-  return old.type == now.type && same(old.default_value, now.default_value) &&
-         same(old.parameter_value, now.parameter_value) && same(old.low_limit, now.low_limit) &&
-         same(old.high_limit, now.high_limit);
-}
-
-/// Nothing that was there is gone or another one. A type may appear where there was none.
-bool keeps(const ObjectDictionary& before, const ObjectDictionary& after) {
-  for (const Object& object : before.objects) {
-    const Object* other = after.find(object.index);
-    if (other == nullptr || other->type != object.type) return false;
-    for (const SubObject& sub : object.subs) {
-      const SubObject* now = after.find(ObjectKey{object.index, sub.sub});
-      if (now == nullptr || !same(sub, *now)) return false;
-    }
-  }
-  return true;
+  return more;
 }
 
 struct Pass {
@@ -334,18 +304,23 @@ struct Pass {
 
 /// One pass; none where nothing is left to mend, or the file would say something else.
 std::optional<Pass> one_pass(const std::string& text, const std::string& source_name,
-                             const EdsFile& eds, Slips slips) {
+                             const EdsFile& eds, LeftObjects& left) {
   Report ignored{source_name};
   IniFile file = read_ini(text, ignored);
   mark_decimal_subs(file, ignored);
   const std::string& source = file.recoded ? *file.recoded : text;
-  Pass pass;
-  pass.text = FixPass{source, file, eds, slips}.run(pass.fixed);
-  if (pass.text.empty() && file.recoded) pass.text = source;
-  if (pass.text.empty() || pass.text == text) return std::nullopt;
-  pass.eds = read_eds(pass.text, source_name);
-  if (!pass.eds.readable || !keeps(eds.dictionary, pass.eds.dictionary)) return std::nullopt;
-  return pass;
+  for (int tries = 0; tries < most_tries; ++tries) {
+    Pass pass;
+    pass.text = FixPass{source, file, eds, left}.run(pass.fixed);
+    if (pass.text.empty() && file.recoded) pass.text = source;
+    if (pass.text.empty() || pass.text == text) return std::nullopt;
+    pass.eds = read_eds(pass.text, source_name);
+    if (!pass.eds.readable) return std::nullopt;
+    const auto changed = changed_objects(eds.dictionary, pass.eds.dictionary);
+    if (changed.empty()) return pass;
+    if (!leave(changed, left)) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -354,9 +329,9 @@ FixedEds fix_eds(std::string_view source, const std::string& source_name) {
   FixedEds out{.text = std::string{source}, .fixed = {}, .left = {}};
   EdsFile eds = read_eds(source, source_name);
   out.readable = eds.readable;
+  LeftObjects left;
   for (int passes = 0; passes < most_passes && eds.readable; ++passes) {
-    auto pass = one_pass(out.text, source_name, eds, Slips::mended);
-    if (!pass) pass = one_pass(out.text, source_name, eds, Slips::left);
+    auto pass = one_pass(out.text, source_name, eds, left);
     if (!pass) break;
     out.text = std::move(pass->text);
     std::ranges::move(pass->fixed, std::back_inserter(out.fixed));

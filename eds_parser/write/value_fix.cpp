@@ -1,25 +1,81 @@
 #include "eds_parser/write/value_fix.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "eds_parser/eds_lists.hpp"
 #include "eds_parser/eds_section.hpp"
 #include "eds_parser/number.hpp"
+#include "eds_parser/object_words.hpp"
+#include "eds_parser/table/access_name.hpp"
 #include "eds_parser/text.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
 namespace takt {
 namespace {
 
-const std::optional<Value>* value_of(const SubObject& sub, Keyword keyword) {
+using Rules = std::set<std::string_view>;
+
+constexpr std::array<std::string_view, 14> value_rules{
+    "access-type-letter",    "boolean-word",  "hex-without-prefix", "inline-comment",
+    "integer-with-fraction", "leading-zero",  "negative-unsigned",  "nodeid-not-first",
+    "nodeid-without-dollar", "number-suffix", "octal-number",       "octet-string-form",
+    "real-bit-pattern",      "type-word"};
+
+/// Of an entry that gives an element a value; unknown: it gives none.
+Keyword value_keyword(const SectionName& section, std::string_view key) noexcept {
+  if (section.kind == SectionKind::value_list) {
+    return entry_number(key) ? Keyword::parameter_value : Keyword::unknown;
+  }
+  switch (const Keyword keyword = classify_key(key)) {
+    case Keyword::default_value:
+    case Keyword::parameter_value:
+    case Keyword::low_limit:
+    case Keyword::high_limit:
+      return keyword;
+    default:
+      return Keyword::unknown;
+  }
+}
+
+/// What the section of an object describes: a VAR, or an element by CompactSubObj.
+const SubObject* described_by(const Object& object, const IniSection& section) noexcept {
+  const bool has_elements = object.type == ObjectType::array || object.type == ObjectType::record ||
+                            object.type == ObjectType::defstruct;
+  const auto found = std::ranges::find_if(object.subs, [&](const SubObject& sub) {
+    return sub.pos == section.pos && has_elements == (sub.sub != 0);
+  });
+  return found == object.subs.end() ? nullptr : &*found;
+}
+
+/// nullptr: there is none, or it is not clear which one.
+const SubObject* element_of(const ObjectDictionary& dictionary, const IniSection& section,
+                            std::string_view key) noexcept {
+  const SectionName name = classify_section(section);
+  if (name.kind == SectionKind::sub_object) return dictionary.find({name.index, name.sub});
+  if (name.kind == SectionKind::value_list) {
+    const auto sub = entry_number(key);
+    if (!sub || *sub > 0xFF) return nullptr;
+    return dictionary.find({name.index, static_cast<std::uint8_t>(*sub)});
+  }
+  if (name.kind != SectionKind::object) return nullptr;
+  const Object* object = dictionary.find(name.index);
+  return object == nullptr ? nullptr : described_by(*object, section);
+}
+
+/// What was read at this entry; none: another entry counts.
+std::optional<Value> value_read(const SubObject& sub, Keyword keyword, const IniEntry& entry) {
   switch (keyword) {
     case Keyword::default_value:
-      return &sub.default_value;
+      return sub.default_pos == entry.pos() ? sub.default_value : std::nullopt;
     case Keyword::parameter_value:
-      return &sub.parameter_value;
+      return sub.parameter_pos == entry.pos() ? sub.parameter_value : std::nullopt;
     case Keyword::low_limit:
-      return &sub.low_limit;
+      return sub.low_limit;
     case Keyword::high_limit:
-      return &sub.high_limit;
+      return sub.high_limit;
     default:
-      return nullptr;
+      return {};
   }
 }
 
@@ -34,11 +90,12 @@ std::string magnitude_text(const ParsedNumber& number) {
                     : std::to_string(number.magnitude);
 }
 
-}  // namespace
-
-std::optional<std::string> plain_number(std::string_view text) {
-  const auto number = parse_number(text);
+/// None: it is no number, or it can't be written so that it reads as the same. Hexadecimal stays
+/// hexadecimal.
+std::optional<std::string> plain_number(std::string_view bare) {
+  const auto number = parse_number(bare);
   if (!number) return {};
+  if (number->quirks == 0) return std::string{bare};
   std::string plain;
   for (unsigned i = 0; i < number->node_ids; ++i) plain += plain.empty() ? "$NODEID" : "+$NODEID";
   const bool only_id = number->relative() && number->magnitude == 0;
@@ -52,28 +109,87 @@ std::optional<std::string> plain_number(std::string_view text) {
   return same ? std::optional{plain} : std::nullopt;
 }
 
-std::optional<std::string> plain_flag(std::string_view text) {
-  const std::string_view word = without_comment(text);
+/// `1` for `true` and for numbers but 0; none: neither.
+std::optional<std::string> plain_flag(std::string_view bare) {
   for (const auto* yes : {"true", "yes", "on"}) {
-    if (same_word(word, yes)) return "1";
+    if (same_word(bare, yes)) return "1";
   }
   for (const auto* no : {"false", "no", "off"}) {
-    if (same_word(word, no)) return "0";
+    if (same_word(bare, no)) return "0";
   }
+  const auto number = parse_number(bare);
+  if (number && !number->relative()) return number->magnitude == 0 ? "0" : "1";
   return {};
 }
 
-std::optional<std::string> value_as_read(const ObjectDictionary& dictionary,
-                                         const IniSection& section, std::string_view key) {
-  const SectionName name = classify_section(section);
-  if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return {};
-  const SubObject* sub = dictionary.find(ObjectKey{name.index, name.sub});
-  const std::optional<Value>* value = sub == nullptr ? nullptr : value_of(*sub, classify_key(key));
-  if (value == nullptr || !*value) return {};
-  if (const auto* number = std::get_if<std::uint64_t>(&**value)) {
+/// A number that follows the node id has no such text: it would not follow any more.
+std::optional<std::string> value_text(const std::optional<Value>& value, DataType type,
+                                      std::string_view bare) {
+  const auto written = parse_number(bare);
+  if (!value || (written && written->relative())) return {};
+  if (const auto* number = std::get_if<std::uint64_t>(&*value)) {
     return magnitude_text({.magnitude = *number, .hex = true});
   }
-  return eds_value_text(**value, sub->type);
+  return eds_value_text(*value, type);
+}
+
+std::string without_suffix(std::string_view real) {
+  const bool suffix = real.size() > 1 && fold(real.back()) == 'f' &&
+                      std::string_view{"0123456789."}.contains(real[real.size() - 2]);
+  return std::string{real.substr(0, real.size() - (suffix ? 1 : 0))};
+}
+
+std::optional<std::string> plain_element(const SubObject& element, Keyword keyword,
+                                         const IniEntry& entry, const Rules& rules) {
+  const std::string_view bare = without_comment(entry.value);
+  const bool is_hex = bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x';
+  const bool other_form = rules.contains("real-bit-pattern") ||
+                          rules.contains("octet-string-form") ||
+                          rules.contains("negative-unsigned");
+  if (element.type == DataType::unknown) return {};
+  if (other_form || (is_real(element.type) && is_hex)) {
+    return value_text(value_read(element, keyword, entry), element.type, bare);
+  }
+  if (is_real(element.type)) return without_suffix(bare);
+  const bool is_time =
+      element.type == DataType::time_of_day || element.type == DataType::time_difference;
+  const bool two_numbers = bare.find_first_of(" \t") != std::string_view::npos;
+  if (is_bytes(element.type) || (is_time && two_numbers)) return std::string{bare};
+  return rules.contains("boolean-word") ? plain_flag(bare) : plain_number(bare);
+}
+
+bool in_list(SectionKind kind) noexcept {
+  return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
+         kind == SectionKind::manufacturer_objects;
+}
+
+}  // namespace
+
+bool is_value_rule(std::string_view rule) noexcept {
+  return std::ranges::find(value_rules, rule) != value_rules.end();
+}
+
+std::optional<std::string> plain_value(const ObjectDictionary& dictionary,
+                                       const IniSection& section, const IniEntry& entry,
+                                       const Rules& rules) {
+  const std::string_view bare = without_comment(entry.value);
+  const SectionName name = classify_section(section);
+  const Keyword keyword = value_keyword(name, entry.key);
+  if (keyword != Keyword::unknown) {
+    const SubObject* element = element_of(dictionary, section, entry.key);
+    return element == nullptr ? std::nullopt : plain_element(*element, keyword, entry, rules);
+  }
+  if (rules.contains("boolean-word")) return plain_flag(bare);
+  if (rules.contains("hex-without-prefix") && in_list(name.kind)) return "0x" + std::string{bare};
+  const Keyword other = classify_key(entry.key);
+  if (const auto code = code_of_word(other, bare)) {
+    return hex(*code, other == Keyword::object_type ? 1 : 4);
+  }
+  if (other == Keyword::access_type) {
+    const auto letter = access_of_letter(bare);
+    return std::string{letter ? access_name(*letter) : bare};
+  }
+  return plain_number(bare);
 }
 
 }  // namespace takt

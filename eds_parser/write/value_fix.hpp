@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -8,17 +9,14 @@
 
 namespace takt {
 
-/// A number as CiA 306 writes it, of what parse_number() takes; none: it is none, or it can't be
-/// written so that it reads as the same. Hexadecimal stays hexadecimal.
-std::optional<std::string> plain_number(std::string_view text);
+/// Of findings that one plain way to write the value of an entry mends, all at once.
+bool is_value_rule(std::string_view rule) noexcept;
 
-/// `1` for `true`; none: no such word.
-std::optional<std::string> plain_flag(std::string_view text);
-
-/// Text of a value that the dictionary has for a key (`DefaultValue`, `LowLimit` ...) of the
-/// section of an object: reals in decimal, octets as bare hex pairs, unsigned numbers in
-/// hexadecimal.
-std::optional<std::string> value_as_read(const ObjectDictionary& dictionary,
-                                         const IniSection& section, std::string_view key);
+/// How CiA 306 writes what an entry has, without a comment. `rules`: what was found there. Reals
+/// are decimal and without the `f` of a programming language, octets bare hex pairs; what is sound
+/// stays as it is. None: it is no value, or its type is not known.
+std::optional<std::string> plain_value(const ObjectDictionary& dictionary,
+                                       const IniSection& section, const IniEntry& entry,
+                                       const std::set<std::string_view>& rules);
 
 }  // namespace takt

@@ -51,6 +51,17 @@ TEST_F(EdsCdcf, HoldsWhatTheDcfSetsAndIsReadAgain) {
   EXPECT_EQ(bytes.size(), 4 + 6 * 7 + 2 + 4 + 1 + 4 + 1 + 4);
 }
 
+TEST_F(EdsCdcf, BytesBehindTheLastEntryAreTold) {
+  std::ofstream{bin_, std::ios::binary}
+      << std::string("\x01\0\0\0\x17\x10\0\x02\0\0\0\x64\0\x18\x10", 15);
+
+  const Ended decoded = takt({"cdcf", "--decode", bin_});
+
+  EXPECT_EQ(decoded.exit_code, 0);
+  EXPECT_THAT(decoded.output, HasSubstr("1017:00 64 00\n"));
+  EXPECT_THAT(decoded.output, HasSubstr("axis.bin: 2 bytes behind the last of 1 entries"));
+}
+
 TEST_F(EdsCdcf, GoesToStdoutAsWell) {
   ASSERT_EQ(write_dcf({"1017=100"}).exit_code, 0);
 

@@ -52,6 +52,31 @@ TEST(DcfWriter, NothingToSetLeavesAllButLastEds) {
   EXPECT_EQ(dcf.text, expected);
 }
 
+TEST(DcfWriter, WhatAModuleBringsIsWrittenBesideWhatTheFileDescribes) {
+  constexpr std::string_view modular =
+      "[OptionalObjects]\nSupportedObjects=1\n1=0x6200\n"
+      "[6200]\nParameterName=Outputs\nObjectType=8\nSubNumber=1\n"
+      "[6200sub0]\nParameterName=n\nDataType=5\nAccessType=ro\nDefaultValue=0\n"
+      "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=x\n"
+      "[M1SubExtends]\nNrOfEntries=1\n1=0x6200\n"
+      "[M1SubExt6200]\nParameterName=Output\nDataType=5\nAccessType=rw\nCount=1\nObjExtend=1\n"
+      "[ConnectedModules]\nNrOfEntries=2\n1=1\n2=1\n";
+  const auto before = read_eds(modular, "io.dcf").dictionary;
+  const auto dcf = write({.values = {{{0x6200, 1}, "5"}}}, modular);
+
+  for (const auto* section : {"[6200]", "[6200sub0]", "[6200sub1]", "SubNumber=", "1=0x6200\n"}) {
+    const auto at = dcf.text.find(section);
+    ASSERT_NE(at, std::string::npos) << section;
+    const bool list = std::string_view{section}.starts_with("1=");  // [M1SubExtends] has it, too
+    EXPECT_EQ(dcf.text.find(section, at + 1) == std::string::npos, !list) << section << dcf.text;
+  }
+  const auto after = read_eds(dcf.text, "io.dcf");
+  EXPECT_EQ(after.dictionary.find({0x6200, 1})->parameter_value, Value{std::uint64_t{5}});
+  EXPECT_EQ(after.dictionary.find({0x6200, 0})->default_value,
+            before.find({0x6200, 0})->default_value);
+  EXPECT_EQ(find(after.findings, "sub-number-wrong"), nullptr);
+}
+
 TEST(DcfWriter, AValueStandsBehindTheDefaultAndCommentsStay) {
   const auto dcf = write({.values = {{{0x1017, 0}, "0x64"}}});
   EXPECT_NE(dcf.text.find("DefaultValue=0 ; off\nParameterValue=0x64\nHighLimit=1000\n; behind"),
@@ -167,7 +192,10 @@ TEST(DcfWriter, WhatTheDeviceWouldRefuseIsAnErrorAndGivesNoText) {
             "refuse it [value-outside-limits]");
   EXPECT_EQ(refused({0x2001, 0}, "1"),
             "folder/gain.eds: error: 2001:00 is not an object of folder/gain.eds [unknown-object]");
-  EXPECT_NE(refused({0x1017, 0}, "70000").find("UNSIGNED16"), std::string::npos);
+  EXPECT_NE(refused({0x1017, 0}, "70000").find("is no value of UNSIGNED16 [value"),
+            std::string::npos);
+  EXPECT_NE(refused({0x1017, 0}, "$NODEID+1").find("UNSIGNED16: $NODEID needs --node ["),
+            std::string::npos);
   EXPECT_NE(refused({0x1017, 0}, "fast").find("is no value of UNSIGNED16"), std::string::npos);
   EXPECT_NE(refused({0x1017, 0}, "1\n[9999]").find("line break"), std::string::npos);
 }

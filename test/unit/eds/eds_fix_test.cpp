@@ -1,5 +1,6 @@
 #include "eds_parser/write/eds_fix.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,6 +49,8 @@ std::vector<Case> cases() {
     return text.replace(text.find(from), from.size(), to);
   };
   return {
+      {"access-type-letter", with_objects(list, changed(plain, "rw", "R ; read only")),
+       "AccessType=ro\n; read only\n"},
       {"octal-number", value_case(u16 + "DefaultValue=012\n"), "DefaultValue=10\n"},
       {"leading-zero", value_case(u16 + "DefaultValue=08\n"), "DefaultValue=8\n"},
       {"number-suffix", value_case(u16 + "DefaultValue=0x10UL\n"), "DefaultValue=0x10\n"},
@@ -63,7 +66,20 @@ std::vector<Case> cases() {
        with_objects("SupportedObjects=1\n1=0x2000\n",
                     "[2000]\nParameterName=x\nObjectType=0x7 # VAR\nAccessType=rw ; both\n" + u16),
        "ObjectType=0x7\n; VAR\nAccessType=rw\n; both\n"},
+      {"inline-comment", value_case("DataType=0x0008\nDefaultValue=0.5 ; gain\n"),
+       "DefaultValue=0.5\n; gain\n"},
+      {"inline-comment", value_case("DataType=0x000A\nDefaultValue=010f ; bytes\n"),
+       "DefaultValue=010f\n; bytes\n"},
+      {"inline-comment", value_case("DataType=0x000C\nDefaultValue=5 100 ; days\n"),
+       "DefaultValue=5 100\n; days\n"},
+      {"octet-string-form", value_case("DataType=0x000A\nDefaultValue=0x01 02 ; two\n"),
+       "DefaultValue=0102\n; two\n"},
+      {"number-suffix", value_case("DataType=0x0008\nDefaultValue=1.5F\n"), "DefaultValue=1.5\n"},
       {"boolean-word", value_case(u16 + "PDOMapping=true\n"), "PDOMapping=1\n"},
+      {"boolean-word", value_case(u16 + "PDOMapping=2\n"), "PDOMapping=1\n"},
+      {"inline-comment", value_case(u16 + "PDOMapping=1 ; yes\n"), "PDOMapping=1\n; yes\n"},
+      {"hex-without-prefix", value_case("DataType=000A\n"), "DataType=0xA\n"},
+      {"leading-zero", value_case(u16 + "ObjFlags=08\n"), "ObjFlags=8\n"},
       {"real-bit-pattern", value_case("DataType=0x0008\nDefaultValue=0x3FC00000\n"),
        "DefaultValue=1.5\n"},
       {"negative-unsigned", value_case(u16 + "DefaultValue=-1\n"), "DefaultValue=0xFFFF\n"},
@@ -117,6 +133,27 @@ std::vector<Case> cases() {
                     "[2000]\nParameterName=c\nObjectType=0x8\nDataType=5\nAccessType=rw\n"
                     "SubNumber=4\nCompactSubObj=3\n"),
        "SubNumber=0\n"},
+      {"entry-count-wrong",
+       with_objects(list,
+                    "[2000]\nParameterName=c\nObjectType=0x8\nDataType=5\nAccessType=rw\n"
+                    "CompactSubObj=3\n[2000Name]\nNrOfEntries=7 ; names\n1=a\n02=b\n"),
+       "[2000Name]\nNrOfEntries=2 ; names\n1=a"},
+      {"entry-count-wrong", std::string{test::base} + "[Comments]\nLines=\nLine1=a\nLine2=b\n",
+       "\nLines=2\nLine1=a"},
+      {"entry-count-wrong",
+       std::string{test::base} + "[Tools]\nItems=2\n[Tool1]\nName=a\nCommand=b\n", "\nItems=1\n"},
+      {"entry-count-wrong",
+       std::string{test::base} + "[1018ObjectLinks]\nObjectLinks=0\n1=0x1001\n",
+       "\nObjectLinks=1\n"},
+      {"entry-count-wrong",
+       std::string{test::base} + "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\n"
+                                 "ProductName=a\n[M2ModuleInfo]\nProductName=b\n",
+       "[SupportedModules]\nNrOfEntries=2\n"},
+      {"module-count",
+       std::string{test::base} +
+           "[M1SubExt6000]\nDataType=5\nAccessType=ro\nCount=1\n[ConnectedModules]\n"
+           "NrOfEntries=1\n1=1\n2=1\n",
+       "[ConnectedModules]\nNrOfEntries=2\n"},
       {"hash-comment", "# made by hand\n" + std::string{test::base}, "; made by hand\n"},
       {"byte-order-mark", "\xEF\xBB\xBF" + std::string{test::base}, "[FileInfo]"},
   };
@@ -200,6 +237,16 @@ TEST(EdsFix, EachFindingOfASectionNameIsCountedOnce) {
   std::string both = object("2000", u16);
   both.replace(0, std::string{"[2000]"}.size(), "[0x2000");
   EXPECT_EQ(fix_eds(with_objects(list, both), "t.eds").fixed.size(), 2U);
+}
+
+TEST(EdsFix, EachFindingOfAValueIsCounted) {
+  const auto mended = [](const std::string& more) {
+    return fix_eds(value_case(more), "t.eds").fixed.size();
+  };
+
+  EXPECT_EQ(mended("DataType=0x0006\nDefaultValue=08 ; eight\n"), 2U);
+  EXPECT_EQ(mended("DataType=0x0008\nDefaultValue=1.5f # gain\n"), 2U);
+  EXPECT_EQ(mended("DataType=0x0005\nDefaultValue=0777 ; too much\n"), 2U) << "not that it exceeds";
 }
 
 TEST(EdsFix, EveryRuleThatIsSaidToBeMendedHasItsCase) {
@@ -295,6 +342,11 @@ TEST(EdsFix, AUtf16FileBecomesUtf8) {
   EXPECT_THAT(fixed.text, HasSubstr("[1000]"));
 }
 
+bool is_nan(const Value& value) {
+  const auto* real = std::get_if<double>(&value);
+  return real != nullptr && std::isnan(*real);
+}
+
 void keeps_all(const std::filesystem::path& path) {
   std::ifstream in{path, std::ios::binary};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
@@ -309,8 +361,8 @@ void keeps_all(const std::filesystem::path& path) {
     for (const SubObject& sub : object.subs) {
       const SubObject* now = after.dictionary.find(ObjectKey{object.index, sub.sub});
       ASSERT_NE(now, nullptr) << path << hex(object.index);
-      if (!sub.default_value || std::holds_alternative<double>(*sub.default_value)) continue;
-      EXPECT_EQ(now->default_value, sub.default_value) << path << hex(object.index);
+      if (!sub.value() || is_nan(*sub.value())) continue;
+      EXPECT_EQ(now->value(), sub.value()) << path << hex(object.index);
     }
   }
   EXPECT_EQ(fix_eds(fixed.text, path).text, fixed.text) << path << ": mended once more";
