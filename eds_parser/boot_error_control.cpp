@@ -140,7 +140,7 @@ class Emergency : BootPart {
       const std::string text = "EMCY on " + hex(static_cast<std::uint32_t>(value), 3);
       steps.integer(BootAction::compare, id, value, text);
       const std::size_t skip = steps.skip_if_same("EMCY has its identifier");
-      steps.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
+      if (has_off_bit()) steps.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
       steps.integer(BootAction::enable_pdo, id, value, text);
       steps.land(skip);
     }
@@ -154,6 +154,13 @@ class Emergency : BootPart {
   }
 
  private:
+  /// False where the limits of 0x1014 forbid bit 31; such a device takes another id as it is.
+  bool has_off_bit() const {
+    const SubObject* sub = dictionary.find(ObjectKey{0x1014, 0});
+    const auto high = sub == nullptr ? std::nullopt : integer_of(sub->high_limit);
+    return !high || *high >= 0x8000'0000;
+  }
+
   /// 0x1014 of the network file, else of a DCF.
   std::optional<std::int64_t> emcy_cob_id() const {
     if (spec.emcy_cob_id.given) return *spec.emcy_cob_id;

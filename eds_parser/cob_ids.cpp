@@ -83,7 +83,7 @@ class CobIdAssigner {
     if (const std::string service = service_at(pdo.cob_id); !service.empty()) {
       report_.error(pdo.cob_id_pos, "cob-id",
                     "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " " + service +
-                        "; `auto` would give " + hex(automatic(node, pdo)));
+                        "; `auto` would give " + hex(automatic(node, pdo), 3));
       return;
     }
     const auto other = used_.find(pdo.cob_id);
@@ -96,7 +96,7 @@ class CobIdAssigner {
                     "`cob_id` " + to_string(pdo.cob_id) + " of " + user.text() + " belongs to " +
                         other->second.text() + " (line " +
                         std::to_string(other->second.pdo->cob_id_pos.line) + ") already; `auto` " +
-                        "would give " + hex(automatic(node, pdo)));
+                        "would give " + hex(automatic(node, pdo), 3));
     }
   }
 

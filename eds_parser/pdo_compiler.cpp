@@ -96,7 +96,7 @@ class PdoCompiler {
     pdo.has_event_timer = is_writable(sub(index, 5));
     pdo.has_sync_start = is_writable(sub(index, 6)) && device.is_tpdo;
     const SubObject* count = sub(device.mapping_index(), 0);
-    pdo.fixed_mapping = node_.dictionary->device.granularity == 0 || !is_writable(count);
+    pdo.fixed_mapping = !is_writable(count);
     pdo.mapping = mapping_of(node_, device, node_.spec->pos);
     pdo.bits = device.bits;
     take_cob_id(device, pdo);
@@ -268,7 +268,8 @@ class PdoCompiler {
         fixed += (fixed.empty() ? "" : ", ") + takt::label(*node_.dictionary, entry.object);
       }
       report_.error(spec.mapping.pos, "fixed-mapping",
-                    label(pdo) + " can't be mapped anew, the device fixes it to: " + fixed);
+                    label(pdo) + " can't be mapped anew, the device fixes it " +
+                        (fixed.empty() ? "empty" : "to: " + fixed));
     }
     const Object* record = node_.dictionary->find(pdo.mapping_index());
     const std::size_t places =

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 
 #include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan.hpp"
 #include "eds_parser/print/plan_diff.hpp"
@@ -27,12 +27,9 @@ struct PlanOptions {
 std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
   const auto by_name = std::ranges::find(plan.nodes, text, &NodePlan::name);
   if (by_name != plan.nodes.end()) return by_name->id;
-  unsigned id = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-  if (error != std::errc{} || end != text.data() + text.size()) return {};
-  const auto by_id =
-      std::ranges::find_if(plan.nodes, [&](const NodePlan& node) { return node.id.value() == id; });
-  return by_id == plan.nodes.end() ? std::nullopt : std::optional{by_id->id};
+  const auto id = parse_node_id(text);
+  const auto is_it = [&id](const NodePlan& node) { return node.id == id; };
+  return std::ranges::any_of(plan.nodes, is_it) ? id : std::nullopt;
 }
 
 /// Findings go to stderr. False: the file is invalid.
@@ -155,6 +152,8 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->footer(
       "The plan goes to stdout, findings to stderr. Exit code 2 if the file is invalid.\n"
+      "The boot has the first frame of each step; `..` is a byte that the device decides. What is\n"
+      "written where the answer differs stands beside it as a value, in --json as a frame too.\n"
       "--diff compares all that happens on the bus and the image, in the form of diff -u. Nodes "
       "are\n"
       "matched by their id; steps and signals are listed without their numbers. Exit code as that\n"

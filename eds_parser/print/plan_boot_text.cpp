@@ -3,6 +3,7 @@
 
 #include "eds_parser/print/plan_names.hpp"
 #include "eds_parser/print/plan_sections.hpp"
+#include "eds_parser/print/step_frames.hpp"
 
 namespace takt {
 namespace {
@@ -35,8 +36,9 @@ class BootText {
                 node_.start_later ? "; started with the network, by one broadcast" : "");
     sdo_access();
     const std::vector<bool> inside = skippable(node_.boot_plan);
+    const std::vector<StepFrames> frames = step_frames(node_);
     for (std::size_t i = 0; i < node_.boot_plan.steps.size(); ++i) {
-      step(i, inside[i]);
+      step(i, inside[i], frames[i].first);
     }
   }
 
@@ -50,12 +52,12 @@ class BootText {
     if (node_.sdo.block == SdoBlockUse::off) lines_.line("  SDO block transfer is never used");
   }
 
-  void step(std::size_t i, bool inside) {
+  void step(std::size_t i, bool inside, const std::string& frame) {
     const BootStep& step = node_.boot_plan.steps[i];
     const std::string action = (inside ? "  " : "") + std::string{action_name(step.action)};
     const char letter = step.action == BootAction::skip_if_same ? ' ' : step.letter;
-    lines_.line("  {:>4} {} {:<18} {:<21} {:<10} {:>9}  {}", i + 1, letter, action,
-                frame_text(step, node_.id), step_value(step), step_limit(step), step.purpose);
+    lines_.line("  {:>4} {} {:<18} {:<21} {:<10} {:>9}  {}", i + 1, letter, action, frame,
+                step_value(step), step_limit(step), step.purpose);
   }
 
   /// How long the step may take: of the wait, of each silence of an SDO transfer.

@@ -48,10 +48,35 @@ std::string without_numbers(const std::string& text) {
   return out;
 }
 
+/// Columns are as wide as their longest entry: one more line would change all others.
+std::string without_padding(const std::string& text) {
+  std::string out;
+  for (const std::string_view line : lines_of(text)) {
+    const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    out += line.substr(0, begin);
+    for (std::size_t i = begin; i < line.size(); ++i) {
+      const bool third = i >= begin + 2 && line.substr(i - 2, 3) == "   ";
+      if (!third) out += line[i];
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+/// The same device file is often reached by another path.
+std::string without_folder(std::string text, const NodePlan& node) {
+  const std::string& path = node.description_file;
+  const std::size_t name = path.find_last_of('/') + 1;  // npos + 1: there is no folder
+  const std::size_t at = name == 0 ? std::string::npos : text.find('(' + path + ')');
+  if (at != std::string::npos) text.erase(at + 1, name);
+  return text;
+}
+
 void add_node_sections(Sections& sections, const BusPlan& plan, std::size_t index) {
   const NodePlan& node = plan.nodes[index];
   const unsigned id = node.id.value();
-  sections[{Part::node, id}] = text_of([&](PlanLines& lines) { add_node(lines, plan, index); });
+  sections[{Part::node, id}] =
+      without_folder(text_of([&](PlanLines& lines) { add_node(lines, plan, index); }), node);
   sections[{Part::boot, id}] =
       without_numbers(text_of([&](PlanLines& lines) { add_boot(lines, node); }));
 }
@@ -63,10 +88,11 @@ Sections sections_of(const BusPlan& plan, std::optional<NodeId> only) {
       add_bus(lines, plan, {});
       add_cycle(lines, plan);
     });
-    sections[{Part::lcm, 0}] = text_of([&](PlanLines& lines) { add_lcm(lines, plan, {}); });
+    sections[{Part::lcm, 0}] =
+        without_padding(text_of([&](PlanLines& lines) { add_lcm(lines, plan, {}); }));
   }
   sections[{Part::image, 0}] =
-      without_numbers(text_of([&](PlanLines& lines) { add_image(lines, plan, only); }));
+      without_padding(without_numbers(text_of([&](PlanLines& l) { add_image(l, plan, only); })));
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (!only || *only == plan.nodes[i].id) add_node_sections(sections, plan, i);
   }

@@ -5,6 +5,7 @@
 #include "eds_parser/print/plan.hpp"
 #include "eds_parser/print/plan_names.hpp"
 #include "eds_parser/print/plan_waits.hpp"
+#include "eds_parser/print/step_frames.hpp"
 
 namespace takt {
 namespace {
@@ -79,14 +80,16 @@ Json pdos_json(const BusPlan& plan, const std::vector<PdoRow>& rows, std::size_t
   return list;
 }
 
-Json step_json(const BootStep& step, std::size_t number, NodeId node) {
+Json step_json(const BootStep& step, std::size_t number, const StepFrames& frames) {
   Json out{{"step", number},
            {"action", action_name(step.action)},
            {"letter", std::string(1, step.letter)},
            {"purpose", step.purpose},
            {"timeout_us", us(step.timeout)}};
   if (step.action == BootAction::nmt) out["command"] = command_name(step.command);
-  if (step.action == BootAction::skip_if_same) out["target"] = step.target + 1;
+  const bool jumps =
+      step.action == BootAction::skip_if_same || step.action == BootAction::await_alive;
+  if (jumps) out["target"] = step.target + 1;
   if (step.object.index != 0) {
     out["index"] = step.object.index;
     out["sub"] = step.object.sub;
@@ -94,8 +97,33 @@ Json step_json(const BootStep& step, std::size_t number, NodeId node) {
   if (!step.value.empty()) out["value"] = value_text(step);
   if (step.mask != 0xFFFF'FFFF) out["mask"] = step.mask;
   if (step.optional) out["optional"] = true;
-  const std::string frame = frame_text(step, node);
-  if (!frame.empty()) out["frame"] = frame;
+  if (!frames.first.empty()) out["frame"] = frames.first;
+  if (!frames.write.empty()) out["write_frame"] = frames.write;
+  return out;
+}
+
+/// Its key in `identity`; nullptr: another object.
+const char* identity_key(ObjectKey object) {
+  if (object == ObjectKey{0x1000, 0}) return "device_type";
+  if (object == ObjectKey{0x1018, 1}) return "vendor_id";
+  if (object == ObjectKey{0x1018, 2}) return "product_code";
+  if (object == ObjectKey{0x1018, 3}) return "revision_number";
+  if (object == ObjectKey{0x1018, 4}) return "serial_number";
+  return nullptr;
+}
+
+/// As which device the boot takes it: `{"device_type": 131474, "vendor_id": 59}`.
+Json identity_json(const BootPlan& boot) {
+  Json out = Json::object();
+  for (const BootStep& step : boot.steps) {
+    const char* key = identity_key(step.object);
+    if (step.action != BootAction::expect || key == nullptr || step.value.size() > 4) continue;
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < step.value.size(); ++i) {
+      value |= std::to_integer<std::uint32_t>(step.value[i]) << (8 * i);
+    }
+    out[key] = value;
+  }
   return out;
 }
 
@@ -116,13 +144,15 @@ std::string_view loss_name(LossReaction reaction) {
 Json node_json(const BusPlan& plan, std::size_t index) {
   const NodePlan& node = plan.nodes[index];
   Json steps = Json::array();
+  const std::vector<StepFrames> frames = step_frames(node);
   for (std::size_t i = 0; i < node.boot_plan.steps.size(); ++i) {
-    steps.push_back(step_json(node.boot_plan.steps[i], i + 1, node.id));
+    steps.push_back(step_json(node.boot_plan.steps[i], i + 1, frames[i]));
   }
   return {{"id", node.id.value()},
           {"name", node.name},
           {"file", node.description_file},
           {"product_name", node.product_name},
+          {"identity", identity_json(node.boot_plan)},
           {"boot", node.boot},
           {"mandatory", node.mandatory},
           {"cia402", node.cia402},
@@ -132,6 +162,8 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"emcy_cob_id", node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())).id()},
           {"on_loss", loss_name(node.on_loss)},
           {"group", node.group == 0 ? "" : plan.groups[node.group - 1U]},
+          {"sdo_request_cob_id", node.sdo.channel_of(node.id).request.id()},
+          {"sdo_answer_cob_id", node.sdo.channel_of(node.id).answer.id()},
           {"sdo_timeout_us", us(node.sdo_timeout)},
           {"reboot_delay_us", us(node.reboot_delay)},
           {"lss", node.lss.has_value()},

@@ -14,33 +14,6 @@ void add_byte(std::string& out, unsigned value) {
   out += digits[value & 0xF];
 }
 
-void add_object(std::string& out, ObjectKey object) {
-  add_byte(out, object.index);
-  add_byte(out, object.index >> 8U);
-  add_byte(out, object.sub);
-}
-
-/// Initiate upload. CiA 301, 7.2.4.3.5.
-std::string upload(ObjectKey object) {
-  std::string out = "40";
-  add_object(out, object);
-  return out + "00000000";
-}
-
-/// Initiate download: expedited up to 4 bytes, else segmented with its size. CiA 301, 7.2.4.3.3.
-std::string download(ObjectKey object, const std::vector<std::byte>& value) {
-  std::string out;
-  const bool expedited = !value.empty() && value.size() <= 4;
-  add_byte(out, expedited ? 0x23U | static_cast<unsigned>((4 - value.size()) << 2U) : 0x21U);
-  add_object(out, object);
-  for (unsigned i = 0; i < 4; ++i) {
-    const unsigned byte = expedited ? (i < value.size() ? std::to_integer<unsigned>(value[i]) : 0U)
-                                    : static_cast<unsigned>(value.size() >> (8 * i));
-    add_byte(out, byte);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string_view action_name(BootAction action) noexcept {
@@ -105,41 +78,6 @@ std::string_view command_name(NmtCommand command) noexcept {
       return "reset communication";
   }
   return "";
-}
-
-std::string frame_text(const BootStep& step, NodeId node) {
-  switch (step.action) {
-    case BootAction::nmt: {
-      std::string out = "000#";
-      add_byte(out, static_cast<unsigned>(step.command));
-      add_byte(out, node.value());
-      return out;
-    }
-    case BootAction::write:
-    case BootAction::write_if_changed:
-    case BootAction::download_program:
-      return hex(0x600U + node.value(), 3).substr(2) + "#" + download(step.object, step.value);
-    case BootAction::probe:
-    case BootAction::await_value:
-    case BootAction::read_serial:
-    case BootAction::read_firmware:
-    case BootAction::expect:
-    case BootAction::compare:
-    case BootAction::verify:
-    case BootAction::write_if_differs:
-    case BootAction::disable_pdo:
-    case BootAction::enable_pdo:
-      return hex(0x600U + node.value(), 3).substr(2) + "#" + upload(step.object);
-    case BootAction::await_bootup:
-    case BootAction::await_alive:
-    case BootAction::skip_if_same:
-    case BootAction::await_heartbeat:
-    case BootAction::await_guarding:
-    case BootAction::await_operational:
-    case BootAction::pause:
-      return {};
-  }
-  return {};
 }
 
 std::string value_text(const BootStep& step) {

@@ -13,9 +13,6 @@ namespace takt {
 std::string_view action_name(BootAction action) noexcept;
 /// `start`, `reset communication`.
 std::string_view command_name(NmtCommand command) noexcept;
-/// The first frame that a step sends, as candump writes it: `601#4018100100000000`. Empty for
-/// waits.
-std::string frame_text(const BootStep& step, NodeId node);
 /// The value of a step as a number (up to 8 bytes) or as hex pairs.
 std::string value_text(const BootStep& step);
 /// Microseconds without fraction: `2000 us`.

@@ -61,7 +61,7 @@ class NodeText {
     if (node.heartbeat_timeout != Time{}) {
       return "missing after " + span_text(node.heartbeat_timeout) + " without heartbeat";
     }
-    if (node.guard.period == Time{}) return "not watched (no heartbeat)";
+    if (node.guard.period == Time{}) return "no heartbeat: its loss is not noticed";
     return "guarded every " + span_text(node.guard.period) + ", missing after " +
            span_text(node.guard.life_time());
   }

@@ -79,7 +79,8 @@ LcmPrimitive type_of(const Signal& signal) noexcept {
 std::string comment_of(const Signal& signal) {
   std::string text = to_string(signal.object) + ' ' + std::string{name(signal.type)};
   if (!signal.unit.empty()) text += ", " + signal.unit;
-  if (!scaled(signal) && signal.bits == 64 && !is_signed(signal.type)) text += ", as bit pattern";
+  const bool is_pattern = signal.bits == 64 && !is_signed(signal.type) && !is_real(signal.type);
+  if (!scaled(signal) && is_pattern) text += ", as bit pattern";
   std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
   return text;
 }

@@ -96,6 +96,7 @@ const Shape node_shape = {
     {"name", 's'},
     {"file", 's'},
     {"product_name", 's'},
+    {"identity", 'o'},
     {"boot", 'b'},
     {"mandatory", 'b'},
     {"cia402", 'b'},
@@ -105,6 +106,8 @@ const Shape node_shape = {
     {"emcy_cob_id", 'n'},
     {"on_loss", 's'},
     {"group", 's'},
+    {"sdo_request_cob_id", 'n'},
+    {"sdo_answer_cob_id", 'n'},
     {"sdo_timeout_us", 'n'},
     {"reboot_delay_us", 'n'},
     {"lss", 'b'},
@@ -122,10 +125,11 @@ const Shape pdo_shape = {
     {"fields", 'l'},  {"on_request", 'b'}, {"mpdo_header", 'n'}};
 const Shape field_shape = {{"signal", 'n'}, {"name", 's'},       {"index", 'n'},
                            {"sub", 'n'},    {"bit_offset", 'n'}, {"bits", 'n'}};
-const Shape step_shape = {{"step", 'n'},       {"action", 's'},   {"letter", 's'}, {"purpose", 's'},
-                          {"timeout_us", 'n'}, {"command?", 's'}, {"sub?", 'n'},   {"target?", 'n'},
-                          {"index?", 'n'},     {"value?", 's'},   {"mask?", 'n'},  {"frame?", 's'},
-                          {"optional?", 'b'}};
+const Shape step_shape = {{"step", 'n'},         {"action", 's'},     {"letter", 's'},
+                          {"purpose", 's'},      {"timeout_us", 'n'}, {"command?", 's'},
+                          {"sub?", 'n'},         {"target?", 'n'},    {"index?", 'n'},
+                          {"value?", 's'},       {"mask?", 'n'},      {"frame?", 's'},
+                          {"write_frame?", 's'}, {"optional?", 'b'}};
 const Shape signal_shape = {{"signal", 'n'},      {"node", 's'},
                             {"node_id", 'n'},     {"name", 's'},
                             {"index", 'n'},       {"sub", 'n'},

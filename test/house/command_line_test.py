@@ -139,6 +139,11 @@ def imports(tools, folder):
                "/dev/null is written, but taktd does not run it")
 
 
+def plan(tools):
+    tools.says("a node by its id in hex", ["takt", "plan", DEMO, "--node", "0x0A"], 0, "node 10 io")
+    tools.says("a node that there is not", ["takt", "plan", DEMO, "--node", "9"], 2, "no node `9`; there is shoulder (1)")
+
+
 def budget(tools):
     tools.says("the demo fits its bus", ["takt", "budget", DEMO], 0, "TPDO2 elbow", "It fits")
     tools.says("it does not fit a quarter of its bit rate", ["takt", "budget", DEMO, "--what-if", "bitrate=250"], 1,
@@ -194,6 +199,7 @@ def main(binaries):
         dump_chooses(tools, pathlib.Path(folder))
         folders_for_files(tools, pathlib.Path(folder))
         imports(tools, pathlib.Path(folder))
+        plan(tools)
         budget(tools)
         sdo_without_daemon(tools, pathlib.Path(folder))
     print(f"{len(failures)} checks failed" if failures else "all checks passed")

@@ -305,23 +305,6 @@ TEST(BootCompiler, ValuesOfSdoAreCheckedAgainstTheEds) {
                           "13:30 error [out-of-range]", "14:7 error [read-only]"));
 }
 
-TEST(BootCompiler, BytesOnTheWireAreThoseOfTheReference) {
-  const auto net = compile(
-      "arm: {node_id: 5, dcf: x, tpdo: {1: {transmission: 255, mapping: [{index: 0x6041}, "
-      "{index: 0x6064}]}}, sdo: [{index: 0x2001, value: 6}]}\n");
-
-  std::vector<std::string> frames;
-  for (const BootStep& step : net.plan.nodes[0].boot_plan.steps) {
-    if (step.action == BootAction::write || step.action == BootAction::nmt) {
-      frames.push_back(frame_text(step, 5_node));
-    }
-  }
-  EXPECT_THAT(frames, ElementsAre("000#8205", "605#2B01200006000000", "605#2F00160000000000",
-                                  "605#2300160110004060", "605#2F00160001000000",
-                                  "605#2F001A0000000000", "605#23001A0110004160",
-                                  "605#23001A0220006460", "605#2F001A0002000000", "000#0105"));
-}
-
 TEST(BootCompiler, StartNodesFalseLeavesNodesPreOperational) {
   const auto net = compile("master: {start_nodes: false}\narm: {node_id: 5, dcf: x}\n");
 
@@ -397,6 +380,19 @@ TEST(BootCompiler, AConsumerEntryOfADcfThatWatchesAnotherNodeStays) {
       compile(arm(), dcf + test::entry("1016sub2", "entry", 7, "rw", "0"), "tiny.dcf");
   EXPECT_THAT(steps(room), testing::Contains("write if differs 1016:02 0x007F012C"));
   EXPECT_THAT(room.said("heartbeat-consumer"), IsEmpty());
+}
+
+// As the DCFs of Sevcon have it, which would refuse bit 31.
+TEST(BootCompiler, EmcyIsNotSwitchedOffWhereTheLimitsForbidIt) {
+  const auto after_skip = [](const std::string& limits) {
+    const std::string eds = test::tiny_eds() + test::entry("1014", "EMCY", 7, "rw", "0") + limits;
+    const auto all = part(compile(arm("emcy_cob_id: 0x85"), eds), "compare 1014:00 0x00000085", 4);
+    return std::vector(all.begin() + 2, all.end());
+  };
+
+  EXPECT_THAT(after_skip("HighLimit=0xFFFFFFFF\n"),
+              ElementsAre("disable PDO 1014:00", "enable PDO 1014:00 0x00000085"));
+  EXPECT_THAT(after_skip("HighLimit=0x1FFFFFFF\n").front(), "enable PDO 1014:00 0x00000085");
 }
 
 TEST(BootCompiler, AnEmcyIdOfAnEdsCountsOnlyWhereItIsRelative) {

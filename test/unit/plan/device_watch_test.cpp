@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sstream>
 
+#include "eds_parser/print/plan.hpp"
 #include "test/unit/plan/tiny_network.hpp"
 
 namespace takt {
@@ -49,6 +51,15 @@ TEST(DeviceWatch, LifeGuardingIsTheGuardTimeSoOften) {
       eds);
 
   EXPECT_EQ(net.plan.nodes.at(0).life_guarding, 800ms);
+}
+
+TEST(DeviceWatch, ANodeThatIsOnlyWatchedAndHasNoHeartbeatIsSaidToGoUnnoticed) {
+  const auto net = compile("nodes: {arm: {node_id: 5, dcf: x, boot: false}}\n");
+
+  std::ostringstream text;
+  print_plan_text(text, net.plan, {.node = {}, .realtime = {}, .lcm = {}});
+  EXPECT_THAT(text.str(), testing::HasSubstr("only watched: no NMT, no SDO, no heartbeat: its "
+                                             "loss is not noticed\n"));
 }
 
 }  // namespace

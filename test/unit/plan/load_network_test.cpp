@@ -107,12 +107,42 @@ TEST(LoadNetwork, ThePlanAsJsonSaysTheSame) {
   EXPECT_EQ(json["bus"], "demo");
   EXPECT_EQ(json["cycle"]["period_us"], 2000.0);
   EXPECT_EQ(json["cycle"]["acts_at_sync"], "k+1");
+  const auto& node = json["nodes"][0];
+  EXPECT_EQ(node["identity"]["device_type"], 0x20192);
+  EXPECT_EQ(node["identity"]["product_code"], 0x402);
+  EXPECT_EQ(node["sdo_request_cob_id"], 0x601);
   EXPECT_EQ(json["nodes"][1]["name"], "elbow");
   EXPECT_EQ(json["nodes"][1]["tpdos"][0]["cob_id"], 0x182);
   EXPECT_EQ(json["nodes"][0]["boot_plan"][0]["frame"], "000#8201");
   EXPECT_EQ(json["image"]["signals"].size(), network.plan.layout.signals.size());
   EXPECT_EQ(json["image"]["hash"], network.plan.layout.hash);
   EXPECT_EQ(json["lcm"]["channels"][0]["channel"], "DEMO_IMAGE");
+}
+
+TEST(LoadNetwork, TheIdentityInJsonIsThatOfTheDeviceAndNothingElseThatTheBootExpects) {
+  auto network = load_network(source / "share/demo/two_axes.yaml");
+  const auto expect = [](ObjectKey object, std::byte value) {
+    BootStep step;
+    step.action = BootAction::expect;
+    step.object = object;
+    step.value = {value, std::byte{}, std::byte{}, std::byte{}};
+    step.purpose = "whatever";
+    return step;
+  };
+  auto& steps = network.plan.nodes[0].boot_plan.steps;
+  steps.push_back(expect({0x1018, 3}, std::byte{7}));
+  steps.push_back(expect({0x1018, 4}, std::byte{9}));
+  steps.push_back(expect({0x1F57, 1}, std::byte{1}));
+  steps.push_back(expect({0x1018, 5}, std::byte{1}));
+
+  std::ostringstream out;
+  print_plan_json(out, network.plan, {});
+
+  const auto identity = nlohmann::json::parse(out.str())["nodes"][0]["identity"];
+  const auto expected = nlohmann::json::parse(
+      R"({"device_type": 131474, "vendor_id": 43981, "product_code": 1026,
+          "revision_number": 7, "serial_number": 9})");
+  EXPECT_EQ(identity, expected);
 }
 
 TEST(LoadNetwork, ABusYmlOfOtherMastersRunsUnchanged) {

@@ -125,6 +125,26 @@ TEST(PdoCompiler, AFixedMappingCanOnlyBeRepeated) {
   EXPECT_THAT(net.said("fixed-mapping"), HasSubstr("6041:00 Statusword"));
 }
 
+TEST(PdoCompiler, AMappingThatIsFixedEmptyIsSaidToBeEmpty) {
+  const std::string eds =
+      test::tiny_objects() + test::pdo(true, 1, "$NODEID+0x180", 1, {}, "const");
+
+  EXPECT_THAT(compile(arm("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds).said("fixed-mapping"),
+              HasSubstr("can't be mapped anew, the device fixes it empty\n"));
+}
+
+// As the EDS files of EPOS4 and Roboteq have it.
+TEST(PdoCompiler, GranularityZeroFixesNoMappingThatTheRecordsLetWrite) {
+  std::string eds = test::tiny_objects() +
+                    test::pdo(true, 1, "$NODEID+0x180", 1, {"0x60410010"}, "rw") +
+                    test::pdo(true, 2, "$NODEID+0x280", 1, {"0x60410010"}, "ro");
+  eds.replace(eds.find("Granularity=8"), 13, "Granularity=0");
+
+  EXPECT_THAT(compile(arm("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds).complaints(), IsEmpty());
+  EXPECT_THAT(compile(arm("tpdo: {2: {mapping: [{index: 0x6064}]}}"), eds).complaints(),
+              ElementsAre("3:21 error [fixed-mapping]"));
+}
+
 TEST(PdoCompiler, RemoteRequestAndMultiplexedPdosOfTheEdsAreLeftOutWithANote) {
   const std::string eds = test::tiny_objects() +
                           test::pdo(true, 1, "$NODEID+0x180", 253, {"0x60410010"}) +
@@ -208,7 +228,7 @@ TEST(CobIds, TwoUsersOfOneIdAreAnError) {
       "b: {node_id: 2, dcf: x, tpdo: {1: {transmission: 255, cob_id: 0x190}}}\n");
 
   EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("belongs to TPDO1 of node `a` (line 1) already"));
-  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("`auto` would give 0x0182"));
+  EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("`auto` would give 0x182"));
 }
 
 TEST(CobIds, RestrictedIdsAndServicesAreRefused) {

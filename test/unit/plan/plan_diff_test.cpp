@@ -45,6 +45,24 @@ const std::string base = "master: {sync_period: 10000}\narm: {node_id: 5, " + dr
 
 TEST_F(PlanDiff, EqualPlansHaveNoDifference) { EXPECT_EQ(diff(base, base), ""); }
 
+TEST_F(PlanDiff, ANodeMoreChangesNoLineOfTheOthers) {
+  const std::string text =
+      diff(base, base + "a_node_with_a_long_name: {node_id: 6, " + drive + "}\n");
+
+  EXPECT_THAT(text, HasSubstr("+  in  a_node_with_a_long_name.statusword  6041:00 UNSIGNED16\n"));
+  EXPECT_THAT(text, Not(HasSubstr("-  in  arm.")));
+  EXPECT_THAT(text, Not(HasSubstr("takt.layout_t  at start and once a second: what the values "
+                                  "mean\n+")));
+  EXPECT_THAT(text, Not(HasSubstr("-  NET_")));
+}
+
+TEST_F(PlanDiff, AnotherPathToTheSameDeviceFileIsNoDifference) {
+  std::string other = base;
+  other.replace(other.find("/share/eds/"), 11, "/share/demo/../eds/");
+
+  EXPECT_EQ(diff(base, other), "");
+}
+
 TEST_F(PlanDiff, ShowsACobIdInThePdoTableAndInTheBoot) {
   std::string other = base;
   other.replace(other.find("0x185"), 5, "0x1A5");

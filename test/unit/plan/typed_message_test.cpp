@@ -104,6 +104,17 @@ TEST(TypedMessage, ScaledValuesAreDoublesInSi) {
   EXPECT_EQ(messages.at(0).fields.back().comment, "2000:01 INTEGER32, rad");
 }
 
+TEST(TypedMessage, OnlyAnUnsigned64IsABitPattern) {
+  const auto messages = typed_messages(
+      plan_of({signal("u", DataType::unsigned64, 64), signal("i", DataType::integer64, 64),
+               signal("r", DataType::real64, 64)}));
+
+  const auto& fields = messages.at(0).fields;
+  EXPECT_EQ(fields.at(fields.size() - 3).comment, "2000:01 UNSIGNED64, as bit pattern");
+  EXPECT_EQ(fields.at(fields.size() - 2).comment, "2000:01 INTEGER64");
+  EXPECT_EQ(fields.back().comment, "2000:01 REAL64");
+}
+
 TEST(TypedMessage, NamesAreNoWordsOfAnyLanguageAndUnique) {
   const auto messages = typed_messages(
       plan_of({signal("class", DataType::integer8, 8), signal("from", DataType::integer8, 8),
