@@ -2,7 +2,7 @@
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
 #   TAKT_STAGES  only these of: format release asan tsan fuzz tidy (without: all but tidy, which takes ten minutes of its own)
 #   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files (60)
-#   TAKT_PCH     OFF: build without precompiled headers, as by hand (ON)
+#   TAKT_PCH     ON, OFF: precompiled headers in all builds, in none (without: in those that are sanitized; release is as by hand)
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -72,12 +72,13 @@ check_tidy() {
     run-clang-tidy-19 -quiet -p build/tidy -j "$jobs" '/(eds_parser|master|apps)/.*\.cpp$'
 }
 
-# build PRESET COMPILER [TARGET...]
+# build PRESET COMPILER PCH [TARGET...]
 build() {
   preset=$1
   compiler=$2
-  shift 2
-  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_PCH="${TAKT_PCH:-ON}" &&
+  pch=${TAKT_PCH:-$3}
+  shift 3
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_PCH="$pch" &&
     ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
@@ -108,10 +109,10 @@ for wanted in $stages; do
   case $wanted in
     format) stage format check_format ;;
     tidy) stage tidy check_tidy ;;
-    release) stage release-build build release c++ && stage release-tests run_tests release ;;
-    asan) stage asan-build build asan clang++-19 takt_host_tests && stage asan-tests run_tests asan -L host ;;
+    release) stage release-build build release c++ OFF && stage release-tests run_tests release ;;
+    asan) stage asan-build build asan clang++-19 ON takt_host_tests && stage asan-tests run_tests asan -L host ;;
     fuzz) stage fuzz fuzz ;;
-    tsan) stage tsan-build build tsan c++ takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
+    tsan) stage tsan-build build tsan c++ ON takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
     *) echo "no stage $wanted" >&2 && exit 2 ;;
   esac
 done

@@ -21,12 +21,9 @@ std::vector<ValueFormat> formats_of(const BusPlan& plan) {
 
 template <class T>
 void put(std::vector<std::byte>& out, T value) {
-  std::array<std::byte, sizeof value> bytes;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] =
-        static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * (bytes.size() - 1 - i)));
+  for (int shift = 8 * static_cast<int>(sizeof value) - 8; shift >= 0; shift -= 8) {
+    out.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> shift));
   }
-  out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
 /// Takes values from the front of a message; fails for good at its end.
