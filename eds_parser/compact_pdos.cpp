@@ -23,16 +23,26 @@ SubObject& add_sub(Object& object, std::uint8_t sub, DataType type, std::uint64_
   return made;
 }
 
-/// Default COB-ID: the predefined connection set for PDO 1 to 4, else "does not exist".
-void add_cob_id(Object& object, std::uint16_t number, bool is_tpdo, std::optional<NodeId> node) {
-  auto& sub = add_sub(object, 1, DataType::unsigned32, 0x8000'0000);
+constexpr std::uint64_t off = 0x8000'0000;  // COB-ID, bit 31
+
+/// Default COB-ID: the predefined connection set for PDO 1 to 4, else "does not exist". A PDO that
+/// a DCF does not list is off. CiA 306, 5.3.3.1.
+void add_cob_id(Object& object, std::uint16_t number, bool is_tpdo,
+                const ObjectDictionary& dictionary) {
+  auto& sub = add_sub(object, 1, DataType::unsigned32, off);
   sub.name = "COB-ID";
   sub.default_text = "0x80000000";
   if (number > 4) return;
   const unsigned base = (is_tpdo ? 0x180U : 0x200U) + 0x100U * (number - 1U);
+  const auto value = [&dictionary](std::uint64_t constant) {
+    return dictionary.node_id ? std::optional<Value>{constant + dictionary.node_id->value()}
+                              : std::nullopt;
+  };
   sub.default_text = "$NODEID+" + hex(base, 3);
-  sub.default_value.reset();
-  if (node) sub.default_value = std::uint64_t{base} + node->value();
+  sub.default_value = value(base);
+  if (!dictionary.is_dcf) return;
+  sub.parameter_text = "$NODEID+" + hex(off + base);
+  sub.parameter_value = value(off + base);
 }
 
 /// Record at `first` + `number` - 1, without sub-objects.
@@ -63,7 +73,7 @@ Object communication_record(std::uint16_t number, bool is_tpdo,
   const unsigned mask = dictionary.device.compact_pdo & 0x3FU;
   object.subs.reserve(7);
   object.subs.push_back(count_sub(object, static_cast<std::uint8_t>(std::bit_width(mask))));
-  if ((mask & 0x01) != 0) add_cob_id(object, number, is_tpdo, dictionary.node_id);
+  if ((mask & 0x01) != 0) add_cob_id(object, number, is_tpdo, dictionary);
   for (const auto& each : optional) {
     if ((mask >> (each.sub - 1U) & 1U) == 0) continue;
     add_sub(object, each.sub, each.type, each.value).name = each.name;
@@ -87,7 +97,10 @@ Object mapping_record(std::uint16_t number, bool is_tpdo) {
 /// What the file only counts stands where it is counted.
 void place(Object& object, SourcePos pos) noexcept {
   object.pos = pos;
-  for (auto& sub : object.subs) sub.pos = sub.default_pos = pos;
+  for (auto& sub : object.subs) {
+    sub.pos = sub.default_pos = pos;
+    if (!sub.parameter_text.empty()) sub.parameter_pos = pos;
+  }
 }
 
 /// The records of one direction that the file leaves out.

@@ -7,6 +7,7 @@
 #include "eds_parser/eds.hpp"
 #include "eds_parser/eds_limits.hpp"
 #include "eds_parser/number.hpp"
+#include "eds_parser/pdo_description.hpp"
 #include "eds_parser/text.hpp"
 #include "eds_parser/value_reader.hpp"
 #include "eds_parser/write/object_sections.hpp"
@@ -192,8 +193,9 @@ class DcfWriter {
   }
 
   void write_implied_objects() {
-    if (implied_.empty()) return;
+    if (!dictionary_.is_dcf) keep_pdos_on();
     add_pdo_partners();
+    keep_parameter_values();
     for (const auto& [index, values] : implied_) {
       const auto& object = *dictionary_.find(index);
       const auto* main = sections_.object(index);
@@ -226,6 +228,23 @@ class DcfWriter {
       if (value != values.end()) edits_.append_line(value->second);
     }
     return added;
+  }
+
+  /// A PDO that a DCF does not list is off, of an EDS it is as its default. CiA 306, 5.3.3.1.
+  void keep_pdos_on() {
+    for (const auto& pdo : describe_pdos(dictionary_)) {
+      const auto index = pdo.communication_index();
+      if (pdo.valid && sections_.object(index) == nullptr) implied_[index];
+    }
+  }
+
+  void keep_parameter_values() {
+    for (auto& [index, values] : implied_) {
+      for (const auto& sub : dictionary_.find(index)->subs) {
+        if (sub.parameter_text.empty()) continue;
+        values.try_emplace(sub.sub, "ParameterValue=" + sub.parameter_text);
+      }
+    }
   }
 
   /// Communication and mapping of a PDO that CompactPDO implies stand or fall together.

@@ -144,6 +144,22 @@ DefaultValue=0x333
   EXPECT_EQ(integer(file, {0x1600, 0}), 0);
 }
 
+TEST(Compact, ImplicitPdosOfADcfAreOff) {
+  constexpr std::string_view text =
+      "[DeviceInfo]\nCompactPDO=3\nNrOfRXPDO=0\nNrOfTXPDO=5\n[Comments]\nLines=0\n";
+  const auto dcf = read_eds(text, "t.dcf", 5_node);
+  const auto* cob_id = dcf.dictionary.find(ObjectKey{0x1800, 1});
+
+  EXPECT_EQ(as_integer(*cob_id->default_value), 0x185);
+  EXPECT_EQ(as_integer(*cob_id->parameter_value), 0x8000'0185);
+  EXPECT_EQ(cob_id->parameter_pos, (SourcePos{4, 11}));
+  EXPECT_FALSE(dcf.dictionary.find(ObjectKey{0x1804, 1})->parameter_value);
+  for (const auto& pdo : describe_pdos(dcf.dictionary)) EXPECT_FALSE(pdo.valid) << pdo.number;
+  for (const auto& pdo : describe_pdos(read_eds(text, "t.dcf").dictionary)) {
+    EXPECT_FALSE(pdo.valid) << pdo.number << " without a node id";
+  }
+}
+
 TEST(Compact, WhatIsOddAboutItsNumberIsToldOnceAndInItsPlace) {
   const auto file = read(
       "[3100]\nParameterName=Gain\nObjectType=0x8\nDataType=6\nAccessType=rw\n"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eds_parser/pdo_description.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {
@@ -229,7 +230,8 @@ AccessType=rw
   const auto dcf = write_dcf(source, "t.eds",
                              {.node = 5_node, .values = {{{0x1400, 2}, "1"}, {{0x1A00, 0}, "1"}}});
   ASSERT_FALSE(has_error(dcf.findings));
-  EXPECT_NE(dcf.text.find("SupportedObjects=5\n1=0x1017\n2=0x1400\n3=0x1600\n4=0x1800\n5=0x1A00\n"),
+  EXPECT_NE(dcf.text.find("SupportedObjects=7\n1=0x1017\n2=0x1400\n3=0x1401\n4=0x1600\n"
+                          "5=0x1601\n6=0x1800\n7=0x1A00\n"),
             std::string::npos)
       << dcf.text;
   const auto after = read_eds(dcf.text, "t.dcf").dictionary;
@@ -245,6 +247,30 @@ AccessType=rw
       EXPECT_EQ(sub.parameter_value, set ? std::optional{Value{std::uint64_t{1}}} : std::nullopt);
     }
   }
+}
+
+TEST(DcfWriter, AnImpliedPdoIsAsOnAsItWas) {
+  const std::string eds =
+      "[DeviceInfo]\nCompactPDO=3\nNrOfRXPDO=0\nNrOfTXPDO=5\n"
+      "[1017]\nParameterName=Heartbeat\nDataType=6\nAccessType=rw\n";
+  const auto on = [](std::string_view text, const char* name) {
+    std::string pdos;
+    for (const auto& pdo : describe_pdos(read_eds(text, name, 5_node).dictionary)) {
+      pdos += pdo.valid ? '1' : '0';
+    }
+    return pdos;
+  };
+  const DcfOptions heartbeat{.node = 5_node, .values = {{{0x1017, 0}, "100"}}};
+  const DcfOptions pdo{.node = 5_node, .values = {{{0x1801, 2}, "1"}}};
+  const DcfOptions both{.node = 5_node, .values = {{{0x1801, 2}, "1"}, {{0x1801, 1}, "0x285"}}};
+
+  ASSERT_EQ(on(eds, "t.eds"), "11110");
+  EXPECT_EQ(on(write_dcf(eds, "t.eds", heartbeat).text, "t.dcf"), "11110");
+  EXPECT_EQ(on(write_dcf(eds, "t.eds", pdo).text, "t.dcf"), "11110");
+  ASSERT_EQ(on(eds, "t.dcf"), "00000");
+  EXPECT_EQ(on(write_dcf(eds, "t.dcf", heartbeat).text, "t.dcf"), "00000");
+  EXPECT_EQ(on(write_dcf(eds, "t.dcf", pdo).text, "t.dcf"), "00000");
+  EXPECT_EQ(on(write_dcf(eds, "t.dcf", both).text, "t.dcf"), "01000");
 }
 
 TEST(DcfWriter, Utf16BecomesUtf8) {
