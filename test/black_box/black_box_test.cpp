@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "test/black_box/recorded_run.hpp"
+#include "test/support/folder.hpp"
 
 namespace {
 
@@ -61,7 +62,7 @@ class BlackBoxTest : public testing::Test {
     }
     return names;
   }
-  Folder folder{"box"};
+  Folder folder;
   BusPlan plan;
   std::unique_ptr<BlackBox> box;
   std::vector<std::string> said;

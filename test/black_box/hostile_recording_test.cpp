@@ -3,6 +3,7 @@
 #include <random>
 
 #include "test/black_box/recorded_run.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -31,7 +32,7 @@ class HostileRecording : public testing::Test {
     const auto recording = read_recording(folder / "x");
     return recording ? std::string{} : recording.error();
   }
-  Folder folder{"hostile"};
+  Folder folder;
   RecordedRun run{"two_axes.yaml"};
 };
 

@@ -11,23 +11,9 @@
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/sim_port.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
-
-/// A folder of this process, gone after the test.
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : path_{std::filesystem::temp_directory_path() /
-              ("takt_" + name + '_' + std::to_string(::getpid()))} {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A network on the simulated bus, with a journal.
 class RecordedRun {

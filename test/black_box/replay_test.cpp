@@ -8,6 +8,7 @@
 
 #include "apps/black_box/first_checkpoint.hpp"
 #include "test/black_box/recorded_run.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -54,7 +55,7 @@ void keep_busy(RecordedRun& run) {
 }
 
 TEST(Replay, TakesTheSameDecisionsThroughFaultsCommandsAndRequests) {
-  const Folder folder{"faults"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml", bad_day()};
   keep_busy(run);
   run.run_until(5s);
@@ -77,7 +78,7 @@ TEST(Replay, TakesTheSameDecisionsThroughFaultsCommandsAndRequests) {
 }
 
 TEST(Replay, OfARunningMasterEndsWhereTheTapeWasTaken) {
-  const Folder folder{"running"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml"};
   run.run_until(1s);
   const auto file = run.write(folder / "calm");
@@ -90,7 +91,7 @@ TEST(Replay, OfARunningMasterEndsWhereTheTapeWasTaken) {
 }
 
 TEST(Replay, NamesTheFrameThatAChangedLogMakesTheMasterSend) {
-  const Folder folder{"changed"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml"};
   run.run_until(1s);
   run.write(folder / "calm");
@@ -108,7 +109,7 @@ TEST(Replay, NamesTheFrameThatAChangedLogMakesTheMasterSend) {
 }
 
 TEST(Replay, NamesTheDecisionThatWasWrittenDifferently) {
-  const Folder folder{"decision"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml"};
   run.run_until(1s);
   run.write(folder / "calm");
@@ -126,7 +127,7 @@ TEST(Replay, NamesTheDecisionThatWasWrittenDifferently) {
 }
 
 TEST(Replay, OfAnotherPlanNamesWhatItChanges) {
-  const Folder folder{"plan"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml"};
   run.run_until(1s);
   run.write(folder / "calm");
@@ -140,7 +141,7 @@ TEST(Replay, OfAnotherPlanNamesWhatItChanges) {
 }
 
 TEST(Replay, GoesThroughRecordingsThatFollowOneAnother) {
-  const Folder folder{"follow"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml", bad_day()};
   keep_busy(run);
   run.run_until(1s);
@@ -161,7 +162,7 @@ TEST(Replay, GoesThroughRecordingsThatFollowOneAnother) {
 }
 
 TEST(Replay, WithoutTheBeginningOfTheRunBeginsWithACheckpoint) {
-  const Folder folder{"middle"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml", bad_day()};
   run.run_until(1s);
   run.write(folder / "first");
@@ -182,7 +183,7 @@ TEST(Replay, WithoutTheBeginningOfTheRunBeginsWithACheckpoint) {
 }
 
 TEST(Replay, OfARunMuchLongerThanTheTapeTakesTheSameDecisions) {
-  const Folder folder{"ring"};
+  const Folder folder;
   sim::Faults faults = bad_day();
   for (sim::Fault& fault : faults) {
     fault.at += 57s;
@@ -210,7 +211,7 @@ TEST(Replay, OfARunMuchLongerThanTheTapeTakesTheSameDecisions) {
 }
 
 TEST(Replay, WithoutStartAndCheckpointIsRefusedWithTheReason) {
-  const Folder folder{"small"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml", {}, 64 << 10};  // a checkpoint would take too much of it
   run.run_until(6s);
   run.write(folder / "ring");
@@ -224,7 +225,7 @@ TEST(Replay, WithoutStartAndCheckpointIsRefusedWithTheReason) {
 }
 
 TEST(Replay, FromTheMiddleOfARunOfAnotherNetworkIsRefused) {
-  const Folder folder{"other"};
+  const Folder folder;
   RecordedRun run{"two_axes.yaml", {}, 512 << 10};
   run.run_until(20s);
   run.write(folder / "ring");
@@ -264,8 +265,8 @@ sim::Faults any_day(const BusPlan& plan, std::uint64_t seed) {
 }
 
 /// Every checkpoint of a run is as good a beginning as the start itself.
-void expect_each_checkpoint_leads_to_the_same(RecordedRun& run, const std::string& name) {
-  const Folder folder{"each_" + name};
+void expect_each_checkpoint_leads_to_the_same(RecordedRun& run) {
+  const Folder folder;
   keep_busy(run);
   run.run_until(9s);
   run.stop();
@@ -291,7 +292,7 @@ class EachCheckpoint : public testing::TestWithParam<std::pair<std::string, std:
 TEST_P(EachCheckpoint, LeadsToTheSameDecisions) {
   const auto& [name, kilobytes] = GetParam();
   RecordedRun run{name + ".yaml", bad_day(), kilobytes << 10};
-  expect_each_checkpoint_leads_to_the_same(run, name.c_str());
+  expect_each_checkpoint_leads_to_the_same(run);
 }
 
 INSTANTIATE_TEST_SUITE_P(Demos, EachCheckpoint,
@@ -311,7 +312,7 @@ TEST(Replay, FromEachCheckpointOfAnyDayTakesTheSameDecisions) {
     const std::string network = seed % 2 == 0 ? "two_axes.yaml" : "sixteen_nodes.yaml";
     const BusPlan plan = load_network(TAKT_SOURCE_DIR "/share/demo/" + network).plan;
     RecordedRun run{network, any_day(plan, static_cast<std::uint64_t>(seed)), 4 << 20};
-    expect_each_checkpoint_leads_to_the_same(run, "day");
+    expect_each_checkpoint_leads_to_the_same(run);
   }
 }
 

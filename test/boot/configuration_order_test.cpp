@@ -1,4 +1,5 @@
 #include "test/boot/plant.hpp"
+#include "test/support/folder.hpp"
 
 // The frames of a boot in their order: restore, configuration, read-back, store, start. CiA 302-2.
 
@@ -235,21 +236,16 @@ TEST(PdoOrder, EndsWithTheReadBackWhereAWriteWasOnlyConfirmed) {
 
 // concise DCF, 0x1F22
 
-/// Writes a concise DCF beside the network files, takes it away again.
+/// A concise DCF that the network files name.
 class ConciseFile {
  public:
   explicit ConciseFile(const std::vector<std::uint8_t>& bytes)
-      : name_{"takt_order_" + std::to_string(::getpid()) + ".cdcf"} {
-    std::ofstream out{testing::TempDir() + name_, std::ios::binary};
-    for (const std::uint8_t byte : bytes) out.put(static_cast<char>(byte));
-  }
-  ~ConciseFile() { std::remove((testing::TempDir() + name_).c_str()); }
-  ConciseFile(const ConciseFile&) = delete;
-  ConciseFile& operator=(const ConciseFile&) = delete;
-  std::string key() const { return "configuration_file: " + name_; }
+      : path_{folder_.write("five.cdcf", {bytes.begin(), bytes.end()})} {}
+  std::string key() const { return "configuration_file: " + path_.string(); }
 
  private:
-  std::string name_;
+  Folder folder_;
+  std::filesystem::path path_;
 };
 
 /// 2001 first, a text of ten bytes, 2000, 2001 again; between them TPDO1 gets type 5.

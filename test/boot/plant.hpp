@@ -15,6 +15,7 @@
 #include "master/sim/device.hpp"
 #include "master/sim/sim_port.hpp"
 #include "master/sim/world.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 
@@ -22,15 +23,12 @@ using namespace std::chrono_literals;
 
 /// Compiles a network file given as text; device files are those of test/boot/data.
 inline LoadedNetwork network_of(const std::string& yaml) {
-  static int count = 0;
-  const std::string path = testing::TempDir() + "takt_network_" + std::to_string(::getpid()) + "_" +
-                           std::to_string(++count) + ".yaml";
-  std::ofstream{path} << "options: {dcf_path: " << TAKT_SOURCE_DIR << "/test/boot/data}\n" << yaml;
-  LoadedNetwork network = load_network(path);
+  const Folder folder;
+  LoadedNetwork network = load_network(folder.write(
+      "network.yaml", "options: {dcf_path: " TAKT_SOURCE_DIR "/test/boot/data}\n" + yaml));
   for (const Finding& finding : network.findings) {
     if (finding.severity == Severity::error) ADD_FAILURE() << finding.message;
   }
-  std::remove(path.c_str());
   return network;
 }
 

@@ -3,6 +3,7 @@
 #include "master/linux/clock.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -9,6 +9,7 @@
 #include "master/gateway/bus_view.hpp"
 #include "master/gateway/lcm_client.hpp"
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 

@@ -6,6 +6,7 @@
 
 #include "master/gateway/names.hpp"
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -9,6 +9,7 @@
 #include "master/linux/frame_channel.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

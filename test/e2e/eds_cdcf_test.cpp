@@ -6,6 +6,7 @@
 #include <string>
 
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

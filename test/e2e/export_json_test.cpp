@@ -10,6 +10,7 @@
 
 #include "eds_parser/network_file/load_network.hpp"
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

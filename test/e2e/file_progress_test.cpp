@@ -5,6 +5,7 @@
 #include "master/core/node_status.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "master/linux/unix_address.hpp"
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

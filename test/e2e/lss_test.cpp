@@ -3,6 +3,7 @@
 #include <string>
 
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

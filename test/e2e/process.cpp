@@ -73,13 +73,6 @@ Ended run(std::vector<std::string> arguments, const fs::path& folder) {
   return {exit_code, process.output()};
 }
 
-Folder::Folder() {
-  std::string name = (fs::temp_directory_path() / "takt-e2e-XXXXXX").string();
-  path_ = ::mkdtemp(name.data());
-}
-
-Folder::~Folder() { fs::remove_all(path_); }
-
 std::string read_file(const fs::path& path) {
   std::ifstream file{path};
   return {std::istreambuf_iterator<char>{file}, {}};

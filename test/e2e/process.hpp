@@ -38,20 +38,6 @@ struct Ended {
 };
 Ended run(std::vector<std::string> arguments, const std::filesystem::path& folder);
 
-/// A folder of its own, gone with the test.
-class Folder {
- public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::filesystem::path& path() const noexcept { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace takt::test

@@ -11,6 +11,7 @@
 #include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "master/linux/file_descriptor.hpp"
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

@@ -10,6 +10,7 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/e2e/terminal.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

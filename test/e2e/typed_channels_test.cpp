@@ -6,6 +6,7 @@
 #include "eds_parser/table/typed_message.hpp"
 #include "master/linux/clock.hpp"
 #include "test/e2e/daemon_process.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt::test {
 namespace {

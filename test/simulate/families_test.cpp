@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "apps/simulate/simulation.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -60,24 +61,23 @@ TEST(FamilyTraffic, OfADrv28WithoutAChangeIsThatOfItsSynchronousPdo) {
 
 /// TPDO frames in the sixth second of a Lenze that makes the SYNC itself, every 20 ms.
 std::uint64_t frames_of_a_producer(const std::string& firmware) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("takt_producer_" + std::to_string(::getpid()) + ".yaml");
-  std::ofstream{file}
-      << "bus: {name: lenze, bitrate_kbit: 500}\n"
-         "conveyor:\n"
-         "  node_id: 3\n"
-         "  dcf: " TAKT_SOURCE_DIR
-         "/share/eds/lenze8400.eds\n"
-         "  device: none\n"  // whose data would refuse it
-         "  sim: {model: lenze8400, firmware: \""
-      << firmware
-      << "\"}\n"
-         "  tpdo: {1: {transmission: 1}, 2: {transmission: 255, event_timer: 100}}\n"
-         "  sdo:\n"
-         "    - {index: 0x1006, value: 20000}\n"
-         "    - {index: 0x1005, value: 0x40000080}\n";
+  const test::Folder folder;
+  const auto file =
+      folder.write("producer.yaml",
+                   "bus: {name: lenze, bitrate_kbit: 500}\n"
+                   "conveyor:\n"
+                   "  node_id: 3\n"
+                   "  dcf: " TAKT_SOURCE_DIR
+                   "/share/eds/lenze8400.eds\n"
+                   "  device: none\n"  // whose data would refuse it
+                   "  sim: {model: lenze8400, firmware: \"" +
+                       firmware +
+                       "\"}\n"
+                       "  tpdo: {1: {transmission: 1}, 2: {transmission: 255, event_timer: 100}}\n"
+                       "  sdo:\n"
+                       "    - {index: 0x1006, value: 20000}\n"
+                       "    - {index: 0x1005, value: 0x40000080}\n");
   const LoadedNetwork network = load_network(file);
-  std::filesystem::remove(file);
   EXPECT_FALSE(has_error(network.findings));
   const auto frames = [&](Time duration) {
     return simulate(network, {.duration = duration}).nodes.at(0).tpdo_frames;

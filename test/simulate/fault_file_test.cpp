@@ -6,6 +6,7 @@
 #include <set>
 
 #include "apps/duration/duration.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -15,12 +16,11 @@ using namespace std::chrono_literals;
 class FaultFileTest : public testing::Test {
  protected:
   FaultFile read(const std::string& text) {
-    const std::string path = testing::TempDir() + "takt_faults.yaml";
-    std::ofstream{path} << text;
     plan_.nodes.push_back({.name = "elbow", .id = 2_node});
-    return read_fault_file(path, plan_);
+    return read_fault_file(folder_.write("faults.yaml", text), plan_);
   }
 
+  const test::Folder folder_;
   BusPlan plan_;
 };
 

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "test/support/folder.hpp"
+
 namespace takt {
 namespace {
 
@@ -45,9 +47,8 @@ LoadedNetwork random_network(sim::Random& random) {
             ", node_id: " + std::to_string(3 * i) +
             ", heartbeat_producer: " + std::to_string(31 + random.below(90)) + "}\n";
   }
-  const std::string path = testing::TempDir() + "takt_budget_random.yaml";
-  std::ofstream{path} << text;
-  return load_network(path);
+  const test::Folder folder;
+  return load_network(folder.write("random.yaml", text));
 }
 
 }  // namespace takt

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "apps/simulate/outcome_report.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -42,11 +43,9 @@ TEST(Simulation, BootsAllNodesAndMovesTheAxes) {
 }
 
 TEST(Simulation, ADomainGetsItsFileAtBoot) {
-  const std::filesystem::path folder = std::filesystem::path{testing::TempDir()} / "takt_domain";
-  std::filesystem::create_directories(folder);
+  const test::Folder folder;
   const std::string eds = TAKT_SOURCE_DIR "/share/eds/plain301.eds";
-  std::filesystem::copy_file(eds, folder / "cam.dcf",
-                             std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy_file(eds, folder / "cam.dcf");
   std::ofstream{folder / "cam.dcf", std::ios::app}
       << "\n[2F00]\nParameterName=Cam table\nObjectType=0x2\nDataType=0xF\nAccessType=wo\n"
          "DownloadFile=cam.bin\n";
@@ -91,13 +90,12 @@ std::string last_payload(const std::filesystem::path& log, const std::string& id
 }
 
 TEST(Simulation, Maps64EntriesOfOneBitInTheOrderOfTheFile) {
-  const auto log =
-      std::filesystem::temp_directory_path() / ("takt_bits_" + std::to_string(::getpid()) + ".log");
+  const test::Folder folder;
+  const auto log = folder / "log";
   const auto outcome = simulate(load_network(TAKT_SOURCE_DIR "/test/simulate/data/bits.yaml"),
                                 {.duration = 2s, .candump = log.string()});
   const std::string outputs = last_payload(log, "205");
   const std::string inputs = last_payload(log, "185");
-  std::filesystem::remove(log);
 
   ASSERT_EQ(outcome.nodes.size(), 1u);
   EXPECT_TRUE(outcome.nodes[0].first_boot.has_value());

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "apps/simulate/simulation.hpp"
+#include "test/support/folder.hpp"
 
 // A device makes the SYNC, and the master's cycle keeps to it.
 
@@ -74,13 +75,12 @@ Offsets offsets_of(const std::filesystem::path& log) {
 class Drift : public testing::TestWithParam<int> {};
 
 TEST_P(Drift, OfTheProducersClockMovesNoOutputAgainstItsSync) {
-  const auto log = std::filesystem::temp_directory_path() /
-                   ("takt_follow_" + std::to_string(::getpid()) + ".log");
+  const test::Folder folder;
+  const auto log = folder / "log";
   const auto outcome = simulate(
       demo(),
       {.duration = 100s, .faults = {drift(GetParam())}, .move = true, .candump = log.string()});
   const Offsets offsets = offsets_of(log);
-  std::filesystem::remove(log);
 
   EXPECT_TRUE(outcome.stopped);
   EXPECT_EQ(outcome.axes_moved, 1u);
@@ -124,8 +124,8 @@ double first_frame(const std::filesystem::path& log, const std::string& frame, d
 }
 
 TEST(SyncSource, ThatIsLostMakesTheFallbackOfSynchronousOutputsActAtOnce) {
-  const auto log = std::filesystem::temp_directory_path() /
-                   ("takt_fallback_" + std::to_string(::getpid()) + ".log");
+  const test::Folder folder;
+  const auto log = folder / "log";
   const auto outcome = simulate(demo(), {.duration = 8s,
                                          .faults = {without_power(5s, 6500ms)},
                                          .move = true,
@@ -133,7 +133,6 @@ TEST(SyncSource, ThatIsLostMakesTheFallbackOfSynchronousOutputsActAtOnce) {
   const double written = first_frame(log, "605#2B40600002000000", 5);  // 6040 = quick stop
   const double confirmed = first_frame(log, "585#6040600000000000", 5);
   const double sync = first_frame(log, "080#", 5.1);
-  std::filesystem::remove(log);
 
   EXPECT_GT(written, 5.0);
   EXPECT_LT(written, 5.1) << "not only when SYNC is back";

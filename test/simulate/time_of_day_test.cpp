@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/simulate/simulation.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -22,8 +23,8 @@ std::vector<TimeFrame> time_frames(const SimulationOptions& options) {
   LoadedNetwork network = load_network(TAKT_SOURCE_DIR "/share/demo/plain301.yaml");
   network.plan.time.period = 1s;
   SimulationOptions with_log = options;
-  const auto log =
-      std::filesystem::temp_directory_path() / ("takt_time_" + std::to_string(::getpid()) + ".log");
+  const test::Folder folder;
+  const auto log = folder / "log";
   with_log.candump = log.string();
   simulate(network, with_log);
   std::vector<TimeFrame> frames;
@@ -33,7 +34,6 @@ std::vector<TimeFrame> time_frames(const SimulationOptions& options) {
     if (line.compare(id, 4, "100#") != 0) continue;
     frames.push_back({std::stod(line.substr(1)), line.substr(id + 4)});
   }
-  std::filesystem::remove(log);
   return frames;
 }
 

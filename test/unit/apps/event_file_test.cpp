@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "master/linux/file_descriptor.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -21,15 +22,12 @@ using namespace std::chrono_literals;
 class EventFileTest : public testing::Test {
  protected:
   EventFileTest() {
-    char name[] = "/tmp/takt-events-XXXXXX";
-    folder_ = ::mkdtemp(name);
     EXPECT_EQ(::mkfifo((folder_ / "events").c_str(), 0600), 0);
     reader_ =
         FileDescriptor{::open((folder_ / "events").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
     file = EventFile::open(folder_ / "events");
     ::fcntl(reader_.get(), F_SETFL, 0);
   }
-  ~EventFileTest() override { std::filesystem::remove_all(folder_); }
 
   /// All lines until the file is closed.
   std::size_t read_lines() const {
@@ -41,7 +39,7 @@ class EventFileTest : public testing::Test {
     return lines;
   }
 
-  std::filesystem::path folder_;
+  const test::Folder folder_;
   FileDescriptor reader_;
   std::unique_ptr<EventFile> file;
 };

@@ -5,30 +5,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "test/support/folder.hpp"
+
 namespace takt {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// Files of a kernel, as far as a test writes them.
-class Root {
+class Root : public test::Folder {
  public:
-  Root() {
-    std::string name = fs::temp_directory_path() / "takt-doctor-XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Root() { fs::remove_all(path_); }
-  Root(const Root&) = delete;
-  Root& operator=(const Root&) = delete;
-
   void write(const fs::path& file, const std::string& text) const {
-    fs::create_directories((path_ / file).parent_path());
-    std::ofstream{path_ / file} << text << '\n';
+    Folder::write(file, text + '\n');
   }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 const Remark* about(const std::vector<Remark>& remarks, const std::string& subject) {

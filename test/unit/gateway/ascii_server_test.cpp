@@ -9,19 +9,13 @@
 #include <vector>
 
 #include "master/linux/unix_address.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
 
 class AsciiServerTest : public testing::Test {
  protected:
-  AsciiServerTest() {
-    char name[] = "/tmp/takt-ascii-XXXXXX";
-    folder_ = ::mkdtemp(name);
-    path_ = folder_ + "/gateway";
-  }
-  ~AsciiServerTest() override { std::filesystem::remove_all(folder_); }
-
   AsciiServer::Handler handler() {
     return {.connected = [this](int client) { connected.push_back(client); },
             .line = [this](int, std::string_view line) { lines.emplace_back(line); },
@@ -61,8 +55,8 @@ class AsciiServerTest : public testing::Test {
     return {text, size > 0 ? static_cast<std::size_t>(size) : 0};
   }
 
-  std::string folder_;
-  std::string path_;
+  const test::Folder folder_;
+  const std::string path_ = folder_ / "gateway";
   std::unique_ptr<AsciiServer> server;
   std::vector<std::string> lines;
   std::vector<int> connected;

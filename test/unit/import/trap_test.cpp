@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "eds_parser/network_file/load_network.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -16,13 +17,8 @@ using testing::HasSubstr;
 
 class Trap : public testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("takt_trap_" + std::to_string(getpid()));
-  void SetUp() override {
-    fs::create_directories(folder_);
-    fs::copy_file(TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", folder_ / "drive.eds",
-                  fs::copy_options::overwrite_existing);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  const test::Folder folder_;
+  Trap() { fs::copy_file(TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", folder_ / "drive.eds"); }
 
   LoadedNetwork load(const std::string& arm, const std::string& master = "sync_period: 10000") {
     std::ofstream{folder_ / "bus.yml"} << "master: {" + master +

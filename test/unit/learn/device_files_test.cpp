@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "test/support/folder.hpp"
+
 namespace takt {
 namespace {
 
@@ -15,11 +17,9 @@ namespace fs = std::filesystem;
 class DeviceFolder : public testing::Test {
  protected:
   DeviceFolder() {
-    char name[] = "/tmp/takt-eds-XXXXXX";
-    folder = ::mkdtemp(name);
     fs::create_directories(folder / "shut");
     fs::copy_file(TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", folder / "takt_drive402.eds");
-    fs::permissions(folder, fs::perms{0755});
+    fs::permissions(folder.path(), fs::perms{0755});
     fs::permissions(folder / "takt_drive402.eds", fs::perms{0644});
     fs::permissions(folder / "shut", fs::perms::none);
     is_root = ::geteuid() == 0 && ::seteuid(nobody) == 0;
@@ -27,19 +27,18 @@ class DeviceFolder : public testing::Test {
   ~DeviceFolder() override {
     EXPECT_TRUE(!is_root || ::seteuid(0) == 0);
     fs::permissions(folder / "shut", fs::perms::owner_all);
-    fs::remove_all(folder);
   }
   static constexpr uid_t nobody = 65534;
   static constexpr SeenIdentity drive{.vendor_id = 0xABCD, .product_code = 0x402};
 
   bool is_root = false;
-  fs::path folder;
+  const test::Folder folder;
   DeviceFiles files;
   Findings findings;
 };
 
 TEST_F(DeviceFolder, PassesOverAFolderThatIsShut) {
-  files.add_folder(folder, findings);
+  files.add_folder(folder.path(), findings);
 
   EXPECT_TRUE(findings.empty()) << findings[0].message;
   EXPECT_FALSE(files.find(1, drive).path.empty());
@@ -53,13 +52,14 @@ TEST_F(DeviceFolder, TellsThatItIsShutItself) {
 }
 
 TEST(DeviceFiles, AVendorIdOfZeroNeedsAProductCodeAndTheDeviceType) {
-  const fs::path path = fs::temp_directory_path() / fmt::format("takt_nobody_{}.eds", ::getpid());
-  std::ofstream{path}
-      << "[MandatoryObjects]\nSupportedObjects=2\n1=0x1000\n2=0x1018\n"
-         "[1000]\nParameterName=Device type\nDataType=0x0007\nAccessType=ro\nDefaultValue=0xF0191\n"
-         "[1018]\nParameterName=Identity\nObjectType=9\nSubNumber=2\n"
-         "[1018sub0]\nParameterName=Count\nDataType=5\nAccessType=ro\nDefaultValue=2\n"
-         "[1018sub2]\nParameterName=Product\nDataType=7\nAccessType=ro\nDefaultValue=1\n";
+  const test::Folder folder;
+  const fs::path path = folder.write(
+      "nobody.eds",
+      "[MandatoryObjects]\nSupportedObjects=2\n1=0x1000\n2=0x1018\n"
+      "[1000]\nParameterName=Device type\nDataType=0x0007\nAccessType=ro\nDefaultValue=0xF0191\n"
+      "[1018]\nParameterName=Identity\nObjectType=9\nSubNumber=2\n"
+      "[1018sub0]\nParameterName=Count\nDataType=5\nAccessType=ro\nDefaultValue=2\n"
+      "[1018sub2]\nParameterName=Product\nDataType=7\nAccessType=ro\nDefaultValue=1\n");
   DeviceFiles files;
   Findings findings;
   files.add_file(path, findings);
@@ -69,7 +69,6 @@ TEST(DeviceFiles, AVendorIdOfZeroNeedsAProductCodeAndTheDeviceType) {
   EXPECT_EQ(found.path, path);
   EXPECT_TRUE(files.find(1, {.device_type = 0x20192, .product_code = 1}).path.empty());
   EXPECT_TRUE(files.find(1, {.device_type = 0xF0191}).path.empty());
-  fs::remove(path);
 }
 
 }  // namespace

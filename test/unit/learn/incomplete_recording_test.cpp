@@ -10,6 +10,7 @@
 #include "apps/learn/network_text.hpp"
 #include "apps/learn/recording.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -31,13 +32,10 @@ TEST(IncompleteRecording, ADeviceWhoseHeartbeatIsHeardHas1017ThoughNobodyWroteIt
   std::string log = "(1.0) can0 000#8206\n(1.1) can0 706#00\n";
   for (int i = 12; i < 30; ++i) log += "(" + std::to_string(i) + ".0) can0 706#05\n";
   const LearnedNetwork network = learned(log);
-  const fs::path folder = fs::temp_directory_path() / ("takt_cut_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  std::ofstream{folder / "net.yaml"} << network.text;
-  for (const auto& [name, text] : network.made_files) std::ofstream{folder / name} << text;
+  const test::Folder folder;
+  for (const auto& [name, text] : network.made_files) folder.write(name, text);
 
-  const LoadedNetwork again = load_network(folder / "net.yaml");
-  fs::remove_all(folder);
+  const LoadedNetwork again = load_network(folder.write("net.yaml", network.text));
 
   EXPECT_THAT(network.text, HasSubstr("    heartbeat_producer: 1000   # as measured\n"));
   EXPECT_FALSE(has_error(again.findings)) << network.text;

@@ -10,6 +10,7 @@
 #include "apps/simulate/simulation.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -47,13 +48,6 @@ std::string rules(const Findings& findings) {
   return text;
 }
 
-/// A folder that is gone after the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("takt_learn_" + std::to_string(getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
 /// All that a plan does on the bus; names and purposes of steps are left out.
 std::string on_the_bus(const BusPlan& plan) {
   std::ostringstream out;
@@ -89,19 +83,18 @@ std::string on_the_bus(const BusPlan& plan) {
 class RoundTrip : public testing::TestWithParam<const char*> {};
 
 TEST_P(RoundTrip, WhatIsLearnedFromABootDoesTheSameOnTheBus) {
-  Folder folder;
+  const test::Folder folder;
   const LoadedNetwork original =
       load_network(TAKT_SOURCE_DIR "/share/demo/" + std::string{GetParam()} + ".yaml");
-  const std::string log = folder.path / "boot.log";
+  const std::string log = folder / "boot.log";
   simulate(original, {.duration = std::chrono::seconds{8}, .candump = log});
   Findings findings;
   LearnOptions options{.bitrate_kbit = original.plan.bitrate / 1000,
-                       .folder = folder.path,
+                       .folder = folder.path(),
                        .device_data = load_device_data(device_folders(), findings)};
 
   const LearnedNetwork network = learned_network(heard(whole(log)), our_files(), options);
-  std::ofstream{folder.path / "net.yaml"} << network.text;
-  const LoadedNetwork again = load_network(folder.path / "net.yaml");
+  const LoadedNetwork again = load_network(folder.write("net.yaml", network.text));
 
   EXPECT_FALSE(has_error(again.findings)) << rules(again.findings) << network.text;
   EXPECT_EQ(on_the_bus(again.plan), on_the_bus(original.plan)) << network.text;
@@ -109,21 +102,20 @@ TEST_P(RoundTrip, WhatIsLearnedFromABootDoesTheSameOnTheBus) {
 }
 
 TEST_P(RoundTrip, WithoutDeviceFilesTheMadeOnesMakeAValidNetwork) {
-  Folder folder;
+  const test::Folder folder;
   const LoadedNetwork original =
       load_network(TAKT_SOURCE_DIR "/share/demo/" + std::string{GetParam()} + ".yaml");
-  const std::string log = folder.path / "boot.log";
+  const std::string log = folder / "boot.log";
   simulate(original, {.duration = std::chrono::seconds{8}, .candump = log});
 
   const LearnedNetwork network =
       learned_network(heard(whole(log)), {}, {.bitrate_kbit = original.plan.bitrate / 1000});
   for (const auto& [name, content] : network.made_files) {
-    std::ofstream{folder.path / name} << content;
+    folder.write(name, content);
     EXPECT_FALSE(has_error(read_eds(content, name).findings))
         << rules(read_eds(content, name).findings);
   }
-  std::ofstream{folder.path / "net.yaml"} << network.text;
-  const LoadedNetwork again = load_network(folder.path / "net.yaml");
+  const LoadedNetwork again = load_network(folder.write("net.yaml", network.text));
 
   EXPECT_FALSE(has_error(again.findings)) << rules(again.findings) << network.text;
   EXPECT_EQ(again.plan.nodes.size(), original.plan.nodes.size());

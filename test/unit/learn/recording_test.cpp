@@ -13,6 +13,7 @@
 #include "apps/learn/network_text.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -33,13 +34,6 @@ std::string rules(const Findings& findings) {
   for (const Finding& finding : findings) text += to_string(finding) + '\n';
   return text;
 }
-
-/// A folder that is gone after the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("takt_recording_" + std::to_string(getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
 
 TEST(Learn, WhoStaysSilentWhenAllAreResetIsTheMaster) {
   const LearnedNetwork network = learned(
@@ -247,13 +241,13 @@ TEST(Learn, SurvivesARecordingOfNoise) {
 
   const LearnedNetwork network = learned(log);
 
-  Folder folder;
+  const test::Folder folder;
   for (const auto& [name, content] : network.made_files) {
-    std::ofstream{folder.path / name} << content;
+    folder.write(name, content);
     EXPECT_TRUE(read_eds(content, name).readable);
   }
-  std::ofstream{folder.path / "net.yaml"} << network.text;
-  for (const Finding& finding : load_network(folder.path / "net.yaml").findings) {
+  const LoadedNetwork again = load_network(folder.write("net.yaml", network.text));
+  for (const Finding& finding : again.findings) {
     EXPECT_NE(finding.rule, "syntax") << to_string(finding);
     EXPECT_NE(finding.rule, "unknown-key") << to_string(finding);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "master/linux/unix_bus.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -15,21 +16,14 @@ const Frame start_all = make_frame(CobId::base(0x000), {0x01, 0x00});
 
 class DiagnosticSocketOnUnixBus : public testing::Test {
  protected:
-  DiagnosticSocketOnUnixBus() {
-    char name[] = "/tmp/takt-diagnostic-XXXXXX";
-    folder_ = mkdtemp(name);
-    path_ = (folder_ / "bus").string();
-  }
-  ~DiagnosticSocketOnUnixBus() override { std::filesystem::remove_all(folder_); }
-
   void poll(DiagnosticSocket& socket) {
     pollfd wanted{.fd = socket.fd(), .events = POLLIN, .revents = 0};
     ::poll(&wanted, 1, 10);
     socket.poll([this](const StampedFrame& frame) { heard_.push_back(frame.frame); });
   }
 
-  std::filesystem::path folder_;
-  std::string path_;
+  const test::Folder folder_;
+  const std::string path_ = folder_ / "bus";
   std::vector<Frame> heard_;
   std::unique_ptr<SentFrames> sent_ = std::make_unique<SentFrames>();
 };

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <string>
-#include <unistd.h>
 
 #include "master/linux/interface_bitrate.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 using namespace std::chrono_literals;
 
 TEST(FrameWitness, SeesWhatWasSentOnTheBusAndNothingElse) {
-  const std::string bus = "unix:/tmp/takt-witness-" + std::to_string(::getpid());
+  const test::Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
   auto sender = FrameChannel::open(bus);
   ASSERT_TRUE(sender);
   auto witness = FrameWitness::open(bus);

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "test/support/folder.hpp"
+
 namespace takt {
 namespace {
 
@@ -19,29 +21,23 @@ using testing::HasSubstr;
 /// An `ip` that writes down what it is asked for and ends as it is told to.
 class InterfaceRights : public testing::Test {
  protected:
-  InterfaceRights() : folder_{testing::TempDir() + "takt-ip-" + std::to_string(::getpid())} {
-    std::filesystem::create_directories(folder_);
-    ::setenv("PATH", (folder_ + ":" + path_).c_str(), 1);
-  }
-  ~InterfaceRights() override {
-    ::setenv("PATH", path_.c_str(), 1);
-    std::filesystem::remove_all(folder_);
-  }
+  InterfaceRights() { ::setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1); }
+  ~InterfaceRights() override { ::setenv("PATH", path_.c_str(), 1); }
   void ip_ends_with(int code) {
-    std::ofstream{folder_ + "/ip"} << "#!/bin/sh\necho \"$@\" >>" << folder_ << "/asked\nexit "
-                                   << code << "\n";
-    ::chmod((folder_ + "/ip").c_str(), 0755);
+    const auto ip = folder_.write("ip", "#!/bin/sh\necho \"$@\" >>" + (folder_ / "asked").string() +
+                                            "\nexit " + std::to_string(code) + "\n");
+    ::chmod(ip.c_str(), 0755);
   }
   std::string asked() {
-    std::ifstream in{folder_ + "/asked"};
+    std::ifstream in{folder_ / "asked"};
     return {std::istreambuf_iterator<char>{in}, {}};
   }
 
   const CanLink link{.name = "can7", .kind = "can", .tx_queue_length = 10};
 
  private:
-  std::string folder_;
-  std::string path_ = std::getenv("PATH");
+  const test::Folder folder_;
+  const std::string path_ = std::getenv("PATH");
 };
 
 TEST_F(InterfaceRights, AreTriedByACommandThatChangesNothing) {

@@ -10,6 +10,7 @@
 #include "master/linux/frame_channel.hpp"
 #include "master/linux/unix_address.hpp"
 #include "master/linux/unix_bus_hub.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -21,21 +22,14 @@ const Frame tpdo = make_frame(CobId::base(0x185), {1, 2, 3, 4, 5, 6, 7, 8});
 
 class UnixBus : public testing::Test {
  protected:
-  UnixBus() {
-    char name[] = "/tmp/takt-unix-bus-XXXXXX";
-    folder_ = mkdtemp(name);
-    path_ = (folder_ / "bus").string();
-  }
-  ~UnixBus() override { std::filesystem::remove_all(folder_); }
-
   UnixBusPort port() {
     auto opened = UnixBusPort::open({.path = path_, .sync_cob_id = CobId::base(0x080)});
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     return std::move(*opened);
   }
 
-  std::filesystem::path folder_;
-  std::string path_;
+  const test::Folder folder_;
+  const std::string path_ = folder_ / "bus";
 };
 
 /// Receives until `wanted` frames are there.

@@ -11,6 +11,7 @@
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/eds.hpp"
 #include "eds_parser/print/plan.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -37,25 +38,6 @@ std::vector<std::string> findings(const LoadedNetwork& network, Severity least) 
   return out;
 }
 
-/// A folder that goes away again.
-class Folder {
- public:
-  Folder() : path_{fs::temp_directory_path() / ("takt_plan_" + std::to_string(::getpid()))} {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream{path_ / name} << text;
-    return path_ / name;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 TEST(LoadNetwork, TheDemoLoadsWithoutAFinding) {
   const auto network = load_network(source / "share/demo/two_axes.yaml");
 
@@ -69,7 +51,7 @@ TEST(LoadNetwork, TheDemoLoadsWithoutAFinding) {
 }
 
 TEST(LoadNetwork, TheFolderOfTheBlackBoxIsBesideTheNetworkFile) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string node =
       "nodes: {io: {node_id: 5, dcf: " + (source / "share/eds/takt_io401.eds").string() + "}}\n";
   const auto network = load_network(
@@ -177,7 +159,7 @@ TEST(LoadNetwork, BusFilesOfTheWildLoadWithoutError) {
 }
 
 TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string eds = read(source / "share/eds/takt_io401.eds");
   fs::create_directories(folder.path() / "eds");
   folder.write("near.eds", eds);
@@ -201,7 +183,7 @@ TEST(LoadNetwork, DeviceFilesAreFoundBesideTheFileAndInDcfPath) {
 }
 
 TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
-  const Folder folder;
+  const test::Folder folder;
   std::string eds = read(source / "share/eds/takt_io401.eds");
   eds.insert(eds.find("ParameterName=Device type"), "Nonsense=1\nPDOMapping=maybe\n");
   folder.write("d.eds", eds);
@@ -218,7 +200,7 @@ TEST(LoadNetwork, FindingsOfADeviceFileAreOneLine) {
 }
 
 TEST(LoadNetwork, FindingsOfADeviceFileAreThoseOfEdsCheck) {
-  const Folder folder;
+  const test::Folder folder;
   std::string eds = read(source / "share/eds/takt_io401.eds");
   eds.insert(eds.find("ParameterName=Device type"), "PDOMapping=maybe\n");
   const std::string mapped = "DefaultValue=0x60000108";  // 1A00:01; 1017:00 can't be mapped
@@ -248,7 +230,7 @@ TEST(LoadNetwork, FindingsOfADeviceFileAreThoseOfEdsCheck) {
 
 /// A DCF with a DOMAIN, and a network that has it.
 struct DomainNetwork {
-  Folder folder;
+  test::Folder folder;
 
   LoadedNetwork load(const std::string& keys,
                      const std::string& object = "ObjectType=0x2\nDataType=0xF\n") {
@@ -334,7 +316,7 @@ TEST(LoadNetwork, WhatIsNoFileIsAnErrorNotACrash) {
 
 /// Every prefix and every single-byte change of a real file ends with findings, never with a crash.
 TEST(LoadNetwork, SurvivesDamagedFiles) {
-  const Folder folder;
+  const test::Folder folder;
   folder.write("d.eds", read(source / "share/eds/takt_io401.eds"));
   const std::string good =
       "bus: {name: x}\nmaster: &m {sync_period: 5000}\nnodes:\n  a:\n    node_id: 1\n"

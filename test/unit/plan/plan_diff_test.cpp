@@ -10,6 +10,7 @@
 
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan_diff_json.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -20,13 +21,10 @@ using testing::Not;
 
 class PlanDiff : public testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("takt_plan_diff_" + std::to_string(getpid()));
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
+  const test::Folder folder_;
 
   LoadedNetwork load(const std::string& text) {
-    std::ofstream{folder_ / "net.yaml"} << text;
-    LoadedNetwork network = load_network(folder_ / "net.yaml");
+    LoadedNetwork network = load_network(folder_.write("net.yaml", text));
     for (const Finding& finding : network.findings) {
       if (finding.severity == Severity::error) ADD_FAILURE() << to_string(finding);
     }

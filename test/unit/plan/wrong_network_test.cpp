@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "eds_parser/network_file/load_network.hpp"
+#include "test/support/folder.hpp"
 
 namespace takt {
 namespace {
@@ -19,14 +20,6 @@ using testing::Not;
 
 class WrongNetwork : public testing::Test {
  protected:
-  WrongNetwork() { fs::create_directories(folder_); }
-  ~WrongNetwork() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& text) {
-    std::ofstream{folder_ / name} << text;
-    return folder_ / name;
-  }
-
   /// Findings of `path`, one a line, without the folder.
   static std::string told(const fs::path& path) {
     std::string text;
@@ -36,7 +29,7 @@ class WrongNetwork : public testing::Test {
     }
     return text;
   }
-  std::string told_of(const std::string& text) { return told(write("net.yaml", text)); }
+  std::string told_of(const std::string& text) { return told(folder_.write("net.yaml", text)); }
 
   /// Findings of a network with one node, an axis, with these lines more.
   std::string of_axis(const std::string& lines) {
@@ -44,7 +37,7 @@ class WrongNetwork : public testing::Test {
                    "    dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds\n" + lines);
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("takt_wrong_" + std::to_string(::getpid()));
+  const test::Folder folder_;
 };
 
 TEST_F(WrongNetwork, SafeValuesThatNoRpdoCarriesAreErrors) {
@@ -119,7 +112,7 @@ TEST_F(WrongNetwork, AnInterfaceHasTheLengthThatLinuxTakes) {
 }
 
 TEST_F(WrongNetwork, AFolderIsCalledAFolder) {
-  EXPECT_THAT(told(folder_), HasSubstr("is a folder; name the network file"));
+  EXPECT_THAT(told(folder_.path()), HasSubstr("is a folder; name the network file"));
   EXPECT_THAT(told(folder_ / "none.yaml"), HasSubstr("there is no such file"));
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: .}}\n"), HasSubstr("`.` is a folder"));
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: /dev/zero}}\n"),
@@ -129,7 +122,7 @@ TEST_F(WrongNetwork, AFolderIsCalledAFolder) {
 TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
   std::string noise;
   for (int i = 0; i < 200; ++i) noise += "no key and no section\n";
-  write("noise.eds", noise);
+  folder_.write("noise.eds", noise);
 
   const std::string text = told_of("nodes: {a: {node_id: 1, dcf: noise.eds}}\n");
 
@@ -140,7 +133,7 @@ TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
 TEST_F(WrongNetwork, AnEdsThatIsCutOffIsAWarning) {
   std::ostringstream eds;
   eds << std::ifstream{TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds"}.rdbuf();
-  write("half.eds", eds.str().substr(0, eds.str().size() / 2));
+  folder_.write("half.eds", eds.str().substr(0, eds.str().size() / 2));
 
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: half.eds}}\n"),
               AllOf(HasSubstr("half.eds: warning"), HasSubstr("is it cut off?")));
