@@ -76,8 +76,13 @@ void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
 bool DeviceFiles::add_file(const fs::path& file, Findings& findings) {
   const EdsFile eds = read_eds_file(file);
   if (!eds.readable) {
-    findings.push_back(
-        {file.string(), {}, Severity::error, "no-device-file", "can't be read as an EDS or DCF"});
+    std::error_code ignored;
+    findings.push_back({file.string(),
+                        {},
+                        Severity::error,
+                        "no-device-file",
+                        fs::is_directory(file, ignored) ? "is a folder: that is for --eds-dir"
+                                                        : "can't be read as an EDS or DCF"});
     return false;
   }
   files_.push_back({file, identity_of(eds.dictionary)});

@@ -48,7 +48,8 @@ int run(const Options& options) {
   diff << unified_diff(text.value_or(*source), fixed.text, options.file, name,
                        [](std::string_view line) { return line.starts_with('['); });
   if (text) tell_unpatchable(options);
-  std::cerr << options.file << ": " << fixed.fixed.size() << " findings mended, "
+  std::cerr << options.file << ": " << fixed.fixed.size()
+            << (fixed.fixed.size() == 1 ? " finding mended, " : " findings mended, ")
             << fixed.left.size() << " left\n";
   if (!options.out.empty()) {
     const auto written = write_whole_file(options.out, fixed.text);

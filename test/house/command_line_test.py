@@ -121,6 +121,9 @@ def folders_for_files(tools, folder):
     tools.says("nor what there is not", ["takt", "sdo", "download", 5, "1F50:1", folder / "none", *bus], 2, "none: cannot be read")
     tools.says("a folder of faults", ["takt", "sim", DEMO, "--faults", folder, *bus], 2, "is a folder")
     tools.says("and for takt simulate", ["takt", "simulate", DEMO, "--faults", folder], 2, "is a folder")
+    log = folder / "boot.log"
+    log.write_text("(1.0) can0 703#00\n")
+    tools.says("a folder of device files", ["takt", "learn", log, "--eds", folder, "-o", "-"], 2, f"{folder}: error: is a folder", "--eds-dir")
 
 
 def imports(tools, folder):
