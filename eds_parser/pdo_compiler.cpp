@@ -37,7 +37,7 @@ class PdoCompiler {
   EffectivePdo compile(const PdoDescription& device, const PdoSpec* spec) {
     EffectivePdo pdo = of_device(device);
     if (spec == nullptr) {
-      if (!device.valid) pdo.use = written(pdo, 1) != nullptr ? PdoUse::off : PdoUse::ignored;
+      if (!device.valid) pdo.use = is_turned_off(pdo) ? PdoUse::off : PdoUse::ignored;
       judge_written_type(pdo);
       judge_unnamed(device, pdo);
       return pdo;
@@ -74,6 +74,14 @@ class PdoCompiler {
     const ObjectKey key{pdo.communication_index(), sub_index};
     const auto found = std::ranges::find(node_.spec->sdo, key, &SdoSpec::object);
     return found == node_.spec->sdo.end() ? nullptr : &*found;
+  }
+
+  /// By an `sdo:` entry or a ParameterValue, not only by its default.
+  bool is_turned_off(const EffectivePdo& pdo) const {
+    const SubObject* cob_id = sub(pdo.communication_index(), 1);
+    const bool by_dcf = node_.dictionary->is_dcf && cob_id != nullptr && cob_id->parameter_value &&
+                        cob_id->is_configurable();
+    return by_dcf || written(pdo, 1) != nullptr;
   }
 
   EffectivePdo of_device(const PdoDescription& device) const {

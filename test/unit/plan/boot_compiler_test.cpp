@@ -4,48 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "eds_parser/print/plan_names.hpp"
-#include "test/unit/plan/tiny_network.hpp"
+#include "test/unit/plan/boot_text.hpp"
 
 namespace takt {
 namespace {
 
+using test::arm;
 using test::compile;
-using test::Compiled;
+using test::part;
+using test::step_at;
+using test::steps;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// `action object value` of every step of the first node.
-std::vector<std::string> steps(const Compiled& net) {
-  std::vector<std::string> out;
-  for (const BootStep& step : net.plan.nodes.at(0).boot_plan.steps) {
-    std::string text{action_name(step.action)};
-    if (step.object.index != 0) text += " " + to_string(step.object);
-    const std::string value = value_text(step);
-    if (!value.empty()) text += " " + value;
-    out.push_back(text);
-  }
-  return out;
-}
-
-std::vector<std::string> part(const Compiled& net, std::string_view from, std::size_t count) {
-  std::vector<std::string> all = steps(net);
-  const auto first = std::ranges::find(all, from);
-  const auto left = static_cast<std::size_t>(all.end() - first);
-  return {first, first + static_cast<std::ptrdiff_t>(std::min(count, left))};
-}
-
-const BootStep& step_at(const Compiled& net, std::string_view text) {
-  const std::vector<std::string> all = steps(net);
-  const auto found = std::ranges::find(all, text);
-  if (found == all.end()) throw std::runtime_error{"no step " + std::string{text}};
-  return net.plan.nodes[0].boot_plan.steps[static_cast<std::size_t>(found - all.begin())];
-}
-
-std::string arm(std::string_view more = "") {
-  return "master: {node_id: 127, sync_period: 10000}\narm: {node_id: 5, dcf: x, " +
-         std::string{more} + "}\n";
-}
 
 TEST(BootCompiler, TextInQuotesIsTextForAStringAndANumberForTheRest) {
   const std::string eds =
@@ -184,17 +155,6 @@ TEST(BootCompiler, AValueOutsideTheLimitsOfTheEdsIsAWarningAndAWordInThePlan) {
               HasSubstr("outside the limits 2..240 of the device file"));
 }
 
-TEST(BootCompiler, AValueOfADcfOutsideItsLimitsIsAWarningThatNamesItsLine) {
-  std::string dcf = test::tiny_eds() + "[DeviceComissioning]\nNodeID=5\n";
-  dcf.insert(dcf.find("[6081]\n") + 7, "ParameterValue=7\nHighLimit=5\n");
-
-  const auto net = compile(arm(), dcf, "tiny.dcf");
-
-  EXPECT_THAT(net.said("limits"), HasSubstr("ParameterValue in line "));
-  EXPECT_THAT(net.said("limits"),
-              HasSubstr("6081:00 Profile velocity = 7 is outside the limits ..5"));
-}
-
 TEST(BootCompiler, ResetPoliciesAreHonoured) {
   EXPECT_EQ(compile(arm()).plan.nodes[0].boot_plan.steps[0].command,
             NmtCommand::reset_communication);
@@ -311,75 +271,12 @@ TEST(BootCompiler, StartNodesFalseLeavesNodesPreOperational) {
   EXPECT_EQ(steps(net).back(), "await heartbeat");
 }
 
-TEST(BootCompiler, ParameterValuesOfADcfAreWritten) {
-  std::string eds = test::tiny_eds();
-  const std::string section = "[6081]\n";
-  eds.insert(eds.find(section) + section.size(), "ParameterValue=777\n");
-
-  const auto net = compile(arm(), eds, "tiny.dcf");
-
-  EXPECT_THAT(steps(net), testing::Contains("write if differs 6081:00 0x00000309"));
-}
-
-/// The tiny drive as a DCF with these values: {"[1006]", "2000"}.
-std::string tiny_dcf(const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string dcf = test::tiny_eds();
-  for (const auto& [section, value] : values) {
-    const std::string head = section + "\n";
-    dcf.insert(dcf.find(head) + head.size(), "ParameterValue=" + value + "\n");
-  }
-  return dcf;
-}
-
-TEST(BootCompiler, WhatFollowsFromTheNetworkFileIsNotWrittenOverByTheDcf) {
-  const auto net = compile(
-      "master: {sync_period: 10000, sync_window: 500}\n"
-      "arm: {node_id: 5, dcf: x}\n",
-      tiny_dcf({{"[1007]", "1000"}, {"[60C2sub1]", "77"}}), "tiny.dcf");
-
-  const auto all = steps(net);
-  EXPECT_THAT(all, testing::Contains("write if differs 1007:00 0x000001F4"));
-  EXPECT_THAT(all, testing::Not(testing::Contains("write if differs 1007:00 0x000003E8")));
-  EXPECT_THAT(all, testing::Contains("write if differs 60C2:01 0x0A"));
-  EXPECT_THAT(all, testing::Not(testing::Contains("write if differs 60C2:01 0x4D")));
-}
-
-TEST(BootCompiler, AnInterpolationPeriodOfTheNetworkFileIsReadWithTheExponentOfTheDcf) {
-  const std::string yaml =
-      "master: {sync_period: 2000}\n"
-      "arm: {node_id: 5, dcf: x, sdo: [{index: 0x60C2, sub_index: 1, value: 20}]}\n";
-  const auto net = compile(yaml, tiny_dcf({{"[60C2sub2]", "-4"}}), "tiny.dcf");
-
-  EXPECT_THAT(net.said("interpolation-period"), IsEmpty());
-  EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:01 0x14"));
-  EXPECT_THAT(steps(net), testing::Contains("write if differs 60C2:02 0xFC"));
-}
-
-TEST(BootCompiler, WhatAnEdsCallsParameterValueIsNotTakenForConfigured) {
-  const auto net = compile(arm(), tiny_dcf({{"[1016sub1]", "0x000300C8"}}), "tiny.eds");
-
-  EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:01 0x007F012C"));
-}
-
 TEST(BootCompiler, AConsumerEntryOfTheNetworkFileStays) {
   const auto net = compile(arm("sdo: [{index: 0x1016, sub_index: 1, value: 0x0005012C}]"),
                            test::tiny_eds() + test::entry("1016sub2", "entry", 7, "rw", "0"));
 
   EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:01 0x0005012C"));
   EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:02 0x007F012C"));
-}
-
-TEST(BootCompiler, AConsumerEntryOfADcfThatWatchesAnotherNodeStays) {
-  const std::string dcf = tiny_dcf({{"[1016sub1]", "0x000300C8"}});
-  const auto full = compile(arm(), dcf, "tiny.dcf");
-  EXPECT_THAT(steps(full), testing::Contains("write if differs 1016:01 0x000300C8"));
-  EXPECT_THAT(steps(full), testing::Not(testing::Contains(HasSubstr("0x007F012C"))));
-  EXPECT_THAT(full.said("heartbeat-consumer"), HasSubstr("each entry of 0x1016"));
-
-  const auto room =
-      compile(arm(), dcf + test::entry("1016sub2", "entry", 7, "rw", "0"), "tiny.dcf");
-  EXPECT_THAT(steps(room), testing::Contains("write if differs 1016:02 0x007F012C"));
-  EXPECT_THAT(room.said("heartbeat-consumer"), IsEmpty());
 }
 
 // As the DCFs of Sevcon have it, which would refuse bit 31.
