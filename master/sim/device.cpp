@@ -317,7 +317,6 @@ void Device::plan_tick() noexcept {
   tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
 }
 
-/// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
 void Device::ask(SdoServer& server, const Frame& frame, Time now) noexcept {
   if (!communicates() || faults_.mute_sdo) return;
   const auto delay = static_cast<std::uint64_t>(faults_.sdo_delay.count());
@@ -326,6 +325,7 @@ void Device::ask(SdoServer& server, const Frame& frame, Time now) noexcept {
   server.on_frame(frame, now, out_);
 }
 
+/// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
 void Device::route_sdo_servers() noexcept {
   for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
     if (n != 0) {
