@@ -262,7 +262,6 @@ class DcfWriter {
     for (const auto partner : partners) implied_[partner];
   }
 
-  /// Sub-index that line i of an object's sections belongs to.
   void list_object(const Object& object) {
     const bool manufacturer = object.index >= 0x2000 && object.index < 0x6000;
     const auto* list = sections_.other(manufacturer ? SectionKind::manufacturer_objects
