@@ -59,8 +59,9 @@ void add_eds_dcf(CLI::App& eds, int& exit_code) {
                       "a value: OBJECT=VALUE; VALUE as an EDS writes it, for a DOMAIN @FILE");
   command->add_option("-o,--output", options->out, "the DCF; - for stdout")->required();
   command->footer(
-      "The text of FILE stays byte for byte but for what is set. A value that the device\n"
-      "would refuse is an error, and nothing is written.\n\n"
+      "The text of FILE stays byte for byte but for what is set, and for PDOs that it only counts\n"
+      "(CompactPDO): those that are on are listed. A value that the device would refuse is an\n"
+      "error, and nothing is written.\n\n"
       "Example:\n  takt eds dcf drive.eds --node 5 --set 6081:00=1000 --set 1017=100 -o axis.dcf");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
