@@ -40,6 +40,7 @@ class Run {
   SimulationOutcome run() {
     loop_.start();
     while (world_.now() < options_.duration) cycle();
+    keep_worst_tpdos();
     loop_.request_stop();
     const Time limit = world_.now() + plan_.stop_timeout + stop_slack;
     while (!loop_.done() && world_.now() < limit) cycle();
@@ -55,6 +56,14 @@ class Run {
     exchange_->images.take_newest(image);
     Event event;
     while (exchange_->events.pop(event)) tell(event);
+  }
+
+  /// Before the stop, whose NMT commands delay the last TPDOs.
+  void keep_worst_tpdos() {
+    for (std::size_t row = 0; row < plan_.pdos.tpdos.size(); ++row) {
+      NodeOutcome& node = outcome_.nodes[plan_.pdos.tpdos[row].node_index];
+      node.worst_tpdo = std::max(node.worst_tpdo, log_.statistics().tpdo(row).worst);
+    }
   }
 
   void tell(const Event& event) {
@@ -103,7 +112,6 @@ class Run {
       node.tpdo_frames += wire.tpdo(row).frames;
       node.tpdo_late += wire.tpdo(row).late;
       node.tpdo_missing += snapshot.tpdos[row].missing;
-      node.worst_tpdo = std::max(node.worst_tpdo, wire.tpdo(row).worst);
     }
     for (std::size_t row = 0; row < plan_.pdos.rpdos.size(); ++row) {
       outcome_.nodes[plan_.pdos.rpdos[row].node_index].rpdo_frames += wire.rpdo(row).frames;

@@ -40,7 +40,7 @@ struct NodeOutcome {
   std::uint64_t tpdo_missing = 0;  ///< times it was expected and stayed away
   std::uint64_t tpdo_late = 0;
   std::uint64_t rpdo_frames = 0;
-  Time worst_tpdo{};  ///< SYNC to the end of its last TPDO
+  Time worst_tpdo{};  ///< SYNC to the end of its last TPDO, until the stop
 };
 
 /// What became of a simulated run. Nothing in it depends on the wall clock.
