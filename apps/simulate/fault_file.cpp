@@ -17,13 +17,15 @@ constexpr std::array<std::string_view, 12> keys{"kind",   "node",   "at",       
                                                 "until",  "time",   "probability", "ppm",
                                                 "cob_id", "object", "abort_code",  "value"};
 constexpr std::array<std::string_view, 2> more_keys{"emcy_code", "data"};
-constexpr std::array<std::string_view, 30> kinds{
-    "loss",         "duplicate",     "delay",          "error_frames", "babble",
-    "power_off",    "drift",         "mute_sdo",       "slow_sdo",     "refuse_object",
-    "refuse_write", "ignore_write",  "override_value", "late_bootup",  "no_bootup",
-    "no_heartbeat", "no_guarding",   "stuck_toggle",   "bootup_storm", "self_start",
-    "no_start",     "fixed_mapping", "lss_silent",     "lss_no_store", "mute_pdo",
-    "device_error", "reset",         "bus_off",        "stall_master", "interface_down"};
+
+std::vector<std::string_view> kinds() {
+  std::vector<std::string_view> all;
+  for (unsigned kind = 0;; ++kind) {
+    const auto known = sim::name(static_cast<sim::FaultKind>(kind));
+    if (!sim::fault_kind(known)) return all;
+    all.push_back(known);
+  }
+}
 
 std::vector<std::byte> little_endian(std::uint64_t value) {
   std::vector<std::byte> bytes;
@@ -170,7 +172,7 @@ class Reader {
     if (kind) {
       fault.kind = *kind;
     } else {
-      error(mark, "fault-kind", "unknown kind `" + text + "`" + did_you_mean(text, kinds));
+      error(mark, "fault-kind", "unknown kind `" + text + "`" + did_you_mean(text, kinds()));
     }
   }
 
