@@ -46,13 +46,13 @@ demo=$prefix/share/takt/demo/two_axes.yaml
 sed "s#\.\./eds/#$prefix/share/takt/eds/#; s/name: demo/name: other/" "$demo" >"$tmp/other.yaml"
 "$prefix/bin/taktd" "$tmp/other.yaml" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/hub" &  # the others talk by way of it
 started="$started $!"
-for _ in $(seq 50); do grep -q serving "$tmp/hub" && break || sleep 0.1; done
+for _ in $(seq 300); do grep -q serving "$tmp/hub" && break || sleep 0.1; done
 "$tmp/by_cmake/example" 2>"$tmp/log" &
 started="$started $!"
 sleep 2
 "$prefix/bin/taktd" "$demo" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 started="$! $started"  # before its hub
-for _ in $(seq 30); do
+for _ in $(seq 100); do
   "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example$' && exit 0 || sleep 0.5
 done
 echo "the example does not move the axes of a bus that comes after it" >&2
