@@ -58,9 +58,11 @@ class Master {
   bool take_newest(ImageView& image) noexcept { return exchange_->images.take_newest(image); }
   bool take(Event& event) noexcept { return exchange_->events.pop(event); }
   bool take(Reply& reply) noexcept { return exchange_->replies.pop(reply); }
-  /// When the next image will be there: sleep to it instead of being woken.
+  /// When the next image will be there: sleep to it instead of being woken. Read it before looking
+  /// for images: each image that was there before the prediction was made is seen by a take() that
+  /// comes after this call.
   Time next_publish() const noexcept {
-    return Time{exchange_->next_publish.load(std::memory_order_relaxed)};
+    return Time{exchange_->next_publish.load(std::memory_order_acquire)};
   }
 
   /// Stages the command of one output; `signal` counts in the whole layout. False: no output.

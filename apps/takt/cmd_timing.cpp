@@ -7,6 +7,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/image_delay.hpp"
 #include "apps/takt/timing_table.hpp"
 #include "master/gateway/names.hpp"
 #include "master/linux/clock.hpp"
@@ -37,20 +38,45 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
   std::fflush(stdout);
 }
 
-/// The next message of that bus.
-std::optional<timing_t> next(LcmClient& lcm, const std::string& channel) {
-  std::optional<timing_t> newest;
-  const Time until = monotonic_now() + silence_limit;
-  while (!newest && !interrupted && monotonic_now() < until) {
-    lcm.serve(
-        [&](std::string_view from, Bytes data) {
-          if (from != channel) return;
-          if (auto timing = decode<timing_t>(data)) newest = std::move(*timing);
-        },
-        monotonic_now() + std::chrono::milliseconds{100});
+/// The messages of one bus that tell of its timing.
+class TimingEar {
+ public:
+  TimingEar(LcmClient lcm, const std::string& bus)
+      : lcm_{std::move(lcm)},
+        timing_channel_{channel_name(bus, "TIMING")},
+        image_channel_{channel_name(bus, "IMAGE")} {}
+
+  /// The next timing_t, with the delays of the images that came here since the one before it.
+  std::optional<timing_t> next() {
+    newest_.reset();
+    const Time until = monotonic_now() + silence_limit;
+    while (!newest_ && !interrupted && monotonic_now() < until) {
+      lcm_.serve([this](std::string_view from, Bytes data) { take(from, data); },
+                 monotonic_now() + std::chrono::milliseconds{100});
+    }
+    return newest_;
   }
-  return newest;
-}
+
+ private:
+  void take(std::string_view from, Bytes data) {
+    const Time now = monotonic_now();
+    if (from == image_channel_) {
+      if (const auto image = decode<image_t>(data)) delay_.take(*image, now, realtime_offset());
+    } else if (from == timing_channel_) {
+      auto timing = decode<timing_t>(data);
+      if (!timing) return;
+      timing->histograms.push_back(delay_.finish());
+      ++timing->num_histograms;
+      newest_ = std::move(*timing);
+    }
+  }
+
+  LcmClient lcm_;
+  std::string timing_channel_;
+  std::string image_channel_;
+  ImageDelay delay_;
+  std::optional<timing_t> newest_;
+};
 
 int run(const TimingOptions& options) {
   std::signal(SIGINT, [](int) { interrupted = true; });
@@ -58,10 +84,12 @@ int run(const TimingOptions& options) {
   const auto daemon = DaemonClient::find(options.live);
   if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
   const std::string& bus = daemon->status().bus;
-  auto lcm = LcmClient::open(options.live.lcm_url, {any_bus("TIMING")});
+  auto lcm = LcmClient::open(options.live.lcm_url, {any_bus("TIMING"), any_bus("IMAGE")});
   if (!lcm) return complain(lcm.error(), 3);
+  TimingEar ear{std::move(*lcm), bus};
+  ear.next();  // from here on all rows are of the same second
   do {
-    const auto timing = next(*lcm, channel_name(bus, "TIMING"));
+    const auto timing = ear.next();
     if (interrupted) break;
     if (!timing) return complain("the daemon of bus '" + bus + "' has gone silent", 3);
     print(bus, *timing, options);
@@ -75,7 +103,8 @@ void add_timing(CLI::App& app, int& exit_code) {
   auto* verb = app.add_subcommand("timing", "how punctual the cycle of a running daemon is");
   verb->footer(
       "Times of the last second: how late SYNC went out, when the last synchronous PDO and the\n"
-      "image came after it, how old set-points were when they were sent. Each column of the\n"
+      "image came after it, when the image was handed to LCM and when this program received it\n"
+      "(on the daemon's machine), how old set-points were when they were sent. Each column of the\n"
       "picture is twice as long a time as the one before.\n"
       "Examples:\n  takt timing\n  takt timing --follow --json > night.jsonl");
   auto options = std::make_shared<TimingOptions>();

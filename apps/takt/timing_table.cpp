@@ -53,6 +53,8 @@ std::string_view timing_label(std::string_view histogram) {
   if (histogram == "sync_on_wire") return "SYNC on wire by";
   if (histogram == "sync_to_last_pdo") return "last PDO after";
   if (histogram == "sync_to_publish") return "image after";
+  if (histogram == "sync_to_lcm") return "on LCM after";
+  if (histogram == "sync_to_callback") return "received after";
   if (histogram == "command_age") return "command age";
   return histogram;
 }

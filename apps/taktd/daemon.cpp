@@ -159,20 +159,34 @@ std::optional<Exit> Daemon::start() {
 }
 
 void Daemon::loop() {
-  std::vector<pollfd> descriptors;
-  while (!master_->finished()) {
-    const bool image = bridge_->serve();
-    if (image) hear_intruders();
-    if (gateway_) gateway_->serve();
-    const Time now = monotonic_now();
-    watch_conditions(now);
-    recorder_.serve(now);
-    if (StopSignal::count() > 1 || stop_takes_too_long(now)) return;
-    descriptors.clear();
-    link_->watch(descriptors);
-    if (gateway_) gateway_->watch(descriptors);
-    wait_.wait(descriptors, master_->next_publish(), std::min(bridge_->next_message(), end_));
-  }
+  const FrontRound round{
+      .next_image = [this] { return master_->next_publish(); },
+      .serve = [this] { return serve(); },
+      .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};
+  while (!master_->finished() && !gives_up(monotonic_now())) round.run();
+}
+
+Time Daemon::serve() {
+  const bool image = bridge_->serve();
+  if (image) hear_intruders();
+  if (gateway_) gateway_->serve();
+  const Time now = monotonic_now();
+  watch_conditions(now);
+  recorder_.serve(now);
+  return std::min(bridge_->next_message(), end_);
+}
+
+void Daemon::wait(Time next_image, Time latest) {
+  if (gives_up(monotonic_now())) return;
+  descriptors_.clear();
+  link_->watch(descriptors_);
+  if (gateway_) gateway_->watch(descriptors_);
+  wait_.wait(descriptors_, next_image, latest);
+}
+
+/// Nobody waits any longer for the end of the ordered stop.
+bool Daemon::gives_up(Time now) const {
+  return StopSignal::count() > 1 || (stopping_ && now > stop_limit_);
 }
 
 void Daemon::hear_intruders() {
@@ -249,7 +263,5 @@ void Daemon::stop(Exit reason, const std::string& why) {
   service_.stopping();
   master_->request_stop();
 }
-
-bool Daemon::stop_takes_too_long(Time now) const { return stopping_ && now > stop_limit_; }
 
 }  // namespace takt

@@ -16,6 +16,7 @@
 #include "apps/taktd/stop_signal.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/gateway/bridge.hpp"
+#include "master/gateway/front_round.hpp"
 #include "master/gateway/lcm_link.hpp"
 #include "master/linux/rt_thread.hpp"
 #include "master/master.hpp"
@@ -45,6 +46,9 @@ class Daemon {
   std::optional<Exit> open_black_box();
   std::optional<Exit> start();
   void loop();
+  Time serve();
+  void wait(Time next_image, Time latest);
+  bool gives_up(Time now) const;
   void hear_intruders();
   void watch_conditions(Time now);
   void watch_lateness();
@@ -52,7 +56,6 @@ class Daemon {
   void end_of_time();
   std::string never_ready() const;
   void stop(Exit reason, const std::string& why);
-  bool stop_takes_too_long(Time now) const;
   std::thread start_bus_thread(std::function<void()> body);
 
   LoadedNetwork network_;
@@ -61,6 +64,7 @@ class Daemon {
   std::int64_t session_;
   StopSignal signals_;
   FrontWait wait_;
+  std::vector<pollfd> descriptors_;
   ServiceNotify service_;
   Reporter reporter_;
   std::bitset<256> once_ready_;  // nodes that have booted in this run

@@ -43,6 +43,7 @@ std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_
       bus.cycles_missed, bus.cycles_late, bus.outputs_skipped, bus.images_incomplete);
   text += times_line("SYNC lateness", timing.sync_lateness);
   text += times_line("SYNC to image", timing.sync_to_publish);
+  text += times_line("SYNC to LCM", bridge.sync_to_lcm());
   text += times_line("command age", timing.command_age);
   text += fmt::format("  frames             {} received, {} sent, {} not sent, {} lost\n",
                       bus.frames_received, bus.frames_sent, bus.send_failures,

@@ -102,6 +102,7 @@ bool Bridge::publish_images() {
     if (typed_ && behind++ < most_behind) {
       typed_->publish(image, wall_minus_monotonic_, transport_);
     }
+    sync_to_lcm_.record(monotonic_now() - image.sync_time);
     cycle_ = image.cycle;
     if (guest_ != nullptr) guest_->see(image);
     marks_.assign(image.pdos.begin(), image.pdos.end());
@@ -353,7 +354,7 @@ void Bridge::publish_pdos() {
 void Bridge::publish_timing() {
   const Time now = monotonic_now();
   next_timing_ = now + timing_period;
-  timing_t message = timing_messages_.fill(master_.timing(), cycle_);
+  timing_t message = timing_messages_.fill(master_.timing(), sync_to_lcm_, cycle_);
   message.utime = wall_microseconds(now);
   publish(channels_.timing, message);
 }

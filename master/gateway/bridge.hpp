@@ -73,6 +73,7 @@ class Bridge {
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
   std::uint64_t commands_refused() const noexcept { return commands_.refused(); }
+  const Histogram& sync_to_lcm() const noexcept { return sync_to_lcm_; }
   const Channels& channels() const noexcept { return channels_; }
 
  private:
@@ -118,6 +119,7 @@ class Bridge {
   std::vector<layout_t> layout_messages_;
   StatusMessages status_messages_;
   TimingMessages timing_messages_;
+  Histogram sync_to_lcm_;  // from SYNC until the image is handed over, typed messages included
   Commands commands_;
   Requests requests_;
   Transfers transfers_;

@@ -57,6 +57,8 @@ std::int16_t bus_state(const PortNews& port) noexcept {
 
 float microseconds(Time time) noexcept { return static_cast<float>(time.count()) / 1000.0F; }
 
+}  // namespace
+
 histogram_t histogram_message(std::string name, const HistogramSnapshot& times) {
   histogram_t message{};
   message.name = std::move(name);
@@ -72,8 +74,6 @@ histogram_t histogram_message(std::string name, const HistogramSnapshot& times) 
   message.num_bins = static_cast<std::int32_t>(message.bins.size());
   return message;
 }
-
-}  // namespace
 
 float BusLoad::update(Time now, std::uint64_t wire_bits) {
   samples_.push_back({.when = now, .bits = wire_bits});
@@ -143,7 +143,8 @@ std::vector<status_t> StatusMessages::fill(const StatusSnapshot& snapshot,
   return messages;
 }
 
-timing_t TimingMessages::fill(const TimingHistograms& timing, std::uint64_t cycle) {
+timing_t TimingMessages::fill(const TimingHistograms& timing, const Histogram& sync_to_lcm,
+                              std::uint64_t cycle) {
   struct Named {
     const char* name;
     const Histogram& histogram;
@@ -152,6 +153,7 @@ timing_t TimingMessages::fill(const TimingHistograms& timing, std::uint64_t cycl
                        {"sync_on_wire", timing.sync_on_wire},
                        {"sync_to_last_pdo", timing.sync_to_last_pdo},
                        {"sync_to_publish", timing.sync_to_publish},
+                       {"sync_to_lcm", sync_to_lcm},
                        {"command_age", timing.command_age}};
   timing_t message{};
   message.schema = message_schema;

@@ -61,11 +61,14 @@ class StatusMessages {
   Diagnosis diagnosis_;
 };
 
+histogram_t histogram_message(std::string name, const HistogramSnapshot& times);
+
 /// The histograms of the time since the last call.
 class TimingMessages {
  public:
   explicit TimingMessages(std::int64_t session) : session_{session} {}
-  timing_t fill(const TimingHistograms& timing, std::uint64_t cycle);
+  /// `sync_to_lcm`: from SYNC until the front thread has handed the image to LCM.
+  timing_t fill(const TimingHistograms& timing, const Histogram& sync_to_lcm, std::uint64_t cycle);
 
  private:
   std::int64_t session_;

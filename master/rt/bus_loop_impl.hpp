@@ -206,7 +206,7 @@ void BusLoop<P, N>::run_controller(const ImageStamp& stamp) noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::predict_next_publish() noexcept {
   const Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
-  exchange_.next_publish.store(next.count(), std::memory_order_relaxed);
+  exchange_.next_publish.store(next.count(), std::memory_order_release);
 }
 
 /// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.

@@ -121,11 +121,14 @@ TEST(Timing, ShowsTheHistogramsOfTheLastSecond) {
   const Ended json = run({TAKT, "timing", "--json", "--lcm-url", daemon.lcm_url()}, folder.path());
 
   EXPECT_EQ(table.exit_code, 0);
-  for (const char* text : {"SYNC late by", "last PDO after", "image after", "█"}) {
+  for (const char* text :
+       {"SYNC late by", "last PDO after", "image after", "on LCM after", "received after", "█"}) {
     EXPECT_NE(table.output.find(text), std::string::npos) << text << "\n" << table.output;
   }
   EXPECT_EQ(json.exit_code, 0);
-  EXPECT_NE(json.output.find("\"sync_lateness\""), std::string::npos) << json.output;
+  for (const char* text : {"\"sync_lateness\"", "\"sync_to_lcm\"", "\"sync_to_callback\""}) {
+    EXPECT_NE(json.output.find(text), std::string::npos) << text << "\n" << json.output;
+  }
 }
 
 TEST(TwoDevicesOfOneId, AreToldByTheDaemon) {

@@ -1,0 +1,105 @@
+#include "master/gateway/front_round.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <gtest/gtest.h>
+
+#include "apps/taktd/front_wait.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time period = 2ms;
+
+/// A bus thread and a front thread in virtual time: every step of the front thread takes time, and
+/// the bus thread publishes whenever its time has come, also in the middle of a step.
+class VirtualFront {
+ public:
+  struct Steps {
+    Time first_image{};  ///< when image 1 is published
+    Time prediction{};   ///< from an image to the prediction of the next one
+    Time before_look{};  ///< from the start of serve() to the look for images
+    Time after_look{};   ///< from there to its end
+    Time wake_up{};      ///< what a wait takes beyond its end
+  };
+  explicit VirtualFront(const Steps& steps) : steps_{steps} {}
+
+  /// The longest time that an image waited for the front thread.
+  Time longest_delay(unsigned images) {
+    const FrontRound round{.next_image = [this] { return next_image(); },
+                           .serve = [this] { return serve(); },
+                           .wait = [this](Time next, Time latest) { wait(next, latest); }};
+    while (taken_ < images) round.run();
+    return longest_;
+  }
+
+ private:
+  Time published_at(unsigned image) const { return steps_.first_image + (image - 1) * period; }
+
+  Time next_image() {
+    unsigned predicted = 1;
+    while (now_ >= published_at(predicted) + steps_.prediction) ++predicted;
+    now_ += 1us;
+    return published_at(predicted);
+  }
+  Time serve() {
+    now_ += steps_.before_look;
+    for (; now_ >= published_at(taken_ + 1); ++taken_) {
+      longest_ = std::max(longest_, now_ - published_at(taken_ + 1));
+    }
+    now_ += steps_.after_look;
+    return now_ + 10 * period;
+  }
+  void wait(Time next, Time latest) {
+    now_ += std::max(Time{0}, std::min(latest - now_, pause_before_image(now_, next)));
+    now_ += steps_.wake_up;
+  }
+
+  Steps steps_;
+  Time now_{};
+  Time longest_{};
+  unsigned taken_ = 0;
+};
+
+TEST(FrontRound, NeverSleepsOverAnImageWhereverTheBusThreadPublishes) {
+  for (Time phase = 1us; phase < period; phase += 3us) {
+    for (const Time prediction : {0us, 2us}) {
+      VirtualFront front{{.first_image = phase,
+                          .prediction = prediction,
+                          .before_look = 5us,
+                          .after_look = 60us,
+                          .wake_up = 7us}};
+
+      EXPECT_LE(front.longest_delay(20), 200us) << "first image at " << phase.count() << " ns";
+    }
+  }
+}
+
+TEST(FrontRound, AsksForTheNextImageBeforeItLooksForImages) {
+  std::string order;
+  const FrontRound round{.next_image =
+                             [&] {
+                               order += 'n';
+                               return Time{7};
+                             },
+                         .serve =
+                             [&] {
+                               order += 's';
+                               return Time{9};
+                             },
+                         .wait =
+                             [&](Time next, Time latest) {
+                               order += 'w';
+                               EXPECT_EQ(next, Time{7});
+                               EXPECT_EQ(latest, Time{9});
+                             }};
+
+  round.run();
+
+  EXPECT_EQ(order, "nsw");
+}
+
+}  // namespace
+}  // namespace takt
