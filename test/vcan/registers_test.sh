@@ -1,0 +1,64 @@
+#!/bin/bash
+# registers_test.sh WITH_VCAN LIBRARIES - both ways in which user-mode-linux can set registers, on any processor: with
+# its own code, and with libwhole_registers.so preloaded. A host with the large state of AMX is imitated where there is none.
+# Exit code 77: this is no x86 processor, and user-mode-linux is not there.
+set -u
+case $(uname -m) in x86_64 | i?86) ;; *) exit 77 ;; esac
+with_vcan=$1 libraries=$2
+export WITH_VCAN_LIBRARY=$libraries/libwhole_registers.so
+unset WITH_VCAN_REGISTERS
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+amx() { grep -qm1 amx_tile /proc/cpuinfo; }
+
+# Floating-point numbers in two processes that wait for each other: their registers are saved and set again and again.
+cat >"$folder/numbers.py" <<'END'
+import os, socket
+ends = socket.socketpair()
+child = os.fork() == 0
+number, end = (0.5, ends[0]) if child else (0.25, ends[1])
+total = 0.0
+for turn in range(200):
+    total += number
+    end.send(b"x")
+    end.recv(1)
+assert total == 200 * number, total
+if child:
+    os._exit(0)
+assert os.wait()[1] == 0
+print("numbers are right")
+END
+
+# guest WAY: the numbers in a guest.
+guest() { "$with_vcan" -m uml -t 300 -x "$1" /usr/bin/python3 "$folder/numbers.py" >"$folder/said" 2>&1; }
+
+# expect WORDS WHAT: the last guest has said so.
+expect() {
+  if grep -q "$1" "$folder/said"; then echo "ok    $2"; return; fi
+  echo "FAIL  $2"
+  cat "$folder/said"
+  failures=$((failures + 1))
+}
+
+guest auto; expect "numbers are right" "a guest calculates in the way that with-vcan chooses here"
+guest whole; expect "numbers are right" "with -x whole, on this processor"
+guest plain
+if amx; then expect put_fp_registers "with -x plain it panics, as this processor has AMX"
+else expect "numbers are right" "with -x plain, on this processor"; fi
+
+# From here on with the state of AMX. The kernel's own preload comes first, as it has to cope with this one.
+cat >"$folder/kernel" <<END
+#!/bin/sh
+LD_PRELOAD="\${LD_PRELOAD:+\$LD_PRELOAD:}$libraries/liblarge_registers.so" exec ${WITH_VCAN_KERNEL:-linux.uml} "\$@"
+END
+chmod 755 "$folder/kernel"
+export WITH_VCAN_KERNEL=$folder/kernel
+guest plain; expect put_fp_registers "with -x plain it panics on a host with 11 kB of registers"
+guest whole; expect "numbers are right" "with -x whole it calculates there"
+WITH_VCAN_REGISTERS=whole "$with_vcan" -m uml -t 300 echo "chosen by the variable" >"$folder/said" 2>&1
+expect "chosen by the variable" "WITH_VCAN_REGISTERS=whole is the same"
+WITH_VCAN_LIBRARY=$folder/none guest whole; expect "build the target whole_registers" "without the library it says what to build"
+guest some; expect "is auto, whole or plain" "a wrong way is refused"
+[ $failures -eq 0 ]
