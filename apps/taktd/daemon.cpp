@@ -144,7 +144,7 @@ std::optional<Exit> Daemon::start() {
   }
   reporter_.say(Weight::note, plan_summary(network_) + "  on " + bus_name_ + ", LCM channels " +
                                   Channels{network_.plan.name}.image + " ...");
-  bridge_ = std::make_unique<Bridge>(*master_, *link_,
+  bridge_ = std::make_unique<Bridge>(*master_, *link_, clocks_,
                                      BridgeOptions{.session = session_,
                                                    .observe = options_.observe,
                                                    .interface = bus_name_,
@@ -153,7 +153,7 @@ std::optional<Exit> Daemon::start() {
                                      [this](const Notice& notice) { on_notice(notice); });
   recorder_.attach(*bridge_, session_);
   if (gateway_) gateway_->attach(*master_, *bridge_);
-  if (options_.run_for > Time{0}) end_ = monotonic_now() + options_.run_for;
+  if (options_.run_for > Time{0}) end_ = clocks_.now() + options_.run_for;
   service_.ready("bus " + network_.plan.name + " on " + bus_name_);
   return std::nullopt;
 }
@@ -163,21 +163,21 @@ void Daemon::loop() {
       .next_image = [this] { return master_->next_publish(); },
       .serve = [this] { return serve(); },
       .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};
-  while (!master_->finished() && !gives_up(monotonic_now())) round.run();
+  while (!master_->finished() && !gives_up(clocks_.now())) round.run();
 }
 
 Time Daemon::serve() {
   const bool image = bridge_->serve();
   if (image) hear_intruders();
   if (gateway_) gateway_->serve();
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   watch_conditions(now);
   recorder_.serve(now);
   return std::min(bridge_->next_message(), end_);
 }
 
 void Daemon::wait(Time next_image, Time latest) {
-  if (gives_up(monotonic_now())) return;
+  if (gives_up(clocks_.now())) return;
   descriptors_.clear();
   link_->watch(descriptors_);
   if (gateway_) gateway_->watch(descriptors_);
@@ -258,7 +258,7 @@ void Daemon::stop(Exit reason, const std::string& why) {
   stopping_ = true;
   exit_ = reason;
   why_ = why;
-  stop_limit_ = monotonic_now() + network_.plan.stop_timeout + patience;
+  stop_limit_ = clocks_.now() + network_.plan.stop_timeout + patience;
   reporter_.say(reason == Exit::good ? Weight::note : Weight::error, why + "; stopping in order");
   service_.stopping();
   master_->request_stop();

@@ -16,6 +16,7 @@
 #include "apps/taktd/stop_signal.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/gateway/bridge.hpp"
+#include "master/gateway/clocks.hpp"
 #include "master/gateway/front_round.hpp"
 #include "master/gateway/lcm_link.hpp"
 #include "master/linux/rt_thread.hpp"
@@ -63,6 +64,7 @@ class Daemon {
   std::string bus_name_;
   std::int64_t session_;
   StopSignal signals_;
+  LinuxClocks clocks_;
   FrontWait wait_;
   std::vector<pollfd> descriptors_;
   ServiceNotify service_;

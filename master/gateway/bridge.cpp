@@ -8,7 +8,6 @@
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
 #include "master/gateway/sync_message.hpp"
-#include "master/linux/clock.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {
@@ -36,9 +35,11 @@ Channels::Channels(const std::string& bus)
       transfer{channel_name(bus, "TRANSFER")},
       transfer_state{channel_name(bus, "TRANSFER_STATE")} {}
 
-Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell)
+Bridge::Bridge(Master& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
+               NoticeSink tell)
     : master_{master},
       transport_{transport},
+      clocks_{clocks},
       options_{std::move(options)},
       tell_{std::move(tell)},
       channels_{master.plan().name},
@@ -62,7 +63,7 @@ Bridge::Bridge(Master& master, Transport& transport, BridgeOptions options, Noti
                   .state = [this](const transfer_state_t& state) { tell_transfer(state); }}},
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
-      wall_minus_monotonic_{realtime_offset()} {
+      wall_minus_monotonic_{clocks_.wall_offset()} {
   if (options_.typed) typed_.emplace(master.plan(), options_.session);
   master_.status(snapshot_);
 }
@@ -77,7 +78,7 @@ bool Bridge::serve() {
   take_messages();
   take_replies();
   take_events();
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   transfers_.on_time(now);
   if (now >= next_layout_) publish_layout();
   if (now >= next_status_) publish_status();
@@ -95,14 +96,14 @@ bool Bridge::publish_images() {
   bool some = false;
   unsigned behind = 0;
   while (master_.take(image)) {
-    if (!some) wall_minus_monotonic_ = realtime_offset();
+    if (!some) wall_minus_monotonic_ = clocks_.wall_offset();
     for (const image_t& part : image_messages_.fill(image, wall_minus_monotonic_)) {
       publish(channels_.image, part);
     }
     if (typed_ && behind++ < most_behind) {
       typed_->publish(image, wall_minus_monotonic_, transport_);
     }
-    sync_to_lcm_.record(monotonic_now() - image.sync_time);
+    sync_to_lcm_.record(clocks_.now() - image.sync_time);
     cycle_ = image.cycle;
     if (guest_ != nullptr) guest_->see(image);
     marks_.assign(image.pdos.begin(), image.pdos.end());
@@ -115,7 +116,7 @@ bool Bridge::publish_images() {
 void Bridge::take_messages() {
   master_.status(snapshot_);
   transport_.serve([this](std::string_view channel, Bytes data) { on_message(channel, data); });
-  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(monotonic_now());
+  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(clocks_.now());
 }
 
 void Bridge::on_message(std::string_view channel, Bytes data) {
@@ -133,7 +134,7 @@ void Bridge::on_typed(std::string_view channel, Bytes data) {
 }
 
 void Bridge::take_command(const command_t& command) {
-  commands_.take(command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
+  commands_.take(command, {.cycle = cycle_, .now = clocks_.now(), .nodes = snapshot_.nodes});
 }
 
 void Bridge::on_command(Bytes data) {
@@ -155,15 +156,15 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   }
   command.values.assign(values.begin(), values.end());
   const bool taken =
-      commands_.take(command, {.cycle = cycle_, .now = monotonic_now(), .nodes = snapshot_.nodes});
-  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(monotonic_now());
+      commands_.take(command, {.cycle = cycle_, .now = clocks_.now(), .nodes = snapshot_.nodes});
+  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(clocks_.now());
   return taken;
 }
 
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
   if (!request) return tell_damaged(channels_.request, request.error());
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   if (requests_.is_echo(*request, now)) return;
   if (request->service == "emcy_history") return answer_history(*request);
   if (request->service == "record" && record_) return record_(*request);
@@ -206,16 +207,16 @@ void Bridge::answer_history(const request_t& request) {
 void Bridge::on_transfer(Bytes data) {
   const auto transfer = decode<transfer_t>(data);
   if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
-  transfers_.take(*transfer, monotonic_now());
+  transfers_.take(*transfer, clocks_.now());
 }
 
 void Bridge::tell_transfer(transfer_state_t state) {
-  state.utime = wall_microseconds(monotonic_now());
+  state.utime = wall_microseconds(clocks_.now());
   publish(channels_.transfer_state, state);
 }
 
 void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
   if (!kept_back) return;
   std::string sentence = "a message on " + channel + " can't be read: " + std::string{text(fault)};
@@ -236,12 +237,12 @@ void Bridge::take_replies() {
       if (guest_ != nullptr) guest_->take(reply);
       continue;
     }
-    if (auto message = requests_.finish(reply, monotonic_now())) answer(std::move(*message));
+    if (auto message = requests_.finish(reply, clocks_.now())) answer(std::move(*message));
   }
 }
 
 void Bridge::answer(reply_t reply) {
-  reply.utime = wall_microseconds(monotonic_now());
+  reply.utime = wall_microseconds(clocks_.now());
   publish(channels_.reply, reply);
 }
 
@@ -253,7 +254,7 @@ void Bridge::take_events() {
     emcy_log_.take(event, wall_microseconds(event.when));
     tell(event);
   }
-  for (const Notice& notice : outages_.take_due(monotonic_now())) send(notice);
+  for (const Notice& notice : outages_.take_due(clocks_.now())) send(notice);
   tell_lost_events();
 }
 
@@ -265,7 +266,7 @@ void Bridge::tell_lost_events() {
   const std::uint64_t lost = events_lost();
   const std::uint64_t more = lost - std::exchange(events_lost_told_, lost);
   if (more == 0) return;
-  tell({.when = monotonic_now(),
+  tell({.when = clocks_.now(),
         .cycle = cycle_,
         .node = 0,
         .kind = "events_lost",
@@ -311,7 +312,7 @@ void Bridge::send(const Notice& notice) {
 }
 
 void Bridge::publish_layout() {
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   next_layout_ = now + layout_period;
   for (layout_t& part : layout_messages_) {
     part.utime = wall_microseconds(now);
@@ -320,7 +321,7 @@ void Bridge::publish_layout() {
 }
 
 void Bridge::publish_status() {
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   next_status_ = now + status_period;
   GatewayStatus gateway{.image_overruns = master_.image_overruns(),
                         .event_overruns = events_lost(),
@@ -342,7 +343,7 @@ void Bridge::publish_status() {
 }
 
 void Bridge::publish_pdos() {
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   next_pdos_ = now + pdos_period;
   for (pdo_status_t& part : pdo_messages(master_.plan(), snapshot_, marks_, cycle_)) {
     part.utime = wall_microseconds(now);
@@ -352,7 +353,7 @@ void Bridge::publish_pdos() {
 }
 
 void Bridge::publish_timing() {
-  const Time now = monotonic_now();
+  const Time now = clocks_.now();
   next_timing_ = now + timing_period;
   timing_t message = timing_messages_.fill(master_.timing(), sync_to_lcm_, cycle_);
   message.utime = wall_microseconds(now);

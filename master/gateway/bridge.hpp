@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "master/gateway/clocks.hpp"
 #include "master/gateway/commands.hpp"
 #include "master/gateway/emcy_history.hpp"
 #include "master/gateway/emcy_log.hpp"
@@ -45,7 +46,8 @@ struct BridgeOptions {
 class Bridge {
  public:
   /// `tell` hears what LCM hears of events and of the gateway's own notices, after it has.
-  Bridge(Master& master, Transport& transport, BridgeOptions options, NoticeSink tell);
+  Bridge(Master& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
+         NoticeSink tell);
 
   /// Somebody else who hears images, events and the answers to requests with FrontGuest::mark.
   /// Outlives this.
@@ -109,6 +111,7 @@ class Bridge {
 
   Master& master_;
   Transport& transport_;
+  const Clocks& clocks_;
   BridgeOptions options_;
   NoticeSink tell_;
   FrontGuest* guest_ = nullptr;

@@ -4,6 +4,7 @@
 
 #include "master/gateway/bridge.hpp"
 #include "master/sim/device.hpp"
+#include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {
@@ -42,7 +43,8 @@ TEST(GroupCommand, AllSignalsOfOneMessageBecomeValidWithOneSync) {
   OneMessage lcm;
   BridgeOptions options;
   options.session = 7;
-  Bridge bridge{*rig.master, lcm, options, [](const Notice&) {}};
+  const test::RigClocks clocks{rig};
+  Bridge bridge{*rig.master, lcm, clocks, options, [](const Notice&) {}};
   lcm.channel = bridge.channels().command;
   const auto target = [&](NodeId node) {
     return rig.world->device(node)->objects().number({0x607A, 0});

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
+#include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {
@@ -45,7 +46,8 @@ TEST(LostEvents, AreToldOnceWithTheirNumber) {
   rig.use(port);
   NobodyHears lcm;
   std::vector<std::string> texts;
-  Bridge bridge{*rig.master, lcm, {}, [&](const Notice& notice) {
+  const test::RigClocks clocks{rig};
+  Bridge bridge{*rig.master, lcm, clocks, {}, [&](const Notice& notice) {
                   if (notice.kind == "events_lost") texts.push_back(notice.text);
                 }};
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
+#include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {
@@ -32,7 +33,8 @@ TEST(PublishingOrder, NothingOfACycleGoesOutBeforeItsImage) {
   SentChannels lcm;
   BridgeOptions options;
   options.session = 7;
-  Bridge bridge{*rig.master, lcm, options, [](const Notice&) {}};
+  const test::RigClocks clocks{rig};
+  Bridge bridge{*rig.master, lcm, clocks, options, [](const Notice&) {}};
   bridge.serve();
 
   for (int cycle = 0; cycle < 50; ++cycle) {

@@ -1,0 +1,18 @@
+#pragma once
+#include "master/gateway/clocks.hpp"
+#include "test/virtual/rig.hpp"
+
+namespace takt::test {
+
+/// The clocks of a rig's virtual time, which is its wall clock as well.
+class RigClocks final : public Clocks {
+ public:
+  explicit RigClocks(const Rig& rig) : rig_{rig} {}
+  Time now() const noexcept override { return rig_.world->now(); }
+  Time wall_offset() const noexcept override { return {}; }
+
+ private:
+  const Rig& rig_;
+};
+
+}  // namespace takt::test
