@@ -9,12 +9,14 @@
 #include <sys/eventfd.h>
 #include <sys/file.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <thread>
 #include <vector>
 
 #include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
 #include "master/linux/message_batch.hpp"
+#include "master/linux/start_thread.hpp"
 #include "master/linux/unix_address.hpp"
 #include "master/linux/unix_bus_record.hpp"
 
@@ -39,6 +41,22 @@ void enlarge_send_buffer(int fd) noexcept {
   }
 }
 
+/// Anything else that is there stays, and bind() then says that the address is in use.
+void remove_socket(const char* path) noexcept {
+  struct stat found{};
+  if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path);
+}
+
+/// What bind() or listen() has refused, in words.
+std::string refusal(const std::string& path, int error) {
+  struct stat found{};
+  if (error != EADDRINUSE || lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) {
+    return std::string{"cannot listen: "} + std::strerror(error);
+  }
+  return "there is something else of this name already, which is left alone; the bus needs a path "
+         "of its own";
+}
+
 }  // namespace
 
 class UnixBusHub::Impl {
@@ -53,8 +71,12 @@ class UnixBusHub::Impl {
 
   /// False: somebody else hosts. An error is that of listening.
   std::expected<bool, int> try_to_host();
-  void start() {
-    thread_ = std::thread{[this] { run(); }};
+  /// An error is that of the thread, which could not be created.
+  std::expected<void, int> start() {
+    auto thread = start_thread([this] { run(); });
+    if (!thread) return std::unexpected{thread.error()};
+    thread_ = std::move(*thread);
+    return {};
   }
   bool hosting() const noexcept { return hosting_.load(std::memory_order_relaxed); }
 
@@ -81,7 +103,7 @@ class UnixBusHub::Impl {
 std::expected<bool, int> UnixBusHub::Impl::try_to_host() {
   if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) return false;
   FileDescriptor listener{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  unlink(address_.sun_path);  // of a host that is gone: the lock is ours
+  remove_socket(address_.sun_path);  // of a host that is gone: the lock is ours
   const auto* address = reinterpret_cast<const sockaddr*>(&address_);
   if (!listener || bind(listener.get(), address, sizeof address_) != 0 ||
       listen(listener.get(), static_cast<int>(max_clients)) != 0) {
@@ -193,18 +215,24 @@ bool UnixBusHub::hosting() const noexcept { return impl_->hosting(); }
 
 std::expected<UnixBusHub, BusError> UnixBusHub::join(const std::string& path) {
   const auto refuse = [&path](const std::string& what, int error) {
-    return std::unexpected{
-        BusError{"unix:" + path + ": " + what + ": " + std::strerror(error), error}};
+    return std::unexpected{BusError{"unix:" + path + ": " + what, error}};
+  };
+  const auto refuse_with = [&refuse](const std::string& what, int error) {
+    return refuse(what + ": " + std::strerror(error), error);
   };
   const auto address = unix_address(path);
-  if (!address) return refuse("a path of 1 to 107 bytes is needed", ENAMETOOLONG);
+  if (!address) return refuse_with("a path of 1 to 107 bytes is needed", ENAMETOOLONG);
   FileDescriptor lock{::open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
-  if (!lock) return refuse("cannot create the lock file beside it", errno);
+  if (!lock) return refuse_with("cannot create the lock file beside it", errno);
   FileDescriptor stop{eventfd(0, EFD_CLOEXEC)};
-  if (!stop) return refuse("eventfd", errno);
+  if (!stop) return refuse_with("eventfd", errno);
   auto impl = std::make_unique<Impl>(std::move(lock), std::move(stop), *address);
-  if (const auto hosts = impl->try_to_host(); !hosts) return refuse("cannot listen", hosts.error());
-  impl->start();
+  if (const auto hosts = impl->try_to_host(); !hosts) {
+    return refuse(refusal(path, hosts.error()), hosts.error());
+  }
+  if (const auto started = impl->start(); !started) {
+    return refuse_with("no thread can be created", started.error());
+  }
   return UnixBusHub{std::move(impl)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -84,6 +85,27 @@ void make_acquainted(UnixBusPort& a, UnixBusPort& b) {
   };
   drain(a);
   drain(b);
+}
+
+TEST_F(UnixBus, LeavesAFileAloneThatIsNoSocket) {
+  folder_.write("bus", "the only copy");
+
+  const auto opened = UnixBusPort::open({.path = path_});
+
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().message.find("which is left alone"), std::string::npos)
+      << opened.error().message;
+  std::string content;
+  std::getline(std::ifstream{path_}, content);
+  EXPECT_EQ(content, "the only copy");
+}
+
+TEST_F(UnixBus, TakesThePlaceOfASocketThatItsHostHasLeft) {
+  const auto address = unix_address(path_);
+  const FileDescriptor left{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
+  ASSERT_EQ(bind(left.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
+
+  EXPECT_TRUE(UnixBusPort::open({.path = path_}));
 }
 
 TEST_F(UnixBus, CarriesAFrameUnchangedToTheOthersButNotToItsSender) {
