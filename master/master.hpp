@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -47,6 +48,8 @@ class Master {
 
   /// Begins the ordered stop; finished() tells its end, within BusPlan::stop_timeout.
   void request_stop() noexcept { exchange_->stop_requested.store(true); }
+  /// What request_stop() sets: for a signal handler. Lives as long as the master.
+  std::atomic<bool>& stop_requested() noexcept { return exchange_->stop_requested; }
   bool finished() const noexcept { return exchange_->finished.load(std::memory_order_acquire); }
   /// Waits for the bus thread to end.
   void join();

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 
 #include "apps/black_box/recording_format.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/start_thread.hpp"
 
 namespace takt {
 namespace {
@@ -41,6 +43,20 @@ bool is_recording_of(const std::string& name, const std::string& bus) {
          std::isdigit(static_cast<unsigned char>(name[digits])) != 0;
 }
 
+/// What a run left behind that was ended while it wrote.
+void forget_incomplete(const std::filesystem::path& folder, const std::string& bus) {
+  std::set<std::filesystem::path> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator{folder, error}) {
+    const std::string name = entry.path().filename().string();
+    const std::string_view mark = recording_format::incomplete;
+    if (name.starts_with(mark) && is_recording_of(name.substr(mark.size()), bus)) {
+      found.insert(entry.path());
+    }
+  }
+  for (const auto& path : found) std::filesystem::remove(path, error);
+}
+
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
@@ -61,6 +77,7 @@ std::expected<std::unique_ptr<BlackBox>, std::string> BlackBox::open(const Black
   } else {
     return refused(std::error_code{errno, std::generic_category()}.message());
   }
+  forget_incomplete(options.folder, file_name(head.bus));
   return std::unique_ptr<BlackBox>{new BlackBox{options, plan, std::move(head), std::move(say)}};
 }
 
@@ -108,16 +125,22 @@ void BlackBox::serve(Time now) {
   const Tape* const tape = journal_.wanted();
   if (tape == nullptr) return;
   wanted_ = false;
-  write(*tape);
+  if (!write(*tape)) journal_.give_back();
 }
 
-void BlackBox::finish(const std::string& reason) {
-  if (writer_.joinable()) end_writing();
+bool BlackBox::finish(const std::string& reason, Time limit) {
+  const Time until = monotonic_now() + limit;
+  if (writer_.joinable()) {
+    if (!await_writer(until)) return false;
+    end_writing();
+  }
   if (reason_.empty()) reason_ = reason;
-  if (reason_.empty()) return;
+  if (reason_.empty()) return true;
   const Tape* const tape = wanted_ ? journal_.wanted() : nullptr;
-  write(tape != nullptr ? *tape : journal_.last());
+  if (!write(tape != nullptr ? *tape : journal_.last())) return true;
+  if (!await_writer(until)) return false;
   end_writing();
+  return true;
 }
 
 /// The writer is through. It looks every millisecond.
@@ -143,20 +166,30 @@ bool BlackBox::finish_running(const std::string& reason, Time limit) {
   }
   if (tape == nullptr) return false;  // the bus thread begins no cycle any more
   if (reason_.empty()) reason_ = reason;
-  write(*tape);
-  if (!await_writer(until)) return false;
+  if (!write(*tape) || !await_writer(until)) return false;
   end_writing();
   return !failed_;
 }
 
-void BlackBox::write(const Tape& tape) {
+/// False: there is no thread to write with, which is told; the tape is not needed any longer.
+bool BlackBox::write(const Tape& tape) {
   head_.reason = std::exchange(reason_, {});
   head_.follows = tape.whole() ? previous_ : "";
   writing_.store(true);
-  writer_ = std::thread{[this, &tape, head = head_] {
+  auto writer = start_thread([this, &tape, head = head_] {
     write_files(tape, head);
     writing_.store(false, std::memory_order_release);
-  }};
+  });
+  if (writer) {
+    writer_ = std::move(*writer);
+    return true;
+  }
+  writing_.store(false);
+  previous_ = {};
+  say_("black box: nothing is written (" + head_.reason +
+           "), since no thread can be created: " + std::strerror(writer.error()),
+       {});
+  return false;
 }
 
 /// The writer's thread, with the folder to itself.
@@ -164,9 +197,9 @@ void BlackBox::write_files(const Tape& tape, const RecordingHead& head) {
   std::filesystem::path stem = options_.folder;
   std::expected<void, std::string> result;
   try {
-    forget_oldest(file_name(head.bus));
     stem = next_stem(file_name(head.bus));
     result = write_recording(stem, plan_, head, tape.read());
+    if (result) forget_oldest(file_name(head.bus));
   } catch (const std::exception& error) {
     result = std::unexpected{stem.string() + ": " + error.what()};
   }
@@ -192,7 +225,7 @@ std::filesystem::path BlackBox::next_stem(const std::string& bus) const {
   return stem;
 }
 
-/// Leaves room for one more.
+/// Only once a new one is complete: a disk that takes nothing any more costs no recording.
 void BlackBox::forget_oldest(const std::string& bus) const {
   std::set<std::string> stems;
   std::error_code error;
@@ -200,7 +233,7 @@ void BlackBox::forget_oldest(const std::string& bus) const {
     const std::string name = entry.path().filename().string();
     if (is_recording_of(name, bus)) stems.insert(name.substr(0, name.find('.')));
   }
-  while (stems.size() >= options_.keep) {
+  while (stems.size() > options_.keep) {
     using namespace recording_format;
     for (const char* const ending : {log_ending, journal_ending, events_ending}) {
       std::filesystem::remove(options_.folder / (*stems.begin() + ending), error);

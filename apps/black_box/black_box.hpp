@@ -18,7 +18,7 @@ namespace takt {
 struct BlackBoxOptions {
   std::filesystem::path folder;
   std::size_t bytes = 16 << 20;  ///< of each of the two tapes
-  std::size_t keep = 20;         ///< recordings of this bus; older ones are removed
+  std::size_t keep = 20;  ///< recordings of this bus; older ones go when a new one is complete
 };
 
 /// The black box of a running master: holds the journal of the bus thread and writes it to files
@@ -46,8 +46,9 @@ class BlackBox {
   void on_request(const std::string& reason, Time now);
   /// Often: begins and ends what is due.
   void serve(Time now);
-  /// The bus thread has ended: writes what is due, and `reason` where there is one.
-  void finish(const std::string& reason);
+  /// The bus thread has ended: writes what is due, and `reason` where there is one. Waits for at
+  /// most `limit`; false: the writer is still at it, and the destructor would wait for it.
+  bool finish(const std::string& reason, Time limit);
   /// The same while the bus thread runs on. Waits for at most `limit`; false: it was not written.
   bool finish_running(const std::string& reason, Time limit);
 
@@ -55,7 +56,7 @@ class BlackBox {
   BlackBox(const BlackBoxOptions& options, const BusPlan& plan, RecordingHead head, Say say);
 
   void ask(const std::string& reason, Time at);
-  void write(const Tape& tape);
+  bool write(const Tape& tape);
   void write_files(const Tape& tape, const RecordingHead& head);
   std::filesystem::path next_stem(const std::string& bus) const;
   void forget_oldest(const std::string& bus) const;

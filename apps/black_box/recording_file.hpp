@@ -56,7 +56,8 @@ struct LoadedRecording {
 std::string plan_fingerprint(const BusPlan& plan);
 
 /// Writes `stem.log` (as `candump -L` does), `stem.events.json` and `stem.journal`. `records` are
-/// those of a tape. An error is a sentence.
+/// those of a tape. The three have other names until all of them are complete; where one can't be
+/// written, none is left behind. An error is a sentence.
 std::expected<void, std::string> write_recording(const std::filesystem::path& stem,
                                                  const BusPlan& plan, const RecordingHead& head,
                                                  const std::vector<std::uint64_t>& records);

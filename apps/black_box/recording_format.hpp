@@ -8,5 +8,6 @@ inline constexpr std::string_view magic = "TAKTJNL1";  ///< then words of 64 bit
 inline constexpr const char* log_ending = ".log";
 inline constexpr const char* journal_ending = ".journal";
 inline constexpr const char* events_ending = ".events.json";
+inline constexpr std::string_view incomplete = ".part-";  ///< before the names of unfinished files
 
 }  // namespace takt::recording_format

@@ -1,12 +1,15 @@
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "apps/black_box/recording_file.hpp"
 #include "apps/black_box/recording_format.hpp"
 #include "apps/black_box/unravel.hpp"
+#include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 namespace {
@@ -71,14 +74,63 @@ std::string interface_of(const BusPlan& plan) {
   return text.empty() ? "bus" : text;
 }
 
-template <class F>
-std::expected<void, std::string> write_file(const std::string& path, F&& write) {
-  std::ofstream file{path, std::ios::binary | std::ios::trunc};
-  if (file) write(file);
-  file.flush();
-  if (file) return {};
-  return std::unexpected{path + ": can't be written: " + std::strerror(errno)};
+/// A disk may refuse late what it has taken at first (quotas, network).
+bool reaches_the_disk(const std::string& path) noexcept {
+  const FileDescriptor file{::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
+  return file && (::fsync(file.get()) == 0 || errno == EINVAL || errno == EROFS);
 }
+
+/// The files of one recording, under other names until all are complete.
+class UnfinishedFiles {
+ public:
+  explicit UnfinishedFiles(const std::filesystem::path& stem)
+      : stem_{stem.string()},
+        unfinished_{(stem.parent_path() /
+                     (std::string{recording_format::incomplete} + stem.filename().string()))
+                        .string()} {}
+  ~UnfinishedFiles() {
+    std::error_code in_vain;
+    for (const std::string& path : made_) std::filesystem::remove(path, in_vain);
+  }
+  UnfinishedFiles(const UnfinishedFiles&) = delete;
+  UnfinishedFiles& operator=(const UnfinishedFiles&) = delete;
+
+  template <class F>
+  void write(const char* ending, F&& write) {
+    if (error_) return;
+    const std::string path = unfinished_ + ending;
+    made_.push_back(path);
+    endings_.push_back(ending);
+    errno = 0;
+    std::ofstream file{path, std::ios::binary | std::ios::trunc};
+    if (file) write(file);
+    file.close();
+    if (!file || !reaches_the_disk(path)) refuse(ending, errno);
+  }
+  /// Gives all of them their names.
+  std::expected<void, std::string> finish() {
+    std::error_code error;
+    for (std::size_t i = 0; i < endings_.size() && !error_; ++i) {
+      std::filesystem::rename(made_[i], stem_ + endings_[i], error);
+      if (error) refuse(endings_[i], error.value());
+      if (!error) made_[i] = stem_ + endings_[i];
+    }
+    if (error_) return std::unexpected{*error_};
+    made_.clear();
+    return {};
+  }
+
+ private:
+  void refuse(const char* ending, int error) {
+    error_ = stem_ + ending + ": can't be written: " + std::strerror(error);
+  }
+
+  std::string stem_;
+  std::string unfinished_;
+  std::vector<std::string> made_;  // removed where the recording isn't finished
+  std::vector<const char*> endings_;
+  std::optional<std::string> error_;
+};
 
 }  // namespace
 
@@ -88,16 +140,14 @@ std::expected<void, std::string> write_recording(const std::filesystem::path& st
   const UnravelledTape tape = unravel(records);
   RecordingHead told = head;
   told.from_start = !records.empty() && journal::mark_of(records.front()) == Mark::now;
-  const std::string path = stem.string();
-  auto result = write_file(path + recording_format::log_ending,
-                           [&](std::ostream& out) { write_log(out, tape, interface_of(plan)); });
-  if (result) {
-    result = write_file(path + recording_format::journal_ending,
-                        [&](std::ostream& out) { write_journal(out, tape.words); });
-  }
-  if (!result) return result;
-  return write_file(path + recording_format::events_ending,
-                    [&](std::ostream& out) { write_events(out, plan, told, tape); });
+  UnfinishedFiles files{stem};
+  files.write(recording_format::journal_ending,
+              [&](std::ostream& out) { write_journal(out, tape.words); });
+  files.write(recording_format::events_ending,
+              [&](std::ostream& out) { write_events(out, plan, told, tape); });
+  files.write(recording_format::log_ending,
+              [&](std::ostream& out) { write_log(out, tape, interface_of(plan)); });
+  return files.finish();
 }
 
 }  // namespace takt

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <future>
 #include <iterator>
 #include <utility>
@@ -11,13 +12,15 @@
 #include "apps/taktd/summary.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/start_thread.hpp"
 
 namespace takt {
 namespace {
 
-constexpr Time patience = std::chrono::seconds{1};        // beyond the limit of the ordered stop
-constexpr Time last_recording = std::chrono::seconds{2};  // of a stop that is not in order
-constexpr Time last_events = std::chrono::seconds{2};
+constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+// What files and stderr get at the end, each: a disk that is stuck keeps nothing from ending.
+constexpr Time last_recording = std::chrono::seconds{2};
+constexpr Time last_lines = std::chrono::seconds{2};
 constexpr std::size_t heap_bytes = 8 << 20;
 
 /// Not 0, and another one each time.
@@ -40,26 +43,33 @@ Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
   if (options_.typed) network_.lcm.typed = *options_.typed;
 }
 
+Daemon::~Daemon() {
+  StopSignal::stop_with(nullptr);
+  reporter_.finish(last_lines);
+}
+
 Exit Daemon::run() {
   if (const auto trouble = open()) return *trouble;
   if (const auto trouble = start()) return *trouble;
   loop();
+  if (!stopping_ && StopSignal::count() > 0) stop(Exit::good, "told to stop");
   if (!master_->finished()) {
     reporter_.say(Weight::error, StopSignal::count() > 1
                                      ? "stopped at once: the axes were not brought to rest in order"
                                      : "the ordered stop did not end in time");
     recorder_.finish_running(why_.empty() ? "stopped at once" : why_ + "; it did not end in order",
                              last_recording);
-    reporter_.finish(last_events);
+    reporter_.finish(last_lines);
     std::_Exit(static_cast<int>(exit_ == Exit::good ? Exit::bus_trouble : exit_));
   }
   master_->join();
   bridge_->serve();
-  recorder_.finish(exit_ == Exit::good ? "" : why_);
+  const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
   reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),
                                           reporter_.told(Weight::warning)));
-  if (!reporter_.finish(last_events)) std::_Exit(static_cast<int>(exit_));
-  return exit_;
+  if (recorded) return exit_;
+  reporter_.finish(last_lines);
+  std::_Exit(static_cast<int>(exit_));
 }
 
 std::optional<Exit> Daemon::open() {
@@ -119,15 +129,21 @@ std::optional<Exit> Daemon::open_black_box() {
 std::thread Daemon::start_bus_thread(std::function<void()> body) {
   std::promise<RtReport> promise;
   auto report = promise.get_future();
-  std::thread thread{[options = network_.realtime, body = std::move(body),
-                      promise = std::move(promise)]() mutable {
+  auto thread = start_thread([options = network_.realtime, body = std::move(body),
+                              promise = std::move(promise)]() mutable {
     ::pthread_setname_np(::pthread_self(), "takt-bus");
     const RtReport granted = apply_realtime(options);
     promise.set_value(granted);
     if (granted.may_run()) body();
-  }};
+  });
+  if (!thread) {
+    reporter_.say(Weight::error,
+                  std::string{"the bus thread can't be created: "} + std::strerror(thread.error()));
+    return {};
+  }
   realtime_ = report.get();
-  return thread;
+  bus_thread_runs_ = true;
+  return std::move(*thread);
 }
 
 std::optional<Exit> Daemon::start() {
@@ -135,6 +151,7 @@ std::optional<Exit> Daemon::start() {
   master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = options_.observe});
   bus_->attach(*master_, recorder_.journal());
   master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
+  if (!bus_thread_runs_) return Exit::bus_trouble;
   reporter_.say(realtime_.complete() ? Weight::note : Weight::warning,
                 "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {
@@ -153,6 +170,7 @@ std::optional<Exit> Daemon::start() {
                                      [this](const Notice& notice) { on_notice(notice); });
   recorder_.attach(*bridge_, session_);
   if (gateway_) gateway_->attach(*master_, *bridge_);
+  StopSignal::stop_with(&master_->stop_requested());
   if (options_.run_for > Time{0}) end_ = clocks_.now() + options_.run_for;
   service_.ready("bus " + network_.plan.name + " on " + bus_name_);
   return std::nullopt;
@@ -163,6 +181,7 @@ void Daemon::loop() {
       .next_image = [this] { return master_->next_publish(); },
       .serve = [this] { return serve(); },
       .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};
+  signals_.let_through();
   while (!master_->finished() && !gives_up(clocks_.now())) round.run();
 }
 

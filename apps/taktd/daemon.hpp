@@ -39,6 +39,7 @@ enum class Exit : int {
 class Daemon {
  public:
   Daemon(LoadedNetwork network, DaemonOptions options);
+  ~Daemon();
 
   Exit run();
 
@@ -71,6 +72,7 @@ class Daemon {
   Reporter reporter_;
   std::bitset<256> once_ready_;  // nodes that have booted in this run
   RtReport realtime_;
+  bool bus_thread_runs_ = false;
   Recorder recorder_;               // outlives master_
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;

@@ -8,7 +8,6 @@
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
 #include "apps/taktd/options.hpp"
-#include "apps/taktd/reporter.hpp"
 #include "apps/taktd/summary.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
@@ -29,7 +28,6 @@ int run(const DaemonOptions& options) {
     }
     return static_cast<int>(Exit::good);
   }
-  start_log();
   Daemon daemon{std::move(network), options};
   return static_cast<int>(daemon.run());
 }

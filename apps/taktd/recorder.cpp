@@ -56,9 +56,11 @@ void Recorder::serve(Time now) {
   box_->serve(now);
 }
 
-void Recorder::finish(const std::string& reason) {
-  if (box_) box_->finish(reason);
+bool Recorder::finish(const std::string& reason, Time limit) {
+  const bool through = !box_ || box_->finish(reason, limit);
+  if (!through) say_(Weight::warning, "black box: the last recording could not be written in time");
   answer_all(false, "taktd has ended");
+  return through;
 }
 
 void Recorder::finish_running(const std::string& reason, Time limit) {

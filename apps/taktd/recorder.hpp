@@ -31,8 +31,9 @@ class Recorder {
   void on_fault(const Notice& notice);
   /// Often: begins and ends what is due.
   void serve(Time now);
-  /// The bus thread has ended.
-  void finish(const std::string& reason);
+  /// The bus thread has ended. Waits for at most `limit`; false: a recording is still being
+  /// written, and the destructor would wait for it.
+  bool finish(const std::string& reason, Time limit);
   /// The bus thread runs on and nobody waits for it any longer: what it has recorded so far is
   /// written, within `limit`.
   void finish_running(const std::string& reason, Time limit);

@@ -1,41 +1,17 @@
 #include "apps/taktd/reporter.hpp"
 
 #include <nlohmann/json.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "master/linux/clock.hpp"
 
 namespace takt {
-namespace {
-
-spdlog::level::level_enum level_of(Weight weight) noexcept {
-  switch (weight) {
-    case Weight::note:
-      return spdlog::level::info;
-    case Weight::warning:
-      return spdlog::level::warn;
-    case Weight::error:
-      return spdlog::level::err;
-  }
-  return spdlog::level::err;
-}
-
-}  // namespace
-
-void start_log() {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("taktd"));
-  spdlog::set_pattern("%H:%M:%S.%e %^%=7l%$ %v");
-}
 
 bool Reporter::open_events(const std::string& path) {
-  events_ = EventFile::open(path);
+  events_ = LineWriter::open(path);
   return events_ != nullptr;
 }
 
-void Reporter::say(Weight weight, const std::string& sentence) {
-  spdlog::log(level_of(weight), "{}", sentence);
-}
+void Reporter::say(Weight weight, const std::string& sentence) { log_.say(weight, sentence); }
 
 void Reporter::tell(const Notice& notice) {
   ++told_[static_cast<std::size_t>(notice.weight)];
@@ -59,12 +35,13 @@ void Reporter::tell_lost() {
   write(gap);
 }
 
-bool Reporter::finish(Time limit) {
-  if (!events_) return true;
-  const bool through = events_->flush(limit);
-  if (!through) say(Weight::warning, "--events: the file takes no more lines; the last are lost");
-  tell_lost();
-  return through;
+void Reporter::finish(Time limit) {
+  if (events_) {
+    const bool through = events_->flush(limit);
+    if (!through) say(Weight::warning, "--events: the file takes no more lines; the last are lost");
+    tell_lost();
+  }
+  log_.flush(limit);
 }
 
 void Reporter::write(const Notice& notice) {

@@ -4,7 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/taktd/event_file.hpp"
+#include "apps/taktd/error_log.hpp"
+#include "apps/taktd/line_writer.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/gateway/notice.hpp"
 
@@ -22,9 +23,9 @@ class Reporter {
   /// A sentence of the daemon itself.
   void say(Weight weight, const std::string& sentence);
 
-  /// Once, at the end: waits for the file. False: it can't be written, and what is written to it
-  /// keeps its thread; that is told.
-  bool finish(Time limit);
+  /// Waits for the file and for stderr, for at most `limit` each. What they don't take is told as
+  /// far as that is possible.
+  void finish(Time limit);
 
   std::uint64_t told(Weight weight) const noexcept {
     return told_[static_cast<std::size_t>(weight)];
@@ -35,11 +36,9 @@ class Reporter {
   void tell_lost();
 
   const BusPlan& plan_;
-  std::unique_ptr<EventFile> events_;
+  ErrorLog log_;
+  std::unique_ptr<LineWriter> events_;
   std::array<std::uint64_t, 3> told_{};
 };
-
-/// Sets up the way that lines on stderr look.
-void start_log();
 
 }  // namespace takt

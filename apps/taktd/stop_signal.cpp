@@ -14,7 +14,18 @@ std::atomic<bool> recording_wished{false};
 constexpr std::array stop_numbers{SIGTERM, SIGINT, SIGHUP};
 
 void wish_recording(int) { recording_wished.store(true, std::memory_order_relaxed); }
-void count_signal(int) { stop_signals.fetch_add(1, std::memory_order_relaxed); }
+
+std::atomic<std::atomic<bool>*> stop_request{nullptr};
+static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+void begin_stop() noexcept {
+  if (std::atomic<bool>* const request = stop_request.load()) request->store(true);
+}
+
+void on_stop_signal(int) {
+  stop_signals.fetch_add(1);
+  begin_stop();
+}
 
 /// nohup: the terminal may close.
 bool is_ignored(int number) noexcept {
@@ -26,7 +37,8 @@ bool is_ignored(int number) noexcept {
 
 StopSignal::StopSignal() {
   struct sigaction action{};
-  action.sa_handler = count_signal;
+  action.sa_handler = on_stop_signal;
+  action.sa_flags = SA_RESTART;  // for the calls that wait for nobody and yet may be interrupted
   sigemptyset(&action.sa_mask);
   sigset_t stops;
   sigemptyset(&stops);
@@ -42,12 +54,22 @@ StopSignal::StopSignal() {
   for (const int number : stop_numbers) sigdelset(&wait_mask_, number);
   sigdelset(&wait_mask_, SIGUSR1);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more is a write that fails
+}
+
+void StopSignal::stop_with(std::atomic<bool>* request) noexcept {
+  stop_request.store(request);
+  if (count() > 0) begin_stop();
+}
+
+void StopSignal::let_through() const noexcept {
+  pthread_sigmask(SIG_SETMASK, &wait_mask_, nullptr);
 }
 
 bool StopSignal::take_recording_wish() noexcept {
   return recording_wished.exchange(false, std::memory_order_relaxed);
 }
 
-int StopSignal::count() noexcept { return stop_signals.load(std::memory_order_relaxed); }
+int StopSignal::count() noexcept { return stop_signals.load(); }
 
 }  // namespace takt

@@ -1,9 +1,11 @@
 #include "apps/black_box/black_box.hpp"
 
 #include <atomic>
+#include <csignal>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <set>
+#include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
 
@@ -96,7 +98,7 @@ TEST_F(BlackBoxTest, WritesOneKindOfFaultOfANodeOnceInFiveMinutes) {
   EXPECT_LE(files().size(), 3U);
   box->on_fault("emcy", 6, "node 6 is hot", now);
   pass(1200ms);
-  box->finish("");
+  EXPECT_TRUE(box->finish("", 60s));
   EXPECT_EQ(files().size(), 6U);
 }
 
@@ -150,9 +152,9 @@ TEST_F(BlackBoxTest, LeavesTheWorkInTheFolderToItsWriter) {
 TEST_F(BlackBoxTest, WritesTheEndOfARunThatFailed) {
   open();
   pass(1s);
-  box->finish("");
+  EXPECT_TRUE(box->finish("", 60s));
   EXPECT_TRUE(files().empty());
-  box->finish("node 1 is mandatory and did not boot");
+  EXPECT_TRUE(box->finish("node 1 is mandatory and did not boot", 60s));
   EXPECT_EQ(files().size(), 3U);
 }
 
@@ -191,6 +193,56 @@ TEST_F(BlackBoxTest, DoesNotWaitForABusThreadThatBeginsNoCycleAnyMore) {
 
   EXPECT_FALSE(box->finish_running("stopped at once", 10ms));
   EXPECT_TRUE(files().empty());
+}
+
+/// A limit to the size of files in the place of a full disk.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{.rlim_cur = 100, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(BlackBoxTest, LosesNoRecordingToAFullDiskAndLeavesNoHalfOne) {
+  open(1);
+  std::ofstream{folder / "box/lift-20200101T000000.log"} << "x";
+  {
+    const FullDisk disk;
+    box->on_request("asked for", now);
+    pass(200ms);
+    await_files();
+  }
+
+  EXPECT_TRUE(said.empty());
+  ASSERT_EQ(failed.size(), 1U);
+  EXPECT_NE(failed[0].find("can't be written: File too large"), std::string::npos) << failed[0];
+  EXPECT_EQ(files(), std::set<std::string>{"lift-20200101T000000.log"});
+  pass(11s);
+  box->on_request("asked for", now);
+  pass(200ms);
+  await_files();
+  EXPECT_EQ(files().size(), 3U);
+  EXPECT_FALSE(files().contains("lift-20200101T000000.log"));
+}
+
+TEST_F(BlackBoxTest, RemovesWhatARunLeftBehindThatWasEndedWhileItWrote) {
+  std::filesystem::create_directories(folder / "box");
+  for (const char* name : {".part-lift-20200101T000000.log", ".part-pump-20200101T000000.log",
+                           "lift-20200101T000000.log"}) {
+    std::ofstream{folder / "box" / name} << "x";
+  }
+
+  open();
+
+  EXPECT_EQ(files(),
+            (std::set<std::string>{".part-pump-20200101T000000.log", "lift-20200101T000000.log"}));
 }
 
 TEST_F(BlackBoxTest, SaysWhyAFolderCannotBeUsed) {

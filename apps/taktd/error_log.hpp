@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "apps/taktd/line_writer.hpp"
+#include "master/gateway/notice.hpp"
+
+namespace spdlog {
+class logger;
+}
+
+namespace takt {
+
+/// Sentences for people, on stderr, with the time of day. Nobody waits for a stderr that takes
+/// nothing: lines that are lost are counted, and told before the next line that gets through.
+class ErrorLog {
+ public:
+  /// `file`: instead of stderr.
+  explicit ErrorLog(FileDescriptor file = stderr_again(),
+                    LineWriter::StartThread start = LineWriter::start_detached);
+  ~ErrorLog();
+  ErrorLog(const ErrorLog&) = delete;
+  ErrorLog& operator=(const ErrorLog&) = delete;
+
+  void say(Weight weight, const std::string& sentence);
+  /// False: stderr hasn't taken all after `limit`.
+  bool flush(Time limit) { return writer_.flush(limit); }
+
+ private:
+  enum class Colours : bool { none, ansi };
+
+  class Sink;
+  ErrorLog(Colours colours, FileDescriptor file, LineWriter::StartThread start);
+  static FileDescriptor stderr_again();
+
+  LineWriter writer_;
+  std::unique_ptr<spdlog::logger> log_;
+  bool without_thread_told_ = false;
+};
+
+}  // namespace takt

@@ -1,0 +1,91 @@
+#include "apps/taktd/error_log.hpp"
+
+#include <array>
+#include <chrono>
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Both ends of a pipe.
+struct Pipe {
+  FileDescriptor reader;
+  FileDescriptor writer;
+};
+
+Pipe make_pipe() {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+  return {FileDescriptor{ends[0]}, FileDescriptor{ends[1]}};
+}
+
+std::string read_until(const FileDescriptor& pipe, const std::string& end) {
+  std::string text;
+  std::array<char, 4096> chunk;
+  while (text.find(end) == std::string::npos) {
+    const ssize_t size = ::read(pipe.get(), chunk.data(), chunk.size());
+    if (size <= 0) break;
+    text.append(chunk.data(), static_cast<std::size_t>(size));
+  }
+  return text;
+}
+
+TEST(ErrorLog, SaysEachSentenceWithTheTimeOfDayAndItsWeight) {
+  Pipe pipe = make_pipe();
+  ErrorLog log{std::move(pipe.writer)};
+
+  log.say(Weight::note, "one");
+  log.say(Weight::warning, "two");
+  log.say(Weight::error, "three");
+
+  EXPECT_THAT(read_until(pipe.reader, "three\n"),
+              ContainsRegex("^[0-9:]{8}\\.[0-9]{3}  info   one\n"
+                            "[0-9:]{8}\\.[0-9]{3} warning two\n"
+                            "[0-9:]{8}\\.[0-9]{3}  error  three\n$"));
+}
+
+/// The test itself is the proof that nobody waits: the pipe is full long before the last sentence.
+TEST(ErrorLog, WaitsForNobodyAndTellsHowMuchWasLost) {
+  Pipe pipe = make_pipe();
+  ErrorLog log{std::move(pipe.writer)};
+  const std::string sentence(1000, 'x');
+
+  for (int i = 0; i < 3000; ++i) log.say(Weight::note, sentence);
+  EXPECT_FALSE(log.flush(10ms));
+  std::string text = read_until(pipe.reader, "x\n");
+  while (!log.flush(0ms)) text += read_until(pipe.reader, "x\n");
+  log.say(Weight::note, "the end");
+
+  text += read_until(pipe.reader, "the end\n");
+  EXPECT_THAT(text, HasSubstr(" lines are lost here\n"));
+}
+
+TEST(ErrorLog, TellsOnceThatItHasNoThreadWhenItHasOne) {
+  Pipe pipe = make_pipe();
+  bool possible = false;
+  ErrorLog log{std::move(pipe.writer), [&](std::function<void()> body) {
+                 return possible && LineWriter::start_detached(std::move(body));
+               }};
+
+  log.say(Weight::note, "one");
+  log.say(Weight::note, "two");
+  possible = true;
+  EXPECT_TRUE(log.flush(60s));
+  log.say(Weight::note, "three");
+
+  const std::string text = read_until(pipe.reader, "three\n");
+  const std::size_t told = text.find("no thread can be created for stderr");
+  EXPECT_NE(told, std::string::npos) << text;
+  EXPECT_EQ(text.find("no thread can be created", told + 1), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace takt
