@@ -21,6 +21,10 @@ constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the o
 // What files and stderr get at the end, each: a disk that is stuck keeps nothing from ending.
 constexpr Time last_recording = std::chrono::seconds{2};
 constexpr Time last_lines = std::chrono::seconds{2};
+// Before the start, for another master: LCM may take a moment to be there, status comes at 10 Hz.
+constexpr Time lcm_patience = std::chrono::seconds{1};
+constexpr Time status_listening = std::chrono::milliseconds{250};
+constexpr Time look = std::chrono::milliseconds{10};
 constexpr std::size_t heap_bytes = 8 << 20;
 
 /// Not 0, and another one each time.
@@ -73,6 +77,7 @@ Exit Daemon::run() {
 }
 
 std::optional<Exit> Daemon::open() {
+  if (const auto trouble = claim_bus()) return trouble;
   if (!options_.events_file.empty() && !reporter_.open_events(options_.events_file)) {
     reporter_.say(Weight::error, "--events " + options_.events_file + ": can't be written");
     return Exit::wrong_use;
@@ -101,13 +106,65 @@ std::optional<Exit> Daemon::open() {
   if (const auto trouble = open_black_box()) return trouble;
   const Channels channels{network_.plan.name};
   std::vector<std::string> heard = channels.heard();
+  heard.push_back(channels.status);  // of another master
   if (network_.lcm.typed) {
     std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
   }
   link_ = std::make_unique<LcmLink>(
       std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
       [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
+  return look_for_master();
+}
+
+std::optional<Exit> Daemon::claim_bus() {
+  if (options_.observe) return std::nullopt;
+  auto claim = BusClaim::take(BusName::parse(bus_name_));
+  if (!claim) {
+    reporter_.say(Weight::error, claim.error().message);
+    return Exit::bus_trouble;
+  }
+  claim_.emplace(std::move(*claim));
   return std::nullopt;
+}
+
+/// Before the first frame is sent.
+std::optional<Exit> Daemon::look_for_master() {
+  if (options_.observe) return std::nullopt;
+  OtherMaster other{network_.plan, bus_name_, session_};
+  listen(other);
+  if (other.warning()) reporter_.say(Weight::warning, *other.warning());
+  if (other.refusal()) {
+    reporter_.say(Weight::error, *other.refusal());
+    return Exit::bus_trouble;
+  }
+  if (StopSignal::count() == 0) return std::nullopt;
+  reporter_.say(Weight::note, "told to stop before the start");
+  return Exit::good;
+}
+
+/// Commands that come meanwhile are of nobody who has heard from this master, and are dropped.
+void Daemon::listen(OtherMaster& other) {
+  DiagnosticSocket* const ear = bus_->diagnostics();
+  const std::string status = Channels{network_.plan.name}.status;
+  const Time begin = clocks_.now();
+  Time until = begin + lcm_patience;
+  const Time frames_until = ear != nullptr ? begin + other.listening_time() : begin;
+  bool lcm_is_there = false;
+  for (Time now = begin; now < std::max(frames_until, until); now = clocks_.now()) {
+    if (other.refusal() || StopSignal::count() > 0) return;
+    descriptors_.clear();
+    if (ear != nullptr) descriptors_.push_back({.fd = ear->fd(), .events = POLLIN, .revents = 0});
+    link_->watch(descriptors_);
+    wait_.wait(descriptors_, never, std::min(std::max(frames_until, until), now + look));
+    if (ear != nullptr) ear->poll([&](const StampedFrame& heard) { other.on_frame(heard.frame); });
+    link_->serve([&](std::string_view channel, Bytes data) {
+      if (channel != status) return;
+      if (const auto message = decode<status_t>(data)) other.on_status(*message, realtime_now());
+    });
+    if (lcm_is_there || link_->url().empty()) continue;
+    lcm_is_there = true;
+    until = clocks_.now() + (link_->url().starts_with("memq") ? Time{0} : status_listening);
+  }
 }
 
 std::optional<Exit> Daemon::open_black_box() {

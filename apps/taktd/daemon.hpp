@@ -10,6 +10,7 @@
 #include "apps/taktd/daemon_bus.hpp"
 #include "apps/taktd/front_wait.hpp"
 #include "apps/taktd/options.hpp"
+#include "apps/taktd/other_master.hpp"
 #include "apps/taktd/recorder.hpp"
 #include "apps/taktd/reporter.hpp"
 #include "apps/taktd/service_notify.hpp"
@@ -19,6 +20,7 @@
 #include "master/gateway/clocks.hpp"
 #include "master/gateway/front_round.hpp"
 #include "master/gateway/lcm_link.hpp"
+#include "master/linux/bus_claim.hpp"
 #include "master/linux/rt_thread.hpp"
 #include "master/master.hpp"
 
@@ -46,6 +48,9 @@ class Daemon {
  private:
   std::optional<Exit> open();
   std::optional<Exit> open_black_box();
+  std::optional<Exit> claim_bus();
+  std::optional<Exit> look_for_master();
+  void listen(OtherMaster& other);
   std::optional<Exit> start();
   void loop();
   Time serve();
@@ -74,6 +79,7 @@ class Daemon {
   RtReport realtime_;
   bool bus_thread_runs_ = false;
   Recorder recorder_;               // outlives master_
+  std::optional<BusClaim> claim_;   // none: we only observe
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;
   std::unique_ptr<LcmLink> link_;

@@ -2,11 +2,11 @@
 
 #include <cerrno>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 #include "master/gateway/tcpq_broker.hpp"
 #include "master/gateway/tcpq_client.hpp"
+#include "master/linux/start_thread.hpp"
 
 namespace takt {
 namespace {
@@ -14,21 +14,42 @@ namespace {
 constexpr std::chrono::seconds retry_pause{5};
 constexpr std::chrono::milliseconds hub_answer_limit{200};
 
+std::string port_is_taken(std::uint16_t port) {
+  const std::string number = std::to_string(port);
+  return "port " + number +
+         " of loopback is taken by another program, which nobody has told me to trust: no hub "
+         "there; trying again and again. To use the hub of that program: --lcm-url "
+         "tcpq://127.0.0.1:" +
+         number + ", or `lcm: {url: ...}` without `broker`";
+}
+
 }  // namespace
 
 LcmLink::LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say)
-    : url_{std::move(url)}, say_{std::move(say)}, patterns_{std::move(patterns)} {
-  const bool tcpq = url_.scheme == "tcpq";
-  if (broker) {
-    const std::uint16_t port = tcpq ? url_.port : tcpq::default_port;
-    if (!serve_hub(port)) {
-      open_tcpq({.text = {}, .scheme = "tcpq", .address = "127.0.0.1", .port = port});
-    }
-  } else if (tcpq) {
+    : url_{std::move(url)}, broker_{broker}, say_{std::move(say)}, patterns_{std::move(patterns)} {
+  if (broker_) {
+    begin_hub();
+  } else if (url_.scheme == "tcpq") {
     open_tcpq(url_);
   } else {
     begin_lcm();
   }
+}
+
+/// `broker: true`: the hub is ours or there is none.
+void LcmLink::begin_hub() {
+  next_try_ = std::chrono::steady_clock::now() + retry_pause;
+  const std::uint16_t port = url_.scheme == "tcpq" ? url_.port : tcpq::default_port;
+  if (!serve_hub(port)) tell_once("LCM: " + port_is_taken(port));
+}
+
+void LcmLink::try_again() {
+  if (std::chrono::steady_clock::now() < next_try_) return;
+  return broker_ ? begin_hub() : begin_lcm();
+}
+
+void LcmLink::tell_once(const std::string& sentence) {
+  if (std::exchange(told_, sentence) != sentence) say_(sentence);
 }
 
 bool LcmLink::serve_hub(std::uint16_t port) {
@@ -64,15 +85,22 @@ void LcmLink::begin_lcm() {
   // With the first subscription LCM tests multicast, for up to ten seconds: beside the front
   // thread, and not waited for when taktd ends.
   std::promise<std::unique_ptr<LcmTransport>> promise;
-  opening_ = promise.get_future();
-  std::thread{[promise = std::move(promise), url = url_.text, patterns = patterns_]() mutable {
-    auto lcm = LcmTransport::create(url);
-    for (const std::string& pattern : patterns) {
-      if (lcm) lcm->subscribe(pattern);
-    }
-    if (lcm && !lcm->good()) lcm.reset();
-    promise.set_value(std::move(lcm));
-  }}.detach();
+  auto opening = promise.get_future();
+  auto thread =
+      start_thread([promise = std::move(promise), url = url_.text, patterns = patterns_]() mutable {
+        auto lcm = LcmTransport::create(url);
+        for (const std::string& pattern : patterns) {
+          if (lcm) lcm->subscribe(pattern);
+        }
+        if (lcm && !lcm->good()) lcm.reset();
+        promise.set_value(std::move(lcm));
+      });
+  if (!thread) {
+    return tell_once(std::string{"LCM: no thread can be created to open it: "} +
+                     std::strerror(thread.error()) + "; trying again and again");
+  }
+  thread->detach();
+  opening_ = std::move(opening);
 }
 
 void LcmLink::finish_lcm() {
@@ -91,11 +119,10 @@ void LcmLink::fall_back(const std::string& why) {
   if (hub) {
     fallback_ = std::move(*hub);
   } else if (hub.error() == EADDRINUSE) {
-    fallback_ = std::make_unique<TcpqClient>("127.0.0.1", tcpq::default_port);
+    return tell_once("LCM: " + why + "; " + port_is_taken(tcpq::default_port));
   } else {
-    say_("LCM: " + why +
-         "; a hub on loopback is not possible either: " + std::strerror(hub.error()));
-    return;
+    return tell_once("LCM: " + why +
+                     "; a hub on loopback is not possible either: " + std::strerror(hub.error()));
   }
   for (const std::string& pattern : patterns_) fallback_->subscribe(pattern);
   say_("LCM: " + why +
@@ -125,8 +152,8 @@ void LcmLink::serve(const MessageHandler& handler) {
   if (main_) {
     main_->serve(handler);
     if (!main_->good()) main_.reset();
-  } else if (!opening_.valid() && std::chrono::steady_clock::now() >= next_try_) {
-    begin_lcm();
+  } else if (!opening_.valid()) {
+    try_again();
   }
   if (fallback_) fallback_->serve(handler);
 }

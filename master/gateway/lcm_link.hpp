@@ -15,9 +15,10 @@
 
 namespace takt {
 
-/// The daemon's connection to LCM, whatever the machine allows: LCM's own multicast, a tcpq:// hub
-/// that is there already, or a hub of our own. It works or it is tried again; nothing here waits,
-/// since the bus has to run on. Front thread.
+/// The daemon's connection to LCM, whatever the machine allows: LCM's own multicast, the tcpq://
+/// hub that the URL names, or a hub of our own. It works or it is tried again; nothing here waits,
+/// since the bus has to run on. Where the port of our own hub is taken, whoever has it may be
+/// anybody: we become the client of a hub only where a URL says so. Front thread.
 class LcmLink final : public Transport {
  public:
   using Say = std::function<void(const std::string& sentence)>;
@@ -37,14 +38,19 @@ class LcmLink final : public Transport {
 
  private:
   void open_tcpq(const LcmUrl& url);
+  void begin_hub();
   bool serve_hub(std::uint16_t port);
+  void try_again();
+  void tell_once(const std::string& sentence);
   void begin_lcm();
   void finish_lcm();
   void fall_back(const std::string& why);
   void use(std::unique_ptr<Transport> transport);
 
   LcmUrl url_;
+  bool broker_;
   Say say_;
+  std::string told_;  // the newest sentence that is not repeated with each try
   std::vector<std::string> patterns_;
   std::unique_ptr<Transport> main_;      // what the URL asks for
   std::unique_ptr<Transport> fallback_;  // the hub, where the URL could not be had

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -65,6 +66,30 @@ def judge_daemon(said):
     check(not missing, f"and says why, what and where: {missing} is missing")
 
 
+def judge_taken_port(binaries):
+    """Whoever has the port of the hub may be anybody: taktd does not become a client of his."""
+    with socket.create_server(("127.0.0.1", 7700)) as other, tempfile.TemporaryFile("w+") as said:
+        daemon = subprocess.Popen([binaries / "taktd", NETWORK, "--bus", "sim", "--rt", "off"], stderr=said)
+        try:
+            until = time.monotonic() + PATIENCE
+            text = ""
+            while "the network is ready" not in text and time.monotonic() < until:
+                time.sleep(0.05)
+                text = os.pread(said.fileno(), 1 << 20, 0).decode()
+            check("port 7700 of loopback is taken by another program" in text, "a port that is taken is told")
+            check("the network is ready" in text, "and the bus runs all the same")
+            daemon.send_signal(signal.SIGTERM)
+            check(daemon.wait(PATIENCE) == 0, f"taktd ended with exit code {daemon.returncode}")
+        finally:
+            daemon.kill()
+        other.setblocking(False)
+        try:
+            other.accept()
+            check(False, "nobody connects to the one who has the port")
+        except BlockingIOError:
+            check(True, "nobody connects to the one who has the port")
+
+
 def main(binaries):
     binaries = pathlib.Path(binaries).resolve()
     os.environ.pop("LCM_DEFAULT_URL", None)
@@ -82,6 +107,7 @@ def main(binaries):
             daemon.kill()
         said.seek(0)
         judge_daemon(said.read())
+    judge_taken_port(binaries)
     print(f"{len(failures)} checks failed" if failures else "all checks passed")
     return 1 if failures else 0
 
