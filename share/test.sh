@@ -1,7 +1,7 @@
 #!/bin/sh
 # test.sh - everything that CI runs, a line a stage; ends with the count and exit code 0 if all is good.
 #   TAKT_STAGES  only these of: format release asan tsan fuzz tidy (without: all but tidy, which takes ten minutes of its own)
-#   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files (60)
+#   TAKT_FUZZ    seconds of the stage fuzz for EDS files; half of it for network files, a third for each other target (60)
 #   TAKT_PCH     ON, OFF: precompiled headers in all builds, in none (without: in those that are sanitized; release is as by hand)
 #   TAKT_JOBS    parallel jobs (number of processors)
 set -u
@@ -86,16 +86,20 @@ build() {
 # fuzz_one NAME SECONDS OPTION...: test/fuzz/seeds/NAME and what earlier runs found go through NAME_fuzz.
 fuzz_one() {
   of=$1
-  seconds=$2
+  limit=$2
   shift 2
   mkdir -p "build/fuzz/corpus/$of" &&
-    "build/fuzz/bin/${of}_fuzz" "build/fuzz/corpus/$of" "test/fuzz/seeds/$of" -max_total_time="$seconds" -timeout=20 \
+    "build/fuzz/bin/${of}_fuzz" "build/fuzz/corpus/$of" "test/fuzz/seeds/$of" -max_total_time="$limit" -timeout=60 \
       -rss_limit_mb=1500 -artifact_prefix=build/fuzz/ -print_final_stats=1 "$@"
 }
 
 fuzz() {
-  cmake --preset fuzz && ninja -C build/fuzz -j "$jobs" eds_fuzz network_fuzz &&
-    fuzz_one eds "${TAKT_FUZZ:-60}" -dict=test/fuzz/eds.dict && fuzz_one network $((${TAKT_FUZZ:-60} / 2)) -dict=test/fuzz/network.dict
+  seconds=${TAKT_FUZZ:-60}
+  cmake --preset fuzz -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
+  fuzz_one eds "$seconds" -dict=test/fuzz/eds.dict && fuzz_one network $((seconds / 2)) -dict=test/fuzz/network.dict || return 1
+  for target in bus trace recording; do
+    fuzz_one $target $((seconds / 3)) || return 1
+  done
 }
 
 # run_tests PRESET [CTEST OPTION...]

@@ -1,0 +1,74 @@
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "apps/frame_text/error_frame_text.hpp"
+#include "apps/frame_text/frame_text.hpp"
+#include "apps/frame_text/recorded_lines.hpp"
+#include "apps/frame_text/trace_line.hpp"
+#include "apps/learn/device_files.hpp"
+#include "apps/learn/network_text.hpp"
+#include "apps/learn/recording.hpp"
+#include "eds_parser/eds.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/network_file/read_network.hpp"
+#include "test/fuzz/input.hpp"
+
+namespace {
+
+using takt::fuzz::demand;
+
+const takt::LoadedNetwork& network() {
+  static const auto loaded = takt::load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml");
+  return loaded;
+}
+
+/// What `takt dump` does with each line. What it prints is a line of candump with the same frame.
+void dump(std::string_view text) {
+  takt::FrameText alone;
+  takt::FrameText named{network()};
+  takt::RecordedLines lines;
+  std::istringstream in{std::string{text}};
+  for (std::string line; std::getline(in, line);) {
+    const auto found = lines.parse(line);
+    if (!found) {
+      static_cast<void>(takt::is_remark(line));
+      continue;
+    }
+    demand(found->frame.length <= 8);
+    if (found->error_frame) {
+      static_cast<void>(takt::error_frame_text(found->frame.id.id(), found->frame.payload()));
+      continue;
+    }
+    demand(!alone.meaning(found->frame).service.empty());
+    static_cast<void>(named.meaning(found->frame));
+    if (!found->stamp.empty() || found->interface.empty()) continue;
+    const auto again = takt::parse_candump(takt::to_string(*found));
+    demand(again && again->frame == found->frame);
+  }
+}
+
+/// What `takt learn` does with the whole: the network file and the EDS files are read again.
+void learn(std::string_view text) {
+  std::istringstream in{std::string{text}};
+  const takt::LearnedBus bus = takt::read_recording(in, "fuzz.log", {});
+  for (const takt::Finding& finding : bus.findings) demand(!to_string(finding).empty());
+  const auto learned = takt::learned_network(bus, takt::DeviceFiles{}, {});
+  takt::Findings findings;
+  static_cast<void>(takt::read_network(learned.text, "learned.yaml", findings));
+  for (const auto& [name, content] : learned.made_files) {
+    demand(takt::read_eds(content, name, takt::NodeId::from(5)).readable);
+  }
+}
+
+}  // namespace
+
+/// Any bytes as a recording of candump, a PCAN trace or a Vector log.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text{reinterpret_cast<const char*>(data), size};
+  dump(text);
+  learn(text);
+  return 0;
+}
