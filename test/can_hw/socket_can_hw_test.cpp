@@ -6,6 +6,7 @@
 #include "master/linux/can_link.hpp"
 #include "master/linux/rt_thread.hpp"
 #include "master/linux/socket_can.hpp"
+#include "test/support/patience.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {
@@ -15,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Time limit = std::chrono::seconds{20};
+constexpr Time limit = test::patience;
 constexpr CobId sync_id = CobId::base(0x080);
 const Frame sync_frame = make_frame(sync_id, {0x07});
 

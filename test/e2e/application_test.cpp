@@ -11,12 +11,12 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/patience.hpp"
 
 namespace takt::test {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// Follows the first RPDO of an axis (controlword, target position) on the bus.
 class WatchedAxis {
@@ -26,7 +26,7 @@ class WatchedAxis {
   /// Takes frames until `done`, at most for a generous time.
   template <class Done>
   bool watch(Done done) {
-    const Time until = monotonic_now() + seconds{60};
+    const Time until = monotonic_now() + patience;
     while (!done()) {
       if (monotonic_now() > until) return false;
       StampedFrame got;

@@ -4,11 +4,10 @@
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/patience.hpp"
 
 namespace takt::test {
 namespace {
-
-using std::chrono::seconds;
 
 TEST(AuditOnTheBus, TellsOfDevicesThatNobodyHasConfigured) {
   const Folder folder;
@@ -18,7 +17,7 @@ TEST(AuditOnTheBus, TellsOfDevicesThatNobodyHasConfigured) {
   ASSERT_TRUE(devices.says("3 devices on"));
 
   Ended ended;
-  const Time until = monotonic_now() + seconds{60};
+  const Time until = monotonic_now() + patience;
   do {  // they take their time to boot
     ended = run({TAKT, "audit", network, "--bus", bus}, folder.path());
   } while (ended.output.find("answer") != std::string::npos && monotonic_now() < until);

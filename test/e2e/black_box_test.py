@@ -25,10 +25,10 @@ nodes:
 
 
 def await_true(what, condition):
-    until = time.monotonic() + 60
+    until = time.monotonic() + 180
     while not condition():
         if time.monotonic() > until:
-            sys.exit(f"not in 60 s: {what}")
+            sys.exit(f"not in 180 s: {what}")
         time.sleep(0.05)
 
 
@@ -54,7 +54,7 @@ def record(binaries, folder, network, url):
         await_true("recording of the fault", lambda: list(box.glob("*.events.json")))
         daemon.send_signal(signal.SIGUSR1)
         await_true("recording on request", lambda: len(list(box.glob("*.events.json"))) == 2)
-        asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=60)
+        asked = subprocess.run([f"{binaries}/takt", "record", "--lcm-url", url], capture_output=True, text=True, timeout=180)
         named = pathlib.Path(asked.stdout.strip())
         check(asked.returncode == 0 and named.exists() and named.parent == box, "takt record names the file", asked)
         if '"recorded"' not in events.read_text():
@@ -64,7 +64,7 @@ def record(binaries, folder, network, url):
         daemon.send_signal(signal.SIGTERM)
         daemon.send_signal(signal.SIGINT)
         daemon.send_signal(signal.SIGCONT)
-        if daemon.wait(30) == 0 or len(list(box.glob("*.events.json"))) != 4:
+        if daemon.wait(180) == 0 or len(list(box.glob("*.events.json"))) != 4:
             sys.exit(f"two signals: exit {daemon.returncode}, {sorted(box.iterdir())}")
     finally:
         node.kill()

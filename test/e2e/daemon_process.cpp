@@ -9,12 +9,12 @@
 #include "master/gateway/names.hpp"
 #include "master/gateway/tcpq_broker.hpp"
 #include "master/linux/clock.hpp"
+#include "test/support/patience.hpp"
 
 namespace takt::test {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr Time generous = std::chrono::seconds{60};
 
 std::uint16_t free_port() { return TcpqBroker::listen(0).value()->port(); }
 
@@ -53,7 +53,7 @@ bool DaemonProcess::hear(const std::function<bool()>& done) {
 }
 
 bool DaemonProcess::work(const std::function<void()>& work, const std::function<bool()>& done) {
-  const Time until = monotonic_now() + generous;
+  const Time until = monotonic_now() + patience;
   while (!done()) {
     if (monotonic_now() > until) return false;
     take();

@@ -19,7 +19,7 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent / "dialogues"
-GENEROUS = 60
+GENEROUS = 180
 QUIET = 4  # recording: so long nothing comes any more
 
 

@@ -32,12 +32,12 @@ def heard(events, kind):
 
 
 def await_event(daemon, events, kind, count):
-    until = time.monotonic() + 60
+    until = time.monotonic() + 180
     while heard(events, kind) < count:
         if daemon.poll() is not None:
             sys.exit(f"taktd ended with {daemon.returncode} before {kind} number {count}")
         if time.monotonic() > until:
-            sys.exit(f"no {kind} number {count} in 60 s")
+            sys.exit(f"no {kind} number {count} in 180 s")
         time.sleep(0.05)
 
 
@@ -58,7 +58,7 @@ def main(binaries):
             node = subprocess.Popen(devices, **quiet)
             await_event(daemon, events, "boot_done", 2)
             daemon.send_signal(signal.SIGTERM)
-            code = daemon.wait(30)
+            code = daemon.wait(180)
         finally:
             node.kill()
             daemon.kill()

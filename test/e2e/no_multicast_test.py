@@ -16,7 +16,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NETWORK = ROOT / "share/demo/two_axes.yaml"
-PATIENCE = 60  # s
+PATIENCE = 180  # s
 NAMESPACES = (["unshare", "--net"], ["unshare", "--net", "--map-root-user"])
 GUEST = [ROOT / "test/support/with-vcan", "-m", "uml", "-t", "180", *NAMESPACES[0]]
 failures = []

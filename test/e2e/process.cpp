@@ -11,12 +11,13 @@
 #include <thread>
 #include <unistd.h>
 
+#include "test/support/patience.hpp"
+
 namespace takt::test {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds generous{60};
 constexpr std::chrono::milliseconds look_again{5};
 
 }  // namespace
@@ -44,7 +45,7 @@ Process::~Process() {
 }
 
 std::optional<int> Process::wait(const std::function<void()>& meanwhile) {
-  const auto until = Clock::now() + generous;
+  const auto until = Clock::now() + patience;
   int status = 0;
   while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() > until) return std::nullopt;
@@ -59,7 +60,7 @@ std::optional<int> Process::wait(const std::function<void()>& meanwhile) {
 std::string Process::output() const { return read_file(output_); }
 
 bool Process::says(const std::string& text) const {
-  const auto until = Clock::now() + generous;
+  const auto until = Clock::now() + patience;
   while (output().find(text) == std::string::npos) {
     if (Clock::now() > until) return false;
     std::this_thread::sleep_for(look_again);

@@ -9,11 +9,12 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "test/support/patience.hpp"
+
 namespace takt::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds generous{60};
 
 }  // namespace
 
@@ -51,7 +52,7 @@ void Terminal::read() {
 }
 
 bool Terminal::shows(const std::string& text, const std::function<void()>& meanwhile) {
-  const auto until = Clock::now() + generous;
+  const auto until = Clock::now() + patience;
   shown_.clear();
   while (shown_.find(text) == std::string::npos) {
     if (Clock::now() > until) {
@@ -65,7 +66,7 @@ bool Terminal::shows(const std::string& text, const std::function<void()>& meanw
 }
 
 std::optional<int> Terminal::wait() {
-  const auto until = Clock::now() + generous;
+  const auto until = Clock::now() + patience;
   int status = 0;
   while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() > until) return std::nullopt;

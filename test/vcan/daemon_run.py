@@ -10,7 +10,7 @@ from dissector import judge_dissector
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NMT, SYNC = 0x000, 0x080
-PATIENCE = 60  # s; what does not happen within these does not happen
+PATIENCE = 180  # s; what does not happen within these does not happen
 failures = []
 
 

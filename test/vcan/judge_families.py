@@ -155,8 +155,8 @@ def run_master(binaries):
     time.sleep(3)
     seen = collections.Counter(identifier for _, identifier, _ in Bus().frames(8))
     told = subprocess.run([binaries / "takt", "param", "read", "pump", "P15.13"], capture_output=True, text=True,
-                          timeout=30)
-    return taktd.wait(timeout=60), seen, told
+                          timeout=180)
+    return taktd.wait(timeout=180), seen, told
 
 
 def judge_master(binaries):

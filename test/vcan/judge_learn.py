@@ -88,12 +88,12 @@ def judge_all(programs, folder):
         time.sleep(1)
         boot_with_python_canopen()
     done = subprocess.run([programs / "takt", "learn", log, "--eds-dir", EDS.parent, "-o", learned],
-                          capture_output=True, text=True, timeout=60)
+                          capture_output=True, text=True, timeout=180)
     check(done.returncode == 0, f"takt learn ends with {done.returncode} {done.stderr}")
     plan = subprocess.run([programs / "takt", "plan", "--json", "--quiet", learned], capture_output=True, text=True)
     judge_plan(json.loads(plan.stdout))
     daemon = subprocess.run([programs / "taktd", learned, "--for", "8s", "--events", events,
-                             "--lcm-url", "tcpq://127.0.0.1:7791"], capture_output=True, text=True, timeout=60)
+                             "--lcm-url", "tcpq://127.0.0.1:7791"], capture_output=True, text=True, timeout=180)
     done = [json.loads(line) for line in events.read_text().splitlines()] if events.exists() else []
     ready = {event.get("node") for event in done if "boot_done" in json.dumps(event)}
     check(len(ready) == len(NODES), f"taktd boots by the learned file: {ready} {daemon.stderr[-800:]}")

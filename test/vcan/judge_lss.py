@@ -107,7 +107,7 @@ class Tool:
         self.takt = binaries / "takt"
 
     def run(self, *words):
-        done = subprocess.run([self.takt, "lss", *words, "--bus", "vcan0"], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([self.takt, "lss", *words, "--bus", "vcan0"], capture_output=True, text=True, timeout=300)
         return done.returncode, done.stdout, done.stderr
 
     def json(self, *words):
@@ -184,7 +184,7 @@ def judge_daemon(binaries):
     with tempfile.TemporaryDirectory() as folder:
         events = pathlib.Path(folder) / "events.jsonl"
         time.sleep(0.5)
-        done = subprocess.run([binaries / "taktd", NETWORK, "--for", "12s", "--events", events], timeout=60)
+        done = subprocess.run([binaries / "taktd", NETWORK, "--for", "12s", "--events", events], timeout=180)
         told = [json.loads(line) for line in events.read_text().splitlines()]
     simulation.terminate()
     simulation.wait()

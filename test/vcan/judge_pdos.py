@@ -159,7 +159,7 @@ def judge_master(bus, binaries):
     seen = {}
     for _, can_id, data in bus.frames(8.5):
         seen.setdefault(can_id, []).append(data)
-    check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
+    check(taktd.wait(timeout=180) == 0, f"taktd ended with exit code {taktd.returncode}")
     polls, answers = len(seen.get(TPDO | RTR, [])), len(seen.get(TPDO, []))
     check(polls >= 15, f"taktd asks for TPDO1 each 100 ms: {polls} remote requests")
     check(abs(polls - answers) <= 1, f"and each is answered: {answers}")

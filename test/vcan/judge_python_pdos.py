@@ -69,7 +69,7 @@ class Application:
             self.bus.publish("JUDGE_COMMAND", command.encode())
 
     def run_while(self, process):
-        until = time.monotonic() + 60
+        until = time.monotonic() + 180
         asked = False
         while process.poll() is None:
             self.bus.handle_timeout(50)

@@ -44,7 +44,7 @@ class Takt:
         self.program, self.folder = pathlib.Path(binaries) / "takt", pathlib.Path(folder)
 
     def sdo(self, *arguments):
-        done = subprocess.run([self.program, "sdo", *map(str, arguments)], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([self.program, "sdo", *map(str, arguments)], capture_output=True, text=True, timeout=180)
         return done.returncode, done.stdout.strip(), done.stderr.strip()
 
     def download(self, content, *arguments):
@@ -184,7 +184,7 @@ def judge_daemon(binaries, takt):
     check(read(0x1F82, 5) in (1, 127), f"node 5 left OPERATIONAL when 0x1F82 asked for it")
     network.disconnect()
     taktd.terminate()
-    check(taktd.wait(timeout=20) == 0, f"taktd ended with exit code {taktd.returncode}")
+    check(taktd.wait(timeout=180) == 0, f"taktd ended with exit code {taktd.returncode}")
 
 
 def main(binaries):

@@ -81,7 +81,7 @@ def main(binaries):
         taktd = subprocess.Popen([binaries / "taktd", NETWORK, "--for", "12s", "--events", events])
         time.sleep(6)
         subprocess.run(["cansend", "vcan0", "000#8106"], check=True)
-        check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
+        check(taktd.wait(timeout=180) == 0, f"taktd ended with exit code {taktd.returncode}")
         time.sleep(0.2)
         for process in (simulation, candump):
             process.terminate()

@@ -31,7 +31,7 @@ LATE = 1.3  # periods; taktd takes it for lost after 1.5
 CALM = 12  # SYNCs until its node is surely back
 STANDSTILL = 0.5  # s that taktd, too, may stand still and then read a SYNC that waited for it
 ENOUGH = 80  # steady SYNCs that are judged
-PATIENCE = 60  # s for them
+PATIENCE = 180  # s for them
 START, STOP = b"\x01\x05", b"\x02\x05"
 NMT, SYNC, TIME, RPDO = 0x000, 0x080, 0x100, 0x205
 failures = []
@@ -198,7 +198,7 @@ def judge_all(binaries, events):
     check(restarts.count(STOP) <= losses(back, PERIOD), "and not stopped again as long as it comes")
     time.sleep(0.5)
     taktd.send_signal(signal.SIGINT)
-    check(taktd.wait(timeout=60) == 0, f"taktd ended with exit code {taktd.returncode}")
+    check(taktd.wait(timeout=180) == 0, f"taktd ended with exit code {taktd.returncode}")
     told = [json.loads(line) for line in events.read_text().splitlines()]
     kinds = [event["kind"] for event in told if event["kind"] in ("sync_lost", "sync_back")]
     stayed_away = losses(source.times(first, until), PERIOD)

@@ -2,12 +2,13 @@
 
 #include "master/linux/can_filters.hpp"
 #include "master/linux/frame_channel.hpp"
+#include "test/support/patience.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {
 namespace {
 
-constexpr Time limit = std::chrono::seconds{10};
+constexpr Time limit = test::patience;
 constexpr CobId sync_id = CobId::base(0x080);
 const Frame sync_frame = make_frame(sync_id, {0x07});
 const Frame rpdo = make_frame(CobId::base(0x205), {0x0F, 0x00, 0x10, 0x20, 0x30, 0x40});

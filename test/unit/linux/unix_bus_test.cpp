@@ -12,11 +12,12 @@
 #include "master/linux/unix_address.hpp"
 #include "master/linux/unix_bus_hub.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/patience.hpp"
 
 namespace takt {
 namespace {
 
-constexpr Time limit = std::chrono::seconds{10};  // of waiting for another thread, never reached
+constexpr Time limit = test::patience;  // of waiting for another thread, never reached
 
 const Frame sync_frame = make_frame(CobId::base(0x080), {0x01});
 const Frame tpdo = make_frame(CobId::base(0x185), {1, 2, 3, 4, 5, 6, 7, 8});
