@@ -144,7 +144,7 @@ command_t& AxisControl::command() {
 
 void AxisControl::put(AxisSignals::Position signal, std::int64_t raw) {
   if (!signal) return;
-  command_.signals.push_back(static_cast<std::int16_t>(*signal));
+  command_.signals.push_back(static_cast<std::int32_t>(*signal));
   command_.values.push_back(raw);
 }
 

@@ -8,6 +8,7 @@
 
 #include "master/gateway/messages.hpp"
 #include "master/gateway/names.hpp"
+#include "master/gateway/random_number.hpp"
 
 namespace takt {
 namespace {
@@ -26,7 +27,7 @@ timespec to_timespec(std::chrono::nanoseconds time) {
 }  // namespace
 
 AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
-    : lcm_{std::move(lcm)}, options_{std::move(options)} {
+    : lcm_{std::move(lcm)}, options_{std::move(options)}, instance_{random_number()} {
   if (options_.bus.empty()) {
     lcm_->subscribe(any_bus("LAYOUT"));
   } else {
@@ -49,12 +50,38 @@ void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) 
   if (bus_.empty()) {
     heard_ = bus_of_channel(channel, "LAYOUT");
   } else if (channel == image_channel_) {
-    if (const auto part = decode<image_t>(data)) fresh_ |= input_.take(*part);
+    take_image(data);
   } else if (channel == layout_channel_) {
-    if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
+    take_layout(data);
   } else if (channel == event_channel_ && events_.size() < most_events) {
     if (auto event = decode<event_t>(data)) events_.push_back(std::move(*event));
   }
+}
+
+void AxisGroup::take_image(std::span<const std::byte> data) {
+  const auto part = decode<image_t>(data);
+  if (part) {
+    fresh_ |= input_.take(*part);
+  } else if (part.error() == DecodeFault::schema_1) {
+    tell_schema(1);
+  }
+}
+
+void AxisGroup::take_layout(std::span<const std::byte> data) {
+  const auto part = decode<layout_t>(data);
+  if (!part) return;
+  if (part->schema != message_schema) return tell_schema(part->schema);
+  new_layout_ |= input_.take(*part);
+}
+
+void AxisGroup::tell_schema(std::int16_t schema) {
+  if (std::exchange(told_schema_, true) || events_.size() == most_events) return;
+  event_t event{};
+  event.schema = message_schema;
+  event.kind = "other_schema";
+  event.severity = 2;
+  event.text = daemon_schema_text(schema);
+  events_.push_back(std::move(event));
 }
 
 void AxisGroup::serve() {
@@ -104,6 +131,7 @@ bool AxisGroup::send() {
   command_t& command = axes_.command();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   command.utime = std::chrono::duration_cast<microseconds>(now).count();
+  command.instance = instance_;
   command.sender = options_.sender;
   command.time_to_live = options_.time_to_live;
   return lcm_->publish(command_channel_, encode(command, buffer_));

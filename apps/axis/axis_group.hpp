@@ -52,6 +52,7 @@ class AxisGroup {
   /// Age of the newest image by this machine's clock.
   std::chrono::nanoseconds age() const;
   /// What the daemon has told since the last call (boots, refused commands, faults), 256 at most.
+  /// Once an `other_schema` of this library's own, where the daemon is of another takt.
   std::vector<event_t> take_events();
 
  private:
@@ -60,6 +61,9 @@ class AxisGroup {
   void serve();
   void take(std::string_view channel, std::span<const std::byte> data);
   void listen_to(std::string_view bus);
+  void take_image(std::span<const std::byte> data);
+  void take_layout(std::span<const std::byte> data);
+  void tell_schema(std::int16_t schema);
   bool is_stale() const;
 
   std::unique_ptr<Transport> lcm_;
@@ -75,7 +79,9 @@ class AxisGroup {
   bool fresh_ = false;
   bool new_layout_ = false;
   bool told_stale_ = false;
+  bool told_schema_ = false;
   Clock::time_point arrival_{};
+  std::int64_t instance_;
   std::vector<event_t> events_;
   std::vector<std::byte> buffer_;
 };

@@ -8,8 +8,8 @@
 namespace takt {
 namespace {
 
-/// Signals have 16-bit positions.
-constexpr std::int32_t most_signals = 0x7FFF;
+/// The bound on what a layout may make this program allocate.
+constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
 
 bool is_range(std::int32_t first, std::int32_t count, std::size_t total) {
@@ -92,7 +92,7 @@ bool ImageInput::take(const image_t& part) {
   }
   if (!image_parts_.mark(static_cast<std::size_t>(part.part))) return false;
   std::ranges::copy(part.values, new_values_.begin() + part.first_signal);
-  for (const std::int16_t signal : part.stale) {
+  for (const std::int32_t signal : part.stale) {
     if (is_range(signal, 1, signals_.size())) new_stale_[static_cast<std::size_t>(signal)] = 1;
   }
   if (image_parts_.missing != 0) return false;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """axes.py BUS [SECONDS] - enables all axes of a bus, moves them in a soft sine over LCM, disables them."""
-import lcm, math, sys
+import lcm, math, random, sys
 from takt import command_t, image_t, layout_t  # made by lcm-gen -p
 
 FORTH = {0x08: 0x80, 0x28: 0x80, 0x40: 0x06, 0x60: 0x06, 0x21: 0x07, 0x23: 0x0F, 0x27: 0x0F}  # statusword: controlword
@@ -10,9 +10,11 @@ signals, values, stale, newest = {}, {}, set(), {}  # by place in the image; the
 
 def on_layout(channel, data):
     layout = newest[layout_t] = layout_t.decode(data)  # a large layout or image comes in parts
+    if layout.schema != 2: sys.exit(f"axes.py: the daemon has schema {layout.schema}, this program schema 2")
     signals.update(enumerate(layout.signals, layout.first_signal))
 def on_image(channel, data):
-    image = newest[image_t] = image_t.decode(data)
+    try: image = newest[image_t] = image_t.decode(data)
+    except ValueError: return  # the schema of the layout tells why
     values.update(enumerate(image.values, image.first_signal))
     stale.difference_update(range(image.first_signal, image.first_signal + image.num_values))
     stale.update(image.stale)
@@ -26,6 +28,7 @@ axes = {node: signals[at[node, 0x6064]] for node, index in at if index == 0x6040
 size = {node: 0.5 / s.scale if s.unit else 10000 for node, s in axes.items()}  # rad or counts
 layout, moving, time, last, unseen = newest[layout_t], False, 0.0, 0, 0
 states, start, outputs, command = {}, {}, {}, command_t()
+command.sender, command.instance = "axes.py", random.SystemRandom().randrange(1, 2**63)  # one sender each, whatever its name
 while time < seconds or set(states.values()) & set(BACK):
     if not link.handle_timeout(1000): sys.exit("axes.py: no image for 1 s")
     while link.handle_timeout(0): pass  # only the newest image counts
@@ -43,7 +46,7 @@ while time < seconds or set(states.values()) & set(BACK):
         wanted = {0x6040: (FORTH if time < seconds else BACK).get(states[node], 0), 0x6060: 8, 0x607A: target}
         outputs.update((at[node, index], value) for index, value in wanted.items() if (node, index) in at)
     moving, last = moving or not missing and set(states.values()) == {0x27}, image.cycle
-    command.schema, command.session, command.sender, command.cycle = 1, image.session, "axes.py", image.cycle
+    command.schema, command.session, command.cycle = 2, image.session, image.cycle
     command.num_values, command.signals, command.values = len(outputs), list(outputs), list(outputs.values())
     link.publish(f"{bus}_COMMAND", command.encode())
 print(f"{len(axes)} axes moved for {time:.1f} s")

@@ -87,11 +87,14 @@ std::string comment_of(const Signal& signal) {
 
 std::vector<TypedField> head_of(bool command) {
   if (command) {
-    return {{"utime", LcmPrimitive::int64, {}, "microseconds since 1970"},
-            {"session", LcmPrimitive::int64, {}, "session of the state; another one is refused"},
-            {"sender", LcmPrimitive::string, {}, "one sender holds a node's outputs at a time"},
-            {"cycle", LcmPrimitive::int64, {}, "of the state these were computed from"},
-            {"time_to_live", LcmPrimitive::int32, {}, "cycles; 0 = the configured one"}};
+    return {
+        {"utime", LcmPrimitive::int64, {}, "microseconds since 1970"},
+        {"session", LcmPrimitive::int64, {}, "session of the state; another one is refused"},
+        {"instance", LcmPrimitive::int64, {}, "of the sender: random, chosen at its start, not 0"},
+        {"sender", LcmPrimitive::string, {}, "its name in events and in status_t"},
+        {"cycle", LcmPrimitive::int64, {}, "of the state these were computed from"},
+        {"time_to_live", LcmPrimitive::int32, {}, "cycles; 0 = the configured one"},
+        {"release", LcmPrimitive::boolean, {}, "the sender gives up the node's outputs"}};
   }
   return {{"utime", LcmPrimitive::int64, {}, "wall clock of SYNC, microseconds since 1970"},
           {"sync_mono_ns", LcmPrimitive::int64, {}, "monotonic clock of SYNC"},

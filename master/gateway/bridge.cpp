@@ -7,6 +7,7 @@
 #include "master/core/boot_report.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
+#include "master/gateway/random_number.hpp"
 #include "master/gateway/sync_message.hpp"
 #include "master/wire/bytes.hpp"
 
@@ -63,7 +64,8 @@ Bridge::Bridge(Master& master, Transport& transport, const Clocks& clocks, Bridg
                   .state = [this](const transfer_state_t& state) { tell_transfer(state); }}},
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
-      wall_minus_monotonic_{clocks_.wall_offset()} {
+      wall_minus_monotonic_{clocks_.wall_offset()},
+      instance_{random_number()} {
   if (options_.typed) typed_.emplace(master.plan(), options_.session);
   master_.status(snapshot_);
 }
@@ -148,11 +150,12 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command_t command{};
   command.schema = message_schema;
   command.session = options_.session;
+  command.instance = instance_;
   command.sender = sender;
   command.cycle = static_cast<std::int64_t>(cycle_);
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {
-    command.signals.push_back(static_cast<std::int16_t>(signal));
+    command.signals.push_back(static_cast<std::int32_t>(signal));
   }
   command.values.assign(values.begin(), values.end());
   const bool taken =
@@ -219,7 +222,8 @@ void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
   const Time now = clocks_.now();
   const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
   if (!kept_back) return;
-  std::string sentence = "a message on " + channel + " can't be read: " + std::string{text(fault)};
+  std::string sentence = "a message on " + channel + " can't be read: ";
+  sentence += fault == DecodeFault::schema_1 ? schema_refusal(1) : std::string{text(fault)};
   if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more)";
   tell({.when = now,
         .cycle = cycle_,

@@ -143,6 +143,7 @@ class Bridge {
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;
+  std::int64_t instance_;  // of the daemon itself, as a sender of commands
 };
 
 }  // namespace takt

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t most_events = 50;
 constexpr std::size_t most_buses = 64;
-constexpr std::int32_t most_signals = 32768;
+constexpr std::int32_t most_signals = 65536;
 
 }  // namespace
 
@@ -107,7 +107,7 @@ void BusView::take(const image_t& image) {
     return;
   }
   std::ranges::copy(image.values, next_values_.begin() + image.first_signal);
-  for (const std::int16_t signal : image.stale) {
+  for (const std::int32_t signal : image.stale) {
     const auto at = static_cast<std::size_t>(signal);
     if (signal >= 0 && at < next_stale_.size()) next_stale_[at] = true;
   }
@@ -130,7 +130,11 @@ namespace {
 template <class T>
 std::string take_as(BusView& view, std::string_view channel, Bytes data) {
   auto message = decode<T>(data);
-  if (!message) return std::string{channel} + ": " + std::string{text(message.error())};
+  if (!message) {
+    const bool old = message.error() == DecodeFault::schema_1;
+    return std::string{channel} + ": " +
+           (old ? daemon_schema_text(1) : std::string{text(message.error())});
+  }
   view.take(std::move(*message));
   return {};
 }

@@ -67,9 +67,7 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
     return refuse(context, command, 0, "taktd only observes (--observe)");
   }
   if (command.schema != message_schema) {
-    return refuse(context, command, 0,
-                  "schema " + std::to_string(command.schema) + ", this taktd has " +
-                      std::to_string(message_schema));
+    return refuse(context, command, 0, schema_refusal(command.schema));
   }
   if (command.session != options_.session) {
     return refuse(context, command, 0,
@@ -87,7 +85,7 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
 bool Commands::read_items(const command_t& command, const CommandContext& context) {
   items_.clear();
   for (std::size_t i = 0; i < command.signals.size(); ++i) {
-    const std::int16_t position = command.signals[i];
+    const std::int32_t position = command.signals[i];
     const auto index = static_cast<std::size_t>(position);
     if (position < 0 || index >= plan_.layout.signals.size() ||
         !plan_.layout.signals[index].output) {

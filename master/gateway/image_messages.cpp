@@ -78,7 +78,7 @@ const std::vector<image_t>& ImageMessages::fill(const ImageView& image, Time wal
     for (std::size_t i = 0; i < message.values.size(); ++i) {
       message.values[i] = image.values[first + i];
       if (is_stale(image, first + i)) {
-        message.stale.push_back(static_cast<std::int16_t>(first + i));
+        message.stale.push_back(static_cast<std::int32_t>(first + i));
       }
     }
     message.num_stale = static_cast<std::int32_t>(message.stale.size());

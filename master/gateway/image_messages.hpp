@@ -11,7 +11,7 @@
 namespace takt {
 
 /// Values in one image_t at most: any mix of values and stale marks stays below message_bytes.
-inline constexpr std::size_t values_a_message = 120;
+inline constexpr std::size_t values_a_message = 100;
 
 /// The image of a cycle as messages; kept, so that a cycle allocates nothing.
 class ImageMessages {

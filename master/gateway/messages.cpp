@@ -4,6 +4,8 @@ namespace takt {
 
 std::string_view text(DecodeFault fault) noexcept {
   switch (fault) {
+    case DecodeFault::schema_1:
+      return "it is a message of schema 1, of an older takt";
     case DecodeFault::other_version:
       return "the publisher has another version of this message type";
     case DecodeFault::malformed:
@@ -12,6 +14,27 @@ std::string_view text(DecodeFault fault) noexcept {
       return "it has an infinite number, or one that 64 bits can't hold";
   }
   return "";
+}
+
+namespace {
+
+std::string schema_text(std::int16_t schema) { return "schema " + std::to_string(schema); }
+
+}  // namespace
+
+std::string schema_refusal(std::int16_t schema) {
+  const bool newer = schema > message_schema;
+  return "message of " + schema_text(schema) + ": " +
+         (newer ? "this taktd is older than the application and has "
+                : "rebuild the application against this takt, which has ") +
+         schema_text(message_schema);
+}
+
+std::string daemon_schema_text(std::int16_t schema) {
+  const bool newer = schema > message_schema;
+  return "the daemon sends messages of " + schema_text(schema) + " and this program has " +
+         schema_text(message_schema) + ": " +
+         (newer ? "rebuild the program against the daemon's takt" : "update the daemon");
 }
 
 }  // namespace takt

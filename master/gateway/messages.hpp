@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <expected>
 #include <span>
+#include <string>
 #include <string_view>
 #include <takt/command_t.hpp>
 #include <takt/event_t.hpp>
@@ -23,7 +24,7 @@
 namespace takt {
 
 /// Version of all messages, in their field `schema`.
-inline constexpr std::int16_t message_schema = 1;
+inline constexpr std::int16_t message_schema = 2;
 
 /// Largest message where the sender can choose: one Ethernet frame with LCM's header and channel.
 inline constexpr std::size_t message_bytes = 1300;
@@ -32,6 +33,7 @@ using Bytes = std::span<const std::byte>;
 
 /// Why bytes are not the message that was expected.
 enum class DecodeFault : std::uint8_t {
+  schema_1,       ///< the fingerprint is the one that this type had in schema 1
   other_version,  ///< the fingerprint is another one: the publisher has other .lcm files
   malformed,      ///< sizes inside do not fit the message
   out_of_range,   ///< a number that no raw value stands for
@@ -39,15 +41,30 @@ enum class DecodeFault : std::uint8_t {
 
 std::string_view text(DecodeFault fault) noexcept;
 
+/// What the daemon tells an application whose messages have another schema than its own.
+std::string schema_refusal(std::int16_t schema);
+/// What a program says that hears a daemon of another schema.
+std::string daemon_schema_text(std::int16_t schema);
+
+/// What a type's messages of schema 1 begin with; 0: the type has not changed since.
+template <class T>
+inline constexpr std::uint64_t fingerprint_of_schema_1 = 0;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<command_t> = 0xE6CF45B76FC2022E;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<image_t> = 0x802677B48765DA81;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<status_t> = 0xB1E043970713C28C;
+
 /// Layout of a type's bytes, see has_shape.
 template <class T>
 inline constexpr std::string_view message_layout;
 template <>
-inline constexpr std::string_view message_layout<command_t> = "lhlslin(h)(l)";
+inline constexpr std::string_view message_layout<command_t> = "lhllslibn(i)(l)";
 template <>
 inline constexpr std::string_view message_layout<event_t> = "lhllhsshs";
 template <>
-inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(h)";
+inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(i)";
 template <>
 inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihbhhsdd)";
 template <>
@@ -60,7 +77,7 @@ template <>
 inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
 template <>
 inline constexpr std::string_view message_layout<status_t> =
-    "lhhhlssislllllllllllllfhhhlhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
+    "lhhhlssislllllllllllllfhhhhslhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
 template <>
 inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
 template <>
@@ -79,7 +96,8 @@ std::expected<T, DecodeFault> decode(Bytes bytes) {
     fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
   }
   if (fingerprint != static_cast<std::uint64_t>(T::getHash())) {
-    return std::unexpected{DecodeFault::other_version};
+    const bool old = fingerprint != 0 && fingerprint == fingerprint_of_schema_1<T>;
+    return std::unexpected{old ? DecodeFault::schema_1 : DecodeFault::other_version};
   }
   T message;
   if (!has_shape(bytes.subspan(8), message_layout<T>) ||

@@ -162,7 +162,7 @@ std::optional<reply_t> Requests::take(const request_t& message, Time now) {
 
 std::expected<Request, std::string> Requests::translate(const request_t& message) const {
   if (message.schema != message_schema) {
-    return std::unexpected{"this taktd has schema " + std::to_string(message_schema)};
+    return std::unexpected{schema_refusal(message.schema)};
   }
   if (message.session != 0 && message.session != options_.session) {
     return std::unexpected{std::string{"the request is for another session of taktd"}};

@@ -75,7 +75,7 @@ void Transfers::begin(const transfer_t& message, Time now) {
 std::expected<Request, std::string> Transfers::translate(const transfer_t& message) const {
   using Error = std::unexpected<std::string>;
   if (message.schema != message_schema) {
-    return Error{"this taktd has schema " + std::to_string(message_schema)};
+    return Error{schema_refusal(message.schema)};
   }
   if (message.session != 0 && message.session != options_.session) {
     return Error{"the transfer is for another session of taktd"};

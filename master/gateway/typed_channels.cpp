@@ -92,6 +92,14 @@ Number take_number(Taker& from, LcmPrimitive type) {
   return {};
 }
 
+/// The fields `instance` and `release` came with schema 2.
+std::uint64_t fingerprint_of_schema_1_of(TypedMessage command) {
+  std::erase_if(command.fields, [](const TypedField& field) {
+    return !field.signal && (field.name == "instance" || field.name == "release");
+  });
+  return command.fingerprint();
+}
+
 bool is_stale(const ImageView& image, const TypedMessage& type) noexcept {
   return std::ranges::any_of(type.fields, [&](const TypedField& field) {
     if (!field.signal) return false;
@@ -109,7 +117,8 @@ TypedChannels::TypedChannels(const BusPlan& plan, std::int64_t session)
     const std::uint64_t fingerprint = message.fingerprint();
     if (message.command) {
       std::string channel = message.channel;
-      commands_.emplace(std::move(channel), Type{std::move(message), fingerprint});
+      const std::uint64_t old = fingerprint_of_schema_1_of(message);
+      commands_.emplace(std::move(channel), Type{std::move(message), fingerprint, old});
     } else {
       states_.push_back({std::move(message), fingerprint});
     }
@@ -182,16 +191,21 @@ std::optional<std::expected<command_t, DecodeFault>> TypedChannels::command(
 
 std::expected<command_t, DecodeFault> TypedChannels::decode(const Type& type, Bytes data) const {
   Taker from{data};
-  if (from.take<std::uint64_t>() != type.fingerprint) {
-    return std::unexpected{data.size() < 8 ? DecodeFault::malformed : DecodeFault::other_version};
+  const auto fingerprint = from.take<std::uint64_t>();
+  if (fingerprint != type.fingerprint) {
+    if (data.size() < 8) return std::unexpected{DecodeFault::malformed};
+    const bool old = fingerprint == type.fingerprint_of_schema_1;
+    return std::unexpected{old ? DecodeFault::schema_1 : DecodeFault::other_version};
   }
   command_t command{};
   command.schema = message_schema;
   command.utime = from.take<std::int64_t>();
   command.session = from.take<std::int64_t>();
+  command.instance = from.take<std::int64_t>();
   command.sender = from.text();
   command.cycle = from.take<std::int64_t>();
   command.time_to_live = from.take<std::int32_t>();
+  command.release = from.take<std::int8_t>();
   for (const TypedField& field : type.message.fields) {
     if (!field.signal) continue;
     const Number number = take_number(from, field.type);
@@ -199,7 +213,7 @@ std::expected<command_t, DecodeFault> TypedChannels::decode(const Type& type, By
     const auto raw =
         number.real ? units_.raw_of(*field.signal, *number.real) : std::optional{number.integer};
     if (!raw) return std::unexpected{DecodeFault::out_of_range};
-    command.signals.push_back(static_cast<std::int16_t>(*field.signal));
+    command.signals.push_back(static_cast<std::int32_t>(*field.signal));
     command.values.push_back(*raw);
   }
   command.num_values = static_cast<std::int32_t>(command.signals.size());

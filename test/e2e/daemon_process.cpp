@@ -101,12 +101,13 @@ command_t DaemonProcess::command_for(
   message.schema = message_schema;
   message.session = bus().session();
   message.sender = sender;
+  message.instance = 1 + static_cast<std::int64_t>(std::hash<std::string>{}(sender) >> 2U);
   message.cycle = bus().cycle();
   message.time_to_live = 40;
   for (const auto& [name, raw] : values) {
     const std::size_t dot = name.find('.');
     message.signals.push_back(
-        static_cast<std::int16_t>(signal_at(name.substr(0, dot), name.substr(dot + 1), true)));
+        static_cast<std::int32_t>(signal_at(name.substr(0, dot), name.substr(dot + 1), true)));
     message.values.push_back(raw);
   }
   message.num_values = static_cast<std::int32_t>(message.values.size());

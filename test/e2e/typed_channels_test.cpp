@@ -44,10 +44,12 @@ class TypedApplication {
     put(bytes, types_.at(1).fingerprint());
     put(bytes, std::int64_t{0});
     put(bytes, static_cast<std::int64_t>(session()) + session_offset);
+    put(bytes, std::int64_t{77});  // instance
     put(bytes, std::int32_t{4});
     for (const char c : {'e', '2', 'e', '\0'}) bytes.push_back(static_cast<std::byte>(c));
     put(bytes, number(32, 8));  // cycle
     put(bytes, std::int32_t{0});
+    put(bytes, std::int8_t{0});  // release
     put(bytes, std::int32_t{controlword});
     put(bytes, std::int8_t{8});  // cyclic synchronous position
     put(bytes, std::bit_cast<std::uint64_t>(target));

@@ -14,7 +14,7 @@ failures = []
 
 def layout(session):
     made = takt.layout_t()
-    made.schema, made.parts, made.session, made.hash, made.period_ns = 1, 1, session, 7, 2_000_000
+    made.schema, made.parts, made.session, made.hash, made.period_ns = 2, 1, session, 7, 2_000_000
     for index in (0x6041, 0x6064, 0x6040, 0x607A):
         for node in (1, 2):
             signal = takt.signal_t()
@@ -66,7 +66,7 @@ class Bus:
             if word == 0x27: self.values[POSITION + axis] = self.values[TARGET + axis]
         self.fault(self, self.cycle)
         image = takt.image_t()
-        image.schema, image.parts, image.session, image.layout_hash, image.cycle = 1, 1, self.session, 7, self.cycle
+        image.schema, image.parts, image.session, image.layout_hash, image.cycle = 2, 1, self.session, 7, self.cycle
         image.values, image.num_values, image.stale, image.num_stale = self.values, 8, self.stale, len(self.stale)
         self.handlers["IMAGE"](None, image.encode())
         return 1

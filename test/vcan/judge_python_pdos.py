@@ -60,7 +60,8 @@ class Application:
         for name, index in INPUTS.items():
             self.seen[name].append(image.values[self.layout[index]])
         command = self.takt.command_t()
-        command.schema, command.session, command.sender, command.cycle = 1, image.session, "judge", image.cycle
+        command.schema, command.session, command.sender, command.cycle = 2, image.session, "judge", image.cycle
+        command.instance = 1
         command.time_to_live = 40
         if self.images <= IMAGES:
             command.signals = [self.layout[0x60FF], self.layout[0x607A]]

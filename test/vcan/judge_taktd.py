@@ -63,7 +63,8 @@ class Application:
         if self.layout is None:
             return
         command = self.takt.command_t()
-        command.schema, command.session, command.sender, command.cycle = 1, image.session, "judge", image.cycle
+        command.schema, command.session, command.sender, command.cycle = 2, image.session, "judge", image.cycle
+        command.instance = 1
         command.time_to_live = 20
         for node in NODES:
             at = {index: self.layout[node, index, False] for index in (0x6041, 0x6064)}

@@ -22,11 +22,11 @@ constexpr std::int64_t enabled = 0x0237;
 constexpr std::int64_t fault = 0x0218;
 
 /// Positions of the layout of two_axes().
-constexpr std::int16_t position_5 = 2;
-constexpr std::int16_t controlword_5 = 4;
-constexpr std::int16_t controlword_6 = 5;
-constexpr std::int16_t target_5 = 6;
-constexpr std::int16_t target_6 = 7;
+constexpr std::int32_t position_5 = 2;
+constexpr std::int32_t controlword_5 = 4;
+constexpr std::int32_t controlword_6 = 5;
+constexpr std::int32_t target_5 = 6;
+constexpr std::int32_t target_6 = 7;
 
 class TwoAxes : public ::testing::Test {
  protected:
@@ -38,14 +38,14 @@ class TwoAxes : public ::testing::Test {
     input_.take(image(++cycle_, values));
     axes_.on_image(input_);
   }
-  void see_stale(std::initializer_list<std::int64_t> values, std::int16_t stale) {
+  void see_stale(std::initializer_list<std::int64_t> values, std::int32_t stale) {
     image_t missing = image(++cycle_, values);
     missing.stale = {stale};
     missing.num_stale = 1;
     input_.take(missing);
     axes_.on_image(input_);
   }
-  std::int64_t commanded(std::int16_t signal) {
+  std::int64_t commanded(std::int32_t signal) {
     const command_t& command = axes_.command();
     for (std::size_t i = 0; i < command.signals.size(); ++i) {
       if (command.signals[i] == signal) return command.values[i];
@@ -76,7 +76,7 @@ TEST_F(TwoAxes, AreCommandedWithTheSessionAndCycleOfTheirImage) {
   const command_t& command = axes_.command();
   EXPECT_EQ(command.session, 77);
   EXPECT_EQ(command.cycle, 42);
-  EXPECT_EQ(command.schema, 1);
+  EXPECT_EQ(command.schema, 2);
   EXPECT_THAT(command.signals, ElementsAre(controlword_5, target_5, controlword_6, target_6));
   EXPECT_EQ(command.num_values, 4);
 }

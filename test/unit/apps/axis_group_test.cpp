@@ -91,6 +91,21 @@ TEST_F(Group, CommandsOnItsBusInItsName) {
   EXPECT_EQ(command->sender, "test");
   EXPECT_EQ(command->time_to_live, 7);
   EXPECT_EQ(command->cycle, 3);
+  EXPECT_NE(command->instance, 0);
+}
+
+TEST_F(Group, TellsOnceThatTheDaemonIsOfAnOlderTakt) {
+  layout_t old = two_axes();
+  old.schema = 1;
+  for (int i = 0; i < 3; ++i) lcm_.arrive("LIFT_LAYOUT", old);
+  EXPECT_EQ(group_.wait(0ns), Input::nothing);
+
+  const auto events = group_.take_events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, "other_schema");
+  EXPECT_EQ(
+      events[0].text,
+      "the daemon sends messages of schema 1 and this program has schema 2: update the daemon");
 }
 
 TEST_F(Group, TellsThatTheDaemonHasRestarted) {

@@ -92,7 +92,7 @@ TEST(ImageInput, LeavesOutImagesOfAnotherSessionLayoutOrSchema) {
   other.layout_hash = 9;
   EXPECT_FALSE(input.take(other));
   other = image(1, {1, 2, 3, 4});
-  other.schema = 2;
+  other.schema = 1;
   EXPECT_FALSE(input.take(other));
 }
 

@@ -24,7 +24,7 @@ inline signal_t signal(std::int16_t node, std::int32_t index, bool output, std::
 /// Statusword, position, controlword and target of nodes 5 and 6; 1000 counts are one unit.
 inline layout_t two_axes() {
   layout_t layout{};
-  layout.schema = 1;
+  layout.schema = 2;
   layout.parts = 1;
   layout.session = session;
   layout.hash = hash;
@@ -41,7 +41,7 @@ inline layout_t two_axes() {
 /// `values`: the inputs; the outputs stay zero.
 inline image_t image(std::int64_t cycle, std::initializer_list<std::int64_t> values) {
   image_t made{};
-  made.schema = 1;
+  made.schema = 2;
   made.parts = 1;
   made.session = session;
   made.layout_hash = hash;

@@ -19,9 +19,10 @@ class CommandsTest : public testing::Test {
     }
   }
 
-  command_t command(std::vector<std::int16_t> signals, std::vector<std::int64_t> values) {
+  command_t command(std::vector<std::int32_t> signals, std::vector<std::int64_t> values) {
     command_t message{};
-    message.schema = 1;
+    message.schema = 2;
+    message.instance = 1;
     message.session = 42;
     message.sender = "move";
     message.cycle = 100;
@@ -64,8 +65,8 @@ TEST_F(CommandsTest, GoodCommandIsStagedWithWhatIsLeftOfItsTimeToLive) {
 }
 
 TEST_F(CommandsTest, InputsAndSignalsThatAreNotThereAreRefusedAsAWhole) {
-  for (const int wrong : {0, 4, -1, 32767}) {
-    EXPECT_FALSE(take(command({1, static_cast<std::int16_t>(wrong)}, {1, 1})));
+  for (const int wrong : {0, 4, -1, 32767, 65537}) {
+    EXPECT_FALSE(take(command({1, wrong}, {1, 1})));
   }
 
   EXPECT_TRUE(outputs.empty());
@@ -86,6 +87,14 @@ TEST_F(CommandsTest, ReplayedLogDoesNotMoveTheMachine) {
   EXPECT_FALSE(take(replayed));
   EXPECT_TRUE(outputs.empty());
   EXPECT_TRUE(told("another session"));
+}
+
+TEST_F(CommandsTest, AProgramOfAnotherSchemaIsToldWhatToDo) {
+  command_t old = command({1}, {0x0F});
+  old.schema = 1;
+
+  EXPECT_FALSE(take(old));
+  EXPECT_TRUE(told("message of schema 1: rebuild the application against this takt"));
 }
 
 TEST_F(CommandsTest, CommandThatWaitedLongerThanItsTimeToLiveIsRefused) {

@@ -55,11 +55,11 @@ TEST(GroupCommand, AllSignalsOfOneMessageBecomeValidWithOneSync) {
     command_t command{};
     command.schema = message_schema;
     command.session = 7;
+    command.instance = 1;
     command.sender = "test";
     command.cycle = static_cast<std::int64_t>(bridge.status().bus.cycle);
-    for (std::int16_t axis = 0; axis < 3; ++axis) {
-      command.signals.insert(command.signals.end(), {static_cast<std::int16_t>(6 + axis),
-                                                     static_cast<std::int16_t>(9 + axis)});
+    for (std::int32_t axis = 0; axis < 3; ++axis) {
+      command.signals.insert(command.signals.end(), {6 + axis, 9 + axis});
       command.values.insert(command.values.end(), {0x000F, round});
     }
     command.num_values = static_cast<std::int32_t>(command.values.size());

@@ -41,7 +41,7 @@ TEST(ImageMessages, CarryValuesTimesAndStaleSignals) {
   EXPECT_EQ(parts[0].utime, 1'003'000'000);
   EXPECT_EQ(parts[0].sync_mono_ns, 3'000'000'000);
   EXPECT_EQ(parts[0].values, (std::vector<std::int64_t>{1, 2, 3, 4}));
-  EXPECT_EQ(parts[0].stale, (std::vector<std::int16_t>{0, 2}));
+  EXPECT_EQ(parts[0].stale, (std::vector<std::int32_t>{0, 2}));
 }
 
 TEST(ImageMessages, LargeImagesStayBelowOneDatagramAndComeBackWhole) {

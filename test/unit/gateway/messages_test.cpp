@@ -9,7 +9,8 @@ namespace {
 
 command_t a_command() {
   command_t command{};
-  command.schema = 1;
+  command.schema = 2;
+  command.instance = 9;
   command.session = 7;
   command.sender = "move";
   command.cycle = 1000;
@@ -85,11 +86,29 @@ TEST(Messages, AnotherTypeIsAnotherVersion) {
   EXPECT_EQ(decode<command_t>(bytes).error(), DecodeFault::other_version);
 }
 
+TEST(Messages, ATypeThatSchema1HadOtherwiseIsSaidToBeOfSchema1) {
+  const auto begins_with = [](std::string_view hex) {
+    std::vector<std::byte> bytes(16);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::string byte{hex.substr(2 * i, 2)};
+      bytes[i] = static_cast<std::byte>(std::stoi(byte, nullptr, 16));
+    }
+    return bytes;
+  };
+
+  EXPECT_EQ(decode<command_t>(begins_with("e6cf45b76fc2022e")).error(), DecodeFault::schema_1);
+  EXPECT_EQ(decode<image_t>(begins_with("802677b48765da81")).error(), DecodeFault::schema_1);
+  EXPECT_EQ(decode<status_t>(begins_with("b1e043970713c28c")).error(), DecodeFault::schema_1);
+  EXPECT_EQ(decode<event_t>(begins_with("0000000000000000")).error(), DecodeFault::other_version);
+  EXPECT_EQ(schema_refusal(1),
+            "message of schema 1: rebuild the application against this takt, which has schema 2");
+}
+
 TEST(Messages, CountsThatTheMessageCannotHoldAreRefusedWithoutMemory) {
   command_t command = a_command();
   auto bytes = bytes_of(command);
-  // num_values is the int32 before two int16 and two int64
-  const std::size_t at = bytes.size() - 20 - 4;
+  // num_values is the int32 before two int32 and two int64
+  const std::size_t at = bytes.size() - 24 - 4;
   ASSERT_EQ(bytes[at + 3], std::byte{2});
 
   for (const std::byte high : {std::byte{0x7F}, std::byte{0x80}, std::byte{0xFF}, std::byte{1}}) {
@@ -100,7 +119,7 @@ TEST(Messages, CountsThatTheMessageCannotHoldAreRefusedWithoutMemory) {
 
 TEST(Messages, StringsOfImpossibleLengthAreRefused) {
   auto bytes = bytes_of(a_command());
-  const std::size_t length_at = 8 + 8 + 2 + 8;
+  const std::size_t length_at = 8 + 8 + 2 + 8 + 8;
   ASSERT_EQ(bytes[length_at + 3], std::byte{5});
 
   for (const std::byte low : {std::byte{0x00}, std::byte{0xFF}}) {

@@ -15,7 +15,7 @@ class RequestsTest : public testing::Test {
  protected:
   static request_t upload(std::int64_t id) {
     request_t message{};
-    message.schema = 1;
+    message.schema = 2;
     message.id = id;
     message.sender = "takt-1";
     message.service = "sdo_upload";
@@ -154,7 +154,7 @@ TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
   EXPECT_TRUE(refused([](request_t& m) { m.index = 0x10000; }));
   EXPECT_TRUE(refused([](request_t& m) { m.sub = -1; }));
   EXPECT_TRUE(refused([](request_t& m) { m.session = 41; }));
-  EXPECT_TRUE(refused([](request_t& m) { m.schema = 2; }));
+  EXPECT_TRUE(refused([](request_t& m) { m.schema = 1; }));
   EXPECT_TRUE(refused([](request_t& m) { m.data.resize(1025); }));
   EXPECT_TRUE(refused([](request_t& m) {
     m.service = "nmt";

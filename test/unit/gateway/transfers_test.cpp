@@ -15,7 +15,7 @@ class TransfersTest : public testing::Test {
  protected:
   static transfer_t message(const char* action, std::int64_t id = 7) {
     transfer_t out{};
-    out.schema = 1;
+    out.schema = 2;
     out.id = id;
     out.sender = "takt-1";
     out.action = action;

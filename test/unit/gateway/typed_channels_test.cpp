@@ -82,11 +82,15 @@ constexpr std::string_view state_bytes =
     "3423209e0eb8892900000000000f4df800000000002dc6c0000000000000004d000000000000000c0100001237c010"
     "000000000000";
 constexpr std::string_view command_bytes =
+    "d3e78fee360a75cc0000000000000009000000000000004d0102030405060708000000036d6500000000000000000c"
+    "00000005000000000fc010000000000000";
+constexpr std::string_view nan_command_bytes =
+    "d3e78fee360a75cc0000000000000009000000000000004d0102030405060708000000036d6500000000000000000c"
+    "00000005000000000f7ff8000000000000";
+// Of a program that was built with the types of schema 1.
+constexpr std::string_view old_command_bytes =
     "7856ea84513af34a0000000000000009000000000000004d000000036d6500000000000000000c000000050000000f"
     "c010000000000000";
-constexpr std::string_view nan_command_bytes =
-    "7856ea84513af34a0000000000000009000000000000004d000000036d6500000000000000000c000000050000000f"
-    "7ff8000000000000";
 
 TEST(TypedChannels, AStateIsByteForByteWhatLcmGensCodeSends) {
   const BusPlan plan = lift();
@@ -184,6 +188,15 @@ TEST(TypedChannels, BytesThatAreCutOrChangedAreRefused) {
   std::vector<std::byte> other = whole;
   other[0] ^= std::byte{1};
   EXPECT_EQ(typed.command("LIFT_ARM_COMMAND", other)->error(), DecodeFault::other_version);
+}
+
+TEST(TypedChannels, ACommandOfSchema1IsKnownAsOne) {
+  const TypedChannels typed{lift(), 77};
+
+  const auto command = typed.command("LIFT_ARM_COMMAND", bytes_of(old_command_bytes));
+
+  ASSERT_TRUE(command);
+  EXPECT_EQ(command->error(), DecodeFault::schema_1);
 }
 
 }  // namespace
