@@ -14,6 +14,7 @@
 #include "eds_parser/error_control.hpp"
 #include "eds_parser/integer_of.hpp"
 #include "eds_parser/layout_compiler.hpp"
+#include "eds_parser/limits_compiler.hpp"
 #include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
@@ -76,6 +77,7 @@ class NetworkCompiler {
     error_control_.tell_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);
     compile_cycle(spec_, nodes_, plan(), report_);
+    compile_limits(nodes_, plan(), report_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);
     for (const NodePdos& node : nodes_) out_.devices.push_back(compile_device(node.node));
     for (NodePdos& node : strays_) judge_stray(node);

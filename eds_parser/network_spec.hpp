@@ -105,6 +105,45 @@ struct UnitsSpec {
   }
 };
 
+/// Lowest and highest value.
+struct RangeSpec {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What may be commanded to an axis, in the units of `units:`.
+struct AxisLimitsSpec {
+  Sourced<RangeSpec> position;
+  Sourced<double> velocity;
+  Sourced<double> acceleration;
+  Sourced<double> jerk;
+  Sourced<double> step;  ///< of a position set-point from one cycle to the next
+  Sourced<double> torque;
+  Sourced<double> modulo;  ///< length of the range in which the position turns over
+};
+
+struct AxisOverrideSpec {
+  std::uint8_t axis = 1;
+  SourcePos pos;
+  AxisLimitsSpec limits;
+};
+
+/// `objects: [{index, sub_index, min, max, step}]`
+struct ObjectLimitSpec {
+  ObjectKey object;
+  SourcePos pos;
+  Sourced<double> min;
+  Sourced<double> max;
+  Sourced<double> step;
+};
+
+/// `limits:` of a node.
+struct LimitsSpec {
+  AxisLimitsSpec all;                  ///< of every axis of the device
+  std::vector<AxisOverrideSpec> axes;  ///< `axes: {2: {...}}`, beside or instead of `all`
+  std::vector<ObjectLimitSpec> objects;
+};
+
 /// What outputs do when their command has grown old.
 enum class FallbackPolicy : std::uint8_t { quick_stop, hold, zero, safe, disable };
 
@@ -180,6 +219,7 @@ struct NodeSpec {
 
   Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; not given: from the EDS
   UnitsSpec units;
+  LimitsSpec limits;
   TimeoutSpec on_timeout;
   std::vector<SdoSpec> safe_values;
   SimSpec sim;

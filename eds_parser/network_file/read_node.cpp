@@ -253,6 +253,7 @@ void read_lists(MapReader& reader, NodeSpec& node) {
     node.safe_values = read_objects(*list, "safe_values", owner, report);
   }
   if (const YamlNode* map = reader.take("units")) node.units = read_units(*map, owner, report);
+  if (const YamlNode* map = reader.take("limits")) node.limits = read_limits(*map, owner, report);
 }
 
 void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {

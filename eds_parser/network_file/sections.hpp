@@ -29,6 +29,7 @@ std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const
 std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
                                   const std::string& owner, NetworkReport& report);
 UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report);
+LimitsSpec read_limits(const YamlNode& node, const std::string& owner, NetworkReport& report);
 
 /// `index` and `sub_index` of a list entry; none: reported.
 std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos);

@@ -6,6 +6,7 @@
 #include "eds_parser/print/plan_names.hpp"
 #include "eds_parser/print/plan_waits.hpp"
 #include "eds_parser/print/step_frames.hpp"
+#include "eds_parser/table/limit_names.hpp"
 
 namespace takt {
 namespace {
@@ -198,6 +199,27 @@ Json signal_json(const BusPlan& plan, std::size_t index) {
   return out;
 }
 
+Json limit_json(const BusPlan& plan, const LimitLine& line) {
+  const auto value = [](const std::optional<double>& number) {
+    return number ? Json(*number) : Json(nullptr);
+  };
+  Json out{{"node", plan.nodes[line.node_index].name},
+           {"axis", line.axis == 0 ? Json(nullptr) : Json(line.axis)},
+           {"index", line.object.index == 0 ? Json(nullptr) : Json(line.object.index)},
+           {"sub", line.object.index == 0 ? Json(nullptr) : Json(line.object.sub)},
+           {"limit", name(line.kind)},
+           {"source", name(line.source)},
+           {"low", value(line.low)},
+           {"high", value(line.high)},
+           {"unit", line.unit},
+           {"signals", line.signals}};
+  if (line.source == LimitSource::none) {
+    out["proposal"] = line.proposal;
+    out["because"] = line.because;
+  }
+  return out;
+}
+
 Json waits_json(const BusPlan& plan) {
   Json list = Json::array();
   for (const PlanWait& wait : plan_waits(plan)) {
@@ -219,6 +241,12 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
     const bool wanted = !what.node || *what.node == plan.layout.signals[i].node;
     if (wanted) signals.push_back(signal_json(plan, i));
   }
+  Json limits = Json::array();
+  for (const LimitLine& line : plan.limits.lines) {
+    if (!what.node || *what.node == plan.nodes[line.node_index].id) {
+      limits.push_back(limit_json(plan, line));
+    }
+  }
   for (const LcmChannel& channel : lcm_channels(plan, what.lcm)) {
     channels.push_back({{"channel", channel.name}, {"type", channel.type}});
   }
@@ -236,6 +264,7 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
                         {"outputs", plan.layout.outputs()},
                         {"hash", plan.layout.hash},
                         {"signals", std::move(signals)}}},
+                      {"limits", std::move(limits)},
                       {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}};
   out << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }

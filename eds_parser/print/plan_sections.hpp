@@ -33,6 +33,8 @@ void add_cycle(PlanLines& lines, const BusPlan& plan);
 void add_waits(PlanLines& lines, const BusPlan& plan);
 void add_node(PlanLines& lines, const BusPlan& plan, std::size_t index);
 void add_image(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
+/// Nothing where the bus has nothing that could have limits.
+void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
 void add_lcm(PlanLines& lines, const BusPlan& plan, const LcmOptions& options);
 void add_boot(PlanLines& lines, const NodePlan& node);
 

@@ -37,6 +37,7 @@ void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
     if (wanted(plan.nodes[i].id)) add_node(lines, plan, i);
   }
   add_image(lines, plan, what.node);
+  add_limits(lines, plan, what.node);
   if (!what.node) add_lcm(lines, plan, what.lcm);
   for (const NodePlan& node : plan.nodes) {
     if (wanted(node.id)) add_boot(lines, node);

@@ -11,6 +11,7 @@
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/image_layout.hpp"
 #include "eds_parser/table/lss_plan.hpp"
+#include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/pdo_table.hpp"
 #include "eds_parser/table/sdo_access.hpp"
 #include "eds_parser/table/time.hpp"
@@ -156,6 +157,7 @@ struct BusPlan {
   TimePlan time{};
   ImageLayout layout{};
   PdoTable pdos{};
+  LimitsPlan limits{};
   std::vector<NodePlan> nodes{};                ///< ascending node id
   Time stop_timeout = std::chrono::seconds{5};  ///< of the whole ordered stop
 

@@ -1,0 +1,279 @@
+#include "eds_parser/axis_limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "eds_parser/limit_proposals.hpp"
+#include "eds_parser/node_objects.hpp"
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint16_t axis_objects = 0x800;  // CiA 402: distance of two axes of a device
+constexpr std::int64_t profile_position = 1;   // 6060
+
+/// `rad/s` of `rad`.
+bool is_rate_of(std::string_view unit, const std::string& base, LimitKind kind) {
+  constexpr std::array<std::string_view, 1> per_second{"/s"};
+  constexpr std::array<std::string_view, 4> per_second_squared{"/s^2", "/s2", "/s²", "/s/s"};
+  const auto is = [&](std::string_view ending) { return unit == base + std::string{ending}; };
+  if (kind == LimitKind::velocity) return std::ranges::any_of(per_second, is);
+  return std::ranges::any_of(per_second_squared, is);
+}
+
+}  // namespace
+
+AxisLimits::AxisLimits(const NodeSource& node, std::size_t node_index, std::uint8_t axis,
+                       BusPlan& plan, LimitTable& table, NetworkReport& report)
+    : node_{node},
+      node_index_{node_index},
+      axis_{axis},
+      plan_{plan},
+      table_{table},
+      report_{report},
+      positions_{outputs({{0x607A, 0}, {0x60C1, 1}})},
+      velocities_{outputs({{0x60FF, 0}, {0x60B1, 0}})} {}
+
+ObjectKey AxisLimits::object(std::uint16_t index, std::uint8_t sub) const {
+  return {static_cast<std::uint16_t>(index + (axis_ - 1) * axis_objects), sub};
+}
+
+std::optional<SignalIndex> AxisLimits::output(std::uint16_t index, std::uint8_t sub) const {
+  return table_.find(node_index_, object(index, sub), true);
+}
+
+std::optional<SignalIndex> AxisLimits::input(std::uint16_t index) const {
+  return table_.find(node_index_, object(index), false);
+}
+
+std::vector<SignalIndex> AxisLimits::outputs(std::initializer_list<ObjectKey> keys) const {
+  std::vector<SignalIndex> found;
+  for (const ObjectKey key : keys) {
+    if (const auto signal = output(key.index, key.sub)) found.push_back(*signal);
+  }
+  return found;
+}
+
+std::string AxisLimits::owner() const {
+  const std::string node = "node `" + node_.spec->name + "`";
+  return axis_ == 1 ? node : "axis " + std::to_string(axis_) + " of " + node;
+}
+
+void AxisLimits::compile(const AxisLimitsSpec& limits) {
+  position(limits.position);
+  velocity(limits.velocity);
+  acceleration(limits.acceleration);
+  jerk(limits.jerk);
+  step(limits.step);
+  torque(limits.torque);
+  describe_position_rows(limits);
+  for (LimitLine& line : plan_.limits.lines) {
+    if (line.node_index == node_index_ && line.axis == axis_) {
+      propose_limit(line, node_, plan_, table_);
+    }
+  }
+}
+
+LimitLine& AxisLimits::line(LimitKind kind, LimitSource source) {
+  LimitLine& line = plan_.limits.lines.emplace_back();
+  line.node_index = static_cast<std::uint8_t>(node_index_);
+  line.axis = axis_;
+  line.kind = kind;
+  line.source = source;
+  line.unit = unit_of(kind);
+  return line;
+}
+
+/// That of `units:`, else what the unit of positions says.
+std::string AxisLimits::unit_of(LimitKind kind) const {
+  const UnitsSpec& units = node_.spec->units;
+  const std::string base = positions_.empty() ? "" : table_.signal(positions_[0]).unit;
+  const auto rate = [&](const std::optional<UnitSpec>& unit, const char* ending) {
+    if (unit && !unit->unit.empty()) return unit->unit;
+    return base.empty() ? "" : base + ending;
+  };
+  switch (kind) {
+    case LimitKind::position:
+    case LimitKind::step:
+    case LimitKind::range:
+      return base;
+    case LimitKind::velocity:
+      return rate(units.velocity, "/s");
+    case LimitKind::acceleration:
+      return rate(units.acceleration, "/s^2");
+    case LimitKind::jerk:
+      return base.empty() ? "" : base + "/s^3";
+    case LimitKind::torque:
+      return units.torque ? units.torque->unit : "";
+  }
+  return base;
+}
+
+bool AxisLimits::has_unit(SignalIndex index, std::string_view kind, SourcePos pos) {
+  const Signal& signal = table_.signal(index);
+  if (!signal.unit.empty() || signal.scale != 1.0 || signal.offset != 0.0) return true;
+  report_.error(pos, "limits",
+                "`" + std::string{kind} + "` in `limits` of " + owner() + ": " + signal.name +
+                    " (" + to_string(signal.object) +
+                    ") has no unit, so it would count in raw counts: give it one under `units:` "
+                    "(`{scale: 1, unit: counts}` if counts are meant)");
+  return false;
+}
+
+bool AxisLimits::follows_position(LimitKind kind) const {
+  if (positions_.empty()) return true;
+  const std::string unit = unit_of(kind);
+  return is_rate_of(unit, table_.signal(positions_[0]).unit, kind);
+}
+
+void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
+  report_.warning(pos, "limits",
+                  "`" + std::string{name(kind)} + "` of " + owner() + " is in " + unit_of(kind) +
+                      ", positions are in " + table_.signal(positions_[0]).unit +
+                      ": it can't be compared with position set-points; `step` limits those");
+}
+
+void AxisLimits::position(const Sourced<RangeSpec>& range) {
+  if (!range.given) {
+    if (!positions_.empty()) line(LimitKind::position, LimitSource::none);
+    return;
+  }
+  LimitLine& entry = line(LimitKind::position, LimitSource::file);
+  entry.low = range->low;
+  entry.high = range->high;
+  for (const SignalIndex signal : positions_) {
+    if (!has_unit(signal, "position", range.pos)) return;
+    table_.narrow(signal, table_.raw_range(signal, range->low, range->high), LimitKind::position,
+                  range.pos);
+    entry.signals.push_back(signal);
+  }
+}
+
+void AxisLimits::magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos) {
+  const double size = table_.raw_size(signal, si);
+  const double raw = is_real(table_.signal(signal).type) ? size : std::round(size);
+  table_.narrow(signal, {-raw, raw}, kind, pos);
+}
+
+void AxisLimits::velocity(const Sourced<double>& limit) {
+  if (!limit.given) {
+    if (!positions_.empty() || !velocities_.empty()) line(LimitKind::velocity, LimitSource::none);
+    return;
+  }
+  LimitLine& entry = line(LimitKind::velocity, LimitSource::file);
+  entry.high = *limit;
+  const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
+  const bool comparable = follows_position(LimitKind::velocity);
+  if (!comparable && has_unit(positions_[0], "velocity", limit.pos)) {
+    tell_other_unit(LimitKind::velocity, limit.pos);
+  }
+  for (const SignalIndex signal : outputs({{0x607A, 0}, {0x60C1, 1}, {0x60B0, 0}})) {
+    if (!comparable || !has_unit(signal, "velocity", limit.pos)) continue;
+    OutputLimit& row = table_.row(signal);
+    row.rate = table_.raw_size(signal, *limit) * seconds;
+    row.rate_of = LimitKind::velocity;
+    entry.signals.push_back(signal);
+  }
+  for (const SignalIndex signal : outputs({{0x60FF, 0}, {0x60B1, 0}, {0x6081, 0}})) {
+    if (!has_unit(signal, "velocity", limit.pos)) continue;
+    magnitude(signal, *limit, LimitKind::velocity, limit.pos);
+    entry.signals.push_back(signal);
+  }
+}
+
+void AxisLimits::acceleration(const Sourced<double>& limit) {
+  if (!limit.given) {
+    const bool shown = !positions_.empty() || !velocities_.empty();
+    if (shown) line(LimitKind::acceleration, LimitSource::none);
+    return;
+  }
+  LimitLine& entry = line(LimitKind::acceleration, LimitSource::file);
+  entry.high = *limit;
+  const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
+  const bool comparable = follows_position(LimitKind::acceleration);
+  if (!comparable && has_unit(positions_[0], "acceleration", limit.pos)) {
+    tell_other_unit(LimitKind::acceleration, limit.pos);
+  }
+  for (const SignalIndex signal : positions_) {
+    if (!comparable || !has_unit(signal, "acceleration", limit.pos)) continue;
+    table_.row(signal).bend = table_.raw_size(signal, *limit) * seconds * seconds;
+    entry.signals.push_back(signal);
+  }
+  for (const SignalIndex signal : velocities_) {
+    if (!has_unit(signal, "acceleration", limit.pos)) continue;
+    OutputLimit& row = table_.row(signal);
+    row.rate = table_.raw_size(signal, *limit) * seconds;
+    row.rate_of = LimitKind::acceleration;
+    entry.signals.push_back(signal);
+  }
+  for (const SignalIndex signal : outputs({{0x6083, 0}, {0x6084, 0}})) {
+    if (!has_unit(signal, "acceleration", limit.pos)) continue;
+    magnitude(signal, *limit, LimitKind::acceleration, limit.pos);
+    entry.signals.push_back(signal);
+  }
+}
+
+void AxisLimits::step(const Sourced<double>& limit) {
+  if (!limit.given) {
+    if (!positions_.empty()) line(LimitKind::step, LimitSource::none);
+    return;
+  }
+  LimitLine& entry = line(LimitKind::step, LimitSource::file);
+  entry.high = *limit;
+  for (const SignalIndex signal : outputs({{0x607A, 0}, {0x60C1, 1}, {0x60B0, 0}})) {
+    if (!has_unit(signal, "step", limit.pos)) return;
+    table_.row(signal).step = table_.raw_size(signal, *limit);
+    entry.signals.push_back(signal);
+  }
+}
+
+void AxisLimits::torque(const Sourced<double>& limit) {
+  const std::vector<SignalIndex> signals = outputs({{0x6071, 0}, {0x60B2, 0}});
+  if (!limit.given) {
+    if (!signals.empty()) line(LimitKind::torque, LimitSource::none);
+    return;
+  }
+  LimitLine& entry = line(LimitKind::torque, LimitSource::file);
+  entry.high = *limit;
+  for (const SignalIndex signal : signals) {
+    if (!has_unit(signal, "torque", limit.pos)) return;
+    magnitude(signal, *limit, LimitKind::torque, limit.pos);
+    entry.signals.push_back(signal);
+  }
+}
+
+void AxisLimits::jerk(const Sourced<double>& limit) {
+  if (!limit.given) return;
+  line(LimitKind::jerk, LimitSource::file).high = *limit;
+}
+
+/// Length of the range in which a position turns over: of the file, else 607B as `sdo:` writes it.
+double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
+  if (modulo.given) return table_.raw_size(signal, *modulo);
+  const auto low = written_object(node_, object(0x607B, 1));
+  const auto high = written_object(node_, object(0x607B, 2));
+  if (!low || !high || *low >= *high) return 0.0;
+  return static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
+}
+
+/// What a position set-point is held against.
+void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
+  for (const SignalIndex signal : positions_) {
+    const auto& rows = plan_.limits.outputs;
+    if (std::ranges::find(rows, signal, &OutputLimit::signal) == rows.end()) continue;
+    OutputLimit& row = table_.row(signal);
+    row.wraps = !is_real(table_.signal(signal).type);
+    row.modulus = modulus(limits.modulo, signal);
+    row.feedback = input(0x6064);
+    row.statusword = input(0x6041);
+    row.mode = output(0x6060);
+    row.mode_display = input(0x6061);
+    row.profile = !row.mode && configured_object(node_, object(0x6060)) == profile_position;
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,203 @@
+// `limits:` of a network file: what the bus thread is to check, and what is refused with a reason.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "eds_parser/print/plan.hpp"
+#include "test/unit/plan/tiny_network.hpp"
+
+namespace takt::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::string_view units =
+    "    units:\n"
+    "      position: {scale: 0.001, unit: rad}\n"
+    "      velocity: {scale: 0.01, unit: rad/s}\n"
+    "      acceleration: {scale: 0.1, unit: rad/s^2}\n";
+
+/// A drive at 2 ms whose RPDO2 carries `mapped`, with these lines more.
+Compiled drive(const std::string& limits, const std::string& mapped = "{index: 0x607A}",
+               std::string_view its_units = units) {
+  return compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6064}]}}\n"
+      "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, " +
+      mapped + "]}}\n" + std::string{its_units} + limits);
+}
+
+const OutputLimit& only(const Compiled& net) {
+  EXPECT_EQ(net.plan.limits.outputs.size(), 1U);
+  return net.plan.limits.outputs.at(0);
+}
+
+std::string text_of(const Compiled& net) {
+  std::ostringstream out;
+  print_plan_text(out, net.plan, {});
+  return out.str();
+}
+
+std::string json_of(const Compiled& net) {
+  std::ostringstream out;
+  print_plan_json(out, net.plan, {});
+  return out.str();
+}
+
+TEST(Limits, OfAnAxisAreCheckedInCountsPerCycle) {
+  const Compiled net = drive(
+      "    limits: {position: [-1.5, 1.5], velocity: 2.0, acceleration: 20, jerk: 400, "
+      "step: 0.01}\n");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  const OutputLimit& limit = only(net);
+  EXPECT_EQ(net.plan.layout.signals[limit.signal].object, (ObjectKey{0x607A, 0}));
+  EXPECT_EQ(limit.low, -1500.0);
+  EXPECT_EQ(limit.high, 1500.0);
+  EXPECT_DOUBLE_EQ(limit.step, 10.0);
+  EXPECT_DOUBLE_EQ(limit.rate, 4.0);   // 2 rad/s x 2 ms / 1 mrad
+  EXPECT_DOUBLE_EQ(limit.bend, 0.08);  // 20 rad/s^2 x (2 ms)^2 / 1 mrad
+  EXPECT_TRUE(limit.wraps);
+  ASSERT_TRUE(limit.feedback);
+  EXPECT_EQ(net.plan.layout.signals[*limit.feedback].object, (ObjectKey{0x6064, 0}));
+  ASSERT_TRUE(limit.statusword);
+}
+
+TEST(Limits, OfPositionTurnWithTheSignAndShiftWithTheOffset) {
+  const Compiled net = drive("    limits: {position: [-1, 3]}\n", "{index: 0x607A}",
+                             "    units: {position: {scale: 0.5, sign: -1, offset: 1, unit: m}}\n");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, -4.0);  // 3 m = -1 x -4 x 0.5 m + 1 m
+  EXPECT_EQ(only(net).high, 4.0);
+}
+
+TEST(Limits, OfVelocityBoundTheTargetVelocityAndItsChange) {
+  const Compiled net = drive("    limits: {velocity: 2.0, acceleration: 20}\n", "{index: 0x60FF}");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, -200.0);
+  EXPECT_EQ(only(net).high, 200.0);
+  EXPECT_EQ(only(net).range, LimitKind::velocity);
+  EXPECT_DOUBLE_EQ(only(net).rate, 4.0);  // 20 rad/s^2 x 2 ms / 0.01 rad/s
+  EXPECT_EQ(only(net).rate_of, LimitKind::acceleration);
+  EXPECT_FALSE(only(net).wraps);
+}
+
+TEST(Limits, OfASecondAxisMayDiffer) {
+  const std::string eds = tiny_eds() + entry("687A", "Target position", 4, "rww", "0", true);
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}, {index: 0x687A}]}}\n"
+      "    units: {position: {scale: 0.001, unit: rad}}\n"
+      "    limits: {step: 0.01, position: [-1, 1], axes: {2: {position: [-2, 2]}}}\n",
+      eds);
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  ASSERT_EQ(net.plan.limits.outputs.size(), 2U);
+  EXPECT_EQ(net.plan.limits.outputs[0].high, 1000.0);
+  EXPECT_EQ(net.plan.limits.outputs[1].high, 2000.0);
+  EXPECT_DOUBLE_EQ(net.plan.limits.outputs[1].step, 10.0);
+}
+
+TEST(Limits, OfASingleOutputAreInItsUnit) {
+  const Compiled net = drive(
+      "      objects: [{index: 0x2003, scale: 0.1, unit: V}]\n"
+      "    limits: {objects: [{index: 0x2003, min: 0, max: 10, step: 0.5}]}\n",
+      "{index: 0x2003}");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, 0.0);
+  EXPECT_EQ(only(net).high, 100.0);
+  EXPECT_DOUBLE_EQ(only(net).step, 5.0);
+  EXPECT_EQ(only(net).range, LimitKind::range);
+  EXPECT_EQ(net.plan.limits.outputs[0].rate, OutputLimit::none);
+}
+
+TEST(Limits, AreAbsentWhereNobodyGivesThem) {
+  EXPECT_THAT(drive("").plan.limits.outputs, IsEmpty());
+}
+
+TEST(Limits, ThatMakeNoSenseAreErrorsWhereTheyStand) {
+  EXPECT_THAT(drive("    limits: {position: [2, 1]}\n").complaints(),
+              ElementsAre("12:24 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {position: 1}\n").complaints(),
+              ElementsAre("12:24 error [wrong-type]"));
+  EXPECT_THAT(drive("    limits: {velocity: -1}\n").complaints(),
+              ElementsAre("12:24 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {step: 0}\n").complaints(),
+              ElementsAre("12:20 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {step: .inf}\n").complaints(), Not(IsEmpty()));
+  EXPECT_THAT(drive("    limits: {position: [.nan, 1]}\n").complaints(), Not(IsEmpty()));
+  EXPECT_THAT(drive("    limits: {speed: 1}\n").complaints(),
+              ElementsAre("12:14 error [unknown-key]"));
+  EXPECT_THAT(drive("    limits: {axes: {9: {step: 1}}}\n").complaints(),
+              ElementsAre("12:21 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {axes: {2: {step: 1}}}\n").said("limits"),
+              HasSubstr("carries a set-point of axis 2"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, min: 2, max: 1}]}\n").complaints(),
+              ElementsAre("12:45 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003}]}\n").complaints(),
+              ElementsAre("12:24 error [missing-key]"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}, {index: 0x2003, max: 2}]}\n")
+                  .complaints(),
+              testing::Contains("12:49 error [written-twice]"));
+}
+
+TEST(Limits, OfWhatIsNotCommandedAreErrors) {
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}]}\n").said("limits"),
+              HasSubstr("no RPDO carries 2003:00"));
+  EXPECT_THAT(drive("    limits: {step: 1}\n", "{index: 0x2003}").said("limits"),
+              HasSubstr("no RPDO of node `arm` carries a set-point of a drive"));
+}
+
+TEST(Limits, WithoutAUnitAreErrors) {
+  const Compiled net = drive("    limits: {position: [-1, 1]}\n", "{index: 0x607A}", "");
+  EXPECT_THAT(net.complaints(), ElementsAre("8:24 error [limits]"));
+  EXPECT_THAT(net.said("limits"), HasSubstr("has no unit"));
+}
+
+TEST(Limits, InAnotherUnitThanPositionsAreToldAndNotCompared) {
+  const Compiled net =
+      drive("    limits: {velocity: 3000}\n", "{index: 0x607A}",
+            "    units: {position: {scale: 0.001, unit: rad}, velocity: {scale: 1, unit: rpm}}\n");
+  EXPECT_THAT(net.complaints(), ElementsAre("9:24 warning [limits]"));
+  EXPECT_THAT(net.plan.limits.outputs, IsEmpty());
+}
+
+TEST(Limits, ThatAFallbackOrASafeValueBreaksAreErrors) {
+  EXPECT_THAT(drive("      objects: [{index: 0x2003, unit: V}]\n"
+                    "    safe_values: [{index: 0x2003, value: 20}]\n"
+                    "    limits: {objects: [{index: 0x2003, min: 1, max: 10}]}\n",
+                    "{index: 0x2003}")
+                  .said("limits"),
+              HasSubstr("lies outside its limits"));
+}
+
+TEST(Limits, AreNamedWithTheirSourceByThePlan) {
+  const Compiled net = drive("    limits: {position: [-1.5, 1.5], velocity: 2, jerk: 400}\n");
+  EXPECT_THAT(text_of(net),
+              AllOf(HasSubstr("arm  position      -1.5 .. 1.5 rad  from the network file\n"),
+                    HasSubstr("arm  velocity      2 rad/s          from the network file\n"),
+                    HasSubstr("arm  jerk          400 rad/s^3      from the network file, kept for "
+                              "planned motion\n"),
+                    HasSubstr("arm  step          none             proposal: `step: 0.004` "
+                              "(velocity in one cycle)\n")));
+  EXPECT_THAT(json_of(net), HasSubstr(R"("source": "file")"));
+}
+
+TEST(Limits, AreProposedWhereThereAreNone) {
+  const std::string objects = tiny_eds() + record("607D", "Software position limit", 3) +
+                              entry("607Dsub0", "highest", 5, "const", "2") +
+                              entry("607Dsub1", "min", 4, "rw", "-1000") +
+                              entry("607Dsub2", "max", 4, "rw", "2000");
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}]}}\n" +
+          std::string{units},
+      objects);
+  EXPECT_THAT(text_of(net), AllOf(HasSubstr("proposal: `position: [-1, 2]` (607D)"),
+                                  HasSubstr("proposal: `velocity: 10` (6081:00)")));
+}
+
+}  // namespace
+}  // namespace takt::test
