@@ -30,7 +30,8 @@ void Recorder::attach(Bridge& bridge, std::int64_t session) {
 }
 
 void Recorder::on_fault(const Notice& notice) {
-  const bool fallback = notice.kind == name(EventKind::fallback_begun);
+  const bool fallback = notice.kind == name(EventKind::fallback_begun) ||
+                        notice.kind == name(EventKind::limit_exceeded);
   if (!box_ || (notice.weight != Weight::error && !fallback)) return;
   box_->on_fault(notice.kind, notice.node, notice.text, monotonic_now());
 }

@@ -98,6 +98,9 @@ enum class EventKind : std::uint8_t {
   fallback_begun,   ///< value: signal whose command outlived its time to live
   fallback_ended,   ///< value: signal
   outputs_held,     ///< value: RPDO number that lacks a commanded, safe or seeded value
+  limit_exceeded,   ///< a command isn't sent, its node's outputs take their fallback; value: as
+                    ///< commanded, raw; detail: signal << 8 | LimitKind; bytes: what was measured
+                    ///< and its limit, each a float in SI
   // the bus
   bus_error_passive,
   bus_error_active,

@@ -4,6 +4,7 @@
 #include "master/core/boot_report.hpp"
 #include "master/core/bus_trouble.hpp"
 #include "master/core/firmware_text.hpp"
+#include "master/core/limit_text.hpp"
 #include "master/core/lss_command.hpp"
 #include "master/core/report_text.hpp"
 #include "master/wire/bytes.hpp"
@@ -375,6 +376,8 @@ std::string line(const BusPlan& plan, const Event& event) {
     case EventKind::fallback_begun:
     case EventKind::fallback_ended:
       return signal_line(plan, event);
+    case EventKind::limit_exceeded:
+      return limit_text(plan, event);
     default:
       break;
   }

@@ -1,7 +1,9 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <bitset>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -74,6 +76,10 @@ class KeptState {
     if (value != never && value != Time::min()) {
       value = Time{std::clamp(count, -longest, longest)};
     }
+  }
+  void one(double& value) noexcept {
+    value = std::bit_cast<double>(word(std::bit_cast<std::uint64_t>(value)));
+    if (!std::isfinite(value)) value = 0;
   }
   void one(ObjectKey& value) noexcept { (*this)(value.index, value.sub); }
   template <class T>

@@ -11,6 +11,7 @@ PdoOutputs::PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs
       inputs_{inputs},
       events_{events},
       inputs_count_{plan.layout.inputs},
+      limits_{plan, image, inputs},
       outputs_(plan.layout.outputs()),
       rows_(plan.pdos.rpdos.size()),
       begun_(plan.nodes.size(), 0),
@@ -31,6 +32,7 @@ void PdoOutputs::open(std::size_t node_index, std::span<const SetPoint> set_poin
     rows_[i] = Row{.sent = rows_[i].sent, .open = true};
   }
   begun_[node_index] = 0;
+  limits_.open(node_index);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Signal& signal = plan_.layout.signals[inputs_count_ + i];
     if (signal.node_index != node_index) continue;
@@ -157,6 +159,9 @@ std::span<const Frame> PdoOutputs::pack(std::span<const SetPoint> set_points,
                                         OutputMoment moment) noexcept {
   packed_count_ = 0;
   fresh_commands_ = 0;
+  if (!limits_.empty()) [[unlikely]] {
+    check_limits(set_points, moment);
+  }
   const bool together = build_all(set_points, moment);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
@@ -212,6 +217,9 @@ void PdoOutputs::sent(std::size_t count, OutputMoment moment) noexcept {
     row.ever_sent = true;
     row.pending = row.due = false;
     ++row.sent;
+    if (!limits_.empty()) [[unlikely]] {
+      note_limited(packed_[i], moment.cycle);
+    }
   }
   packed_count_ = 0;
 }
@@ -221,6 +229,9 @@ void PdoOutputs::command(SignalIndex signal, std::int64_t value, std::uint32_t t
   if (signal < inputs_count_ || output_of(signal) >= outputs_.size()) return;
   Output& output = outputs_[output_of(signal)];
   if (refuses(output)) return;
+  if (!limits_.empty() && !within_limits(signal, value, moment)) [[unlikely]] {
+    return;
+  }
   take(output, signal,
        {.value = value,
         .generation = output.generation,

@@ -7,6 +7,7 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event_queue.hpp"
+#include "master/core/output_limits.hpp"
 #include "master/core/pdo_fields.hpp"
 #include "master/core/pdo_inputs.hpp"
 #include "master/core/pdo_status.hpp"
@@ -25,7 +26,10 @@ struct OutputMoment {
 /// signals has been commanded, has a safe value or is seeded by its feedback. Types 1..240 go out
 /// each n-th cycle, the others when a value has changed; that event is kept until its frame went
 /// out. One set of commands that changes several synchronous RPDOs sends them in one cycle, those
-/// of type n out of turn: all act at the next SYNC. Bus thread only.
+/// of type n out of turn: all act at the next SYNC. A command outside the limits of its output
+/// isn't sent; the outputs of its node take their fallback at once, and until a later command to
+/// that output is inside, or none has come for its time to live, all commands to the node are
+/// dropped. Bus thread only.
 class PdoOutputs {
  public:
   /// Keeps references to all four.
@@ -72,7 +76,7 @@ class PdoOutputs {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(outputs_, rows_, begun_, turn_, stopping_);
+    state(outputs_, rows_, begun_, limits_, turn_, stopping_);
     state.position(next_event_, rows_.size());
   }
 
@@ -149,6 +153,21 @@ class PdoOutputs {
     return static_cast<std::uint32_t>(std::min(passed / period, most));
   }
   bool refuses(const Output& output) const noexcept { return stopping_ || output.forced; }
+
+  // Limits: pdo_outputs_limits.cpp.
+  /// Drops what is outside its limits from the commands that are new in this pack.
+  void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// The same of one command from within the bus thread. False: it is dropped.
+  bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  bool limited_row_open(std::size_t place) const noexcept;
+  Obeying obeying(SignalIndex signal) const noexcept;
+  void judge_news(std::size_t place, std::span<const SetPoint> set_points,
+                  OutputMoment moment) noexcept;
+  /// False: outside, its node has taken its fallback.
+  bool judge(std::size_t place, std::int64_t value, std::int64_t mode,
+             OutputMoment moment) noexcept;
+  void drop_node(std::size_t node_index) noexcept;
+  void note_limited(std::size_t row, std::uint64_t cycle) noexcept;
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;
   /// Builds all rows. True: one set of commands has changed several synchronous ones.
@@ -166,6 +185,7 @@ class PdoOutputs {
   EventQueue& events_;
   std::size_t inputs_count_;
   std::vector<FieldProgram> fields_;
+  OutputLimits limits_;
   std::vector<Output> outputs_;
   std::vector<Row> rows_;
   std::vector<std::uint8_t> begun_;  ///< per node: an output is commanded, seeds no longer follow

@@ -40,6 +40,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::command_refused:
     case EventKind::fallback_begun:
     case EventKind::outputs_held:
+    case EventKind::limit_exceeded:
     case EventKind::bus_error_passive:
     case EventKind::send_buffer_full:
       return Weight::warning;

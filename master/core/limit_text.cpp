@@ -1,0 +1,57 @@
+#include "master/core/limit_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <string_view>
+
+#include "eds_parser/table/limit_names.hpp"
+#include "master/wire/bytes.hpp"
+
+namespace takt {
+namespace {
+
+std::string number(double value, const std::string& unit) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data() + (unit.empty() ? std::string{} : " " + unit);
+}
+
+/// Of the line that limits this signal in this way.
+std::string unit_of(const BusPlan& plan, SignalIndex signal, LimitKind kind) {
+  for (const LimitLine& line : plan.limits.lines) {
+    if (line.kind == kind && std::ranges::find(line.signals, signal) != line.signals.end()) {
+      return line.unit;
+    }
+  }
+  return {};
+}
+
+double raw_number(const Signal& signal, std::int64_t raw) {
+  if (signal.type == DataType::real32) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
+  }
+  return signal.type == DataType::real64 ? std::bit_cast<double>(raw) : static_cast<double>(raw);
+}
+
+}  // namespace
+
+std::string limit_text(const BusPlan& plan, const Event& event) {
+  const std::uint32_t index = event.detail >> 8U;
+  const auto kind = static_cast<LimitKind>(event.detail & 0xFFU);
+  if (index >= plan.layout.signals.size()) return "a command outside its limits";
+  const Signal& signal = plan.layout.signals[index];
+  const std::span bytes{event.bytes};
+  const auto measured = std::bit_cast<float>(load_le<std::uint32_t>(bytes));
+  const auto limit = std::bit_cast<float>(load_le<std::uint32_t>(bytes.subspan(4)));
+  const std::string unit = unit_of(plan, static_cast<SignalIndex>(index), kind);
+  const double commanded = raw_number(signal, event.value) * signal.scale + signal.offset;
+  return "command " + number(commanded, signal.unit) + " to " + signal.name + " (" +
+         to_string(signal.object) + ") is outside its limits: " + std::string{name(kind)} + " " +
+         number(double{measured}, unit) + ", limit " + number(double{limit}, unit) +
+         "; it isn't sent, and the outputs of the node take their fallback until a command is "
+         "inside again";
+}
+
+}  // namespace takt

@@ -1,0 +1,265 @@
+#include "master/core/output_limits.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+namespace takt {
+namespace {
+
+constexpr Time longest_gap = std::chrono::milliseconds{50};
+constexpr double fewest_cycles = 3;           // of longest_gap
+constexpr double from_actual_cycles = 1;      // of a way that begins at the actual position
+constexpr std::int64_t profile_position = 1;  // 6060, 6061
+constexpr double rounding = 1e-6;             // counts, of the arithmetic
+
+/// Statusword: Operation enabled. CiA 402-2, table of states.
+constexpr bool operation_enabled(std::int64_t statusword) noexcept {
+  return (statusword & 0x6F) == 0x27;
+}
+
+std::int64_t mode_of(std::int64_t raw) noexcept { return static_cast<std::int8_t>(raw); }
+
+LimitBreach breach(LimitKind kind, double measured, double limit) noexcept {
+  return {kind, static_cast<float>(measured), static_cast<float>(limit)};
+}
+
+}  // namespace
+
+OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const PdoInputs& inputs)
+    : plan_{plan},
+      image_{image},
+      inputs_{inputs},
+      limits_{plan.limits.outputs},
+      places_(plan.layout.signals.size(), no_place),
+      slots_(limits_.size()),
+      held_(plan.nodes.size(), 0),
+      longest_gap_{fewest_cycles},
+      seconds_{std::chrono::duration<double>(plan.cycle.period).count()} {
+  if (plan.cycle.period > Time{0}) {
+    longest_gap_ = std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period));
+  }
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const auto place = static_cast<std::uint16_t>(i);
+    places_[limits_[i].signal] = place;
+    if (limits_[i].mode) places_[*limits_[i].mode] = place;
+  }
+}
+
+void OutputLimits::open(std::size_t node_index) noexcept {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (signal_of(i).node_index != node_index) continue;
+    set_refused(i, false);
+    slots_[i] = Slot{};
+  }
+}
+
+/// As the wire carries it: bits beyond the width of the object are cut.
+double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexcept {
+  if (signal.type == DataType::real32) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
+  }
+  if (signal.type == DataType::real64) return std::bit_cast<double>(raw);
+  const unsigned spare = signal.bits == 0 || signal.bits > 64 ? 0U : 64U - signal.bits;
+  const auto top = static_cast<std::uint64_t>(raw) << spare;
+  if (is_signed(signal.type)) return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
+  return static_cast<double>(top >> spare);
+}
+
+/// The shorter way where positions turn over.
+double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const double way = to - from;
+  const double modulus = limit.modulus > 0 ? limit.modulus
+                         : limit.wraps     ? std::ldexp(1.0, signal_of(place).bits)
+                                           : 0.0;
+  if (modulus == 0.0 || std::abs(way) <= modulus / 2) return way;
+  return std::remainder(way, modulus);
+}
+
+std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
+  const auto feedback = limits_[place].feedback;
+  if (!feedback || !inputs_.fresh(*feedback)) return std::nullopt;
+  return number(plan_.layout.signals[*feedback], image_.values[*feedback]);
+}
+
+bool OutputLimits::enabled(std::size_t place) const noexcept {
+  const auto statusword = limits_[place].statusword;
+  return !statusword || !inputs_.fresh(*statusword) ||
+         operation_enabled(image_.values[*statusword]);
+}
+
+/// The drive has said so, too: until then it still follows each set-point.
+bool OutputLimits::in_profile(std::size_t place, std::int64_t mode) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const bool commanded = limit.mode ? mode_of(mode) == profile_position : limit.profile;
+  if (!limit.mode_display) return commanded;
+  const bool shown = mode_of(image_.values[*limit.mode_display]) == profile_position;
+  return limit.mode ? commanded && shown : shown;
+}
+
+double OutputLimits::cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept {
+  if (cycle <= slot.cycle) return 1;
+  return std::min(static_cast<double>(cycle - slot.cycle), longest_gap_);
+}
+
+double OutputLimits::most(std::size_t place, double counts, double at) const noexcept {
+  const DataType type = signal_of(place).type;
+  if (type == DataType::real32) return counts + std::abs(at) * 0x1p-22;
+  if (type == DataType::real64) return counts + std::abs(at) * 0x1p-50;
+  return std::ceil(counts - rounding);
+}
+
+std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value,
+                                                 bool from_actual) const {
+  const OutputLimit& limit = limits_[place];
+  if (value >= limit.low && value <= limit.high) return std::nullopt;
+  double low = limit.low;
+  double high = limit.high;
+  const auto reach = [&](double where) {
+    low = std::min(low, where);
+    high = std::max(high, where);
+  };
+  if (slots_[place].known) reach(slots_[place].value);
+  if (from_actual) {
+    if (const auto where = actual(place)) reach(*where);
+  }
+  if (value >= low && value <= high) return std::nullopt;
+  const Signal& signal = signal_of(place);
+  const double bound = value < low ? limit.low : limit.high;
+  return breach(limit.range, value * signal.scale + signal.offset,
+                bound * signal.scale + signal.offset);
+}
+
+std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& way) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const double scale = std::abs(signal_of(place).scale);
+  const double length = std::abs(way.distance);
+  if (!(length <= most(place, limit.step * way.cycles, way.at))) {
+    return breach(LimitKind::step, length * scale, limit.step * way.cycles * scale);
+  }
+  if (!(length <= most(place, limit.rate * way.cycles, way.at))) {
+    const double per_second = scale / seconds_;
+    return breach(limit.rate_of, length / way.cycles * per_second, limit.rate * per_second);
+  }
+  const bool bent_only = limit.step == OutputLimit::none && limit.rate == OutputLimit::none;
+  const double reach = limit.bend * longest_gap_ * longest_gap_;
+  if (way.start == Start::standing && bent_only && !(length <= most(place, reach, way.at))) {
+    const double per_square = scale / (seconds_ * seconds_ * longest_gap_ * longest_gap_);
+    return breach(LimitKind::acceleration, length * per_square,
+                  limit.bend * scale / (seconds_ * seconds_));
+  }
+  return std::nullopt;
+}
+
+/// Second difference. Each of the three values is rounded to a count, which may feign as much.
+std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
+                                                   const Way& way) const noexcept {
+  const Slot& slot = slots_[place];
+  const double bend = limits_[place].bend;
+  if (bend == OutputLimit::none) return std::nullopt;
+  const double before = way.cycles < longest_gap_ ? slot.speed : 0.0;
+  const double apart = (way.cycles + slot.gap) / 2;
+  const double feigned = is_real(signal_of(place).type) ? most(place, 0, 2 * way.at) * 2
+                                                        : 1 / way.cycles + 1 / slot.gap;
+  const double found = std::abs(way.distance / way.cycles - before);
+  if (found <= bend * apart + feigned + rounding) return std::nullopt;
+  const double scale = std::abs(signal_of(place).scale) / (seconds_ * seconds_);
+  return breach(LimitKind::acceleration, found / apart * scale, bend * scale);
+}
+
+std::optional<LimitBreach> OutputLimits::judge(std::size_t place, std::int64_t raw,
+                                               std::int64_t mode, Obeying obeying,
+                                               std::uint64_t cycle) const noexcept {
+  const Slot& slot = slots_[place];
+  const double value = number(signal_of(place), raw);
+  const bool profile = in_profile(place, mode);
+  const bool follows = obeying == Obeying::yes && enabled(place);
+  const bool from_last = slot.known && (profile || !slot.profile);
+  const bool from_actual = !follows || !from_last;
+  if (const auto found = outside(place, value, from_actual)) return found;
+  if (profile) return std::nullopt;
+  std::optional<LimitBreach> found;
+  if (from_last) {
+    const Way way{.distance = distance(place, slot.value, value),
+                  .cycles = follows ? cycles_since(slot, cycle) : 1.0,
+                  .at = value,
+                  .start = follows ? Start::moving : Start::standing};
+    found = too_far(place, way);
+    if (!found && follows) found = too_sharp(place, way);
+    if (!found) return std::nullopt;
+  }
+  if (!from_actual) return found;
+  const auto where = actual(place);
+  if (!where) return found;
+  return too_far(place, {.distance = distance(place, *where, value),
+                         .cycles = from_actual_cycles,
+                         .at = value,
+                         .start = Start::standing});
+}
+
+void OutputLimits::set_refused(std::size_t place, bool refused) noexcept {
+  Slot& slot = slots_[place];
+  if (slot.refused == refused) return;
+  slot.refused = refused;
+  std::uint16_t& held = held_[signal_of(place).node_index];
+  if (refused) {
+    held_nodes_ += held++ == 0;
+  } else {
+    held_nodes_ -= --held == 0;
+  }
+}
+
+bool OutputLimits::refuse(std::size_t place, std::uint64_t cycle) noexcept {
+  const bool first = !slots_[place].refused;
+  set_refused(place, true);
+  slots_[place].refused_at = cycle;
+  return first;
+}
+
+void OutputLimits::forgive(std::size_t place, std::uint64_t cycle) noexcept {
+  if (slots_[place].refused && cycle > slots_[place].refused_at) set_refused(place, false);
+}
+
+void OutputLimits::expire(std::uint64_t cycle) noexcept {
+  constexpr Time longest = std::chrono::seconds{1};
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i].refused) continue;
+    std::uint64_t patience = signal_of(i).fallback_cycles;
+    if (patience == 0 && plan_.cycle.period > Time{0}) {
+      patience = static_cast<std::uint64_t>(longest / plan_.cycle.period);
+    }
+    if (cycle > slots_[i].refused_at + patience) set_refused(i, false);
+  }
+}
+
+void OutputLimits::admit(std::size_t place, std::int64_t raw, std::uint64_t cycle) noexcept {
+  Slot& slot = slots_[place];
+  slot.news = true;
+  // Frames by event aren't sent again for the same value: the command counts as sent.
+  if (!slot.known || number(signal_of(place), raw) != slot.value) return;
+  slot.cycle = cycle;
+  slot.speed = 0;
+  slot.gap = 1;
+}
+
+void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
+  const std::uint16_t place = places_[signal];
+  if (place == no_place || limits_[place].signal != signal) return;
+  Slot& slot = slots_[place];
+  const double value = number(signal_of(place), image_.values[signal]);
+  if (!slot.known || slot.news || value != slot.value) {
+    const double cycles = cycles_since(slot, cycle);
+    const bool moves = slot.known && slot.news && enabled(place);
+    slot.speed = moves ? distance(place, slot.value, value) / cycles : 0.0;
+    slot.gap = moves ? cycles : 1.0;
+    slot.value = value;
+    slot.cycle = cycle;
+  }
+  slot.known = true;
+  slot.news = false;
+  slot.profile = in_profile(place, limits_[place].mode ? image_.values[*limits_[place].mode] : 0);
+}
+
+}  // namespace takt
