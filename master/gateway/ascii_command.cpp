@@ -272,6 +272,17 @@ std::expected<std::optional<AsciiCommand>, AsciiRefusal> parse_ascii(std::string
   return command;
 }
 
+FirstLine judge_first_line(std::string_view line) {
+  const auto command = parse_ascii(line);
+  if (command) return *command ? FirstLine::command : FirstLine::nothing;
+  return command.error().error == AsciiError::syntax ? FirstLine::foreign : FirstLine::command;
+}
+
+bool may_become_command(std::string_view beginning) noexcept {
+  const std::size_t at = beginning.find_first_not_of(" \t\r");
+  return at == beginning.npos || beginning[at] == '[' || beginning[at] == '#';
+}
+
 std::string_view ascii_help() noexcept {
   return R"(# [seq] [[net] node] r[ead] index sub [type]         SDO upload
 # [seq] [[net] node] w[rite] index sub type value     SDO download

@@ -81,6 +81,13 @@ struct AsciiRefusal {
 /// None: an empty line or a comment. `line` is any bytes, without the line break.
 std::expected<std::optional<AsciiCommand>, AsciiRefusal> parse_ascii(std::string_view line);
 
+/// What the first line of a client is. An HTTP request, a TLS hello and the like are foreign, and
+/// so is a line with a syntax error: such a client speaks another protocol.
+enum class FirstLine : std::uint8_t { command, nothing, foreign };
+FirstLine judge_first_line(std::string_view line);
+/// False: these bytes, the beginning of a line, can't become a command or a comment.
+bool may_become_command(std::string_view beginning) noexcept;
+
 /// What `help` answers.
 std::string_view ascii_help() noexcept;
 

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <utility>
 
+#include "master/gateway/ascii_command.hpp"
 #include "master/gateway/tcp_loopback.hpp"
 #include "master/linux/unix_address.hpp"
 
@@ -34,14 +35,20 @@ bool make_room(const sockaddr_un& address) noexcept {
 }  // namespace
 
 std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen(
-    const std::string& where, Handler handler) {
-  if (where.starts_with("unix:")) return listen_unix(where.substr(5), std::move(handler));
-  if (where.starts_with("tcp:")) return listen_tcp(where.substr(4), std::move(handler));
-  return std::unexpected{"--gateway '" + where + "' is not unix:PATH or tcp:PORT"};
+    const std::string& where, Handler handler, FrontClock clock) {
+  const bool is_unix = where.starts_with("unix:");
+  if (!is_unix && !where.starts_with("tcp:")) {
+    return std::unexpected{"--gateway '" + where + "' is not unix:PATH or tcp:PORT"};
+  }
+  auto server = is_unix ? listen_unix(where.substr(5)) : listen_tcp(where.substr(4));
+  if (!server) return server;
+  (*server)->handler_ = std::move(handler);
+  (*server)->clock_ = std::move(clock);
+  return server;
 }
 
 std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_unix(
-    const std::string& path, Handler handler) {
+    const std::string& path) {
   const auto address = unix_address(path);
   if (!address) {
     return std::unexpected{"--gateway unix:" + path + ": a path has 1 to 107 characters"};
@@ -53,12 +60,11 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_uni
       ::chmod(path.c_str(), 0660) != 0 || ::listen(socket.get(), 8) != 0) {
     return failed("unix:" + path, errno);
   }
-  return std::unique_ptr<AsciiServer>{
-      new AsciiServer{std::move(socket), "unix:" + path, path, std::move(handler)}};
+  return std::unique_ptr<AsciiServer>{new AsciiServer{std::move(socket), "unix:" + path, path}};
 }
 
 std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp(
-    const std::string& text, Handler handler) {
+    const std::string& text) {
   std::uint16_t port = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
   if (error != std::errc{} || end != text.data() + text.size()) {
@@ -67,8 +73,7 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp
   auto listener = listen_on_loopback(port);
   if (!listener) return failed("tcp:" + text, listener.error());
   const std::string where = "tcp:127.0.0.1:" + std::to_string(listener->port);
-  return std::unique_ptr<AsciiServer>{
-      new AsciiServer{std::move(listener->socket), where, {}, std::move(handler)}};
+  return std::unique_ptr<AsciiServer>{new AsciiServer{std::move(listener->socket), where, {}}};
 }
 
 AsciiServer::~AsciiServer() {
@@ -76,17 +81,26 @@ AsciiServer::~AsciiServer() {
 }
 
 void AsciiServer::accept_clients() {
-  for (;;) {
+  for (std::size_t i = 0; i < most_clients; ++i) {
     FileDescriptor socket{
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
     if (!socket) return;
-    if (clients_.size() == most_clients) continue;
+    if (clients_.size() == most_clients && !displace_silent()) continue;
     auto client = std::make_unique<Client>();
     client->id = next_id_++;
     client->socket = std::move(socket);
     clients_.push_back(std::move(client));
     handler_.connected(clients_.back()->id);
   }
+}
+
+/// The oldest client that has given no command yet gives way to a new one.
+bool AsciiServer::displace_silent() {
+  const auto silent = std::ranges::find(clients_, false, &Client::has_commanded);
+  if (silent == clients_.end()) return false;
+  (*silent)->closed = true;
+  remove_closed();
+  return true;
 }
 
 void AsciiServer::send(int id, std::string_view line) {
@@ -113,9 +127,10 @@ void AsciiServer::flush(Client& client) {
   }
 }
 
-void AsciiServer::receive(Client& client) {
+void AsciiServer::receive(Client& client, const TimeBudget& budget) {
   std::array<char, 4096> chunk;
-  for (int rounds = 0; rounds < 4 && !client.closed && !client.ended; ++rounds) {
+  take_lines(client, budget);
+  while (!client.closed && !client.ended && !client.unhandled) {
     const ssize_t size = ::recv(client.socket.get(), chunk.data(), chunk.size(), MSG_DONTWAIT);
     if (size <= 0) {
       client.ended = size == 0;
@@ -123,27 +138,53 @@ void AsciiServer::receive(Client& client) {
       return;
     }
     client.unread.append(chunk.data(), static_cast<std::size_t>(size));
-    take_lines(client);
+    take_lines(client, budget);
+    if (!budget.is_left()) return;
   }
 }
 
-void AsciiServer::take_lines(Client& client) {
+/// What the budget leaves over waits in `unread`.
+void AsciiServer::take_lines(Client& client, const TimeBudget& budget) {
   std::size_t from = 0;
-  for (std::size_t end = client.unread.find('\n'); end != std::string::npos;
+  client.unhandled = false;
+  for (std::size_t end = client.unread.find('\n'); end != std::string::npos && !client.closed;
        end = client.unread.find('\n', from)) {
-    const std::string_view line = std::string_view{client.unread}.substr(from, end - from);
+    client.unhandled = from != 0 && !budget.is_left();
+    if (client.unhandled) break;
+    take_line(client, std::string_view{client.unread}.substr(from, end - from));
     from = end + 1;
-    if (std::exchange(client.skips, false)) continue;
-    if (line.size() > longest_line) {
-      handler_.too_long(client.id);
-    } else {
-      handler_.line(client.id, line);
-    }
   }
   client.unread.erase(0, from);
+  if (client.closed || client.unhandled) return;
+  if (!client.has_commanded && !may_become_command(client.unread)) return close_foreign(client);
   if (client.unread.size() <= longest_line) return;
-  if (!std::exchange(client.skips, true)) handler_.too_long(client.id);
+  if (!std::exchange(client.skips, true)) drop_long_line(client);
   client.unread.clear();
+}
+
+void AsciiServer::take_line(Client& client, std::string_view line) {
+  if (std::exchange(client.skips, false)) return;
+  if (line.size() > longest_line) return drop_long_line(client);
+  if (!client.has_commanded) {
+    const FirstLine first = judge_first_line(line);
+    if (first == FirstLine::foreign) return close_foreign(client);
+    client.has_commanded = first == FirstLine::command;
+  }
+  handler_.line(client.id, line);
+}
+
+void AsciiServer::drop_long_line(Client& client) {
+  if (!client.has_commanded) return close_foreign(client);
+  handler_.too_long(client.id);
+}
+
+/// Whoever speaks another protocol can't be made to command a machine: a web page, for one.
+void AsciiServer::close_foreign(Client& client) {
+  send(client.id,
+       "[0] ERROR: 101 (syntax error: the first line is no command of CiA 309-3, such as '[1] "
+       "help'; the connection is closed)");
+  client.unread.clear();
+  client.closed = true;
 }
 
 /// It has ended, and so has all that it may still read.
@@ -156,21 +197,39 @@ bool AsciiServer::is_through(const Client& client) const {
 
 void AsciiServer::serve() {
   accept_clients();
-  for (const auto& client : clients_) {
-    flush(*client);
-    receive(*client);
-    client->closed |= is_through(*client);
+  receive_all();
+  remove_closed();
+}
+
+/// The round begins with another client each time that the budget ends before the clients do.
+void AsciiServer::receive_all() {
+  const TimeBudget budget{clock_, front_budget::gateway};
+  const std::size_t count = clients_.size();
+  if (turn_ >= count) turn_ = 0;
+  const std::size_t first = turn_;
+  for (std::size_t i = 0; i < count; ++i) {
+    Client& client = *clients_[(first + i) % count];
+    flush(client);
+    receive(client, budget);
+    client.closed |= is_through(client);
+    turn_ = (first + i + 1) % count;
+    if (!budget.is_left()) return;
   }
+}
+
+void AsciiServer::remove_closed() {
   for (const auto& client : clients_) {
     if (client->closed) handler_.gone(client->id);
   }
   std::erase_if(clients_, [](const auto& client) { return client->closed; });
 }
 
+/// Lines that wait for the next round end its wait by POLLOUT.
 void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
   descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
   for (const auto& client : clients_) {
-    const int events = (client->ended ? 0 : POLLIN) | (client->unsent.empty() ? 0 : POLLOUT);
+    const bool out = client->unhandled || !client->unsent.empty();
+    const int events = (client->ended ? 0 : POLLIN) | (out ? POLLOUT : 0);
     descriptors.push_back(
         {.fd = client->socket.get(), .events = static_cast<short>(events), .revents = 0});
   }

@@ -7,12 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "master/gateway/time_budget.hpp"
+#include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt {
 
 /// Lines of text from and to clients of a UNIX socket, or of TCP on loopback. Everything is
-/// bounded: clients, the length of a line, what waits to be sent. No call waits. One thread.
+/// bounded: clients, the length of a line, what waits to be sent, the time of each serve(). A
+/// client whose first line is no command of CiA 309-3 is closed before anything of it is handed
+/// over. No call waits. One thread.
 class AsciiServer {
  public:
   static constexpr std::size_t most_clients = 8;
@@ -29,8 +33,8 @@ class AsciiServer {
   };
 
   /// `unix:PATH` or `tcp:PORT` (0: any free one). An error is a sentence.
-  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen(const std::string& where,
-                                                                         Handler handler);
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen(
+      const std::string& where, Handler handler, FrontClock clock = monotonic_now);
   ~AsciiServer();
   AsciiServer(const AsciiServer&) = delete;
   AsciiServer& operator=(const AsciiServer&) = delete;
@@ -49,31 +53,38 @@ class AsciiServer {
     FileDescriptor socket;
     std::string unread;
     std::string unsent;
-    bool skips = false;  // the rest of a line that was too long
-    bool ended = false;  // it writes no more
+    bool has_commanded = false;
+    bool unhandled = false;  // whole lines wait for the next round
+    bool skips = false;      // the rest of a line that was too long
+    bool ended = false;      // it writes no more
     bool closed = false;
   };
 
-  AsciiServer(FileDescriptor listener, std::string where, std::string path, Handler handler)
-      : listener_{std::move(listener)},
-        where_{std::move(where)},
-        path_{std::move(path)},
-        handler_{std::move(handler)} {}
+  AsciiServer(FileDescriptor listener, std::string where, std::string path)
+      : listener_{std::move(listener)}, where_{std::move(where)}, path_{std::move(path)} {}
   static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_unix(
-      const std::string& path, Handler handler);
+      const std::string& path);
   static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_tcp(
-      const std::string& port, Handler handler);
+      const std::string& port);
   void accept_clients();
-  void receive(Client& client);
-  void take_lines(Client& client);
+  bool displace_silent();
+  void receive_all();
+  void receive(Client& client, const TimeBudget& budget);
+  void take_lines(Client& client, const TimeBudget& budget);
+  void take_line(Client& client, std::string_view line);
+  void drop_long_line(Client& client);
+  void close_foreign(Client& client);
+  void remove_closed();
   static void flush(Client& client);
   bool is_through(const Client& client) const;
 
   FileDescriptor listener_;
   std::string where_;
   std::string path_;  // to remove at the end
-  Handler handler_;
-  std::vector<std::unique_ptr<Client>> clients_;
+  Handler handler_{};
+  FrontClock clock_{};
+  std::vector<std::unique_ptr<Client>> clients_;  // oldest first
+  std::size_t turn_ = 0;                          // of the client that is served first
   int next_id_ = 1;
 };
 

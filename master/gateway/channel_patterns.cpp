@@ -1,6 +1,7 @@
 #include "master/gateway/channel_patterns.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -9,25 +10,26 @@ constexpr std::size_t most_known = 1024;
 
 }  // namespace
 
-bool ChannelPatterns::add(std::string_view pattern) {
-  // Counted repetition multiplies the size of the automaton, lookahead its time.
-  const bool costly = pattern.find('{') != pattern.npos || pattern.find("(?") != pattern.npos;
-  if (costly || pattern.size() > longest_pattern || patterns_.size() == most_patterns) return false;
-  try {
-    std::string text{pattern};
-    // The breadth-first matcher: time bounded by pattern x channel; it refuses back references.
-    std::regex expression{text, std::regex::ECMAScript | std::regex_constants::__polynomial};
-    patterns_.push_back({std::move(text), std::move(expression)});
-  } catch (const std::regex_error&) {
-    return false;
+std::expected<void, std::string> ChannelPatterns::add(std::string_view pattern) {
+  if (patterns_.size() == most_patterns) {
+    return std::unexpected{"there are " + std::to_string(most_patterns) + " patterns already"};
   }
+  if (characters_ + pattern.size() > most_characters) {
+    return std::unexpected{"the patterns together have more than " +
+                           std::to_string(most_characters) + " characters"};
+  }
+  auto parsed = ChannelPattern::parse(pattern);
+  if (!parsed) return std::unexpected{parsed.error()};
+  patterns_.push_back(std::move(*parsed));
+  characters_ += pattern.size();
   known_.clear();
-  return true;
+  return {};
 }
 
 void ChannelPatterns::remove(std::string_view pattern) {
-  const auto found = std::ranges::find(patterns_, pattern, &Pattern::text);
+  const auto found = std::ranges::find(patterns_, pattern, &ChannelPattern::text);
   if (found == patterns_.end()) return;
+  characters_ -= pattern.size();
   patterns_.erase(found);
   known_.clear();
 }
@@ -36,7 +38,7 @@ bool ChannelPatterns::match(std::string_view channel) const {
   if (const auto known = known_.find(channel); known != known_.end()) return known->second;
   std::string key{channel};
   const bool matches = std::ranges::any_of(
-      patterns_, [&](const Pattern& pattern) { return std::regex_match(key, pattern.expression); });
+      patterns_, [&](const ChannelPattern& pattern) { return pattern.match(key); });
   if (known_.size() >= most_known) known_.clear();
   known_.emplace(std::move(key), matches);
   return matches;

@@ -53,7 +53,7 @@ void LcmLink::tell_once(const std::string& sentence) {
 }
 
 bool LcmLink::serve_hub(std::uint16_t port) {
-  auto hub = TcpqBroker::listen(port);
+  auto hub = TcpqBroker::listen(port, {.say = say_});
   if (!hub) return false;
   say_("LCM: serving the tcpq protocol by myself; other programs: export LCM_DEFAULT_URL=" +
        (*hub)->url());
@@ -115,7 +115,7 @@ void LcmLink::finish_lcm() {
 
 void LcmLink::fall_back(const std::string& why) {
   if (fallback_) return;
-  auto hub = TcpqBroker::listen(tcpq::default_port);
+  auto hub = TcpqBroker::listen(tcpq::default_port, {.say = say_});
   if (hub) {
     fallback_ = std::move(*hub);
   } else if (hub.error() == EADDRINUSE) {

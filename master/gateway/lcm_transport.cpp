@@ -5,15 +5,14 @@
 namespace takt {
 namespace {
 
-constexpr int queue_capacity = 100;     // messages of one subscription that wait for serve()
-constexpr int messages_a_service = 64;  // so that a flood cannot hold the caller
+constexpr int queue_capacity = 100;  // messages of one subscription that wait for serve()
 
 }  // namespace
 
-std::unique_ptr<LcmTransport> LcmTransport::create(const std::string& url) {
+std::unique_ptr<LcmTransport> LcmTransport::create(const std::string& url, FrontClock clock) {
   std::unique_ptr<lcm_t, Destroy> lcm{lcm_create(url.c_str())};
   if (!lcm) return nullptr;
-  return std::unique_ptr<LcmTransport>{new LcmTransport{std::move(lcm), url}};
+  return std::unique_ptr<LcmTransport>{new LcmTransport{std::move(lcm), url, std::move(clock)}};
 }
 
 bool LcmTransport::publish(const std::string& channel, std::span<const std::byte> data) {
@@ -38,11 +37,12 @@ void LcmTransport::on_message(const lcm_recv_buf_t* buffer, const char* channel,
 
 void LcmTransport::serve(const MessageHandler& handler) {
   handler_ = &handler;
-  for (int i = 0; i < messages_a_service; ++i) {
+  const TimeBudget budget{clock_, front_budget::lcm};
+  do {
     const int handled = lcm_handle_timeout(lcm_.get(), 0);
     if (handled < 0) good_ = false;
     if (handled <= 0) break;
-  }
+  } while (budget.is_left());
   handler_ = nullptr;
 }
 

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "master/gateway/time_budget.hpp"
 #include "master/gateway/transport.hpp"
+#include "master/linux/clock.hpp"
 
 namespace takt {
 
@@ -12,7 +14,8 @@ namespace takt {
 class LcmTransport final : public Transport {
  public:
   /// Null: LCM refuses (its reason is on stderr). May take seconds: LCM tests multicast.
-  static std::unique_ptr<LcmTransport> create(const std::string& url);
+  static std::unique_ptr<LcmTransport> create(const std::string& url,
+                                              FrontClock clock = monotonic_now);
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   void subscribe(const std::string& pattern) override;
@@ -26,12 +29,13 @@ class LcmTransport final : public Transport {
     void operator()(lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
   };
 
-  LcmTransport(std::unique_ptr<lcm_t, Destroy> lcm, std::string url)
-      : lcm_{std::move(lcm)}, url_{std::move(url)} {}
+  LcmTransport(std::unique_ptr<lcm_t, Destroy> lcm, std::string url, FrontClock clock)
+      : lcm_{std::move(lcm)}, url_{std::move(url)}, clock_{std::move(clock)} {}
   static void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* self);
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
   std::string url_;
+  FrontClock clock_;
   const MessageHandler* handler_ = nullptr;  // during serve()
   bool good_ = true;
 };

@@ -4,14 +4,22 @@
 #include <sys/socket.h>
 #include <utility>
 
+#include "master/gateway/printable_text.hpp"
 #include "master/gateway/tcp_loopback.hpp"
 
 namespace takt {
+namespace {
 
-std::expected<std::unique_ptr<TcpqBroker>, int> TcpqBroker::listen(std::uint16_t port) {
+constexpr int most_accepts = 16;  // in one round
+
+}  // namespace
+
+std::expected<std::unique_ptr<TcpqBroker>, int> TcpqBroker::listen(std::uint16_t port,
+                                                                   Options options) {
   auto listener = listen_on_loopback(port);
   if (!listener) return std::unexpected{listener.error()};
-  return std::unique_ptr<TcpqBroker>{new TcpqBroker{std::move(listener->socket), listener->port}};
+  return std::unique_ptr<TcpqBroker>{
+      new TcpqBroker{std::move(listener->socket), listener->port, std::move(options)}};
 }
 
 std::string TcpqBroker::url() const { return "tcpq://127.0.0.1:" + std::to_string(port_); }
@@ -27,55 +35,130 @@ bool TcpqBroker::wanted(std::string_view channel) const {
   });
 }
 
+void TcpqBroker::subscribe(const std::string& pattern) {
+  if (const auto added = own_.add(pattern); !added) {
+    options_.say("LCM hub: '" + pattern + "' can't be subscribed: " + added.error());
+  }
+}
+
 void TcpqBroker::relay(const tcpq::Message& message) {
   for (const auto& client : clients_) {
-    if (!client->connection.opened() || !client->patterns.match(message.channel)) continue;
+    const bool usable = client->connection.opened() && !client->connection.closed();
+    if (!usable || !client->patterns.match(message.channel)) continue;
     client->connection.queue(message);
     client->connection.flush();
   }
 }
 
-void TcpqBroker::accept_clients() {
-  for (;;) {
+void TcpqBroker::close(Client& client, const std::string& why) {
+  client.connection.close();
+  const auto kept_back = told_.allow(why.substr(0, 40), options_.clock());
+  if (!kept_back) return;
+  std::string sentence = "LCM hub: a connection was closed: " + why;
+  if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more since then)";
+  options_.say(sentence);
+}
+
+void TcpqBroker::accept_clients(Time now) {
+  for (int i = 0; i < most_accepts; ++i) {
     FileDescriptor socket{
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
     if (!socket) return;
-    if (clients_.size() == most_clients) continue;
-    clients_.push_back(std::make_unique<Client>(
-        Client{.connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client},
-               .patterns = {}}));
+    if (clients_.size() == most_clients && !make_room()) continue;
+    clients_.push_back(std::make_unique<Client>(Client{
+        .connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client}, .since = now}));
+  }
+}
+
+/// Connections that have asked for nothing give way to a new one, the oldest first.
+bool TcpqBroker::make_room() {
+  auto idle = std::ranges::find_if(clients_,
+                                   [](const auto& client) { return !client->connection.opened(); });
+  if (idle == clients_.end()) idle = std::ranges::find(clients_, false, &Client::has_asked);
+  const std::string full = "there are " + std::to_string(most_clients) + " connections already";
+  if (idle == clients_.end()) {
+    if (told_.allow(full, options_.clock())) {
+      options_.say("LCM hub: a new connection was refused: " + full);
+    }
+    return false;
+  }
+  close(**idle, full + ", and it had asked for nothing yet");
+  remove_closed();
+  return true;
+}
+
+void TcpqBroker::close_unopened(Time now) {
+  for (const auto& client : clients_) {
+    if (client->connection.opened() || now - client->since < opening_limit) continue;
+    close(*client, "its opening was incomplete after 2 s");
+  }
+}
+
+void TcpqBroker::add_pattern(Client& client, std::string_view pattern) {
+  std::size_t characters = pattern.size();
+  for (const auto& one : clients_) characters += one->patterns.characters();
+  if (characters > most_characters) {
+    return close(client, "the patterns of all connections together have more than " +
+                             std::to_string(most_characters) + " characters");
+  }
+  const auto added = client.patterns.add(pattern);
+  if (!added) {
+    close(client, "its pattern '" + printable_text(pattern.substr(0, 40)) +
+                      "' is refused: " + added.error());
   }
 }
 
 void TcpqBroker::take(Client& client, const tcpq::Message& message, const MessageHandler& handler) {
+  client.has_asked = true;
   switch (message.type) {
     case tcpq::Type::subscribe:
-      client.patterns.add(message.channel);
+      add_pattern(client, message.channel);
       return;
     case tcpq::Type::unsubscribe:
       client.patterns.remove(message.channel);
       return;
     case tcpq::Type::publish:
+      if (message.channel.size() > longest_name) {
+        return close(client, "the name of a channel has at most 63 characters");
+      }
       relay(message);
       if (own_.match(message.channel)) handler(message.channel, message.data);
       return;
   }
 }
 
-void TcpqBroker::serve(const MessageHandler& handler) {
-  accept_clients();
-  for (const auto& client : clients_) {
-    client->connection.flush();
-    client->connection.receive(
-        [&](const tcpq::Message& message) { take(*client, message, handler); });
+/// The round begins with another client each time that the budget ends before the clients do.
+void TcpqBroker::receive(const MessageHandler& handler) {
+  const TimeBudget budget{options_.clock, front_budget::broker};
+  const std::size_t count = clients_.size();
+  if (turn_ >= count) turn_ = 0;
+  const std::size_t first = turn_;
+  for (std::size_t i = 0; i < count; ++i) {
+    Client& client = *clients_[(first + i) % count];
+    client.connection.flush();
+    client.connection.receive([&](const tcpq::Message& message) { take(client, message, handler); },
+                              budget);
+    turn_ = (first + i + 1) % count;
+    if (!budget.is_left()) return;
   }
+}
+
+void TcpqBroker::remove_closed() {
   std::erase_if(clients_, [](const auto& client) { return client->connection.closed(); });
+}
+
+void TcpqBroker::serve(const MessageHandler& handler) {
+  const Time now = options_.clock();
+  accept_clients(now);
+  receive(handler);
+  close_unopened(now);
+  remove_closed();
 }
 
 void TcpqBroker::watch(std::vector<pollfd>& descriptors) const {
   descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
   for (const auto& client : clients_) {
-    const int events = POLLIN | (client->connection.wants_to_write() ? POLLOUT : 0);
+    const int events = POLLIN | client->connection.other_reason_to_wake();
     descriptors.push_back(
         {.fd = client->connection.fd(), .events = static_cast<short>(events), .revents = 0});
   }

@@ -1,29 +1,44 @@
 #pragma once
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "master/gateway/channel_patterns.hpp"
+#include "master/gateway/rate_limit.hpp"
 #include "master/gateway/tcpq_connection.hpp"
+#include "master/gateway/time_budget.hpp"
 #include "master/gateway/transport.hpp"
+#include "master/linux/clock.hpp"
 
 namespace takt {
 
 /// LCM's tcpq:// server on loopback: programs that set `LCM_DEFAULT_URL=tcpq://127.0.0.1:7700`
 /// exchange messages through it without a multicast route. What its owner publishes goes to the
-/// clients, what clients publish goes to the owner and to the other clients.
+/// clients, what clients publish goes to the owner and to the other clients. Connections, patterns,
+/// bytes and the time of each serve() are bounded.
 class TcpqBroker final : public Transport {
  public:
   static constexpr std::size_t most_clients = 64;
+  static constexpr std::size_t most_characters = 32768;  ///< of the patterns of all connections
+  static constexpr std::size_t longest_name = 63;        ///< of a channel, as LCM's own
+  static constexpr Time opening_limit = std::chrono::seconds{2};
+
+  struct Options {
+    FrontClock clock = monotonic_now;
+    /// Hears why a connection is closed, at most once in 10 s for the same reason.
+    std::function<void(const std::string& sentence)> say = [](const std::string&) {};
+  };
 
   /// Port 0: any free one. An error is an errno; EADDRINUSE: there is a broker already.
-  static std::expected<std::unique_ptr<TcpqBroker>, int> listen(std::uint16_t port);
+  static std::expected<std::unique_ptr<TcpqBroker>, int> listen(std::uint16_t port,
+                                                                Options options = defaults());
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   bool wanted(std::string_view channel) const override;
-  void subscribe(const std::string& pattern) override { own_.add(pattern); }
+  void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
@@ -35,19 +50,31 @@ class TcpqBroker final : public Transport {
  private:
   struct Client {
     tcpq::Connection connection;
-    ChannelPatterns patterns;
+    ChannelPatterns patterns{};
+    Time since{};            // when it connected
+    bool has_asked = false;  // it has subscribed or published
   };
 
-  TcpqBroker(FileDescriptor listener, std::uint16_t port)
-      : listener_{std::move(listener)}, port_{port} {}
-  void accept_clients();
+  static Options defaults() { return {}; }
+  TcpqBroker(FileDescriptor listener, std::uint16_t port, Options options)
+      : listener_{std::move(listener)}, port_{port}, options_{std::move(options)} {}
+  void accept_clients(Time now);
+  bool make_room();
+  void close_unopened(Time now);
+  void receive(const MessageHandler& handler);
   void relay(const tcpq::Message& message);
   void take(Client& client, const tcpq::Message& message, const MessageHandler& handler);
+  void add_pattern(Client& client, std::string_view pattern);
+  void close(Client& client, const std::string& why);
+  void remove_closed();
 
   FileDescriptor listener_;
   std::uint16_t port_;
-  std::vector<std::unique_ptr<Client>> clients_;
+  Options options_;
+  std::vector<std::unique_ptr<Client>> clients_;  // oldest first
+  std::size_t turn_ = 0;                          // of the client that is served first
   ChannelPatterns own_;
+  RateLimit told_{std::chrono::seconds{10}};
 };
 
 }  // namespace takt

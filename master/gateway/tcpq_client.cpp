@@ -13,8 +13,8 @@ constexpr std::chrono::milliseconds retry_pause{500};
 
 }  // namespace
 
-TcpqClient::TcpqClient(std::string address, std::uint16_t port)
-    : address_{std::move(address)}, port_{port} {
+TcpqClient::TcpqClient(std::string address, std::uint16_t port, FrontClock clock)
+    : address_{std::move(address)}, port_{port}, clock_{std::move(clock)} {
   connect();
 }
 
@@ -61,9 +61,10 @@ void TcpqClient::serve(const MessageHandler& handler) {
   pollfd state{.fd = connection_->fd(), .events = POLLIN | POLLOUT, .revents = 0};
   if (::poll(&state, 1, 0) <= 0) return;
   if ((state.revents & POLLOUT) != 0) connection_->flush();
-  connection_->receive([&](const tcpq::Message& message) {
+  const auto take = [&](const tcpq::Message& message) {
     if (message.type == tcpq::Type::publish) handler(message.channel, message.data);
-  });
+  };
+  connection_->receive(take, TimeBudget{clock_, front_budget::broker});
   if (connection_->closed()) {
     connection_.reset();
     next_try_ = std::chrono::steady_clock::now() + retry_pause;
@@ -72,7 +73,7 @@ void TcpqClient::serve(const MessageHandler& handler) {
 
 void TcpqClient::watch(std::vector<pollfd>& descriptors) const {
   if (!connection_) return;
-  const int events = POLLIN | (connection_->wants_to_write() ? POLLOUT : 0);
+  const int events = POLLIN | connection_->other_reason_to_wake();
   descriptors.push_back(
       {.fd = connection_->fd(), .events = static_cast<short>(events), .revents = 0});
 }

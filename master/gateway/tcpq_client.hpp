@@ -7,7 +7,9 @@
 
 #include "master/gateway/channel_patterns.hpp"
 #include "master/gateway/tcpq_connection.hpp"
+#include "master/gateway/time_budget.hpp"
 #include "master/gateway/transport.hpp"
+#include "master/linux/clock.hpp"
 
 namespace takt {
 
@@ -15,7 +17,7 @@ namespace takt {
 /// comes back by itself when the server does.
 class TcpqClient final : public Transport {
  public:
-  TcpqClient(std::string address, std::uint16_t port);
+  TcpqClient(std::string address, std::uint16_t port, FrontClock clock = monotonic_now);
 
   /// True once the server has answered.
   bool connected() const noexcept { return connection_ && connection_->opened(); }
@@ -35,6 +37,7 @@ class TcpqClient final : public Transport {
   std::vector<std::string> patterns_;
   std::optional<tcpq::Connection> connection_;
   std::chrono::steady_clock::time_point next_try_{};
+  FrontClock clock_;
 };
 
 /// Whether something that speaks tcpq:// answers there. Waits at most `limit`.

@@ -54,25 +54,37 @@ void Connection::flush() noexcept {
   }
 }
 
-void Connection::receive(const std::function<void(const Message&)>& handler) {
+void Connection::receive(const std::function<void(const Message&)>& handler,
+                         const TimeBudget& budget) {
   std::array<std::byte, 16384> chunk;
   // LCM's client sends a message in five small pieces without TCP_NODELAY: each must be
   // acknowledged at once, or a command takes 40 ms. The kernel forgets this option by itself.
   set_option(fd(), IPPROTO_TCP, TCP_QUICKACK, 1);
-  for (int rounds = 0; rounds < 8 && !closed_; ++rounds) {
+  while (hand_over(handler, budget)) {
     const ssize_t size = ::recv(fd(), chunk.data(), chunk.size(), MSG_DONTWAIT);
-    if (size < 0) {
-      closed_ = !would_wait(errno);
-      return;
-    }
-    if (size == 0) {
-      closed_ = true;
+    if (size <= 0) {
+      closed_ = size == 0 || !would_wait(errno);
       return;
     }
     parser_.feed(std::span{chunk}.first(static_cast<std::size_t>(size)));
-    while (const auto message = parser_.next()) handler(*message);
-    if (parser_.broken()) closed_ = true;
+    if (!hand_over(handler, budget) || !budget.is_left()) return;
   }
+}
+
+/// False: the budget ended before the messages did, or the connection is closed.
+bool Connection::hand_over(const std::function<void(const Message&)>& handler,
+                           const TimeBudget& budget) {
+  unhandled_ = false;
+  while (const auto message = parser_.next()) {
+    handler(*message);
+    if (closed_) return false;
+    if (!budget.is_left()) {
+      unhandled_ = true;
+      return false;
+    }
+  }
+  closed_ = closed_ || parser_.broken();
+  return !closed_;
 }
 
 }  // namespace takt::tcpq

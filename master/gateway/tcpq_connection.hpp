@@ -2,9 +2,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <poll.h>
 #include <vector>
 
 #include "master/gateway/tcpq_parser.hpp"
+#include "master/gateway/time_budget.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt::tcpq {
@@ -27,15 +29,27 @@ class Connection {
   bool queue(const Message& message);
   /// Sends as much as the kernel takes.
   void flush() noexcept;
-  /// Reads a bounded amount and hands over the messages in it.
-  void receive(const std::function<void(const Message&)>& handler);
+  /// Reads, and hands over messages, until nothing is left or the budget is used up. Each call
+  /// makes progress, however small the budget is.
+  void receive(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
+  /// Messages were read that the last receive() had no time to hand over.
+  bool has_unhandled() const noexcept { return unhandled_; }
+  /// What poll() has to watch beside POLLIN. Messages that wait here for the next round end its
+  /// wait by POLLOUT, since nearly every socket can be written to.
+  short other_reason_to_wake() const noexcept {
+    return wants_to_write() || unhandled_ ? POLLOUT : 0;
+  }
+  void close() noexcept { closed_ = true; }
 
  private:
+  bool hand_over(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
+
   FileDescriptor socket_;
   Parser parser_;
   std::vector<std::byte> unsent_;
   std::size_t sent_ = 0;  // of unsent_
   std::uint64_t lost_ = 0;
+  bool unhandled_ = false;
   bool closed_ = false;
 };
 

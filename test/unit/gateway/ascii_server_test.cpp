@@ -1,5 +1,6 @@
 #include "master/gateway/ascii_server.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 
 #include "master/linux/unix_address.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/step_clock.hpp"
 
 namespace takt {
 namespace {
@@ -24,7 +26,7 @@ class AsciiServerTest : public testing::Test {
             .owed = [this](int) { return owed; }};
   }
   void listen() {
-    auto opened = AsciiServer::listen("unix:" + path_, handler());
+    auto opened = AsciiServer::listen("unix:" + path_, handler(), clock);
     ASSERT_TRUE(opened) << opened.error();
     server = std::move(*opened);
   }
@@ -57,6 +59,7 @@ class AsciiServerTest : public testing::Test {
 
   const test::Folder folder_;
   const std::string path_ = folder_ / "gateway";
+  test::StepClock clock{std::chrono::microseconds{50}};
   std::unique_ptr<AsciiServer> server;
   std::vector<std::string> lines;
   std::vector<int> connected;
@@ -81,6 +84,9 @@ TEST_F(AsciiServerTest, TakesLinesAndSendsThem) {
 TEST_F(AsciiServerTest, DropsALineThatIsTooLongAndGoesOn) {
   listen();
   const FileDescriptor client = connect();
+  write(client, "[1] help\n");
+  serve();
+  lines.clear();
   write(client, std::string(AsciiServer::longest_line + 1, 'x'));
   serve();
   EXPECT_EQ(too_long, 1);
@@ -145,9 +151,79 @@ TEST_F(AsciiServerTest, LeavesAClientThatReadsNoMore) {
 TEST_F(AsciiServerTest, TakesEightClients) {
   listen();
   std::vector<FileDescriptor> clients;
-  for (int i = 0; i < 9; ++i) clients.push_back(connect());
+  for (int i = 0; i < 8; ++i) {
+    clients.push_back(connect());
+    write(clients.back(), "[1] help\n");
+    while (lines.size() < clients.size()) serve();
+  }
+  clients.push_back(connect());
   EXPECT_EQ(connected.size(), AsciiServer::most_clients);
+  EXPECT_TRUE(gone.empty());
   EXPECT_EQ(read(clients.back()), "");  // closed
+}
+
+TEST_F(AsciiServerTest, EightSilentClientsLockNobodyOut) {
+  listen();
+  std::vector<FileDescriptor> silent;
+  for (int i = 0; i < 8; ++i) silent.push_back(connect());
+
+  const FileDescriptor late = connect();
+  write(late, "[1] help\n");
+  while (lines.empty()) serve();
+
+  EXPECT_EQ(gone, (std::vector<int>{connected[0]})) << "the oldest made room";
+  EXPECT_EQ(lines, (std::vector<std::string>{"[1] help"}));
+}
+
+TEST_F(AsciiServerTest, ClosesWhoeverSpeaksAnotherProtocolBeforeAnyCommandOfIt) {
+  listen();
+  const std::vector<std::string> foreign{
+      "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n[1] 1 w 0x6040 0 u16 15\n",
+      std::string{"\x16\x03\x01\x02", 4},              // the hello of TLS
+      "GET",                                           // not even a whole line
+      "[1] 1 please move\n[2] 1 w 0x6040 0 u16 15\n",  // not a command
+      std::string(AsciiServer::longest_line + 1, '[') + "\n[2] help\n",
+  };
+  for (const std::string& text : foreign) {
+    const FileDescriptor client = connect();
+    write(client, text);
+    const std::size_t before = gone.size();
+    while (gone.size() == before) serve();
+    EXPECT_EQ(read(client),
+              "[0] ERROR: 101 (syntax error: the first line is no command of CiA 309-3, such as "
+              "'[1] help'; the connection is closed)\r\n");
+  }
+  EXPECT_EQ(lines, (std::vector<std::string>{}));
+  EXPECT_EQ(too_long, 0);
+}
+
+TEST_F(AsciiServerTest, TakesACommandThatFollowsEmptyLinesAndComments) {
+  listen();
+  const FileDescriptor client = connect();
+  write(client, "# hello\r\n\r\n  [1] 1 r 0x1018 9 u99\nwhat?\n");
+  while (lines.size() < 4) serve();
+  EXPECT_TRUE(gone.empty())
+      << "a command that isn't supported is one, and later lines are answered";
+}
+
+TEST_F(AsciiServerTest, AFloodOfLinesEndsTheRoundWithItsBudgetAndLosesNothing) {
+  listen();
+  const FileDescriptor flood = connect();
+  std::string text;
+  for (int i = 0; i < 400; ++i) text += "[1] help\n";
+  write(flood, text);
+  const FileDescriptor quiet = connect();
+  write(quiet, "[2] help\n");
+
+  std::size_t most = 0;
+  while (lines.size() < 401) {
+    const std::size_t before = lines.size();
+    serve();
+    most = std::max(most, lines.size() - before);
+  }
+
+  EXPECT_LE(most, 6U) << "250 us at 50 us a line";
+  EXPECT_LT(std::ranges::find(lines, "[2] help") - lines.begin(), 20);
 }
 
 TEST_F(AsciiServerTest, TakesThePlaceOfADeadDaemonOnly) {

@@ -7,7 +7,6 @@
 #include <sys/socket.h>
 #include <vector>
 
-#include "master/gateway/channel_patterns.hpp"
 #include "master/gateway/tcpq_broker.hpp"
 #include "master/gateway/tcpq_client.hpp"
 #include "master/gateway/tcpq_parser.hpp"
@@ -90,33 +89,6 @@ TEST(TcpqParser, RefusesOtherProtocolsAndHugeSizes) {
   data.feed(octets({0, 0, 0, 1, 0, 0, 0, 1, 'C', 0x7F, 0xFF, 0xFF, 0xFF}));
   EXPECT_FALSE(data.next());
   EXPECT_TRUE(data.broken());
-}
-
-TEST(ChannelPatterns, MatchWholeNamesAsLcmDoes) {
-  ChannelPatterns patterns;
-  EXPECT_TRUE(patterns.add("LIFT_IMAGE"));
-  EXPECT_TRUE(patterns.add("ARM_.*"));
-
-  EXPECT_TRUE(patterns.match("LIFT_IMAGE"));
-  EXPECT_FALSE(patterns.match("LIFT_IMAGES"));
-  EXPECT_TRUE(patterns.match("ARM_STATUS"));
-  EXPECT_FALSE(patterns.match("XARM_STATUS"));
-
-  patterns.remove("ARM_.*");
-  EXPECT_FALSE(patterns.match("ARM_STATUS"));
-}
-
-TEST(ChannelPatterns, CostlyPatternsAreRefusedOrMatchedInBoundedTime) {
-  ChannelPatterns patterns;
-  EXPECT_FALSE(patterns.add("((a{1000}){1000}){1000}"));
-  EXPECT_FALSE(patterns.add("(a"));
-  EXPECT_FALSE(patterns.add("(a)\\1"));
-  EXPECT_FALSE(patterns.add(std::string(10000, '(')));
-
-  // Exponential in a backtracking matcher; the test would not end.
-  if (patterns.add("(a*)*(a*)*(a*)*(a|aa)*b")) {
-    EXPECT_FALSE(patterns.match(std::string(60, 'a')));
-  }
 }
 
 // Serves all ends until `done`, at most as long as bytes can still be under way.

@@ -1,0 +1,278 @@
+#include <chrono>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <string>
+#include <sys/socket.h>
+#include <vector>
+
+#include "master/gateway/tcpq_broker.hpp"
+#include "master/gateway/tcpq_parser.hpp"
+#include "test/support/step_clock.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+using Octets = std::vector<std::byte>;
+
+const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
+
+/// A program that speaks tcpq by hand.
+class Peer {
+ public:
+  explicit Peer(std::uint16_t port) : socket_{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)} {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  }
+  Peer& open() {
+    Octets bytes;
+    tcpq::append_opening(bytes, tcpq::magic_client);
+    send(bytes);
+    return *this;
+  }
+  void subscribe(std::string_view pattern) {
+    Octets bytes;
+    tcpq::append(bytes, {.type = tcpq::Type::subscribe, .channel = pattern, .data = {}});
+    send(bytes);
+  }
+  void publish(std::string_view channel, int times = 1) {
+    Octets bytes;
+    for (int i = 0; i < times; ++i) {
+      tcpq::append(bytes, {.type = tcpq::Type::publish, .channel = channel, .data = {}});
+    }
+    send(bytes);
+  }
+  void send(std::span<const std::byte> bytes) {
+    static_cast<void>(::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL));
+  }
+  /// Channels of what has come so far.
+  std::size_t heard() {
+    std::byte chunk[4096];
+    for (ssize_t size = 1; size > 0;) {
+      size = ::recv(socket_.get(), chunk, sizeof chunk, MSG_DONTWAIT);
+      if (size > 0) parser_.feed({chunk, static_cast<std::size_t>(size)});
+      while (parser_.next()) ++heard_;
+    }
+    return heard_;
+  }
+
+ private:
+  FileDescriptor socket_;
+  tcpq::Parser parser_{tcpq::magic_server};
+  std::size_t heard_ = 0;
+};
+
+class TcpqLimits : public testing::Test {
+ protected:
+  std::unique_ptr<TcpqBroker> make(Time step) {
+    clock = test::StepClock{step};
+    return TcpqBroker::listen(
+               0, {.clock = clock, .say = [this](const std::string& s) { told.push_back(s); }})
+        .value();
+  }
+  /// What was sent is there at once on loopback, or a moment later.
+  template <class F>
+  bool serve_until(TcpqBroker& broker, F done) {
+    for (int rounds = 0; rounds < 6000; ++rounds) {
+      broker.serve(ignore);
+      if (done()) return true;
+      std::vector<pollfd> descriptors;
+      broker.watch(descriptors);
+      ::poll(descriptors.data(), descriptors.size(), 5);
+    }
+    return false;
+  }
+
+  test::StepClock clock{0us};
+  std::vector<std::string> told;
+};
+
+TEST_F(TcpqLimits, AFloodOfMessagesEndsTheRoundWithItsBudgetAndLosesNothing) {
+  auto broker = make(10us);
+  Peer peer{broker->port()};
+  peer.open().publish("FLOOD", 1000);
+  broker->subscribe("FLOOD");
+  std::size_t heard = 0;
+  std::size_t most = 0;
+  const MessageHandler count = [&](std::string_view, std::span<const std::byte>) { ++heard; };
+
+  for (int rounds = 0; rounds < 6000 && heard < 1000; ++rounds) {
+    const std::size_t before = heard;
+    broker->serve(count);
+    most = std::max(most, heard - before);
+    std::vector<pollfd> descriptors;
+    broker->watch(descriptors);
+    ::poll(descriptors.data(), descriptors.size(), 5);
+  }
+
+  EXPECT_EQ(heard, 1000U);
+  EXPECT_LE(most, 51U) << "500 us at 10 us a message";
+}
+
+TEST_F(TcpqLimits, AFloodDoesNotStarveTheOtherConnections) {
+  auto broker = make(100us);
+  Peer flood{broker->port()};
+  flood.open().publish("FLOOD", 1000);
+  Peer quiet{broker->port()};
+  quiet.open().publish("QUIET");
+  broker->subscribe(".*");
+  int before = 0;
+  bool quiet_came = false;
+  const MessageHandler listen = [&](std::string_view channel, std::span<const std::byte>) {
+    quiet_came = quiet_came || channel == "QUIET";
+    if (!quiet_came) ++before;
+  };
+
+  for (int rounds = 0; rounds < 6000 && !quiet_came; ++rounds) broker->serve(listen);
+
+  EXPECT_TRUE(quiet_came);
+  EXPECT_LT(before, 1000) << "the flood was heard first as a whole";
+}
+
+TEST_F(TcpqLimits, WaitingMessagesEndTheWaitOfTheNextRound) {
+  auto broker = make(100us);
+  Peer peer{broker->port()};
+  peer.open().publish("FLOOD", 100);
+  bool seen = false;
+  broker->subscribe(".*");
+  const MessageHandler listen = [&](std::string_view, std::span<const std::byte>) { seen = true; };
+  for (int rounds = 0; rounds < 6000 && !seen; ++rounds) broker->serve(listen);
+  ASSERT_TRUE(seen);
+
+  std::vector<pollfd> descriptors;
+  broker->watch(descriptors);
+
+  EXPECT_GT(::poll(descriptors.data(), descriptors.size(), 30'000), 0);
+}
+
+TEST_F(TcpqLimits, HundredElevenKilobytesOfEvilPatternsEndTheirConnectionAndNothingElse) {
+  auto broker = make(1us);
+  Peer evil{broker->port()};
+  evil.open();
+  const std::string pattern = "((a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*)*b";
+  for (std::size_t sent = 0; sent < 111'000; sent += pattern.size()) evil.subscribe(pattern);
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty() && broker->clients() == 0; }));
+
+  EXPECT_EQ(told, (std::vector<std::string>{
+                      "LCM hub: a connection was closed: its pattern "
+                      "'((a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|a)*(a|' is refused: the patterns "
+                      "together have more than 8192 characters"}));
+}
+
+TEST_F(TcpqLimits, PatternsThatAreRefusedCloseTheConnectionWithASentence) {
+  auto broker = make(1us);
+  Peer peer{broker->port()};
+  peer.open().subscribe("(a)\x1B\\1");
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty(); }));
+
+  EXPECT_EQ(broker->clients(), 0U);
+  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a connection was closed: its pattern "
+                                            "'(a)?\\1' is refused: '\\1' is not supported"}));
+}
+
+TEST_F(TcpqLimits, PatternsOfAllConnectionsTogetherAreBounded) {
+  auto broker = make(0us);
+  std::vector<Peer> peers;
+  for (int i = 0; i < 5; ++i) {
+    peers.emplace_back(broker->port()).open();
+    for (int k = 0; k < 60; ++k) peers.back().subscribe(std::string(128, 'a'));
+    const std::string last = "LAST_" + std::to_string(i);
+    peers.back().subscribe(last);
+    ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted(last) || !told.empty(); }));
+  }
+
+  EXPECT_EQ(broker->clients(), 4U);
+  EXPECT_NE(told[0].find("of all connections together have more than 32768"), std::string::npos);
+}
+
+TEST_F(TcpqLimits, AnOpeningThatIsIncompleteAfterTwoSecondsIsClosed) {
+  auto broker = make(0us);
+  Peer silent{broker->port()};
+  Peer half{broker->port()};
+  const Octets three{std::byte{0x28}, std::byte{0x76}, std::byte{0x17}};
+  half.send(three);
+  Peer whole{broker->port()};
+  whole.open().subscribe("A");
+  ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted("A"); }));
+  ASSERT_EQ(broker->clients(), 3U);
+
+  clock.pass(1999ms);
+  broker->serve(ignore);
+  EXPECT_EQ(broker->clients(), 3U);
+  clock.pass(1ms);
+  broker->serve(ignore);
+
+  EXPECT_EQ(broker->clients(), 1U);
+  EXPECT_TRUE(broker->wanted("A"));
+  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a connection was closed: its opening was "
+                                            "incomplete after 2 s"}));
+}
+
+TEST_F(TcpqLimits, SixtyFourSilentConnectionsLockNobodyOut) {
+  auto broker = make(0us);
+  std::vector<Peer> silent;
+  for (int i = 0; i < 64; ++i) {
+    silent.emplace_back(broker->port());
+    if (i % 2 == 0) silent.back().open();
+    broker->serve(ignore);
+  }
+  ASSERT_TRUE(serve_until(*broker, [&] { return broker->clients() == 64; }));
+
+  Peer late{broker->port()};
+  late.open().subscribe("LATE");
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return broker->wanted("LATE"); }));
+  EXPECT_EQ(broker->clients(), 64U);
+}
+
+TEST_F(TcpqLimits, ConnectionsThatWorkAreNotGivenUpForNewOnes) {
+  auto broker = make(0us);
+  std::vector<Peer> working;
+  for (int i = 0; i < 64; ++i) {
+    working.emplace_back(broker->port()).open().subscribe("WORK_" + std::to_string(i));
+    ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted("WORK_" + std::to_string(i)); }));
+  }
+
+  Peer late{broker->port()};
+  late.open().subscribe("LATE");
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty(); }));
+  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a new connection was refused: there are 64 "
+                                            "connections already"}));
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(broker->wanted("WORK_" + std::to_string(i)));
+}
+
+TEST_F(TcpqLimits, OneByteAtATimeIsReadLikeAnythingElse) {
+  auto broker = make(1us);
+  Peer peer{broker->port()};
+  Octets bytes;
+  tcpq::append_opening(bytes, tcpq::magic_client);
+  tcpq::append(bytes, {.type = tcpq::Type::subscribe, .channel = "SLOW", .data = {}});
+  for (const std::byte& byte : bytes) {
+    EXPECT_FALSE(broker->wanted("SLOW"));
+    peer.send({&byte, 1});
+    std::vector<pollfd> descriptors;
+    broker->watch(descriptors);
+    ::poll(descriptors.data(), descriptors.size(), 30'000);
+    broker->serve(ignore);
+  }
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return broker->wanted("SLOW"); }));
+}
+
+TEST_F(TcpqLimits, AChannelNameThatLcmDoesNotHaveEndsTheConnection) {
+  auto broker = make(1us);
+  Peer peer{broker->port()};
+  peer.open().publish(std::string(64, 'x'));
+
+  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty() && broker->clients() == 0; }));
+}
+
+}  // namespace
+}  // namespace takt
