@@ -11,6 +11,14 @@ namespace {
 /// The bound on what a layout may make this program allocate.
 constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
+constexpr int most_strange = 3;  // images: so many that follow each other are the bus
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::uint64_t least_ahead = 16;  // cycles, however long they are
+
+/// How many cycles `to` is ahead of `from`, which is not greater; the two may be anything.
+std::uint64_t cycles_between(std::int64_t from, std::int64_t to) noexcept {
+  return static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from);
+}
 
 bool is_range(std::int32_t first, std::int32_t count, std::size_t total) {
   return first >= 0 && count >= 0 &&
@@ -72,6 +80,7 @@ void ImageInput::finish() {
   period_ns_ = new_period_ns_;
   has_image_ = false;
   cycle_ = new_cycle_ = -1;
+  strange_images_ = 0;
   values_.assign(signals_.size(), 0);
   stale_.assign(signals_.size(), 0);
 }
@@ -82,9 +91,28 @@ bool ImageInput::belongs(const image_t& part) const noexcept {
          is_range(part.first_signal, part.num_values, signals_.size());
 }
 
+/// A gap of up to a second is ordinary. The first image may have any cycle.
+bool ImageInput::is_next(std::int64_t cycle) const noexcept {
+  if (cycle <= new_cycle_) return false;
+  const auto a_second = static_cast<std::uint64_t>(second_ns / period_ns_);
+  return new_cycle_ < 0 || cycles_between(new_cycle_, cycle) <= std::max(a_second, least_ahead);
+}
+
+/// Whether an image that does not follow the newest one is one of several that follow each other.
+bool ImageInput::is_confirmed(std::int64_t cycle) noexcept {
+  if (strange_images_ != 0 && cycle == strange_cycle_) return false;  // another part of it
+  const bool follows = strange_images_ != 0 && cycle > strange_cycle_ &&
+                       cycles_between(strange_cycle_, cycle) <= least_ahead;
+  strange_images_ = follows ? strange_images_ + 1 : 1;
+  strange_cycle_ = cycle;
+  return strange_images_ >= most_strange;
+}
+
 bool ImageInput::take(const image_t& part) {
-  if (!belongs(part) || part.cycle < new_cycle_) return false;
-  if (part.cycle > new_cycle_) {
+  if (!belongs(part) || part.cycle < 0) return false;
+  if (part.cycle != new_cycle_) {
+    if (!is_next(part.cycle) && !is_confirmed(part.cycle)) return false;
+    strange_images_ = 0;
     new_cycle_ = part.cycle;
     new_values_.assign(signals_.size(), 0);
     new_stale_.assign(signals_.size(), 0);

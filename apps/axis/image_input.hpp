@@ -7,7 +7,9 @@
 namespace takt {
 
 /// What has come over LCM, put together from its parts: the layout, and the newest image that is
-/// whole. Parts that do not belong together (another session, layout or cycle) are left out.
+/// whole. Parts that do not belong together (another session, layout or cycle) are left out. An
+/// image whose cycle is older, or more than a second ahead, counts when two more have followed it:
+/// a single forged or late one changes nothing.
 class ImageInput {
  public:
   /// True: with this part a layout is complete that differs from the one before.
@@ -36,6 +38,8 @@ class ImageInput {
   void begin(const layout_t& part);
   void finish();
   bool belongs(const image_t& part) const noexcept;
+  bool is_next(std::int64_t cycle) const noexcept;
+  bool is_confirmed(std::int64_t cycle) noexcept;
 
   std::vector<signal_t> signals_;
   std::int64_t session_ = 0;
@@ -57,6 +61,8 @@ class ImageInput {
   std::vector<std::int64_t> new_values_;
   std::vector<char> new_stale_;
   Parts image_parts_;
+  std::int64_t strange_cycle_ = 0;  // of the newest image that did not follow
+  int strange_images_ = 0;          // that followed each other
 };
 
 }  // namespace takt

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <string>
 
+#include "master/gateway/printable_text.hpp"
+
 namespace takt {
 
 void Progress::say(std::string_view text) {
   const std::chrono::duration<double> since = Clock::now() - start_;
-  print(fmt::format("{:6.2f} s  {}\n", since.count(), text));
+  print(fmt::format("{:6.2f} s  {}\n", since.count(), printable_lines(text)));
 }
 
 void Progress::print(const std::string& text) {

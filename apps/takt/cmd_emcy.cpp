@@ -15,6 +15,7 @@
 #include "master/gateway/emcy_log.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/names.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/linux/clock.hpp"
 #include "master/wire/emcy_text.hpp"
 
@@ -64,8 +65,9 @@ nlohmann::json to_json(const Told& told) {
 void print(const Told& told) {
   const EmcyRecord& record = told.record;
   std::printf("%s\n", fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
-                                  clock_text(record.utime), told.node, told.name, record.code(),
-                                  told.words, error_register_text(record.error_register()),
+                                  clock_text(record.utime), told.node, printable_text(told.name),
+                                  record.code(), printable_text(told.words),
+                                  error_register_text(record.error_register()),
                                   bytes_text(std::span{record.bytes}.subspan(3)))
                           .c_str());
 }
@@ -114,7 +116,8 @@ int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only
                                       {"text", event->text}};
             std::puts(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
           } else {
-            std::printf("%s  %s\n", clock_text(event->utime).c_str(), event->text.c_str());
+            std::printf("%s  %s\n", clock_text(event->utime).c_str(),
+                        printable_lines(event->text).c_str());
           }
           std::fflush(stdout);
         },

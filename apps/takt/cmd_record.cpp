@@ -4,6 +4,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "master/gateway/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -19,7 +20,7 @@ int run(const LiveOptions& options) {
   const auto reply = daemon->ask(std::move(request), patience);
   if (!reply) return complain(reply.error().sentence, reply.error().code);
   if (reply->good == 0) return complain(reply->text, 1);
-  std::puts(reply->text.c_str());
+  std::puts(printable_text(reply->text).c_str());
   return 0;
 }
 

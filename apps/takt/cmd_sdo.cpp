@@ -14,6 +14,7 @@
 #include "apps/takt/transfer_progress.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "master/core/request.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/gateway/value_text.hpp"
 
 namespace takt {
@@ -160,7 +161,7 @@ int read(const SdoOptions& options) {
                               {"data", hex_text(*value)}, {"text", text}};
     std::puts(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    std::puts(text.c_str());
+    std::puts(printable_lines(text).c_str());
   }
   return 0;
 }

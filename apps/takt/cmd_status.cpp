@@ -11,6 +11,7 @@
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
 #include "master/gateway/names.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -112,7 +113,7 @@ void print(const std::vector<const BusView*>& buses) {
     }
     if (bus->pdos()) {
       for (const std::string& line : pdo_lines(*bus->pdos(), *bus->status())) {
-        std::printf("%s\n", line.c_str());
+        std::printf("%s\n", printable_text(line).c_str());
       }
     }
   }

@@ -10,6 +10,7 @@
 #include "apps/takt/image_delay.hpp"
 #include "apps/takt/timing_table.hpp"
 #include "master/gateway/names.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -33,7 +34,7 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
   } else {
     std::printf("%s at cycle %lld, the last second\n", bus.c_str(),
                 static_cast<long long>(timing.cycle));
-    for (const std::string& line : timing_lines(timing)) std::puts(line.c_str());
+    for (const std::string& line : timing_lines(timing)) std::puts(printable_text(line).c_str());
   }
   std::fflush(stdout);
 }

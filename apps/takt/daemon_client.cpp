@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "master/gateway/names.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -76,7 +77,7 @@ void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<boo
           const std::string trouble = views.take(channel, data);
           if (trouble.empty() || trouble == told) return;
           told = trouble;
-          std::fprintf(stderr, "takt: %s\n", trouble.c_str());
+          std::fprintf(stderr, "takt: %s\n", printable_text(trouble).c_str());
         },
         until);
   }

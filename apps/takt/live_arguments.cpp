@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "master/gateway/printable_text.hpp"
+
 namespace takt {
 namespace {
 
@@ -42,7 +44,7 @@ std::optional<NodeId> parse_node_id(std::string_view text) {
 }
 
 int complain(const std::string& sentence, int code) {
-  std::fprintf(stderr, "takt: %s\n", sentence.c_str());
+  std::fprintf(stderr, "takt: %s\n", printable_lines(sentence).c_str());
   return code;
 }
 

@@ -24,7 +24,7 @@ std::optional<ObjectKey> parse_object(std::string_view text);
 /// `5`, `0x05`; none: not a node id (a name, perhaps).
 std::optional<NodeId> parse_node_id(std::string_view text);
 
-/// Prints "takt: ..." on stderr and gives `code`.
+/// Prints "takt: ..." on stderr, as far as it is printable, and gives `code`.
 int complain(const std::string& sentence, int code);
 
 }  // namespace takt

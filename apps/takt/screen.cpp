@@ -9,6 +9,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "master/gateway/printable_text.hpp"
+
 namespace takt {
 namespace {
 
@@ -60,11 +62,7 @@ void put_back() {
 }  // namespace
 
 Line& Line::add(std::string_view text, Paint paint) {
-  std::string clean{text};
-  for (char& c : clean) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-  }
-  pieces_.push_back({std::move(clean), paint});
+  pieces_.push_back({printable_text(text), paint});
   return *this;
 }
 

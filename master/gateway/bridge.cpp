@@ -7,6 +7,7 @@
 #include "master/core/boot_report.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/gateway/random_number.hpp"
 #include "master/gateway/sync_message.hpp"
 #include "master/wire/bytes.hpp"
@@ -169,8 +170,9 @@ void Bridge::on_request(Bytes data) {
   if (!request) return tell_damaged(channels_.request, request.error());
   const Time now = clocks_.now();
   if (requests_.is_echo(*request, now)) return;
-  if (request->service == "emcy_history") return answer_history(*request);
-  if (request->service == "record" && record_) return record_(*request);
+  const bool fits = !Requests::oversize(*request);
+  if (fits && request->service == "emcy_history") return answer_history(*request);
+  if (fits && request->service == "record" && record_) return record_(*request);
   if (auto reply = requests_.take(*request, now)) answer(std::move(*reply));
 }
 
@@ -307,7 +309,9 @@ void Bridge::tell(Notice notice) {
   send(notice);
 }
 
-void Bridge::send(const Notice& notice) {
+/// Texts of devices and of senders are in it: what it shows goes to terminals and logs.
+void Bridge::send(Notice notice) {
+  notice.text = printable_lines(notice.text);
   event_t message = to_message(master_.plan(), notice);
   message.utime = wall_microseconds(notice.when);
   message.session = options_.session;

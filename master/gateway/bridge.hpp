@@ -92,7 +92,7 @@ class Bridge {
   void on_typed(std::string_view channel, Bytes data);
   void take_command(const command_t& command);
   void on_request(Bytes data);
-  void send(const Notice& notice);
+  void send(Notice notice);
   reply_t reply_to(const request_t& request) const;
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);

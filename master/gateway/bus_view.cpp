@@ -27,6 +27,13 @@ void BusView::new_session(std::int64_t session) {
   layout_hash_ = 0;
 }
 
+/// Only status_t and layout_t, which come again and again, begin another session: a single other
+/// message of another one, forged or late, must not make everything be forgotten.
+bool BusView::is_of_this_session(std::int64_t session) {
+  if (session_ == 0) new_session(session);
+  return session == session_;
+}
+
 void BusView::take(const status_t& status) {
   new_session(status.session);
   if (status.part == 0) {
@@ -44,7 +51,7 @@ void BusView::take(const status_t& status) {
 }
 
 void BusView::take(const pdo_status_t& pdos) {
-  new_session(pdos.session);
+  if (!is_of_this_session(pdos.session)) return;
   if (pdos.part == 0) {
     pdo_parts_ = pdos;
   } else if (!pdo_parts_ || pdo_parts_->cycle != pdos.cycle || pdos.part != pdo_parts_->part + 1) {
@@ -58,7 +65,7 @@ void BusView::take(const pdo_status_t& pdos) {
 }
 
 void BusView::take(const sync_status_t& sync) {
-  new_session(sync.session);
+  if (!is_of_this_session(sync.session)) return;
   sync_ = sync;
 }
 
@@ -94,7 +101,7 @@ void BusView::finish_layout() {
 }
 
 void BusView::take(const image_t& image) {
-  new_session(image.session);
+  if (!is_of_this_session(image.session)) return;
   if (signals_.empty() || image.layout_hash != layout_hash_) return;
   if (image.part == 0) {
     next_part_ = 0;
@@ -120,7 +127,7 @@ void BusView::take(const image_t& image) {
 }
 
 void BusView::take(event_t event) {
-  new_session(event.session);
+  if (!is_of_this_session(event.session)) return;
   events_.push_back(std::move(event));
   if (events_.size() > most_events) events_.pop_front();
 }

@@ -46,6 +46,7 @@ class BusView {
 
  private:
   void new_session(std::int64_t session);
+  bool is_of_this_session(std::int64_t session);
   void finish_layout();
 
   std::optional<status_t> status_;

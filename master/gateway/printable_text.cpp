@@ -61,4 +61,13 @@ std::string printable_text(std::string_view text) {
   return shown;
 }
 
+std::string printable_lines(std::string_view text) {
+  std::string shown;
+  for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+    shown += printable_text(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return shown + printable_text(text);
+}
+
 }  // namespace takt

@@ -20,6 +20,7 @@ constexpr std::size_t most_known = 256;
 constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
 constexpr std::size_t longest_sender = 64;
+constexpr std::size_t longest_service = 32;
 constexpr Time remembered = 10s;   // from the answer on
 constexpr Time echo_limit = 50ms;  // between the ways of one message
 
@@ -115,10 +116,24 @@ reply_t Requests::refusal(const request_t& message, std::string why) const {
   return reply;
 }
 
+std::optional<std::string> Requests::oversize(const request_t& message) {
+  if (message.sender.size() > longest_sender) {
+    return "the sender's name is longer than " + std::to_string(longest_sender) + " bytes";
+  }
+  if (message.service.size() > longest_service) {
+    return "service '" + message.service.substr(0, longest_service) +
+           "...' is not known: no name of a service is longer than 32 bytes";
+  }
+  if (message.data.size() > request_bytes) {
+    return "a request carries at most " + std::to_string(request_bytes) + " bytes";
+  }
+  return std::nullopt;
+}
+
 bool Requests::is_echo(const request_t& message, Time now) {
   while (!heard_.empty() && now - heard_.front().when > echo_limit) heard_.pop_front();
   const auto same = [&](const Heard& heard) { return same_message(heard.message, message); };
-  if (message.data.size() > request_bytes) return false;  // it will be refused
+  if (oversize(message)) return false;  // it will be refused
   if (std::ranges::any_of(heard_, same)) return true;
   if (heard_.size() == most_heard) heard_.pop_front();
   heard_.push_back({message, now});
@@ -146,6 +161,7 @@ std::optional<reply_t> Requests::take_again(const Known& known, const request_t&
 
 std::optional<reply_t> Requests::take(const request_t& message, Time now) {
   forget(now);
+  if (auto why = oversize(message)) return refusal(message, std::move(*why));
   const auto known = std::ranges::find_if(
       known_, [&](const Known& one) { return same_asker(one.message, message); });
   if (known != known_.end()) return take_again(*known, message);

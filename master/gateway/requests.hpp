@@ -30,6 +30,9 @@ class Requests {
   Requests(const BusPlan& plan, RequestsOptions options,
            std::function<bool(const Request&)> submit);
 
+  /// Why a message is refused before anything of it is kept: a text in it is too long.
+  static std::optional<std::string> oversize(const request_t& message);
+
   /// True: the very same message came a moment ago, by another way (udpm and the hub). Once for
   /// each message, before anything else is done with it.
   bool is_echo(const request_t& message, Time now);

@@ -11,12 +11,12 @@ using FrontClock = std::function<Time()>;
 
 /// How long one source may keep the front thread in each round. What is left over waits for the
 /// next round, which begins with the images again. A source may exceed its budget by one message.
+/// Requests come from these sources; their answers and events are bounded by their rings.
 namespace front_budget {
 
 inline constexpr Time lcm = std::chrono::microseconds{500};
 inline constexpr Time broker = std::chrono::microseconds{500};
 inline constexpr Time gateway = std::chrono::microseconds{250};
-inline constexpr Time requests = std::chrono::microseconds{250};  ///< their answers, and events
 
 }  // namespace front_budget
 

@@ -137,5 +137,45 @@ TEST(ImageInput, SurvivesNumbersThatDoNotFit) {
   EXPECT_FALSE(input.take(layout));
 }
 
+// Cycles of 2^62: the greatest of one forged message, and what the bus has reached never.
+TEST(ImageInput, IsNotDeafenedByAForgedCycle) {
+  constexpr std::int64_t forged = std::int64_t{1} << 62;
+  ImageInput input = with_layout();
+  EXPECT_TRUE(input.take(image(1, {1, 1, 1, 1})));
+  EXPECT_FALSE(input.take(image(forged, {9, 9, 9, 9})));
+  EXPECT_FALSE(input.take(image(0x7FFF'FFFF'FFFF'FFFF, {9, 9, 9, 9})));
+  EXPECT_FALSE(input.take(image(-5, {9, 9, 9, 9})));
+  EXPECT_TRUE(input.take(image(2, {2, 2, 2, 2})));
+  EXPECT_EQ(input.values()[0], 2);
+}
+
+TEST(ImageInput, ComesBackFromAForgedCycleThatWasTheFirst) {
+  ImageInput input = with_layout();
+  EXPECT_TRUE(input.take(image(std::int64_t{1} << 62, {9, 9, 9, 9})));
+  EXPECT_FALSE(input.take(image(7, {7, 7, 7, 7})));
+  EXPECT_FALSE(input.take(image(8, {8, 8, 8, 8})));
+  EXPECT_TRUE(input.take(image(9, {9, 9, 9, 9})));
+  EXPECT_TRUE(input.take(image(10, {10, 10, 10, 10})));
+  EXPECT_EQ(input.cycle(), 10);
+}
+
+TEST(ImageInput, GoesOnAfterALongGapOfItsOwn) {
+  ImageInput input = with_layout();
+  input.take(image(1, {1, 1, 1, 1}));
+  EXPECT_FALSE(input.take(image(1'000'000, {7, 7, 7, 7})));
+  EXPECT_FALSE(input.take(image(1'000'001, {8, 8, 8, 8})));
+  EXPECT_TRUE(input.take(image(1'000'002, {9, 9, 9, 9})));
+}
+
+TEST(ImageInput, LateImagesNeverAddUpToAnotherBus) {
+  ImageInput input = with_layout();
+  input.take(image(100, {1, 1, 1, 1}));
+  for (std::int64_t i = 1; i < 10; ++i) {
+    EXPECT_FALSE(input.take(image(10 + i, {9, 9, 9, 9})));
+    EXPECT_TRUE(input.take(image(100 + i, {2, 2, 2, 2})));
+  }
+  EXPECT_EQ(input.cycle(), 109);
+}
+
 }  // namespace
 }  // namespace takt

@@ -54,5 +54,36 @@ TEST(BusView, ARepeatedPartOfAStatusDoesNotDoubleItsNodes) {
   EXPECT_FALSE(view.status());
 }
 
+TEST(BusView, IsNotDeafenedByOneForgedMessageOfAnotherSession) {
+  BusView view;
+  take(view, {0, 1, 2}, 7);
+  layout_t layout{};
+  layout.session = 1;
+  layout.hash = 5;
+  layout.total_signals = layout.num_signals = 1;
+  layout.signals.resize(1);
+  view.take(layout);
+
+  image_t image{};
+  image.session = 2;
+  view.take(image);
+  pdo_status_t pdos{};
+  pdos.session = 2;
+  pdos.parts = 1;
+  view.take(pdos);
+  event_t event{};
+  event.session = 2;
+  view.take(event);
+  sync_status_t sync{};
+  sync.session = 2;
+  view.take(sync);
+  take(view, {0, 1, 2}, 8);
+
+  EXPECT_EQ(view.signals().size(), 1U);
+  EXPECT_FALSE(view.two_daemons());
+  EXPECT_FALSE(view.pdos());
+  EXPECT_TRUE(view.events().empty());
+}
+
 }  // namespace
 }  // namespace takt

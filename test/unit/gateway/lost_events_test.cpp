@@ -62,5 +62,18 @@ TEST(LostEvents, AreToldOnceWithTheirNumber) {
                           " events lost: more came at once than there is room for");
 }
 
+TEST(Notices, CarryNoControlCharacterToATerminal) {
+  test::Rig rig{test::axes({.period = 4ms})};
+  NobodyHears lcm;
+  std::vector<std::string> texts;
+  const test::RigClocks clocks{rig};
+  Bridge bridge{
+      *rig.master, lcm, clocks, {}, [&](const Notice& notice) { texts.push_back(notice.text); }};
+
+  bridge.tell(Notice{.node = 0, .kind = "test", .weight = Weight::note, .text = "a\x1B[2J\n  b"});
+
+  EXPECT_EQ(texts, (std::vector<std::string>{"a?[2J\n  b"}));
+}
+
 }  // namespace
 }  // namespace takt

@@ -28,6 +28,10 @@ TEST(PrintableText, LetsNoControlCharacterThrough) {
             "a?b");  // a line separator
 }
 
+TEST(PrintableText, KeepsLinesWhereThereMayBeSeveral) {
+  EXPECT_EQ(printable_lines("a\x1B\n\nb\r\n"), "a?\n\nb?\n");
+}
+
 TEST(PrintableText, ReplacesBytesThatAreNoUtf8) {
   EXPECT_EQ(printable_text("\xC3"), "?");
   EXPECT_EQ(printable_text("\xC0\x8A"), "??");            // a line feed in two bytes

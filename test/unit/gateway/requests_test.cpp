@@ -210,5 +210,35 @@ TEST_F(RequestsTest, PdosAreAskedForByNumber) {
   EXPECT_EQ(refused->text, "PDO number 513 is not in 1..512");
 }
 
+TEST_F(RequestsTest, ThreeHundredSendersOfAMegabyteAreRefusedAndNothingOfThemIsKept) {
+  for (std::int64_t id = 1; id <= 300; ++id) {
+    request_t message = upload(id);
+    message.sender = std::string(1 << 20, 'x');
+    EXPECT_FALSE(requests.is_echo(message, now));
+    EXPECT_FALSE(requests.is_echo(message, now)) << "it was not remembered";
+    const auto answer = requests.take(message, now);
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->text, "the sender's name is longer than 64 bytes");
+    EXPECT_EQ(answer->sender.size(), 64U);
+  }
+  EXPECT_TRUE(submitted.empty());
+  EXPECT_EQ(requests.pending(), 0U);
+}
+
+TEST_F(RequestsTest, AServiceOrAValueOfAMegabyteIsNotKeptEither) {
+  request_t service = upload(1);
+  service.service = std::string(1 << 20, 's');
+  request_t value = upload(2);
+  value.service = "sdo_download";
+  value.data.resize(1 << 20);
+  for (const request_t& message : {service, value}) {
+    EXPECT_FALSE(requests.is_echo(message, now));
+    EXPECT_FALSE(requests.is_echo(message, now));
+    const auto answer = requests.take(message, now);
+    ASSERT_TRUE(answer);
+    EXPECT_LT(answer->text.size(), 200U);
+  }
+}
+
 }  // namespace
 }  // namespace takt
