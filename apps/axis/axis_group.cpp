@@ -126,9 +126,27 @@ Input AxisGroup::wait(std::chrono::nanoseconds longest) {
   }
 }
 
+AxisGroup::~AxisGroup() { release(); }
+
 bool AxisGroup::send() {
-  using std::chrono::microseconds;
+  commands_ = true;
   command_t& command = axes_.command();
+  command.release = 0;
+  return publish(command);
+}
+
+bool AxisGroup::release() {
+  if (!std::exchange(commands_, false)) return true;
+  command_t command{};
+  command.schema = message_schema;
+  command.session = input_.session();
+  command.cycle = input_.cycle();
+  command.release = 1;
+  return publish(command);
+}
+
+bool AxisGroup::publish(command_t& command) {
+  using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   command.utime = std::chrono::duration_cast<microseconds>(now).count();
   command.instance = instance_;

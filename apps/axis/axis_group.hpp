@@ -34,6 +34,10 @@ enum class Input : std::uint8_t {
 class AxisGroup {
  public:
   AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options);
+  /// Releases what it commands.
+  ~AxisGroup();
+  AxisGroup(const AxisGroup&) = delete;
+  AxisGroup& operator=(const AxisGroup&) = delete;
 
   /// Waits for the next image, `longest` at most, and steps the axes with it.
   Input wait(std::chrono::nanoseconds longest);
@@ -41,6 +45,10 @@ class AxisGroup {
   void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
   /// Sends the set-points of all axes. False: LCM did not take them.
   bool send();
+  /// Gives up the outputs that it commands: they take their fallback at once, without a warning,
+  /// and another sender may have them. The next send() asks for them again. False: LCM did not take
+  /// it.
+  bool release();
   /// Loads a target position for each axis and sends them as one command: with synchronous RPDOs
   /// all become valid with one SYNC. Axes that are not in Operation enabled keep to their position.
   bool load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions);
@@ -64,6 +72,7 @@ class AxisGroup {
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
   void tell_schema(std::int16_t schema);
+  bool publish(command_t& command);
   bool is_stale() const;
 
   std::unique_ptr<Transport> lcm_;
@@ -80,6 +89,7 @@ class AxisGroup {
   bool new_layout_ = false;
   bool told_stale_ = false;
   bool told_schema_ = false;
+  bool commands_ = false;  // something was sent since the last release
   Clock::time_point arrival_{};
   std::int64_t instance_;
   std::vector<event_t> events_;

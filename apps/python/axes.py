@@ -49,4 +49,6 @@ while time < seconds or set(states.values()) & set(BACK):
     command.schema, command.session, command.cycle = 2, image.session, image.cycle
     command.num_values, command.signals, command.values = len(outputs), list(outputs), list(outputs.values())
     link.publish(f"{bus}_COMMAND", command.encode())
+command.release, command.num_values, command.signals, command.values = True, 0, [], []  # the outputs are free at once
+link.publish(f"{bus}_COMMAND", command.encode())
 print(f"{len(axes)} axes moved for {time:.1f} s")

@@ -11,6 +11,7 @@
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/summary.hpp"
 #include "master/core/boot_report.hpp"
+#include "master/gateway/random_number.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/start_thread.hpp"
 
@@ -27,19 +28,13 @@ constexpr Time status_listening = std::chrono::milliseconds{250};
 constexpr Time look = std::chrono::milliseconds{10};
 constexpr std::size_t heap_bytes = 8 << 20;
 
-/// Not 0, and another one each time.
-std::int64_t new_session() {
-  const std::int64_t now = realtime_now().count();
-  return std::max<std::int64_t>(1, now & 0x7FFF'FFFF'FFFF'FFFF);
-}
-
 }  // namespace
 
 Daemon::Daemon(LoadedNetwork network, DaemonOptions options)
     : network_{std::move(network)},
       options_{std::move(options)},
       bus_name_{choose_bus(options_, network_)},
-      session_{new_session()},
+      session_{random_number()},
       wait_{signals_.wait_mask()},
       reporter_{network_.plan},
       recorder_{[this](Weight weight, const std::string& text) { reporter_.say(weight, text); }} {

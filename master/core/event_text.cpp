@@ -194,13 +194,22 @@ std::string node_line(const BusPlan& plan, const Event& event) {
   }
 }
 
+std::string within(const BusPlan& plan, std::int64_t signal) {
+  if (static_cast<std::size_t>(signal) >= plan.layout.signals.size()) return {};
+  const auto cycles = plan.layout.signals[static_cast<std::size_t>(signal)].fallback_cycles;
+  if (cycles == 0) return {};
+  return " within " + std::to_string(cycles * plan.cycle.period / std::chrono::milliseconds{1}) +
+         " ms (on_timeout: after)";
+}
+
 std::string signal_line(const BusPlan& plan, const Event& event) {
   const std::string signal = signal_name(plan, event.value);
   switch (event.kind) {
     case EventKind::command_refused:
       return "command to " + signal + " refused: " + std::string{reason(event.detail)};
     case EventKind::fallback_begun:
-      return "no fresh command for " + signal + ": its fallback is sent";
+      return "no fresh command for " + signal + within(plan, event.value) +
+             ": its fallback is sent";
     case EventKind::fallback_ended:
       return "fresh commands for " + signal + " again";
     default:

@@ -62,6 +62,13 @@ void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {
   if (what.fallback == Fallback::value) image_.values[signal] = what.fallback_value;
 }
 
+/// Outputs without a time to live keep their value, as they do when their sender falls silent.
+void PdoOutputs::let_go(Output& output, SignalIndex signal) noexcept {
+  if (!output.commanded || output.fallen || output.limit == 0) return;
+  fall(output, signal);
+  output.released = true;
+}
+
 void PdoOutputs::seed(Output& output, SignalIndex signal) noexcept {
   const Signal& what = plan_.layout.signals[signal];
   if (what.safe_value) {
@@ -86,10 +93,12 @@ PdoOutputs::Built PdoOutputs::build(std::size_t position, std::span<const SetPoi
     Output& output = outputs_[output_of(field.signal)];
     const SetPoint& set_point = set_points[output_of(field.signal)];
     const bool news = set_point.generation != output.generation;
-    if (news && refuses(output)) {
+    const bool released = set_point.time_to_live == output_released;
+    if (news && (released || refuses(output) || is_late(output, set_point, moment))) [[unlikely]] {
       output.generation = set_point.generation;
+      if (released && !refuses(output)) let_go(output, field.signal);
     } else if (news) {
-      if (output.fallen && row.risen++ == 0) row.first_risen = field.signal;
+      if (output.fallen && !output.released && row.risen++ == 0) row.first_risen = field.signal;
       take(output, field.signal, set_point, moment);
       ++fresh_commands_;
       built.commanded = true;

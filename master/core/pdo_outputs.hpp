@@ -92,10 +92,11 @@ class PdoOutputs {
     bool commanded = false;   ///< and that value was commanded
     bool fallen = false;      ///< its fallback is in force
     bool forced = false;
+    bool released = false;  ///< it fell because its sender gave it up
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(expires, generation, limit, known, commanded, fallen, forced);
+      state(expires, generation, limit, known, commanded, fallen, forced, released);
     }
   };
   struct Row {
@@ -130,18 +131,35 @@ class PdoOutputs {
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   void take(Output& output, SignalIndex signal, const SetPoint& set_point,
             OutputMoment moment) noexcept {
-    // The shorter of the two times to live that are set.
-    std::uint32_t limit = set_point.time_to_live;
-    if (limit == 0 || (output.limit != 0 && output.limit < limit)) limit = output.limit;
+    const std::uint32_t limit = limit_of(output, set_point);
     output.generation = set_point.generation;
     output.expires =
         limit == 0 ? no_end : moment.cycle + limit - std::min(limit, age(set_point, moment));
     output.known = true;
     output.commanded = true;
     output.fallen = false;
+    output.released = false;
     image_.values[signal] = set_point.value;
   }
-  /// Cycles since the front thread handed the command over; 0 where that was since the outputs
+  /// The shorter of the two times to live that are set; 0: none is.
+  static std::uint32_t limit_of(const Output& output, const SetPoint& set_point) noexcept {
+    const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
+    return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
+  }
+  /// The command has outlived its time before it was seen here. One without limit has a second.
+  bool is_late(const Output& output, const SetPoint& set_point,
+               OutputMoment moment) const noexcept {
+    const std::uint32_t waited = age(set_point, moment);
+    if (waited == 0) [[likely]] {
+      return false;
+    }
+    const std::uint32_t limit = limit_of(output, set_point);
+    if (limit != 0) return waited >= limit;
+    return waited >= std::chrono::seconds{1} / plan_.cycle.period;
+  }
+  /// Its sender has given the output up.
+  void let_go(Output& output, SignalIndex signal) noexcept;
+  /// Cycles since the front thread judged the command's age; 0 where that was since the outputs
   /// before these, which may have been a quarter of a period early.
   std::uint32_t age(const SetPoint& set_point, OutputMoment moment) const noexcept {
     const Time period = plan_.cycle.period;

@@ -66,6 +66,7 @@ Bridge::Bridge(Master& master, Transport& transport, const Clocks& clocks, Bridg
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{clocks_.wall_offset()},
+      gap_{master.plan().cycle.period},
       instance_{random_number()} {
   if (options_.typed) typed_.emplace(master.plan(), options_.session);
   master_.status(snapshot_);
@@ -76,8 +77,31 @@ std::int64_t Bridge::wall_microseconds(Time monotonic) const noexcept {
   return std::chrono::duration_cast<microseconds>(monotonic + wall_minus_monotonic_).count();
 }
 
+void Bridge::notice_gap() {
+  const Time now = clocks_.now();
+  if (!gap_.ran(now)) return;
+  skip_images_ = true;
+  if (!gap_.discards_requests(now)) return;
+  const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
+  tell({.when = now,
+        .cycle = cycle_at(now),
+        .node = 0,
+        .kind = "front_gap",
+        .weight = Weight::warning,
+        .text = "taktd's front thread did not run for " + std::to_string(milliseconds) +
+                " ms: commands and requests that waited meanwhile are discarded"});
+}
+
+std::uint64_t Bridge::cycle_at(Time now) const noexcept {
+  const Time period = master_.plan().cycle.period;
+  if (images_ == 0 || period <= Time{0} || now <= sync_time_) return cycle_;
+  return cycle_ + static_cast<std::uint64_t>((now - sync_time_) / period);
+}
+
 bool Bridge::serve() {
+  notice_gap();
   const bool some = publish_images();
+  notice_gap();
   take_messages();
   take_replies();
   take_events();
@@ -87,6 +111,7 @@ bool Bridge::serve() {
   if (now >= next_status_) publish_status();
   if (now >= next_pdos_) publish_pdos();
   if (now >= next_timing_) publish_timing();
+  gap_.sleeps_until(next_message());
   return some;
 }
 
@@ -98,28 +123,41 @@ bool Bridge::publish_images() {
   ImageView image;
   bool some = false;
   unsigned behind = 0;
+  if (std::exchange(skip_images_, false) && master_.take_newest(image)) {
+    wall_minus_monotonic_ = clocks_.wall_offset();
+    publish_image(image, true);
+    some = true;
+  }
   while (master_.take(image)) {
     if (!some) wall_minus_monotonic_ = clocks_.wall_offset();
-    for (const image_t& part : image_messages_.fill(image, wall_minus_monotonic_)) {
-      publish(channels_.image, part);
-    }
-    if (typed_ && behind++ < most_behind) {
-      typed_->publish(image, wall_minus_monotonic_, transport_);
-    }
-    sync_to_lcm_.record(clocks_.now() - image.sync_time);
-    cycle_ = image.cycle;
-    if (guest_ != nullptr) guest_->see(image);
-    marks_.assign(image.pdos.begin(), image.pdos.end());
-    ++images_;
+    publish_image(image, behind++ < most_behind);
     some = true;
   }
   return some;
 }
 
+void Bridge::publish_image(const ImageView& image, bool typed) {
+  for (const image_t& part : image_messages_.fill(image, wall_minus_monotonic_)) {
+    publish(channels_.image, part);
+  }
+  if (typed_ && typed) typed_->publish(image, wall_minus_monotonic_, transport_);
+  sync_to_lcm_.record(clocks_.now() - image.sync_time);
+  cycle_ = image.cycle;
+  sync_time_ = image.sync_time;
+  if (guest_ != nullptr) guest_->see(image);
+  marks_.assign(image.pdos.begin(), image.pdos.end());
+  ++images_;
+}
+
+void Bridge::publish_outputs() {
+  // The time when the age was judged, not this one: this thread may have stood still in between.
+  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
+}
+
 void Bridge::take_messages() {
   master_.status(snapshot_);
   transport_.serve([this](std::string_view channel, Bytes data) { on_message(channel, data); });
-  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(clocks_.now());
+  publish_outputs();
 }
 
 void Bridge::on_message(std::string_view channel, Bytes data) {
@@ -137,7 +175,14 @@ void Bridge::on_typed(std::string_view channel, Bytes data) {
 }
 
 void Bridge::take_command(const command_t& command) {
-  commands_.take(command, {.cycle = cycle_, .now = clocks_.now(), .nodes = snapshot_.nodes});
+  const Time now = clocks_.now();
+  if (gap_.discards_commands(now)) return commands_.discard();
+  take_at(command, now);
+}
+
+bool Bridge::take_at(const command_t& command, Time now) {
+  if (!outputs_staged_) judged_ = now;
+  return commands_.take(command, {.cycle = cycle_at(now), .now = now, .nodes = snapshot_.nodes});
 }
 
 void Bridge::on_command(Bytes data) {
@@ -153,71 +198,20 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command.session = options_.session;
   command.instance = instance_;
   command.sender = sender;
-  command.cycle = static_cast<std::int64_t>(cycle_);
+  const Time now = clocks_.now();
+  command.cycle = static_cast<std::int64_t>(cycle_at(now));
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {
     command.signals.push_back(static_cast<std::int32_t>(signal));
   }
   command.values.assign(values.begin(), values.end());
-  const bool taken =
-      commands_.take(command, {.cycle = cycle_, .now = clocks_.now(), .nodes = snapshot_.nodes});
-  if (std::exchange(outputs_staged_, false)) master_.publish_outputs(clocks_.now());
-  return taken;
-}
-
-void Bridge::on_request(Bytes data) {
-  const auto request = decode<request_t>(data);
-  if (!request) return tell_damaged(channels_.request, request.error());
-  const Time now = clocks_.now();
-  if (requests_.is_echo(*request, now)) return;
-  const bool fits = !Requests::oversize(*request);
-  if (fits && request->service == "emcy_history") return answer_history(*request);
-  if (fits && request->service == "record" && record_) return record_(*request);
-  if (auto reply = requests_.take(*request, now)) answer(std::move(*reply));
-}
-
-reply_t Bridge::reply_to(const request_t& request) const {
-  reply_t reply{};
-  reply.schema = message_schema;
-  reply.session = options_.session;
-  reply.id = request.id;
-  reply.sender = request.sender;
-  return reply;
-}
-
-void Bridge::answer(const request_t& request, bool good, const std::string& text) {
-  reply_t reply = reply_to(request);
-  reply.good = good ? 1 : 0;
-  reply.text = text;
-  answer(std::move(reply));
-}
-
-/// Answered here: the bus thread keeps no history.
-void Bridge::answer_history(const request_t& request) {
-  reply_t reply = reply_to(request);
-  reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
-  if (reply.good == 0) {
-    reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
-  } else {
-    const auto& records = emcy_log_.of(static_cast<std::uint8_t>(request.node_id));
-    const NodePlan* const node = master_.plan().find(static_cast<unsigned>(request.node_id));
-    if (node != nullptr) reply.text = pack_texts(records, node->emcy_texts);
-    const auto bytes = pack(records);
-    reply.data.assign(bytes.begin(), bytes.end());
-    reply.size = static_cast<std::int32_t>(bytes.size());
+  if (gap_.discards_commands(now)) {
+    commands_.discard();
+    return false;
   }
-  answer(std::move(reply));
-}
-
-void Bridge::on_transfer(Bytes data) {
-  const auto transfer = decode<transfer_t>(data);
-  if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
-  transfers_.take(*transfer, clocks_.now());
-}
-
-void Bridge::tell_transfer(transfer_state_t state) {
-  state.utime = wall_microseconds(clocks_.now());
-  publish(channels_.transfer_state, state);
+  const bool taken = take_at(command, now);
+  publish_outputs();
+  return taken;
 }
 
 void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
@@ -281,12 +275,19 @@ void Bridge::tell_lost_events() {
                 " events lost: more came at once than there is room for"});
 }
 
+void Bridge::add_sender(const Event& event, Notice& notice) const {
+  const std::string_view sender = commands_.last_holder(master_.plan().index_of(event.node));
+  if (!sender.empty()) notice.text += "; its last sender was '" + std::string{sender} + "'";
+}
+
 void Bridge::tell(const Event& event) {
   if (event.kind == EventKind::stopped) {
     for (const Notice& notice : outages_.take_rest(event.when)) send(notice);
   }
   if (!PdoOutages::concerns(event.kind)) {
-    tell(to_notice(master_.plan(), event));
+    Notice notice = to_notice(master_.plan(), event);
+    if (event.kind == EventKind::fallback_begun) add_sender(event, notice);
+    tell(std::move(notice));
   } else if (const auto notice = outages_.on_event(event)) {
     send(*notice);
   }
@@ -338,7 +339,7 @@ void Bridge::publish_status() {
                         .holders = {},
                         .emcys = &emcys_};
   for (std::size_t i = 0; i < master_.plan().nodes.size(); ++i) {
-    gateway.holders.emplace_back(commands_.holder(i, cycle_));
+    gateway.holders.emplace_back(commands_.holder(i, cycle_at(now)));
   }
   for (status_t& part : status_messages_.fill(snapshot_, gateway, now)) {
     part.utime = wall_microseconds(now);

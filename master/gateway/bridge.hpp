@@ -9,6 +9,7 @@
 #include "master/gateway/commands.hpp"
 #include "master/gateway/emcy_history.hpp"
 #include "master/gateway/emcy_log.hpp"
+#include "master/gateway/front_gap.hpp"
 #include "master/gateway/front_guest.hpp"
 #include "master/gateway/image_messages.hpp"
 #include "master/gateway/messages.hpp"
@@ -52,8 +53,8 @@ class Bridge {
   /// Somebody else who hears images, events and the answers to requests with FrontGuest::mark.
   /// Outlives this.
   void welcome(FrontGuest& guest) noexcept { guest_ = &guest; }
-  /// Commands outputs as a command_t would that was computed from the newest image. False: refused,
-  /// and told.
+  /// Commands outputs as a command_t would that was computed in this cycle. False: refused, and
+  /// told.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
                std::span<const std::int64_t> values);
   /// Everything that can be done now. True: there was an image.
@@ -80,10 +81,20 @@ class Bridge {
 
  private:
   bool publish_images();
+  void publish_image(const ImageView& image, bool typed);
+  /// Looks whether this thread has stood still. What waited meanwhile is not acted upon.
+  void notice_gap();
+  /// The cycle of this moment by the clock: images that were not seen yet count as well.
+  std::uint64_t cycle_at(Time now) const noexcept;
+  bool take_at(const command_t& command, Time now);
+  void publish_outputs();
+  /// Why a request is too old to be done; empty: it isn't.
+  std::string age_trouble(std::int64_t utime, Time now) const;
   void take_events();
   /// By the bus thread, and on the way from there.
   std::uint64_t events_lost() const noexcept;
   void tell_lost_events();
+  void add_sender(const Event& event, Notice& notice) const;
   void remember(const Event& event);
   void take_replies();
   void take_messages();
@@ -140,6 +151,10 @@ class Bridge {
   Time next_pdos_{};
   Time next_timing_{};
   std::uint64_t cycle_ = 0;  // of the newest image
+  Time sync_time_{};         // of the newest image
+  Time judged_{};            // of the commands that are staged: when their age was judged first
+  FrontGap gap_;
+  bool skip_images_ = false;  // those that waited over a gap
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;

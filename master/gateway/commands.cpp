@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "master/core/set_point.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/units.hpp"
 
@@ -38,7 +39,8 @@ Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_o
       options_{options},
       set_output_{std::move(set_output)},
       tell_{std::move(tell)},
-      leases_{plan.nodes.size(), cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
+      second_{cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
+      leases_{plan.nodes.size(), second_},
       verdicts_(plan.nodes.size()) {}
 
 bool Commands::refuse(const CommandContext& context, const command_t& command, std::uint8_t node,
@@ -79,7 +81,25 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
     return refuse(context, command, 0,
                   "the sender has to give a name of 1 to 64 characters, none a control character");
   }
-  return read_items(command, context);
+  if (command.instance == 0) {
+    return refuse(context, command, 0,
+                  "it has instance 0; a sender chooses a random number other than 0 at its start");
+  }
+  return true;
+}
+
+/// Only a command that was computed from an image of this run can be judged.
+bool Commands::check_cycle(const command_t& command, const CommandContext& context) {
+  if (command.cycle < 1) {
+    return refuse(context, command, 0,
+                  "it is computed from cycle " + std::to_string(command.cycle) +
+                      ", which is none: a command repeats the cycle of the image that it was "
+                      "computed from");
+  }
+  if (static_cast<std::uint64_t>(command.cycle) <= context.cycle + 1) return true;
+  return refuse(context, command, 0,
+                "it comes from the future: computed from cycle " + std::to_string(command.cycle) +
+                    ", now is cycle " + std::to_string(context.cycle));
 }
 
 bool Commands::read_items(const command_t& command, const CommandContext& context) {
@@ -99,11 +119,12 @@ bool Commands::read_items(const command_t& command, const CommandContext& contex
                         std::to_string(command.values[i]) + ", does not fit its " +
                         std::to_string(signal.bits) + " bits");
     }
-    const Freshness left = freshness(
-        {.computed_from = static_cast<std::uint64_t>(std::max<std::int64_t>(0, command.cycle)),
-         .now = context.cycle,
-         .time_to_live = static_cast<std::uint32_t>(std::max(0, command.time_to_live)),
-         .configured = signal.fallback_cycles});
+    const Freshness left =
+        freshness({.computed_from = static_cast<std::uint64_t>(command.cycle),
+                   .now = context.cycle,
+                   .time_to_live = static_cast<std::uint32_t>(std::max(0, command.time_to_live)),
+                   .configured = signal.fallback_cycles,
+                   .most = second_});
     if (!left.fresh) {
       return refuse(context, command, signal.node.value(),
                     "it is too old: computed from cycle " + std::to_string(command.cycle) +
@@ -134,17 +155,48 @@ bool Commands::check_node(std::size_t node_index, const command_t& command,
   if (status.nmt != NmtState::operational) {
     return refuse(context, command, node, "the node is not operational");
   }
-  if (!leases_.take(node_index, command.sender, context.cycle, lease_cycles(node_index))) {
-    return refuse(context, command, node,
-                  "its outputs belong to '" +
-                      std::string{leases_.holder(node_index, context.cycle)} +
-                      "' until the time to live of that sender's commands has run out");
+  const Sender sender{.instance = command.instance, .name = command.sender};
+  if (!leases_.take(node_index, sender, context.cycle, lease_cycles(node_index))) {
+    return refuse(context, command, node, owned_text(node_index, command, context));
   }
+  return true;
+}
+
+std::string Commands::owned_text(std::size_t node_index, const command_t& command,
+                                 const CommandContext& context) const {
+  const std::string holder{leases_.holder(node_index, context.cycle)};
+  const std::string who = holder == command.sender
+                              ? "another program of the same name, '" + holder + "',"
+                              : "'" + holder + "'";
+  return "its outputs belong to " + who +
+         " until it releases them or the time to live of its commands has run out";
+}
+
+bool Commands::release(const command_t& command, const CommandContext& context) {
+  std::string nodes;
+  for (std::size_t node = 0; node < plan_.nodes.size(); ++node) {
+    if (!leases_.release(node, command.instance, context.cycle)) continue;
+    nodes += (nodes.empty() ? "" : ", ") + plan_.nodes[node].name;
+    for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
+      if (plan_.layout.signals[i].node_index != node) continue;
+      set_output_(static_cast<SignalIndex>(i), 0, output_released);
+    }
+  }
+  if (nodes.empty()) return false;
+  ++taken_;
+  tell_({.when = context.now,
+         .cycle = context.cycle,
+         .node = 0,
+         .kind = "outputs_released",
+         .weight = Weight::note,
+         .text = "'" + command.sender + "' has released the outputs of " + nodes});
   return true;
 }
 
 bool Commands::take(const command_t& command, const CommandContext& context) {
   if (!check_message(command, context)) return false;
+  if (command.release != 0) return release(command, context);
+  if (!check_cycle(command, context) || !read_items(command, context)) return false;
   std::ranges::fill(verdicts_, Verdict::unknown);
   bool any = false;
   for (const Item& item : items_) {

@@ -14,7 +14,7 @@
 
 namespace takt {
 
-/// Stages one output for the bus thread.
+/// Stages one output for the bus thread. A time to live of output_released gives it up.
 using SetOutput =
     std::function<void(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live)>;
 
@@ -25,7 +25,7 @@ struct CommandsOptions {
 
 /// What is known when a command arrives.
 struct CommandContext {
-  std::uint64_t cycle = 0;  ///< of the newest image
+  std::uint64_t cycle = 0;  ///< of this moment, by the clock; 0: no image so far
   Time now{};
   std::span<const NodeStatus> nodes;  ///< order of BusPlan::nodes
 };
@@ -44,6 +44,11 @@ class Commands {
   std::string_view holder(std::size_t node_index, std::uint64_t cycle) const noexcept {
     return leases_.holder(node_index, cycle);
   }
+  std::string_view last_holder(std::size_t node_index) const noexcept {
+    return leases_.last_holder(node_index);
+  }
+  /// A message that was not looked at, since it may have waited for long.
+  void discard() noexcept { ++refused_; }
 
  private:
   struct Item {
@@ -56,6 +61,10 @@ class Commands {
   bool check_message(const command_t& command, const CommandContext& context);
   bool read_items(const command_t& command, const CommandContext& context);
   bool check_node(std::size_t node_index, const command_t& command, const CommandContext& context);
+  bool check_cycle(const command_t& command, const CommandContext& context);
+  std::string owned_text(std::size_t node_index, const command_t& command,
+                         const CommandContext& context) const;
+  bool release(const command_t& command, const CommandContext& context);
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
   bool refuse(const CommandContext& context, const command_t& command, std::uint8_t node,
               const std::string& why);
@@ -64,6 +73,7 @@ class Commands {
   CommandsOptions options_;
   SetOutput set_output_;
   NoticeSink tell_;
+  std::uint32_t second_;  // in cycles
   LeaseTable leases_;
   RateLimit told_{std::chrono::seconds{1}};
   std::vector<Item> items_;        // of the message in hand

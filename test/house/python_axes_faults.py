@@ -30,7 +30,7 @@ class Bus:
     def __init__(self, fault):
         self.fault, self.cycle, self.session, self.stale, self.silent = fault, 0, 5, [], False
         self.values, self.handlers, self.commands, self.held = [0x40, 0x40, 1000, -500, 0, 0, 0, 0], {}, [], {}
-        self.due = ["LAYOUT"]
+        self.due, self.released = ["LAYOUT"], False
 
     def LCM(self):
         return self
@@ -44,6 +44,11 @@ class Bus:
 
     def publish(self, channel, data):
         command = takt.command_t.decode(data)
+        assert command.instance != 0, "a sender without an instance"
+        if command.release:
+            self.released = True
+            return
+        assert not self.released, "it commands what it has released"
         self.commands.append(dict(zip(command.signals, command.values)))
         self.values[CONTROLWORD:] = [self.commands[-1].get(place, self.values[place]) for place in range(4, 8)]
 
@@ -128,6 +133,7 @@ import takt  # noqa: E402  what lcm-gen made
 
 bus, told = run()
 check("two axes move there and back and are disabled", told is None and bus.values[:POSITION] == [0x21, 0x21], told)
+check("and released", bus.released, told)
 farthest = max(command.get(TARGET, 0) for command in bus.commands)
 check("by 10000 counts from where they were", farthest == 11000 and bus.values[POSITION] == 1000, farthest)
 

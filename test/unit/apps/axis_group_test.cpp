@@ -94,6 +94,29 @@ TEST_F(Group, CommandsOnItsBusInItsName) {
   EXPECT_NE(command->instance, 0);
 }
 
+TEST(GroupThatEnds, ReleasesWhatItCommandedOnce) {
+  FakeLcm lcm;
+  {
+    AxisGroup group{std::make_unique<FakeTransport>(lcm), {.bus = "lift", .sender = "test"}};
+    lcm.arrive("LIFT_LAYOUT", two_axes());
+    group.wait(0ns);
+    lcm.arrive("LIFT_IMAGE", image(3, {0, 0, 0, 0}));
+    group.wait(0ns);
+    group.send();
+    group.release();
+  }
+
+  ASSERT_EQ(lcm.published.size(), 2U);
+  const auto command = decode<command_t>(lcm.published[0].second);
+  const auto release = decode<command_t>(lcm.published[1].second);
+  ASSERT_TRUE(command && release);
+  EXPECT_EQ(command->release, 0);
+  EXPECT_EQ(release->release, 1);
+  EXPECT_EQ(release->instance, command->instance);
+  EXPECT_EQ(release->session, command->session);
+  EXPECT_TRUE(release->signals.empty());
+}
+
 TEST_F(Group, TellsOnceThatTheDaemonIsOfAnOlderTakt) {
   layout_t old = two_axes();
   old.schema = 1;

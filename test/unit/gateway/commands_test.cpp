@@ -1,10 +1,12 @@
 #include "master/gateway/commands.hpp"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "master/core/set_point.hpp"
 #include "test/unit/gateway/a_plan.hpp"
 
 namespace takt {
@@ -116,12 +118,81 @@ TEST_F(CommandsTest, SecondSenderWaitsForTheEndOfTheLease) {
   take(command({1}, {0x06}));
   command_t other = command({1}, {0x0F});
   other.sender = "other";
+  other.instance = 2;
 
   EXPECT_FALSE(take(other, 101));
   EXPECT_TRUE(told("belong to 'move'"));
   other.cycle = 105;
   EXPECT_TRUE(take(other, 105));
   EXPECT_EQ(outputs[1], 0x0F);
+}
+
+TEST_F(CommandsTest, SecondProgramOfTheSameNameIsRefusedAndToldSo) {
+  EXPECT_TRUE(take(command({1}, {0x06})));
+  command_t other = command({1}, {0x0F});
+  other.instance = 2;
+
+  EXPECT_FALSE(take(other, 101));
+
+  EXPECT_EQ(outputs[1], 0x06);
+  EXPECT_TRUE(told("belong to another program of the same name, 'move'"));
+}
+
+TEST_F(CommandsTest, SenderWithoutAnInstanceIsRefused) {
+  command_t nobody = command({1}, {0x06});
+  nobody.instance = 0;
+
+  EXPECT_FALSE(take(nobody));
+  EXPECT_TRUE(told("it has instance 0"));
+}
+
+TEST_F(CommandsTest, CommandOfNoCycleIsRefused) {
+  for (const std::int64_t none : {std::int64_t{0}, std::int64_t{-1}, INT64_MIN}) {
+    command_t replayed = command({1}, {0x0F});
+    replayed.cycle = none;
+    EXPECT_FALSE(take(replayed)) << none;
+  }
+
+  EXPECT_TRUE(outputs.empty());
+  EXPECT_TRUE(told("computed from cycle"));
+}
+
+TEST_F(CommandsTest, CommandFromTheFutureIsRefused) {
+  EXPECT_TRUE(take(command({1}, {0x0F}), 99)) << "the next cycle may have begun";
+  command_t future = command({1}, {0x07});
+  for (const std::int64_t cycle : {std::int64_t{101}, INT64_MAX}) {
+    future.cycle = cycle;
+    EXPECT_FALSE(take(future, 99)) << cycle;
+  }
+
+  EXPECT_EQ(outputs[1], 0x0F);
+  EXPECT_TRUE(told("it comes from the future"));
+}
+
+TEST_F(CommandsTest, LongestTimeToLiveGivesALeaseOfOneSecond) {
+  command_t greedy = command({1}, {0x06});
+  greedy.time_to_live = 2147483647;
+  EXPECT_TRUE(take(greedy));
+  EXPECT_EQ(last_time_to_live, 500U) << "1 s of 2 ms";
+
+  EXPECT_EQ(commands.holder(0, 599), "move");
+  EXPECT_EQ(commands.holder(0, 600), "");
+}
+
+TEST_F(CommandsTest, ReleasedOutputsAreGivenUpAtOnce) {
+  EXPECT_TRUE(take(command({1, 2}, {0x0F, 5})));
+  command_t end = command({}, {});
+  end.release = 1;
+  end.instance = 2;
+  EXPECT_FALSE(take(end, 101)) << "another sender holds them";
+
+  end.instance = 1;
+  EXPECT_TRUE(take(end, 101));
+
+  EXPECT_EQ(last_time_to_live, output_released);
+  EXPECT_EQ(commands.holder(0, 101), "");
+  EXPECT_TRUE(told("'move' has released the outputs of shoulder"));
+  EXPECT_EQ(notices.back().weight, Weight::note);
 }
 
 TEST_F(CommandsTest, ControlCharactersOfASenderReachNoTerminal) {

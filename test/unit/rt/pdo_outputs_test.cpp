@@ -186,13 +186,49 @@ TEST(PdoOutputs, CountMissedPeriodsAsAge) {
   EXPECT_EQ(out.pack().at(0).data[0], 0x02);
 }
 
-TEST(PdoOutputs, CountTheAgeFromWhenTheCommandWasHandedOver) {
+TEST(PdoOutputs, NeverSendACommandThatWasTooOldWhenItWasSeen) {
   Outputs out{one_axis()};
   out.command(controlword, 0x000F);
   out.command(target, 5);
+  out.pack();
+  out.command(controlword, 0x001F);
+  out.command(target, 6);
   out.skip(25);  // the bus thread did not run meanwhile
-  EXPECT_EQ(out.pack().at(0).data[0], 0x02);
+  const auto frames = out.pack();
+  EXPECT_EQ(frames.at(0), make_frame(CobId::base(0x201), {0x02, 0, 5, 0, 0, 0}))
+      << "the target is held as it was sent last";
   EXPECT_EQ(out.told(), std::vector{EventKind::fallback_begun});
+}
+
+TEST(PdoOutputs, ALatchedCommandHasASecondUntilItIsSeen) {
+  BusPlan plan = one_axis();
+  for (Signal& signal : plan.layout.signals) signal.fallback_cycles = 0;
+  Outputs out{plan};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  out.command(target, 6);
+  out.skip(490);
+  EXPECT_EQ(out.pack().at(0).data[2], 6);
+  out.command(target, 7);
+  out.skip(510);
+  EXPECT_EQ(out.pack().at(0).data[2], 6);
+}
+
+TEST(PdoOutputs, ReleasedOutputsTakeTheirFallbackWithoutAWarning) {
+  Outputs out{one_axis()};
+  out.command(controlword, 0x000F);
+  out.command(target, 5);
+  out.pack();
+  out.command(controlword, 0, output_released);
+  out.command(target, 0, output_released);
+
+  EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x02, 0, 5, 0, 0, 0}));
+  out.skip(100);
+  out.pack();
+  out.command(controlword, 0x0006);
+  EXPECT_EQ(out.pack().at(0).data[0], 0x06);
+  EXPECT_TRUE(out.told().empty());
 }
 
 TEST(PdoOutputs, CommandWithoutTimeToLiveNeverGrowsOld) {

@@ -1,0 +1,80 @@
+#include <chrono>
+#include <utility>
+
+#include "master/gateway/bridge.hpp"
+
+namespace takt {
+
+void Bridge::on_request(Bytes data) {
+  const auto request = decode<request_t>(data);
+  if (!request) return tell_damaged(channels_.request, request.error());
+  const Time now = clocks_.now();
+  if (requests_.is_echo(*request, now)) return;
+  const bool fits = !Requests::oversize(*request);
+  const std::string trouble = age_trouble(request->utime, now);
+  const bool old = fits && request->schema == message_schema && !trouble.empty();
+  if (old) return answer(*request, false, trouble);
+  if (fits && request->service == "emcy_history") return answer_history(*request);
+  if (fits && request->service == "record" && record_) return record_(*request);
+  if (auto reply = requests_.take(*request, now)) answer(std::move(*reply));
+}
+
+std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
+  using std::chrono::microseconds;
+  if (gap_.discards_requests(now)) {
+    return "taktd did not run for " + std::to_string(gap_.length() / std::chrono::milliseconds{1}) +
+           " ms, and the request may have waited as long: ask again";
+  }
+  const auto wall = std::chrono::duration_cast<microseconds>(now + clocks_.wall_offset()).count();
+  constexpr std::int64_t most = 10'000'000;
+  if (utime >= wall - most && utime <= wall + most) return {};
+  return "its time (utime) is more than 10 s away from the clock of taktd's machine: it waited for "
+         "long or comes from a log, or the clocks of two machines differ";
+}
+
+reply_t Bridge::reply_to(const request_t& request) const {
+  reply_t reply{};
+  reply.schema = message_schema;
+  reply.session = options_.session;
+  reply.id = request.id;
+  reply.sender = request.sender;
+  return reply;
+}
+
+void Bridge::answer(const request_t& request, bool good, const std::string& text) {
+  reply_t reply = reply_to(request);
+  reply.good = good ? 1 : 0;
+  reply.text = text;
+  answer(std::move(reply));
+}
+
+/// Answered here: the bus thread keeps no history.
+void Bridge::answer_history(const request_t& request) {
+  reply_t reply = reply_to(request);
+  reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
+  if (reply.good == 0) {
+    reply.text = "node " + std::to_string(request.node_id) + " is not in 1..127";
+  } else {
+    const auto& records = emcy_log_.of(static_cast<std::uint8_t>(request.node_id));
+    const NodePlan* const node = master_.plan().find(static_cast<unsigned>(request.node_id));
+    if (node != nullptr) reply.text = pack_texts(records, node->emcy_texts);
+    const auto bytes = pack(records);
+    reply.data.assign(bytes.begin(), bytes.end());
+    reply.size = static_cast<std::int32_t>(bytes.size());
+  }
+  answer(std::move(reply));
+}
+
+void Bridge::on_transfer(Bytes data) {
+  const auto transfer = decode<transfer_t>(data);
+  if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
+  const Time now = clocks_.now();
+  if (age_trouble(transfer->utime, now).empty()) transfers_.take(*transfer, now);
+}
+
+void Bridge::tell_transfer(transfer_state_t state) {
+  state.utime = wall_microseconds(clocks_.now());
+  publish(channels_.transfer_state, state);
+}
+
+}  // namespace takt

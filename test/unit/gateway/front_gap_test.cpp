@@ -1,0 +1,165 @@
+#include "master/gateway/front_gap.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <utility>
+
+#include "master/gateway/bridge.hpp"
+#include "test/unit/gateway/rig_clocks.hpp"
+#include "test/virtual/rig.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(FrontGap, AThreadThatKeepsItsTimetableHasNone) {
+  FrontGap gap{2ms};
+  EXPECT_FALSE(gap.ran(1s)) << "the first time";
+  gap.sleeps_until(1100ms);
+  EXPECT_FALSE(gap.ran(1150ms));
+  EXPECT_FALSE(gap.discards_commands(1150ms));
+}
+
+TEST(FrontGap, CommandsAreDiscardedAfterAShortOneAndRequestsAfterASecond) {
+  FrontGap gap{2ms};
+  gap.ran(1s);
+  EXPECT_TRUE(gap.ran(1200ms));
+  EXPECT_EQ(gap.length(), 200ms);
+  EXPECT_TRUE(gap.discards_commands(1219ms));
+  EXPECT_FALSE(gap.discards_requests(1219ms));
+  EXPECT_FALSE(gap.discards_commands(1220ms));
+  EXPECT_TRUE(gap.ran(3s));
+  EXPECT_TRUE(gap.discards_requests(3s));
+}
+
+/// What waits in the sockets of the front thread, and what it has sent.
+class Waiting final : public Transport {
+ public:
+  bool publish(const std::string& channel, std::span<const std::byte> data) override {
+    if (const auto image = decode<image_t>(data)) images.push_back(image->cycle);
+    if (const auto reply = decode<reply_t>(data)) replies.push_back(reply->text);
+    static_cast<void>(channel);
+    return true;
+  }
+  void subscribe(const std::string&) override {}
+  void serve(const MessageHandler& handler) override {
+    for (const auto& [channel, bytes] : std::exchange(waiting, {})) handler(channel, bytes);
+  }
+  void watch(std::vector<pollfd>&) const override {}
+  bool good() const override { return true; }
+  std::string url() const override { return {}; }
+
+  template <class T>
+  void arrive(const std::string& channel, const T& message) {
+    std::vector<std::byte> bytes;
+    encode(message, bytes);
+    waiting.emplace_back(channel, bytes);
+  }
+
+  std::vector<std::pair<std::string, std::vector<std::byte>>> waiting;
+  std::vector<std::int64_t> images;
+  std::vector<std::string> replies;
+};
+
+class StoppedDaemon : public testing::Test {
+ protected:
+  StoppedDaemon() {
+    EXPECT_TRUE(rig.boot());
+    for (int i = 0; i < 5; ++i) cycle();
+  }
+
+  void cycle() {
+    rig.master->cycle();
+    bridge.serve();
+  }
+  command_t command(std::int64_t value) {
+    command_t made{};
+    made.schema = message_schema;
+    made.session = 7;
+    made.instance = 1;
+    made.sender = "app";
+    made.cycle = lcm.images.back();
+    made.time_to_live = 5;
+    made.signals = {static_cast<std::int32_t>(rig.master->plan().layout.inputs)};
+    made.values = {value};
+    made.num_values = 1;
+    return made;
+  }
+
+  test::Rig rig{test::axes({.nodes = 1, .period = 4ms, .fallback_cycles = 5})};
+  test::RigClocks clocks{rig};
+  Waiting lcm;
+  std::vector<std::string> told;
+  Bridge bridge{*rig.master,
+                lcm,
+                clocks,
+                {.session = 7, .interface = {}, .realtime = {}},
+                [this](const Notice& notice) { told.push_back(notice.kind); }};
+};
+
+TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
+  lcm.arrive(bridge.channels().command, command(6));
+  cycle();
+  ASSERT_EQ(bridge.commands_taken(), 1U);
+
+  for (int i = 0; i < 20; ++i) lcm.arrive(bridge.channels().command, command(15));
+  rig.world->advance_to(rig.world->now() +
+                        10s);  // nothing of the daemon runs, and the application dies
+  bridge.serve();
+  for (int i = 0; i < 5; ++i) cycle();
+
+  EXPECT_EQ(bridge.commands_taken(), 1U);
+  EXPECT_EQ(bridge.commands_refused(), 20U);
+  EXPECT_EQ(std::ranges::count(told, "front_gap"), 1);
+}
+
+TEST_F(StoppedDaemon, JudgesAgeByTheClockWhereOnlyItsFrontStoodStillForAMoment) {
+  lcm.arrive(bridge.channels().command, command(15));
+  rig.world->advance_to(rig.world->now() + 30ms);  // no gap, but too long for 5 cycles of 4 ms
+
+  bridge.serve();
+
+  EXPECT_EQ(bridge.commands_taken(), 0U);
+  EXPECT_EQ(bridge.commands_refused(), 1U);
+}
+
+TEST_F(StoppedDaemon, SendsTheNewestImageFirst) {
+  const std::int64_t last = lcm.images.back();
+  lcm.images.clear();
+  for (int i = 0; i < 50; ++i) rig.master->cycle();
+  bridge.serve();
+
+  ASSERT_EQ(lcm.images.size(), 1U);
+  EXPECT_EQ(lcm.images[0], last + 50);
+}
+
+TEST_F(StoppedDaemon, RefusesRequestsThatWaitedOrAreOldByTheirTime) {
+  request_t request{};
+  request.schema = message_schema;
+  request.service = "emcy_history";
+  request.node_id = 1;
+  request.id = 1;
+  const auto now = [&] { return clocks.now() / std::chrono::microseconds{1}; };
+  request.utime = now();
+  lcm.arrive(bridge.channels().request, request);
+  rig.world->advance_to(rig.world->now() + 2s);
+  bridge.serve();
+  for (int i = 0; i < 10; ++i) cycle();
+  request.id = 2;
+  request.utime = now() - 11'000'000;
+  lcm.arrive(bridge.channels().request, request);
+  cycle();
+  request.id = 3;
+  request.utime = now();
+  lcm.arrive(bridge.channels().request, request);
+  cycle();
+
+  ASSERT_EQ(lcm.replies.size(), 3U);
+  EXPECT_NE(lcm.replies[0].find("did not run for 2"), std::string::npos) << lcm.replies[0];
+  EXPECT_NE(lcm.replies[1].find("more than 10 s away"), std::string::npos) << lcm.replies[1];
+  EXPECT_EQ(lcm.replies[2], "");
+}
+
+}  // namespace
+}  // namespace takt
