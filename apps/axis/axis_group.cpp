@@ -41,6 +41,7 @@ void AxisGroup::listen_to(std::string_view bus) {
   image_channel_ = channel_name(bus_, "IMAGE");
   layout_channel_ = channel_name(bus_, "LAYOUT");
   command_channel_ = channel_name(bus_, "COMMAND");
+  secured_channel_ = channel_name(bus_, "SECURED");
   event_channel_ = channel_name(bus_, "EVENT");
   lcm_->subscribe(image_channel_);
   lcm_->subscribe(event_channel_);
@@ -152,8 +153,13 @@ bool AxisGroup::publish(command_t& command) {
   command.instance = instance_;
   command.sender = options_.sender;
   command.time_to_live = options_.time_to_live;
-  return lcm_->publish(command_channel_, encode(command, buffer_));
+  const Bytes message = encode(command, buffer_);
+  if (!seal_) return lcm_->publish(command_channel_, message);
+  return lcm_->publish(secured_channel_,
+                       seal_->seal(command_channel_, message, command.session, now));
 }
+
+void AxisGroup::sign_with(EnvelopeKey key) { seal_.emplace(std::move(key), random_number()); }
 
 bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions) {
   axes_.set_positions(positions);

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "apps/axis/axis_control.hpp"
 #include "apps/axis/image_input.hpp"
+#include "master/gateway/envelope.hpp"
 #include "master/gateway/transport.hpp"
 
 namespace takt {
@@ -39,6 +41,8 @@ class AxisGroup {
   AxisGroup(const AxisGroup&) = delete;
   AxisGroup& operator=(const AxisGroup&) = delete;
 
+  /// Sends commands in envelopes from now on, where the daemon has `keys`.
+  void sign_with(EnvelopeKey key);
   /// Waits for the next image, `longest` at most, and steps the axes with it.
   Input wait(std::chrono::nanoseconds longest);
   /// Of the commands from now on, in cycles; 0: as configured.
@@ -82,6 +86,7 @@ class AxisGroup {
   std::string image_channel_;
   std::string layout_channel_;
   std::string command_channel_;
+  std::string secured_channel_;
   std::string event_channel_;
   ImageInput input_;
   AxisControl axes_;
@@ -92,6 +97,7 @@ class AxisGroup {
   bool commands_ = false;  // something was sent since the last release
   Clock::time_point arrival_{};
   std::int64_t instance_;
+  std::optional<EnvelopeSeal> seal_;  // none: no key
   std::vector<event_t> events_;
   std::vector<std::byte> buffer_;
 };

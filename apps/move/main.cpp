@@ -7,6 +7,7 @@
 #include "apps/axis/open_lcm.hpp"
 #include "apps/move/move_run.hpp"
 #include "apps/move/options.hpp"
+#include "master/gateway/key_file.hpp"
 
 namespace {
 
@@ -44,5 +45,13 @@ int main(int argc, char** argv) {
                         {.bus = options.bus,
                          .sender = fmt::format("takt-move {}", ::getpid()),
                          .stale_cycles = options.stale_cycles}};
+  if (!options.keys.empty()) {
+    const auto keys = takt::load_keys(options.keys);
+    if (!keys) {
+      fmt::print(stderr, "takt-move: {}\n", keys.error());
+      return 2;
+    }
+    group.sign_with(keys->front());
+  }
   return takt::MoveRun{group, options, stop}.run();
 }

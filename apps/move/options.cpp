@@ -43,6 +43,9 @@ ParsedMove parse_move(int argc, char** argv) {
   app.set_version_flag("--version", "takt-move " TAKT_VERSION);
   app.add_option("bus", options.bus, "name of the bus (default: the first that is heard)");
   app.add_option("--lcm-url", options.lcm_url, "as LCM_DEFAULT_URL");
+  app.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
+      ->type_name("FILE")
+      ->envname("TAKT_KEYS");
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");
   to->delimiter(',')->check(finite);
   app.add_flag("--sine", only_sine, "a sine (without --to: only a sine)");

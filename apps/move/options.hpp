@@ -11,6 +11,7 @@ namespace takt {
 struct MoveOptions {
   std::string bus;
   std::string lcm_url;
+  std::string keys;        ///< key file; empty: no envelopes
   std::vector<double> to;  ///< one an axis, or one for all; empty: a default distance from here
   bool point = true;
   bool sine = true;

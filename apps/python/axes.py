@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """axes.py BUS [SECONDS] - enables all axes of a bus, moves them in a soft sine over LCM, disables them."""
-import lcm, math, random, sys
-from takt import command_t, image_t, layout_t  # made by lcm-gen -p
+import hashlib, lcm, math, os, random, sys, time as clock
+from takt import command_t, envelope_t, image_t, layout_t  # made by lcm-gen -p
 
 FORTH = {0x08: 0x80, 0x28: 0x80, 0x40: 0x06, 0x60: 0x06, 0x21: 0x07, 0x23: 0x0F, 0x27: 0x0F}  # statusword: controlword
 BACK = {0x27: 0x07, 0x23: 0x06}
@@ -18,6 +18,17 @@ def on_image(channel, data):
     values.update(enumerate(image.values, image.first_signal))
     stale.difference_update(range(image.first_signal, image.first_signal + image.num_values))
     stale.update(image.stale)
+
+envelope, file = envelope_t(), os.environ.get("TAKT_KEYS")
+key = [words for line in open(file) if (words := line.partition("#")[0].split())][0] if file else None  # the first
+envelope.schema, envelope.instance = 1, random.SystemRandom().getrandbits(63)
+def publish(channel, message):  # in an envelope where there is a key, see share/doc/security.md
+    if not key: return link.publish(channel, message.encode())
+    envelope.key, envelope.channel, envelope.session, envelope.utime = key[0], channel, message.session, clock.time_ns() // 1000
+    envelope.counter, envelope.data = envelope.counter + 1, message.encode()
+    envelope.size, envelope.mac = len(envelope.data), bytes(32)
+    sealed = envelope.encode()[:-32]
+    link.publish(f"{bus}_SECURED", sealed + hashlib.blake2b(sealed, key=bytes.fromhex(key[1]), digest_size=32).digest())
 
 link = lcm.LCM()
 layouts, images = (link.subscribe(f"{bus}_{name}", call) for name, call in (("LAYOUT", on_layout), ("IMAGE", on_image)))
@@ -48,7 +59,7 @@ while time < seconds or set(states.values()) & set(BACK):
     moving, last = moving or not missing and set(states.values()) == {0x27}, image.cycle
     command.schema, command.session, command.cycle = 2, image.session, image.cycle
     command.num_values, command.signals, command.values = len(outputs), list(outputs), list(outputs.values())
-    link.publish(f"{bus}_COMMAND", command.encode())
+    publish(f"{bus}_COMMAND", command)
 command.release, command.num_values, command.signals, command.values = True, 0, [], []  # the outputs are free at once
-link.publish(f"{bus}_COMMAND", command.encode())
+publish(f"{bus}_COMMAND", command)
 print(f"{len(axes)} axes moved for {time:.1f} s")

@@ -6,8 +6,10 @@
 #include <optional>
 #include <unistd.h>
 
+#include "master/gateway/key_file.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/printable_text.hpp"
+#include "master/gateway/random_number.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -84,6 +86,12 @@ void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<boo
 }
 
 std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
+  std::optional<EnvelopeSeal> seal;
+  if (!options.keys.empty()) {
+    const auto keys = load_keys(options.keys);
+    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
+    seal.emplace(keys->front(), random_number());
+  }
   auto lcm = LcmClient::open(options.lcm_url,
                              {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
   if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
@@ -93,7 +101,14 @@ std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& opt
   if (found()) listen(*lcm, views, monotonic_now() + settle, [] { return false; });
   auto status = choose(views, *lcm, options.bus_name);
   if (!status) return std::unexpected{status.error()};
-  return DaemonClient{std::move(*lcm), std::move(*status)};
+  return DaemonClient{std::move(*lcm), std::move(*status), std::move(seal)};
+}
+
+void DaemonClient::send(std::string_view what, Bytes message) {
+  const std::string channel = channel_name(status_.bus, what);
+  if (!seal_) return lcm_.publish(channel, message);
+  lcm_.publish(channel_name(status_.bus, "SECURED"),
+               seal_->seal(channel, message, status_.session, realtime_now()));
 }
 
 std::expected<std::int16_t, LiveError> DaemonClient::node(const std::string& text) const {
@@ -115,7 +130,7 @@ std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limi
   request.session = status_.session;
   request.id = new_request_id();
   request.sender = "takt-" + std::to_string(::getpid());
-  lcm_.publish(channel_name(status_.bus, "REQUEST"), encode(request, buffer));
+  send("REQUEST", encode(request, buffer));
   const std::string answers = channel_name(status_.bus, "REPLY");
   const Time until = monotonic_now() + limit;
   std::optional<reply_t> answer;
@@ -130,7 +145,10 @@ std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limi
         until);
   }
   if (answer) return std::move(*answer);
-  return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer", 3}};
+  return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer" +
+                                       (seal_ ? "; does it have this key, in `lcm: {keys: ...}`?"
+                                              : "; does it ask for a key (--keys)?"),
+                                   3}};
 }
 
 }  // namespace takt

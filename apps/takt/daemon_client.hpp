@@ -11,6 +11,7 @@
 
 #include "apps/takt/live_arguments.hpp"
 #include "master/gateway/bus_view.hpp"
+#include "master/gateway/envelope.hpp"
 #include "master/gateway/lcm_client.hpp"
 
 namespace takt {
@@ -36,14 +37,18 @@ class DaemonClient {
   /// Sends a request and waits for its answer. `limit` is beyond what the daemon itself waits.
   std::expected<reply_t, LiveError> ask(request_t request, Time limit);
 
-  /// For dialogues of more than one message.
+  /// Sends a message on the channel BUS_WHAT, in an envelope where there is a key.
+  void send(std::string_view what, Bytes message);
+  /// For dialogues of more than one message: what arrives.
   LcmClient& lcm() noexcept { return lcm_; }
 
  private:
-  DaemonClient(LcmClient lcm, status_t status) : lcm_{std::move(lcm)}, status_{std::move(status)} {}
+  DaemonClient(LcmClient lcm, status_t status, std::optional<EnvelopeSeal> seal)
+      : lcm_{std::move(lcm)}, status_{std::move(status)}, seal_{std::move(seal)} {}
 
   LcmClient lcm_;
   status_t status_;
+  std::optional<EnvelopeSeal> seal_;  // none: no keys
 };
 
 /// The buses of which status has come: the one that is called so, also in capitals, or all.

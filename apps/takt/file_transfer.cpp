@@ -44,7 +44,7 @@ transfer_t FileTransfer::message(const char* action) const {
 
 void FileTransfer::send(transfer_t out) {
   out.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
-  daemon_.lcm().publish(channel_name(daemon_.status().bus, "TRANSFER"), encode(out, buffer_));
+  daemon_.send("TRANSFER", encode(out, buffer_));
 }
 
 bool FileTransfer::hear(Time until) {

@@ -27,6 +27,9 @@ void add_live_options(CLI::App& verb, LiveOptions& options) {
   verb.add_option("--bus-name", options.bus_name, "which bus, where there are several")
       ->type_name("NAME");
   verb.add_flag("--json", options.json, "JSON on stdout");
+  verb.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
+      ->type_name("FILE")
+      ->envname("TAKT_KEYS");
 }
 
 std::optional<ObjectKey> parse_object(std::string_view text) {

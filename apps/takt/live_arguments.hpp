@@ -14,6 +14,7 @@ struct LiveOptions {
   std::string lcm_url;
   std::string bus_name;  ///< empty: the only one there is
   bool json = false;
+  std::string keys;  ///< key file; empty: messages are sent without an envelope
 };
 
 void add_live_options(CLI::App& verb, LiveOptions& options);

@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   takt::add_plan(app, exit_code);
   takt::add_sim(app, exit_code);
   takt::add_simulate(app, exit_code);
+  takt::add_keys(app, exit_code);
   takt::add_record(app, exit_code);
   takt::add_replay(app, exit_code);
   takt::add_soak(app, exit_code);

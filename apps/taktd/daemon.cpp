@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <future>
 #include <iterator>
 #include <utility>
 
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/summary.hpp"
+#include "eds_parser/table/lcm_channel.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/gateway/random_number.hpp"
 #include "master/linux/clock.hpp"
@@ -99,16 +101,51 @@ std::optional<Exit> Daemon::open() {
   bus_ = std::move(*bus);
   for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
   if (const auto trouble = open_black_box()) return trouble;
+  return open_lcm(std::move(*url));
+}
+
+std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
   const Channels channels{network_.plan.name};
   std::vector<std::string> heard = channels.heard();
-  heard.push_back(channels.status);  // of another master
   if (network_.lcm.typed) {
     std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
   }
+  const std::vector<std::string> guarded = heard;
+  heard.push_back(channels.status);  // of another master
+  heard.push_back(channel_name(network_.plan.name, "SECURED"));
   link_ = std::make_unique<LcmLink>(
-      std::move(*url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
+      std::move(url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
       [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
+  if (const auto trouble = open_keys(guarded)) return trouble;
   return look_for_master();
+}
+
+/// With keys, all that commands the bus has to come in envelopes.
+std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
+  if (network_.lcm.keys.empty()) return std::nullopt;
+  const auto folder = std::filesystem::path{options_.network_file}.parent_path();
+  auto keys = WatchedKeyFile::open(folder / network_.lcm.keys);
+  if (!keys) {
+    reporter_.say(Weight::error, keys.error());
+    return Exit::wrong_use;
+  }
+  secured_ = std::make_unique<SecuredTransport>(
+      *link_, clocks_, std::move(*keys),
+      SecuredTransport::Options{
+          .bus = network_.plan.name,
+          .session = session_,
+          .guarded = std::move(guarded),
+          .say = [this](const std::string& sentence) { on_refused_envelope(sentence); }});
+  return std::nullopt;
+}
+
+void Daemon::on_refused_envelope(const std::string& sentence) {
+  bridge_->tell(Notice{.when = clocks_.now(),
+                       .cycle = 0,
+                       .node = 0,
+                       .kind = "envelope_refused",
+                       .weight = Weight::warning,
+                       .text = sentence});
 }
 
 std::optional<Exit> Daemon::claim_bus() {
@@ -213,7 +250,8 @@ std::optional<Exit> Daemon::start() {
   }
   reporter_.say(Weight::note, plan_summary(network_) + "  on " + bus_name_ + ", LCM channels " +
                                   Channels{network_.plan.name}.image + " ...");
-  bridge_ = std::make_unique<Bridge>(*master_, *link_, clocks_,
+  Transport& lcm = secured_ ? static_cast<Transport&>(*secured_) : *link_;
+  bridge_ = std::make_unique<Bridge>(*master_, lcm, clocks_,
                                      BridgeOptions{.session = session_,
                                                    .observe = options_.observe,
                                                    .interface = bus_name_,

@@ -20,6 +20,7 @@
 #include "master/gateway/clocks.hpp"
 #include "master/gateway/front_round.hpp"
 #include "master/gateway/lcm_link.hpp"
+#include "master/gateway/secured_transport.hpp"
 #include "master/linux/bus_claim.hpp"
 #include "master/linux/rt_thread.hpp"
 #include "master/master.hpp"
@@ -47,6 +48,9 @@ class Daemon {
 
  private:
   std::optional<Exit> open();
+  std::optional<Exit> open_lcm(LcmUrl url);
+  std::optional<Exit> open_keys(std::vector<std::string> guarded);
+  void on_refused_envelope(const std::string& sentence);
   std::optional<Exit> open_black_box();
   std::optional<Exit> claim_bus();
   std::optional<Exit> look_for_master();
@@ -83,6 +87,7 @@ class Daemon {
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;
   std::unique_ptr<LcmLink> link_;
+  std::unique_ptr<SecuredTransport> secured_;  // where there are keys
   std::unique_ptr<Bridge> bridge_;
   std::unique_ptr<AsciiFront> gateway_;
   Time end_ = never;         // of --for

@@ -253,11 +253,13 @@ void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   Sourced<std::string> url;
   Sourced<bool> broker;
   Sourced<bool> typed{.value = true, .pos = {}};
+  Sourced<std::string> keys;
+  reader.text("keys", keys);
   reader.text("url", url);
   reader.boolean("broker", broker);
   reader.boolean("typed", typed);
   reader.finish();
-  spec.lcm = {.url = *url, .broker = *broker, .typed = *typed};
+  spec.lcm = {.url = *url, .broker = *broker, .typed = *typed, .keys = *keys};
   if (!url.given) return;
   const auto parsed = parse_lcm_url(*url);
   if (!parsed) report.error(url.pos, "lcm-url", "`url` of `lcm`: " + parsed.error());

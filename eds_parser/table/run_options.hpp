@@ -36,6 +36,7 @@ struct LcmOptions {
   std::string url;      ///< empty: LCM_DEFAULT_URL, else LCM's own default
   bool broker = false;  ///< serve tcpq:// on loopback by ourselves
   bool typed = true;    ///< a typed message of each node as well
+  std::string keys;     ///< key file: commands are taken in envelopes only; empty: no keys
 };
 
 }  // namespace takt

@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "apps/takt/commands.hpp"
+#include "apps/takt/live_arguments.hpp"
+#include "master/gateway/key_file.hpp"
+
+namespace takt {
+namespace {
+
+struct KeysOptions {
+  std::string file;
+  std::string name = "takt";
+};
+
+int make(const KeysOptions& options) {
+  const auto made = make_key_file(options.file, options.name);
+  if (!made) return complain(made.error(), 2);
+  std::printf("%s: key '%s'\n", options.file.c_str(), options.name.c_str());
+  return 0;
+}
+
+int check(const KeysOptions& options) {
+  const auto keys = load_keys(options.file);
+  if (!keys) return complain(keys.error(), 2);
+  for (const EnvelopeKey& key : *keys) std::printf("%s\n", key.name.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_keys(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("keys", "key files: who may command a bus");
+  verb->require_subcommand(1);
+  verb->footer(
+      "Without keys whoever reaches LCM can command the bus. With `lcm: {keys: FILE}` in the\n"
+      "network file taktd takes commands, requests and files in envelopes only, and programs\n"
+      "make them with the first key of the file in TAKT_KEYS or --keys.\n\n"
+      "Example:\n  takt keys new lift.keys && export TAKT_KEYS=$PWD/lift.keys");
+  auto options = std::make_shared<KeysOptions>();
+  auto* fresh = verb->add_subcommand("new", "make a file with one new random key, mode 0600");
+  fresh->add_option("FILE", options->file, "must not be there yet")->required();
+  fresh->add_option("--name", options->name, "of the key")->capture_default_str();
+  fresh->callback([options, &exit_code] { exit_code = make(*options); });
+  auto* look = verb->add_subcommand("check", "permissions and contents; prints the names");
+  look->add_option("FILE", options->file, "the key file")->required();
+  look->callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,64 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "master/gateway/clocks.hpp"
+#include "master/gateway/envelope.hpp"
+#include "master/gateway/key_file.hpp"
+#include "master/gateway/rate_limit.hpp"
+#include "master/gateway/transport.hpp"
+
+namespace takt {
+
+/// The daemon's transport where keys are configured: commands, requests and transfers come through
+/// in envelopes only. The key file is read again within a second when it changes. One thread.
+class SecuredTransport final : public Transport {
+ public:
+  struct Options {
+    std::string bus;
+    std::int64_t session = 0;
+    std::vector<std::string> guarded;  ///< channels that need an envelope
+    /// Hears what was refused, at most once a second for the same reason.
+    std::function<void(const std::string& sentence)> say;
+  };
+
+  /// `inner` has BUS_SECURED subscribed; it and `clocks` outlive this.
+  SecuredTransport(Transport& inner, const Clocks& clocks, WatchedKeyFile keys, Options options);
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) override {
+    return inner_.publish(channel, data);
+  }
+  bool wanted(std::string_view channel) const override { return inner_.wanted(channel); }
+  void subscribe(const std::string& pattern) override { inner_.subscribe(pattern); }
+  void serve(const MessageHandler& handler) override;
+  void watch(std::vector<pollfd>& descriptors) const override { inner_.watch(descriptors); }
+  bool good() const override { return inner_.good(); }
+  std::string url() const override { return inner_.url(); }
+
+ private:
+  using Octets = std::vector<std::byte>;
+
+  void take(std::string_view channel, Bytes data, const MessageHandler& handler);
+  bool is_guarded(std::string_view channel) const noexcept;
+  bool is_echo(Bytes envelope, Time now);
+  void refuse(const std::string& what);
+  void reread_keys(Time now);
+
+  Transport& inner_;
+  const Clocks& clocks_;
+  WatchedKeyFile keys_;
+  Options options_;
+  std::string secured_channel_;
+  EnvelopeGuard guard_;
+  RateLimit told_{std::chrono::seconds{1}};
+  Time next_look_{};
+  struct Opened {
+    Octets mac;
+    Time when{};
+  };
+  std::deque<Opened> opened_;  // of the last 50 ms
+};
+
+}  // namespace takt

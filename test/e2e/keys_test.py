@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""keys_test.py BIN: with `keys`, taktd takes requests of those who have one, whose file may change meanwhile."""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+NETWORK = f"""
+bus: {{name: keyed}}
+lcm: {{url: "tcpq://127.0.0.1:0", broker: true, keys: bus.keys}}
+realtime: {{mode: off, spin_us: 0}}
+master: {{node_id: 127, sync_period: 20000}}
+nodes:
+  io:
+    node_id: 10
+    dcf: {ROOT}/share/eds/takt_io401.eds
+"""
+LIMIT = 180  # s; conditions come much earlier
+
+
+def takt(binaries, *arguments):
+    return subprocess.run([f"{binaries}/takt", *arguments], capture_output=True, text=True, timeout=LIMIT)
+
+
+def until(what, condition):
+    end = time.monotonic() + LIMIT
+    while not condition():
+        if time.monotonic() > end:
+            sys.exit(f"not within {LIMIT} s: {what}")
+        time.sleep(0.1)
+
+
+def main(binaries):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        network, keys, log = folder / "net.yaml", folder / "bus.keys", folder / "log"
+        network.write_text(NETWORK)
+        made = takt(binaries, "keys", "new", keys, "--name", "plant")
+        assert made.returncode == 0, made.stderr
+        assert takt(binaries, "keys", "check", keys).stdout == "plant\n"
+        keys.chmod(0o640)
+        refused = subprocess.run([f"{binaries}/taktd", network, "--bus", "sim"], capture_output=True, text=True, timeout=LIMIT)
+        assert refused.returncode == 2 and f"chmod 600 {keys}" in refused.stderr, refused
+        keys.chmod(0o600)
+
+        with log.open("w") as out:
+            daemon = subprocess.Popen([f"{binaries}/taktd", network, "--bus", "sim"], stdout=out, stderr=out)
+        try:
+            until("a hub", lambda: re.search(r"LCM_DEFAULT_URL=(tcpq://\S+)", log.read_text()))
+            url = re.search(r"LCM_DEFAULT_URL=(tcpq://\S+)", log.read_text())[1]
+            upload = ["sdo", "upload", "io", "1000", "--lcm-url", url]
+            until("an answer to who has the key", lambda: takt(binaries, *upload, "--keys", keys).returncode == 0)
+            unsigned = takt(binaries, *upload)
+            assert unsigned.returncode == 3 and "does it ask for a key" in unsigned.stderr, unsigned
+            until("a word about it", lambda: "it came without an envelope" in log.read_text())
+
+            mine = folder / "mine.keys"
+            shutil.copy(keys, mine)
+            replaced = folder / "next"
+            takt(binaries, "keys", "new", replaced, "--name", "desk")
+            replaced.rename(keys)
+            until("new keys", lambda: takt(binaries, *upload, "--keys", keys).returncode == 0)
+            old = takt(binaries, *upload, "--keys", mine)
+            assert old.returncode == 3 and "does it have this key" in old.stderr, old
+        finally:
+            daemon.kill()
+            daemon.wait()
+    print("only those with the key were answered")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
