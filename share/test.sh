@@ -97,7 +97,7 @@ fuzz() {
   seconds=${TAKT_FUZZ:-60}
   cmake --preset fuzz -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
   fuzz_one eds "$seconds" -dict=test/fuzz/eds.dict && fuzz_one network $((seconds / 2)) -dict=test/fuzz/network.dict || return 1
-  for target in bus trace recording; do
+  for target in bus trace recording message broker text; do
     fuzz_one $target $((seconds / 3)) || return 1
   done
 }
