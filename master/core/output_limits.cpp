@@ -137,7 +137,7 @@ std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& w
   const double scale = std::abs(signal_of(place).scale);
   const double length = std::abs(way.distance);
   if (!(length <= most(place, limit.step * way.cycles, way.at))) {
-    return breach(LimitKind::step, length * scale, limit.step * way.cycles * scale);
+    return breach(LimitKind::step, length / way.cycles * scale, limit.step * scale);
   }
   if (!(length <= most(place, limit.rate * way.cycles, way.at))) {
     const double per_second = scale / seconds_;

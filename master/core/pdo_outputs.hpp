@@ -177,6 +177,12 @@ class PdoOutputs {
   void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   /// The same of one command from within the bus thread. False: it is dropped.
   bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// This command is new, and is to be taken where it is inside.
+  bool is_news(const Output& output, const SetPoint& set_point,
+               OutputMoment moment) const noexcept {
+    return set_point.generation != output.generation && set_point.time_to_live != output_released &&
+           !refuses(output) && !is_late(output, set_point, moment);
+  }
   bool limited_row_open(std::size_t place) const noexcept;
   Obeying obeying(SignalIndex signal) const noexcept;
   void judge_news(std::size_t place, std::span<const SetPoint> set_points,

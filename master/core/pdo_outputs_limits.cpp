@@ -50,8 +50,7 @@ void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_poi
                             OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
   const auto news = [&](SignalIndex signal) {
-    const Output& output = outputs_[output_of(signal)];
-    return set_points[output_of(signal)].generation != output.generation && !refuses(output);
+    return is_news(outputs_[output_of(signal)], set_points[output_of(signal)], moment);
   };
   const bool new_value = news(limit.signal);
   const bool new_mode = limit.mode && news(*limit.mode);
@@ -75,7 +74,7 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
     const SignalIndex signal = limits_.limit(i).signal;
     const SetPoint& set_point = set_points[output_of(signal)];
     const Output& output = outputs_[output_of(signal)];
-    const bool taken = set_point.generation != output.generation && !refuses(output) &&
+    const bool taken = is_news(output, set_point, moment) &&
                        !limits_.holds(plan_.layout.signals[signal].node_index);
     if (taken) limits_.admit(i, set_point.value, moment.cycle);
   }

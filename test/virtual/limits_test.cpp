@@ -49,6 +49,8 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
   ASSERT_TRUE(rig.boot());
   rig.command_all(0x000F, 10, 1000);
   rig.run(5);
+  rig.command_all(0x000F, 10, 1000);
+  rig.run(1);
   rig.recorder.frames.clear();
 
   rig.command_all(0x000F, 510, 1000);
@@ -62,7 +64,7 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
   ASSERT_EQ(rig.count(EventKind::limit_exceeded), 1);
   const auto told = std::ranges::find(rig.events, EventKind::limit_exceeded, &Event::kind);
   EXPECT_EQ(describe(limited_axes(), *told),
-            "node 1 (axis1): command 0.51 m to target_position (607A:00) is outside its limits: "
+            "node 1 'axis1': command 0.51 m to target_position (607A:00) is outside its limits: "
             "step 0.5 m, limit 0.02 m; it isn't sent, and the outputs of the node take their "
             "fallback until a command is inside again");
 }

@@ -39,6 +39,9 @@ class LimitedAxes {
   void set(std::size_t output, std::int64_t value) {
     points_[output] = {value, points_[output].generation + 1, 0, now_ + Time{1ms}};
   }
+  void release(std::size_t output) {
+    points_[output] = {0, points_[output].generation + 1, output_released, now_ + Time{1ms}};
+  }
   /// From within the bus thread.
   void write(std::size_t output, std::int64_t value) {
     pdos_.outputs().command(static_cast<SignalIndex>(plan_.layout.inputs + output), value, 0,

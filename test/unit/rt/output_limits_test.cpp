@@ -261,6 +261,19 @@ TEST(OutputLimits, LetNoTwoCommandsOfOneCycleMakeOneStep) {
   EXPECT_LE(axes.position(), 15);
 }
 
+TEST(OutputLimits, LetASenderGiveItsAxisUpWithoutAWord) {
+  LimitedAxes axes{1, stepping};
+  axes.feedback(0, 700);
+  axes.cycle();
+  axes.cycle_with(0, 705);
+  axes.release(0);  // its values count for nothing
+  axes.release(1);
+  axes.cycle();
+  EXPECT_EQ(axes.position(), 705);
+  EXPECT_EQ(axes.controlword(), quick_stop);
+  EXPECT_EQ(axes.refusals(), 0U);
+}
+
 TEST(OutputLimits, ForgetWhatWasSentBeforeTheNodeCameBack) {
   LimitedAxes axes{1, {.step = 10, .wraps = true}, [](BusPlan& plan) {
                      plan.limits.outputs[0].feedback.reset();
