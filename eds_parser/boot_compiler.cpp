@@ -41,16 +41,17 @@ class BootCompiler {
     ConfigurationDate date{spec_, dictionary_, steps_, report_};
     date.skip_if_there();
     restore();
-    append_error_control(part_);
+    if (!date.used()) append_error_control(part_);
     append_emergency(part_);
     append_time(part_);
-    append_sync(part_);
+    if (!date.used()) append_sync(part_);
     if (!tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
     if (tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     date.enter();
     store();
     date.land();
+    if (date.used()) arm();
     start();
     BootPlan plan = steps_.take();
     judge_limits(node_, plan, report_);
@@ -136,6 +137,13 @@ class BootCompiler {
         .integer(BootAction::read_firmware, plan->object, 0,
                  "firmware, taken for " + to_string(plan->assumed))
         .value.clear();
+  }
+
+  /// What the device watches of the master was disarmed at the end of the last ordered stop: every
+  /// boot arms it again, whatever the configuration date says.
+  void arm() {
+    append_error_control(part_);
+    append_sync(part_);
   }
 
   void restore() {

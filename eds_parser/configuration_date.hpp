@@ -23,6 +23,8 @@ class ConfigurationDate {
   void enter();
   /// Behind all that is skipped.
   void land();
+  /// Some boots skip the configuration.
+  bool used() const noexcept { return used_; }
 
  private:
   void choose(const NodeSpec& node, const ObjectDictionary& dictionary, NetworkReport& report);

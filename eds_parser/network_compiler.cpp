@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 
+#include "eds_parser/axis_compiler.hpp"
 #include "eds_parser/boot_compiler.hpp"
 #include "eds_parser/cycle_compiler.hpp"
 #include "eds_parser/device_compiler.hpp"
@@ -23,6 +24,7 @@
 #include "eds_parser/service_ids.hpp"
 #include "eds_parser/signal_rules.hpp"
 #include "eds_parser/sync_source.hpp"
+#include "eds_parser/table/waits.hpp"
 
 namespace takt {
 namespace {
@@ -80,6 +82,7 @@ class NetworkCompiler {
     compile_limits(nodes_, plan(), report_);
     for (std::size_t i = 0; i < nodes_.size(); ++i) add_boot(i);
     for (const NodePdos& node : nodes_) out_.devices.push_back(compile_device(node.node));
+    stop();
     for (NodePdos& node : strays_) judge_stray(node);
     return std::move(out_);
   }
@@ -108,10 +111,7 @@ class NetworkCompiler {
     bus.cycle.sync = *master.sync_period_us != 0;
     bus.cycle.period =
         std::chrono::microseconds{bus.cycle.sync ? *master.sync_period_us : *master.cycle_us};
-    bus.stop_timeout = milliseconds(*master.stop_timeout_ms);
-    if (!master.stop_timeout_ms.given) {
-      bus.stop_timeout = std::max(bus.stop_timeout, stop_cycles * bus.cycle.period);
-    }
+    bus.stop_disarm = *master.stop_disarm;
     bus.cycle.sync_cob_id = CobId::base(*master.sync_cob_id);
     bus.cycle.sync_overflow = *master.sync_overflow;
     bus.time = {.period = milliseconds(*master.time_period_ms),
@@ -126,6 +126,20 @@ class NetworkCompiler {
       report_.error(master.sync_cob_id.pos, "cob-id",
                     "`sync_cob_id` " + hex(*master.sync_cob_id, 3) + " is reserved by CiA 301");
     }
+  }
+
+  /// The time of the ordered stop is derived from the ramps of the drives, unless it is written.
+  void stop() {
+    BusPlan& bus = plan();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const UnitsSpec& units = nodes_[i].node.spec->units;
+      bus.nodes[i].axes = compile_axes(bus.nodes[i], out_.devices[i], units);
+    }
+    const auto& written = spec_.master.stop_timeout_ms;
+    bus.stop_timeout = written.given ? milliseconds(*written)
+                                     : std::max(waits::stop_timeout_for(longest_stopping_time(bus)),
+                                                stop_cycles * bus.cycle.period);
+    judge_stop(bus, spec_, report_);
   }
 
   /// Nodes in ascending id; ids and names used once. A node without an id of its own is a stray.

@@ -80,6 +80,15 @@ void read_sync_source(MapReader& reader, MasterSpec& master) {
   }
 }
 
+void read_stop_disarm(MapReader& reader, MasterSpec& master) {
+  const YamlNode* way = reader.take("stop_disarm");
+  if (way == nullptr) return;
+  constexpr std::array<std::string_view, 2> names{"sdo", "reset_communication"};
+  if (const auto choice = read_choice(*way, "stop_disarm", names, reader.report())) {
+    master.stop_disarm = {static_cast<StopDisarm>(*choice), way->pos, true};
+  }
+}
+
 void read_sync(MapReader& reader, MasterSpec& master) {
   NetworkReport& report = reader.report();
   reader.integer("sync_period", master.sync_period_us, {0, 60'000'000, " us"});
@@ -196,6 +205,7 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
   reader.integer("boot_time", master.boot_time_ms, {0, 3'600'000, " ms"});
   reader.integer("nmt_inhibit_time", master.nmt_inhibit_time, {0, 65535, " x 100 us"});
   reader.integer("stop_timeout", master.stop_timeout_ms, {100, 60'000, " ms"});
+  read_stop_disarm(reader, master);
   reader.integer("service_frames", master.service_frames, {1, 250, " frames"});
   reader.ignore(
       std::array<std::string_view, 13>{"driver", "package", "namespace", "polling", "period",

@@ -147,9 +147,12 @@ class Waits {
   void stop() {
     const auto limits = waits::stop_limits(plan_.stop_timeout, plan_.cycle.period);
     add("stop_fallback", limits.fallback, "ordered stop: outputs take their fallback");
-    add("stop_quick_stop", limits.quick_stop, "ordered stop: axes stop by quick stop");
+    add("stop_quick_stop", limits.quick_stop,
+        "ordered stop: axes stop by quick stop, each is disabled when it stands still");
     add("stop_disable", limits.disable, "ordered stop: axes that are still enabled are disabled");
-    add("stop_nmt", limits.nmt, "ordered stop: nodes are sent to pre-operational");
+    add("stop_disarm", limits.disarm,
+        "ordered stop: what the devices watch of the master is disarmed");
+    add("stop_nmt", limits.nmt, "ordered stop: nodes get their last NMT command");
   }
 
   const BusPlan& plan_;

@@ -77,6 +77,16 @@ struct FirmwarePlan {
   bool of_revision() const noexcept { return object.index == 0x1018; }
 };
 
+/// One CiA 402 axis of a device, for the ordered stop. Raw units of the device.
+struct AxisPlan {
+  std::uint8_t number = 0;             ///< counts from 0; its objects lie 0x800 x number higher
+  std::int64_t velocity_window = 10;   ///< of 0x606C: below it the axis counts as standing still
+  std::int64_t position_window = 10;   ///< of 0x6064, the same, within 50 ms
+  Time stopping_time{};                ///< of a quick stop from its velocity limit; 0: not known
+  std::int16_t quick_stop_option = 2;  ///< 0x605A
+  std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0: not known
+};
+
 /// One device as the master sees it.
 struct NodePlan {
   std::string name;  ///< from the network file: "shoulder"
@@ -106,6 +116,7 @@ struct NodePlan {
   std::vector<EmcyText> emcy_texts{};       ///< of this device family
   std::optional<FirmwarePlan> firmware{};
   std::string on_sync_loss{};  ///< what such a device does; empty: not known
+  std::vector<AxisPlan> axes{};
 };
 
 /// What the master does when the SYNC that another device makes stays away, beyond telling it.
@@ -113,6 +124,12 @@ enum class SyncLoss : std::uint8_t {
   hold,      ///< no outputs are sent: the devices keep what they have
   fallback,  ///< commanded outputs take their fallback, as when their commands grow old
   stop,      ///< NMT stop to every node but the producer; started again when SYNC is back
+};
+
+/// How what the devices watch of the master is disarmed at the end of a confirmed ordered stop.
+enum class StopDisarm : std::uint8_t {
+  sdo,                  ///< 0x1016, 0x1006, 0x100C and 0x100D are written 0
+  reset_communication,  ///< NMT reset communication is the last command
 };
 
 /// SYNC and the times of a cycle, all counted from SYNC.
@@ -160,6 +177,7 @@ struct BusPlan {
   LimitsPlan limits{};
   std::vector<NodePlan> nodes{};                ///< ascending node id
   Time stop_timeout = std::chrono::seconds{5};  ///< of the whole ordered stop
+  StopDisarm stop_disarm = StopDisarm::sdo;
 
   /// Place in `nodes`; nodes.size(): no node of this id is planned.
   std::size_t index_of(unsigned id) const noexcept {

@@ -48,18 +48,28 @@ inline constexpr Time held_sync_longest = std::chrono::seconds{30};
 // applications
 inline constexpr Time transfer_silence = std::chrono::seconds{10};
 
-/// When each stage of the ordered stop ends at the latest, from its beginning on.
+/// When each stage of the ordered stop ends at the latest, from its beginning on. Nearly all the
+/// time belongs to the quick stop: a drive that still moves should not be disabled.
 struct StopLimits {
   Time fallback{};
   Time quick_stop{};
   Time disable{};
+  Time disarm{};
   Time nmt{};
 };
 constexpr StopLimits stop_limits(Time timeout, Time period) noexcept {
   return {.fallback = timeout / 10,
-          .quick_stop = timeout * 6 / 10,
-          .disable = timeout * 8 / 10,
+          .quick_stop = timeout * 8 / 10,
+          .disable = timeout * 87 / 100,
+          .disarm = timeout * 94 / 100,
           .nmt = timeout - std::min(timeout / 20, 2 * period)};
+}
+inline constexpr Time stop_default = std::chrono::seconds{5};
+inline constexpr Time stop_longest = std::chrono::seconds{30};  ///< that is derived from drives
+/// The whole time of a stop in which the quick stop takes so long; a quarter more for what the
+/// ramp does not tell: jerk, following error, detection.
+constexpr Time stop_timeout_for(Time stopping) noexcept {
+  return std::min(stop_longest, std::max(stop_default, stopping * 5 / 4 * 10 / 8));
 }
 
 }  // namespace takt::waits

@@ -41,7 +41,8 @@ TEST(PlanWaits, HoldEveryWaitThatNobodyHasConfigured) {
                   Pair("pdo_answer", 500ms), Pair("pdo_turn", 8s), Pair("lss_answer", 1s),
                   Pair("lss_store", 5s), Pair("lss_all", 100ms), Pair("held_sync", 30s),
                   Pair("transfer_silence", 10s), Pair("stop_fallback", 500ms),
-                  Pair("stop_quick_stop", 3s), Pair("stop_disable", 4s), Pair("stop_nmt", 4980ms)));
+                  Pair("stop_quick_stop", 4s), Pair("stop_disable", 4350ms),
+                  Pair("stop_disarm", 4700ms), Pair("stop_nmt", 4980ms)));
 }
 
 TEST(PlanWaits, NameTheNodesWhereTheyDiffer) {

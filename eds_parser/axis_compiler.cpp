@@ -1,0 +1,214 @@
+#include "eds_parser/axis_compiler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "eds_parser/object_words.hpp"
+#include "eds_parser/table/waits.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint16_t axis_step = 0x800;
+constexpr std::uint8_t axes_per_node = 8;
+constexpr double no_limit = 0x7FFF'FFFF;  // and above: a value that limits nothing
+
+/// The numbers that a device holds once it has booted.
+class BootedValues {
+ public:
+  BootedValues(const NodePlan& node, const DeviceTable& device) {
+    for (const DeviceObject& object : device.objects) set(object.key, object.value);
+    if (!node.boot) return;
+    for (const BootStep& step : node.boot_plan.steps) {
+      const bool writes =
+          step.action == BootAction::write || step.action == BootAction::write_if_differs;
+      if (writes && values_.contains(step.object)) set(step.object, step.value);
+    }
+  }
+  bool has(ObjectKey key) const { return values_.contains(key); }
+  std::optional<std::uint32_t> get(ObjectKey key) const {
+    const auto found = values_.find(key);
+    return found == values_.end() ? std::nullopt : std::optional{found->second};
+  }
+  /// None: missing, zero, or a value that means "no limit".
+  std::optional<double> positive(ObjectKey key) const {
+    const auto value = get(key);
+    if (!value || *value == 0 || *value >= no_limit) return std::nullopt;
+    return *value;
+  }
+
+ private:
+  void set(ObjectKey key, const std::vector<std::byte>& bytes) {
+    if (bytes.empty() || bytes.size() > 4) return;
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      value |= std::to_integer<std::uint32_t>(bytes[i]) << (8 * i);
+    }
+    values_[key] = value;
+  }
+
+  std::map<ObjectKey, std::uint32_t> values_;
+};
+
+class AxisCompiler {
+ public:
+  AxisCompiler(const BootedValues& values, const UnitsSpec& units, std::uint8_t number)
+      : values_{values}, units_{units}, number_{number} {}
+
+  AxisPlan run() const {
+    AxisPlan axis{.number = number_, .quick_stop_option = option()};
+    const auto limit = velocity_limit();
+    const std::uint16_t ramp = ramp_object(axis.quick_stop_option);
+    if (limit && ramp != 0) {
+      if (const auto deceleration = values_.positive(at(ramp))) {
+        axis.ramp_object = ramp;
+        axis.stopping_time = seconds(*limit / (*deceleration * acceleration_ratio()));
+      }
+    }
+    windows(axis, limit);
+    return axis;
+  }
+
+ private:
+  ObjectKey at(unsigned index, std::uint8_t sub = 0) const {
+    return {static_cast<std::uint16_t>(index + number_ * axis_step), sub};
+  }
+
+  static Time seconds(double value) {
+    constexpr double longest = 86'400;
+    return Time{static_cast<Time::rep>(std::min(value, longest) * 1e9)};
+  }
+
+  /// 0x605A; its default is 2.
+  std::int16_t option() const {
+    return static_cast<std::int16_t>(values_.get(at(0x605A)).value_or(2));
+  }
+
+  /// The object that holds the deceleration of a quick stop; 0: it stops along no known ramp.
+  static std::uint16_t ramp_object(std::int16_t option) {
+    if (option == 1 || option == 5) return 0x6084;
+    return option == 2 || option == 6 ? 0x6085 : 0;
+  }
+
+  /// Velocity units for each velocity unit that a second of acceleration makes.
+  double acceleration_ratio() const {
+    if (!units_.acceleration || !units_.velocity) return 1;
+    return *units_.acceleration->scale / *units_.velocity->scale;
+  }
+
+  double positions_in_velocity() const {
+    if (!units_.position || !units_.velocity) return 1;
+    return *units_.position->scale / *units_.velocity->scale;
+  }
+
+  /// 0x607F, and 0x6080 (revolutions of the motor in a minute) behind the gear. In units of 0x606C.
+  std::optional<double> velocity_limit() const {
+    const auto profile = values_.positive(at(0x607F));
+    const auto motor = values_.positive(at(0x6080));
+    const auto per_turn = positions_per_turn();
+    if (!motor || !per_turn) return profile;
+    const double turning = *motor / 60 * *per_turn * positions_in_velocity();
+    return profile ? std::min(*profile, turning) : turning;
+  }
+
+  /// Position units for each revolution of the motor: 0x6092 over 0x6091, else 0x608F.
+  std::optional<double> positions_per_turn() const {
+    if (const auto feed = ratio(0x6092)) return *feed / ratio(0x6091).value_or(1);
+    return ratio(0x608F);
+  }
+
+  std::optional<double> ratio(std::uint16_t index) const {
+    const auto above = values_.positive(at(index, 1));
+    const auto below = values_.positive(at(index, 2));
+    if (!above || !below) return std::nullopt;
+    return *above / *below;
+  }
+
+  /// Standstill is the velocity threshold of the device (0x606F), at most a hundredth of its
+  /// velocity limit; a thousandth of it where the device has no threshold.
+  void windows(AxisPlan& axis, std::optional<double> limit) const {
+    const auto threshold = values_.positive(at(0x606F));
+    if (!limit && !threshold) return;
+    const double window = !limit      ? *threshold
+                          : threshold ? std::min(*threshold, *limit / 100)
+                                      : *limit / 1000;
+    axis.velocity_window = std::max<std::int64_t>(1, std::llround(window));
+    constexpr double looks_in_a_second = 20;  // Standstill::standstill_time is 50 ms
+    const double travel = window / positions_in_velocity() / looks_in_a_second;
+    axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, 1e9)));
+  }
+
+  const BootedValues& values_;
+  const UnitsSpec& units_;
+  std::uint8_t number_;
+};
+
+std::string seconds_text(Time time) {
+  const auto tenths = (time + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
+}
+
+std::string axis_name(const NodePlan& node, const AxisPlan& axis) {
+  return "`" + node.name + "`" +
+         (axis.number == 0 ? "" : " (axis " + std::to_string(axis.number + 1) + ")");
+}
+
+}  // namespace
+
+std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& device,
+                                   const UnitsSpec& units) {
+  std::vector<AxisPlan> axes;
+  if (!node.cia402) return axes;
+  const BootedValues values{node, device};
+  for (std::uint8_t number = 0; number < axes_per_node; ++number) {
+    const auto controlword = static_cast<std::uint16_t>(0x6040 + number * axis_step);
+    if (!values.has({controlword, 0})) continue;
+    axes.push_back(AxisCompiler{values, units, number}.run());
+  }
+  return axes;
+}
+
+Time longest_stopping_time(const BusPlan& plan) noexcept {
+  Time longest{};
+  for (const NodePlan& node : plan.nodes) {
+    for (const AxisPlan& axis : node.axes) longest = std::max(longest, axis.stopping_time);
+  }
+  return longest;
+}
+
+void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& report) {
+  const Time given = waits::stop_limits(plan.stop_timeout, plan.cycle.period).quick_stop;
+  for (const NodePlan& node : plan.nodes) {
+    const auto source = std::ranges::find(spec.nodes, node.name, &NodeSpec::name);
+    const SourcePos pos = source == spec.nodes.end() ? SourcePos{} : source->pos;
+    for (const AxisPlan& axis : node.axes) {
+      if (axis.quick_stop_option == 0) {
+        report.warning(pos, "stop-time",
+                       "drive " + axis_name(node, axis) +
+                           " coasts in an ordered stop (605A:00 is 0): it is never seen at "
+                           "standstill before it is disabled, and taktd ends with exit code 6; "
+                           "write `sdo: [{index: 0x605A, value: 2}]` for a ramp");
+      }
+      if (axis.stopping_time <= given) continue;
+      const Time needed = axis.stopping_time * 5 / 4 * 10 / 8;
+      const auto ms = (needed + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
+      const std::string ramp =
+          hex(static_cast<std::uint16_t>(axis.ramp_object + axis.number * axis_step)).substr(2);
+      const bool possible = needed <= std::chrono::seconds{60};
+      report.warning(pos, "stop-time",
+                     "drive " + axis_name(node, axis) + " needs " +
+                         seconds_text(axis.stopping_time) +
+                         " to stop from its velocity limit (607F, 6080) along " + ramp +
+                         ":00; the ordered stop gives it " + seconds_text(given) +
+                         ", then it is disabled while it moves. " +
+                         (possible ? "Write `master: {stop_timeout: " + std::to_string(ms * 100) +
+                                         "}`, or a steeper ramp"
+                                   : "Write a steeper ramp") +
+                         " (`sdo: [{index: 0x" + ramp + ", value: ...}]`)");
+    }
+  }
+}
+
+}  // namespace takt
