@@ -42,11 +42,12 @@ int run(const NmtOptions& options) {
   if (!options.bus.empty()) return run_on_bus(options);
   auto daemon = DaemonClient::find(options.live);
   if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  const auto id = parse_node_id(options.node);  // which may be the master's own
   const auto node = daemon->node(options.node);
-  if (!node) return complain(node.error().sentence, node.error().code);
+  if (!node && !id) return complain(node.error().sentence, node.error().code);
   request_t request{};
   request.service = "nmt";
-  request.node_id = *node;
+  request.node_id = node ? *node : std::int16_t{id->value()};
   request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
   const auto reply = daemon->ask(std::move(request), std::chrono::seconds{3});
   if (!reply) return complain(reply.error().sentence, reply.error().code);
@@ -64,7 +65,8 @@ void add_nmt(CLI::App& app, int& exit_code) {
   verb->add_option("COMMAND", options->command, "start, stop, preop, reset, reset-comm")
       ->required()
       ->check(CLI::IsMember({"start", "stop", "preop", "reset", "reset-comm"}));
-  verb->add_option("NODE", options->node, "node id, name, or all")->required();
+  verb->add_option("NODE", options->node, "node id (the master's own, too), name, or all")
+      ->required();
   verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
       ->type_name("IFACE");
   add_live_options(*verb, options->live);

@@ -243,6 +243,13 @@ std::expected<Request, std::string> Requests::translate_nmt(const request_t& mes
     return std::unexpected{"NMT command " + std::to_string(message.nmt_command) +
                            " is not one of 1, 2, 128, 129, 130"};
   }
+  const bool of_all = message.node_id == 0;
+  const bool of_master = message.node_id == plan_.master_id.value();
+  if (!of_all && !of_master && plan_.find(static_cast<unsigned>(message.node_id)) == nullptr) {
+    return std::unexpected{"node " + std::to_string(message.node_id) +
+                           " is not in the network file of bus '" + plan_.name +
+                           "'; the master is node " + std::to_string(plan_.master_id.value())};
+  }
   Request request;
   request.kind = RequestKind::nmt;
   request.node = static_cast<std::uint8_t>(message.node_id);

@@ -160,7 +160,23 @@ TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
     m.service = "nmt";
     m.nmt_command = 3;
   }));
+  EXPECT_TRUE(refused([](request_t& m) {
+    m.service = "nmt";
+    m.nmt_command = 1;
+    m.node_id = 99;
+  }));
   EXPECT_TRUE(submitted.empty());
+}
+
+TEST_F(RequestsTest, NmtGoesToTheMasterItself) {
+  request_t message = upload(1);
+  message.service = "nmt";
+  message.node_id = 127;
+  message.nmt_command = 1;
+
+  EXPECT_FALSE(requests.take(message, now));
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_EQ(submitted[0].node, 127);
 }
 
 TEST_F(RequestsTest, FullRingIsAnAnswerToo) {
