@@ -252,7 +252,7 @@ struct MasterSpec {
   Sourced<bool> stop_all_nodes;   ///< the same
   Sourced<std::uint32_t> boot_time_ms;
   Sourced<std::uint16_t> nmt_inhibit_time;  ///< 100 us
-  Sourced<std::uint32_t> stop_timeout_ms;  ///< not given: derived from the drives
+  Sourced<std::uint32_t> stop_timeout_ms;   ///< not given: derived from the drives
   Sourced<StopDisarm> stop_disarm{.value = StopDisarm::sdo, .pos = {}};
   Sourced<std::uint16_t> service_frames;  ///< SDO and NMT frames a cycle at most
 };

@@ -82,7 +82,10 @@ void print_json(std::ostream& out, const SimulationOutcome& outcome) {
   root["nodes"] = Json::array();
   for (const NodeOutcome& node : outcome.nodes) root["nodes"].push_back(node_json(node));
   root["move"] = {{"built_in_sine", outcome.move}, {"axes_moved", outcome.axes_moved}};
-  root["stopped_in_order"] = outcome.stopped;
+  root["stopped_in_order"] = outcome.stopped && outcome.stop == StopResult::confirmed;
+  root["stop"] = {{"ended", outcome.stopped},
+                  {"confirmed", outcome.stop == StopResult::confirmed},
+                  {"unconfirmed", outcome.unconfirmed}};
   root["events_total"] = outcome.events_total;
   root["events"] = Json::array();
   for (const ToldEvent& event : outcome.events) {

@@ -46,6 +46,16 @@ void print_sync(std::ostream& out, const SyncOnWire& sync) {
       us(sync.quantile(1.0 - 1e-12)), sync.gaps);
 }
 
+void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
+  const bool confirmed = outcome.stop == StopResult::confirmed;
+  const char* const said = !outcome.stopped ? "NOT in its time"
+                           : confirmed      ? "in order"
+                                            : "NOT confirmed";
+  out << fmt::format("  stop         {}\n", said);
+  for (const std::string& axis : outcome.unconfirmed)
+    out << fmt::format("               {}\n", axis);
+}
+
 void print_nodes(std::ostream& out, const SimulationOutcome& outcome) {
   out << fmt::format("\n  {:>3}  {:16} {:16} {:8} {:>9} {:>9} {:>7} {:>6} {:>10} {:>9} {:>5}\n",
                      "id", "node", "state", "boot", "boot ms", "TPDOs", "missing", "late",
@@ -82,7 +92,7 @@ void print_text(std::ostream& out, const SimulationOutcome& outcome) {
   } else {
     out << "  set-points   none (no application; --move gives a built-in sine)\n";
   }
-  out << fmt::format("  stop         {}\n", outcome.stopped ? "in order" : "NOT in its time");
+  print_stop(out, outcome);
   print_nodes(out, outcome);
   print_events(out, outcome);
 }

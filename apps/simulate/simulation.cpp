@@ -5,6 +5,7 @@
 #include "apps/simulate/candump_log.hpp"
 #include "apps/simulate/sine_motion.hpp"
 #include "master/core/boot_report.hpp"
+#include "master/core/stop_text.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/sim_port.hpp"
 #include "master/sim/world.hpp"
@@ -45,6 +46,9 @@ class Run {
     const Time limit = world_.now() + plan_.stop_timeout + stop_slack;
     while (!loop_.done() && world_.now() < limit) cycle();
     world_.advance_to(world_.now() + plan_.cycle.period);  // the last frames leave the wire
+    const std::uint64_t told_before = log_.statistics().emcy_frames();
+    world_.advance_to(world_.now() + options_.after);
+    outcome_.emcy_after = log_.statistics().emcy_frames() - told_before;
     finish();
     return std::move(outcome_);
   }
@@ -68,6 +72,9 @@ class Run {
 
   void tell(const Event& event) {
     ++outcome_.events_total;
+    if (event.kind == EventKind::axis_not_stopped) {
+      outcome_.unconfirmed.push_back(named_axis_stop_text(plan_, event));
+    }
     for (NodeOutcome& node : outcome_.nodes) {
       if (node.id != event.node) continue;
       if (event.kind == EventKind::boot_done && !node.first_boot) node.first_boot = event.when;
@@ -98,6 +105,7 @@ class Run {
     outcome_.move = options_.move;
     outcome_.axes_moved = motion_.most_moving();
     outcome_.stopped = loop_.done();
+    outcome_.stop = snapshot.bus.stop_result;
     for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
       outcome_.nodes[i].status = snapshot.nodes[i];
       const bool never_booted = plan_.nodes[i].boot && !outcome_.nodes[i].first_boot;

@@ -19,6 +19,7 @@ struct SimulationOptions {
   sim::Faults faults{};
   bool move = false;      ///< built-in sine set-points, see SineMotion
   Time wake_jitter{};     ///< of the simulated master's machine
+  Time after{};           ///< without master, at the end
   std::string candump{};  ///< file for all frames as a candump log; empty: none
 };
 
@@ -56,13 +57,16 @@ struct SimulationOutcome {
   std::uint64_t worst_cycle_bits = 0;
   std::uint64_t sdo_frames = 0;
   std::uint64_t emcy_frames = 0;
+  std::uint64_t emcy_after = 0;  ///< of these when the master had ended
   std::vector<NodeOutcome> nodes;
   std::vector<ToldEvent> events;  ///< the first ones
   std::uint64_t events_total = 0;
   std::size_t axes_moved = 0;
   bool move = false;
-  bool stopped = false;           ///< the ordered stop came to its end
-  bool mandatory_failed = false;  ///< a mandatory node never booted
+  bool stopped = false;  ///< the ordered stop came to its end
+  StopResult stop = StopResult::none;
+  std::vector<std::string> unconfirmed;  ///< a sentence for each axis that was not stopped
+  bool mandatory_failed = false;         ///< a mandatory node never booted
 };
 
 /// The whole master and its devices in virtual time. Throws std::runtime_error where the candump

@@ -49,6 +49,7 @@ int run(Arguments& arguments) {
   const double simulated = std::chrono::duration<double>(outcome.simulated).count();
   std::cerr << "simulated " << simulated << " s in " << took.count()
             << " s: " << static_cast<long>(simulated / took.count()) << " times real time\n";
+  if (outcome.stop != StopResult::confirmed) return 6;
   return outcome.mandatory_failed ? 4 : 0;
 }
 

@@ -95,6 +95,8 @@ nlohmann::json to_json(const status_t& status) {
           {"bus_state", status.bus_state},
           {"tx_errors", status.tx_errors},
           {"rx_errors", status.rx_errors},
+          {"stop", stop_name(status.stop)},
+          {"stop_text", status.stop_text},
           {"diagnosis", to_json(status.diagnosis)},
           {"nodes", std::move(nodes)}};
 }

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sstream>
 
 #include "apps/takt/timing_table.hpp"
 #include "master/core/node_status.hpp"
@@ -236,6 +237,11 @@ std::string bus_condition(int state) {
   return conditions[std::clamp(state, 0, 3)];
 }
 
+std::string stop_name(int stop) {
+  static constexpr const char* names[] = {"none", "under way", "confirmed", "not confirmed"};
+  return names[std::clamp(stop, 0, 3)];
+}
+
 std::string boot_name(const node_status_t& node) {
   switch (static_cast<BootState>(node.boot_state)) {
     case BootState::idle:
@@ -252,10 +258,27 @@ std::string boot_name(const node_status_t& node) {
   return "?";
 }
 
+namespace {
+
+/// Nothing as long as no stop was asked for.
+void add_stop(std::vector<Line>& lines, const status_t& status) {
+  if (status.stop == 0) return;
+  const bool bad = status.stop == static_cast<int>(StopResult::unconfirmed);
+  const Paint paint = bad ? Paint::bad : Paint::plain;
+  lines.push_back(Line{}.add(" ordered stop " + stop_name(status.stop), paint));
+  std::istringstream axes{status.stop_text};
+  for (std::string axis; std::getline(axes, axis);) {
+    lines.push_back(Line{}.add("   " + axis, Paint::bad));
+  }
+}
+
+}  // namespace
+
 std::vector<Line> status_lines(const BusView& bus) {
   const status_t& status = *bus.status();
   std::vector<Line> lines{bus_line(status), load_line(status), diagnosis_line(status.diagnosis)};
   if (bus.sync() && bus.sync()->timeout_ns != 0) lines.push_back(sync_line(*bus.sync()));
+  add_stop(lines, status);
   lines.push_back(
       Line{}.add(" NODE  NAME              STATE            BOOT             HEARTBEAT         "
                  "EMCY  NO PDO  HELD BY",

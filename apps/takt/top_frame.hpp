@@ -26,6 +26,8 @@ std::vector<Line> status_lines(const BusView& bus);
 
 std::string nmt_name(int state);                   ///< "operational"
 std::string boot_name(const node_status_t& node);  ///< "ready", "step 4 of 31"
-std::string bus_condition(int state);              ///< of diagnosis_t: "running", "offline"
+std::string stop_name(
+    int stop);  ///< of status_t: "none", "under way", "confirmed", "not confirmed"
+std::string bus_condition(int state);  ///< of diagnosis_t: "running", "offline"
 
 }  // namespace takt

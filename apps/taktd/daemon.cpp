@@ -61,16 +61,39 @@ Exit Daemon::run() {
     recorder_.finish_running(why_.empty() ? "stopped at once" : why_ + "; it did not end in order",
                              last_recording);
     reporter_.finish(last_lines);
-    std::_Exit(static_cast<int>(exit_ == Exit::good ? Exit::bus_trouble : exit_));
+    std::_Exit(static_cast<int>(exit_of_cut_stop()));
   }
   master_->join();
   bridge_->serve();
+  judge_stop();
   const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
   reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),
                                           reporter_.told(Weight::warning)));
   if (recorded) return exit_;
   reporter_.finish(last_lines);
   std::_Exit(static_cast<int>(exit_));
+}
+
+/// The bus thread has ended: was every axis seen at standstill and disabled?
+void Daemon::judge_stop() {
+  StatusSnapshot snapshot;
+  master_->status(snapshot);
+  if (snapshot.bus.stop_result != StopResult::unconfirmed) return;
+  exit_ = Exit::not_stopped;
+  why_ = "the ordered stop was not confirmed" + unconfirmed_;
+  reporter_.say(Weight::error, why_);
+}
+
+/// Nobody waits for the end of the stop: what was not confirmed by now is not.
+Exit Daemon::exit_of_cut_stop() const {
+  StatusSnapshot snapshot;
+  master_->status(snapshot);
+  const auto has_axes = [](const NodePlan& node) { return node.cia402; };
+  if (!options_.observe && snapshot.bus.stop_result != StopResult::confirmed &&
+      std::ranges::any_of(network_.plan.nodes, has_axes)) {
+    return Exit::not_stopped;
+  }
+  return exit_ == Exit::good ? Exit::bus_trouble : exit_;
 }
 
 std::optional<Exit> Daemon::open() {
@@ -352,6 +375,9 @@ void Daemon::watch_lateness() {
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
   recorder_.on_fault(notice);
+  if (notice.kind == name(EventKind::axis_not_stopped)) {
+    unconfirmed_ += (unconfirmed_.empty() ? ": " : "; ") + notice.text;
+  }
   if (notice.kind == name(EventKind::boot_done)) once_ready_.set(notice.node);
   if (notice.kind != name(EventKind::boot_failed) || once_ready_[notice.node]) return;
   for (const NodePlan& node : network_.plan.nodes) {
@@ -369,7 +395,7 @@ void Daemon::stop(Exit reason, const std::string& why) {
   why_ = why;
   stop_limit_ = clocks_.now() + network_.plan.stop_timeout + patience;
   reporter_.say(reason == Exit::good ? Weight::note : Weight::error, why + "; stopping in order");
-  service_.stopping();
+  service_.stopping(network_.plan.stop_timeout + patience + last_recording + last_lines);
   master_->request_stop();
 }
 

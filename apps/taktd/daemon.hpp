@@ -35,6 +35,7 @@ enum class Exit : int {
   bus_trouble = 3,
   node_missing = 4,
   too_late = 5,
+  not_stopped = 6,  ///< the ordered stop was not confirmed; it wins over all others
 };
 
 /// taktd: one bus, from the compiled network to the end of the ordered stop. Its run() is the front
@@ -67,6 +68,8 @@ class Daemon {
   void end_of_time();
   std::string never_ready() const;
   void stop(Exit reason, const std::string& why);
+  void judge_stop();
+  Exit exit_of_cut_stop() const;
   std::thread start_bus_thread(std::function<void()> body);
 
   LoadedNetwork network_;
@@ -94,7 +97,8 @@ class Daemon {
   Time stop_limit_ = never;  // when patience with the ordered stop ends
   bool stopping_ = false;
   Exit exit_ = Exit::good;
-  std::string why_;  // of exit_
+  std::string why_;          // of exit_
+  std::string unconfirmed_;  // axes, as a list
 };
 
 }  // namespace takt

@@ -12,7 +12,11 @@ class ServiceNotify {
   ServiceNotify();
 
   void ready(const std::string& status) const { send("READY=1\nSTATUS=" + status); }
-  void stopping() const { send("STOPPING=1"); }
+  /// The ordered stop has begun; it may take so long, whatever TimeoutStopSec says.
+  void stopping(Time limit) const {
+    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(limit).count();
+    send("STOPPING=1\nEXTEND_TIMEOUT_USEC=" + std::to_string(us));
+  }
   /// Keeps the watchdog quiet; to be called while everything is well, as often as one likes.
   void alive(Time now);
 

@@ -7,6 +7,7 @@
 #include "master/core/limit_text.hpp"
 #include "master/core/lss_command.hpp"
 #include "master/core/report_text.hpp"
+#include "master/core/stop_text.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/emcy_text.hpp"
 
@@ -88,20 +89,6 @@ std::string twin_text(const Event& event) {
          "off, or give it another id (`takt lss`)";
 }
 
-std::string reaction_text(const Event& event) {
-  switch (static_cast<LossReaction>(event.value)) {
-    case LossReaction::stop_node:
-      return "NMT stop to it; it stays away until it is reset or started (`takt nmt reset`)";
-    case LossReaction::stop_group:
-      return "NMT stop to its group; the nodes stay away until they are reset or started";
-    case LossReaction::quick_stop:
-      return "quick stop of the drives that depend on it";
-    case LossReaction::report:
-      break;
-  }
-  return "it is told";
-}
-
 std::string lss_trouble_text(const BusPlan& plan, const Event& event) {
   const LssResult result{.op = static_cast<LssOp>(event.bytes[0]),
                          .outcome = static_cast<LssOutcome>(event.bytes[1]),
@@ -136,6 +123,10 @@ std::string firmware_line(const BusPlan& plan, const Event& event) {
 
 std::string node_line(const BusPlan& plan, const Event& event) {
   switch (event.kind) {
+    case EventKind::axis_not_stopped:
+      return axis_stop_text(plan, event);
+    case EventKind::still_armed:
+      return still_armed_text(event);
     case EventKind::boot_started:
       return "boot begins";
     case EventKind::boot_done:

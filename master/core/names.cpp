@@ -100,6 +100,10 @@ std::string_view name(EventKind kind) noexcept {
       return "foreign_nmt";
     case EventKind::duplicate_cob_id:
       return "duplicate_cob_id";
+    case EventKind::axis_not_stopped:
+      return "axis_not_stopped";
+    case EventKind::still_armed:
+      return "still_armed";
     case EventKind::stopping:
       return "stopping";
     case EventKind::stopped:

@@ -244,7 +244,7 @@ bool Network::starts(std::size_t node_index) const noexcept {
   return node_index < sessions_.size() && sessions_[node_index].starts();
 }
 
-void Network::begin_stop(Time now) noexcept {
+void Network::begin_stop(Time now, NmtCommand last) noexcept {
   if (stopping_) return;
   stopping_ = true;
   command_master(NmtCommand::enter_preoperational);
@@ -256,7 +256,7 @@ void Network::begin_stop(Time now) noexcept {
   lss_.stop(now);
   requests_.cancel_all();
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    sessions_[i].begin_stop();
+    sessions_[i].begin_stop(last);
     touched(i, now);
   }
 }

@@ -86,8 +86,11 @@ class Network {
   /// The bus thread did not run for so long: that is no silence of a node.
   void on_absence(Time away) noexcept;
 
-  /// NMT part of the ordered stop: pending requests are answered, nodes go to pre-operational.
-  void begin_stop(Time now) noexcept;
+  /// NMT part of the ordered stop: pending requests are answered, nodes get their last command.
+  /// With reset communication those of `keep_alive` go to pre-operational all the same.
+  void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
+  /// The master itself, as NMT has commanded it.
+  NmtState own_state() const noexcept { return own_state_; }
   /// All frames of the stop have been handed out.
   bool stopped() const noexcept;
   /// Nothing is under way: keep() has all that is known.

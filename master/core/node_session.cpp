@@ -319,7 +319,7 @@ void NodeSession::send_nmt(Time now, Outbox& out) noexcept {
   if (own_command_ && send(*own_command_)) {
     const NmtCommand command = *std::exchange(own_command_, std::nullopt);
     if (stopping_) {
-      status_.nmt = NmtState::preoperational;
+      status_.nmt = is_reset(command) ? NmtState::unknown : NmtState::preoperational;
     } else {
       const bool halted = halted_;
       on_commanded(command, now);
@@ -358,11 +358,16 @@ void NodeSession::excuse(Time away) noexcept {
   runner_.excuse(away);
 }
 
-void NodeSession::begin_stop() noexcept {
+void NodeSession::begin_stop(NmtCommand last) noexcept {
   if (stopping_) return;
   stopping_ = true;
   own_command_.reset();
-  if (managed_ == Managed::yes) own_command_ = NmtCommand::enter_preoperational;
+  const bool keeps_alive = std::ranges::any_of(plan_->boot_plan.steps, [](const BootStep& step) {
+    return step.action == BootAction::await_alive;
+  });
+  if (managed_ == Managed::yes) {
+    own_command_ = keeps_alive ? NmtCommand::enter_preoperational : last;
+  }
   runner_.stop();
   guard_.stop();
   client_.cancel();

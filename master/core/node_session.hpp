@@ -89,8 +89,9 @@ class NodeSession {
   void pause() noexcept;
   void resume() noexcept;
 
-  /// Gives up what is running and leaves the node in pre-operational.
-  void begin_stop() noexcept;
+  /// Gives up what is running and leaves the node with this command. A node that is kept alive goes
+  /// to pre-operational instead of a reset.
+  void begin_stop(NmtCommand last) noexcept;
   bool stopped() const noexcept;
 
   /// A block transfer is under way.

@@ -1,6 +1,7 @@
 #include "master/core/ordered_stop.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace takt {
 namespace {
@@ -21,43 +22,119 @@ std::optional<SignalIndex> find(const ImageLayout& layout, std::uint8_t node_ind
   return std::nullopt;
 }
 
+/// Empty: the device has no such axis, or nothing can be done about it.
+std::optional<StopAxis> axis_of(const BusPlan& plan, std::uint8_t node_index, std::uint8_t number) {
+  const auto at = [&](std::uint16_t base, bool output) {
+    const auto index = static_cast<std::uint16_t>(base + number * axis_step);
+    return find(plan.layout, node_index, index, output);
+  };
+  const StopAxis axis{.node_index = node_index,
+                      .number = number,
+                      .controlword = at(0x6040, true),
+                      .statusword = at(0x6041, false),
+                      .velocity = at(0x606C, false),
+                      .position = at(0x6064, false)};
+  const NodePlan& node = plan.nodes[node_index];
+  const bool planned = std::ranges::find(node.axes, number, &AxisPlan::number) != node.axes.end();
+  if (axis.controlword || (node.boot && (axis.statusword || planned))) return axis;
+  return std::nullopt;
+}
+
+AxisPlan plan_of(const NodePlan& node, std::uint8_t number) {
+  const auto found = std::ranges::find(node.axes, number, &AxisPlan::number);
+  return found == node.axes.end() ? AxisPlan{.number = number} : *found;
+}
+
 }  // namespace
 
-OrderedStop::OrderedStop(const BusPlan& plan)
-    : limits_{waits::stop_limits(plan.stop_timeout, plan.cycle.period)} {
+std::vector<StopAxis> OrderedStop::axes_of(const BusPlan& plan) {
+  std::vector<StopAxis> axes;
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     if (!plan.nodes[node].cia402) continue;
-    const auto node_index = static_cast<std::uint8_t>(node);
-    for (std::uint16_t axis = 0; axis < axes_per_node; ++axis) {
-      const auto at = [&](std::uint16_t base) {
-        return static_cast<std::uint16_t>(base + axis * axis_step);
-      };
-      if (const auto controlword = find(plan.layout, node_index, at(0x6040), true)) {
-        axes_.push_back({.node_index = node_index,
-                         .controlword = *controlword,
-                         .statusword = find(plan.layout, node_index, at(0x6041), false)});
-      }
+    for (std::uint8_t number = 0; number < axes_per_node; ++number) {
+      const auto axis = axis_of(plan, static_cast<std::uint8_t>(node), number);
+      if (axis) axes.push_back(*axis);
     }
+  }
+  return axes;
+}
+
+OrderedStop::OrderedStop(const BusPlan& plan)
+    : limits_{waits::stop_limits(plan.stop_timeout, plan.cycle.period)},
+      axes_{axes_of(plan)},
+      answers_(axes_.size()) {
+  for (const StopAxis& axis : axes_) {
+    plans_.push_back(plan_of(plan.nodes[axis.node_index], axis.number));
+    stops_.emplace_back(plans_.back());
   }
 }
 
-void OrderedStop::begin(Time now) noexcept {
-  if (stage_ != StopStage::running) return;
+void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes) noexcept {
   begun_ = now;
-  steps_ = 0;
-  stage_ = StopStage::fallback;
+  enter(StopStage::fallback);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    stops_[i] = AxisStop{plans_[i]};
+    answers_[i] = {};
+    const NodeStatus& node = nodes[axes_[i].node_index];
+    stops_[i].begin(now, node.boot_count != 0 || node.boot == BootState::ready);
+  }
 }
 
-bool OrderedStop::all_disabled(const StopView& view) const noexcept {
-  return std::ranges::all_of(axes_, [&](const StopAxis& axis) {
-    if (!view.exchanging[axis.node_index]) return true;  // nothing more can be done for it
-    return axis.statusword && disabled(view.values[*axis.statusword]);
-  });
+void OrderedStop::begin_idle(Time now) noexcept {
+  begun_ = now;
+  enter(StopStage::fallback);
+  for (AxisStop& stop : stops_) {
+    stop = AxisStop{};
+    stop.begin(now, false);
+  }
+}
+
+void OrderedStop::take(std::size_t axis, const AxisSample& sample) noexcept {
+  if (sample.statusword) answers_[axis].statusword = sample.statusword;
+  if (sample.velocity) answers_[axis].velocity = sample.velocity;
+  if (sample.position) answers_[axis].position = sample.position;
+}
+
+/// PDOs that are received and not stale, else what an SDO has read.
+void OrderedStop::look(Time now, const StopView& view) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const StopAxis& axis = axes_[i];
+    AxisSample sample = std::exchange(answers_[i], AxisSample{});
+    const auto read = [&](std::optional<SignalIndex> signal, std::optional<std::int64_t>& value) {
+      if (!signal || !view.exchanging[axis.node_index]) return;
+      const bool stale = (view.stale[*signal / 64U] >> (*signal % 64U) & 1U) != 0;
+      if (!stale) value = view.values[*signal];
+    };
+    read(axis.statusword, sample.statusword);
+    read(axis.velocity, sample.velocity);
+    read(axis.position, sample.position);
+    stops_[i].step(now, sample);
+  }
+}
+
+bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const bool unreachable =
+        !view.exchanging[axes_[i].node_index] && stops_[i].silence(now) >= longest_silence;
+    if (!stops_[i].settled() && !unreachable) return false;
+  }
+  return true;
+}
+
+bool OrderedStop::all_confirmed() const noexcept {
+  return std::ranges::all_of(stops_, &AxisStop::confirmed);
+}
+
+StopResult OrderedStop::result() const noexcept {
+  if (stage_ == StopStage::running) return StopResult::none;
+  if (!axes_done()) return StopResult::under_way;
+  return all_confirmed() ? StopResult::confirmed : StopResult::unconfirmed;
 }
 
 Time OrderedStop::limit() const noexcept {
   switch (stage_) {
     case StopStage::running:
+    case StopStage::done:
       return never;
     case StopStage::fallback:
       return begun_ + limits_.fallback;
@@ -65,45 +142,62 @@ Time OrderedStop::limit() const noexcept {
       return begun_ + limits_.quick_stop;
     case StopStage::disable:
       return begun_ + limits_.disable;
+    case StopStage::disarm:
+      return begun_ + limits_.disarm;
     case StopStage::nmt:
       return begun_ + limits_.nmt;
-    case StopStage::done:
-      return never;
   }
   return never;
 }
 
-void OrderedStop::advance() noexcept {
-  stage_ = static_cast<StopStage>(static_cast<std::uint8_t>(stage_) + 1);
+void OrderedStop::enter(StopStage stage) noexcept {
+  stage_ = stage;
   steps_ = 0;
 }
 
+/// Where an axis is not confirmed, everything stays armed: the devices themselves are what is left.
+void OrderedStop::leave_axes(StopStage stage) noexcept {
+  enter(all_confirmed() ? StopStage::disarm : stage);
+}
+
+/// The transitions of the stop:
+///
+///   stage       ends when                                                 next
+///   fallback    there are no axes and it acts, or its limit               disarm
+///   fallback    it acts, or its limit                                     quick_stop
+///   quick_stop  every axis is settled or can't be reached                 disarm, nmt
+///   quick_stop  its limit: the axes that still move are cut               disable
+///   disable     every axis is settled, or its limit                       disarm, nmt
+///   disarm      every device is disarmed, or its limit                    nmt
+///   nmt         every command is sent, or its limit                       done
+///
+/// `disarm, nmt`: disarm where every axis is confirmed, else nmt.
 void OrderedStop::step(Time now, const StopView& view) noexcept {
+  if (stage_ == StopStage::running || stage_ == StopStage::done) return;
   const bool out_of_time = now >= limit();
   // A word has to be on the bus before the answer to it can count.
   const bool seen = steps_++ >= fallback_cycles;
+  if (!axes_done()) look(now, view);
   switch (stage_) {
     case StopStage::fallback:
-      if (axes_.empty() && seen) {
-        stage_ = StopStage::nmt;
-        steps_ = 0;
-      } else if (seen || out_of_time) {
-        advance();
-      }
+      if (seen || out_of_time) enter(axes_.empty() ? StopStage::disarm : StopStage::quick_stop);
       break;
     case StopStage::quick_stop:
-      if (seen && all_disabled(view)) {
-        stage_ = StopStage::nmt;
-        steps_ = 0;
+      if (seen && all_settled(now, view)) {
+        leave_axes(StopStage::nmt);
       } else if (out_of_time) {
-        advance();
+        for (AxisStop& stop : stops_) stop.cut();
+        enter(StopStage::disable);
       }
       break;
     case StopStage::disable:
-      if ((seen && all_disabled(view)) || out_of_time) advance();
+      if ((seen && all_settled(now, view)) || out_of_time) leave_axes(StopStage::nmt);
+      break;
+    case StopStage::disarm:
+      if (view.disarmed || out_of_time) enter(StopStage::nmt);
       break;
     case StopStage::nmt:
-      if (view.network_stopped || out_of_time) advance();
+      if (view.network_stopped || out_of_time) enter(StopStage::done);
       break;
     case StopStage::running:
     case StopStage::done:
@@ -111,15 +205,19 @@ void OrderedStop::step(Time now, const StopView& view) noexcept {
   }
 }
 
-std::optional<std::int64_t> OrderedStop::controlword() const noexcept {
+std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noexcept {
+  const AxisState state = stops_[axis].state();
   switch (stage_) {
+    case StopStage::fallback:  // which may be to disable; but an axis that moves is not disabled
+      if (state == AxisState::unseen || state == AxisState::exempt) return std::nullopt;
+      return stops_[axis].controlword();
     case StopStage::quick_stop:
-      return quick_stop_word;
+      return stops_[axis].controlword();
     case StopStage::disable:
+    case StopStage::disarm:
     case StopStage::nmt:
       return disable_voltage_word;
     case StopStage::running:
-    case StopStage::fallback:
     case StopStage::done:
       return std::nullopt;
   }

@@ -8,6 +8,8 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/waits.hpp"
+#include "master/core/axis_stop.hpp"
+#include "master/core/node_status.hpp"
 
 namespace takt {
 
@@ -15,57 +17,91 @@ namespace takt {
 enum class StopStage : std::uint8_t {
   running,     ///< no stop asked for
   fallback,    ///< every output takes its declared fallback
-  quick_stop,  ///< axes get the controlword of a quick stop
-  disable,     ///< axes that are still enabled get "disable voltage"
-  nmt,         ///< nodes go to pre-operational
+  quick_stop,  ///< axes stop quickly; each is disabled when it was seen at standstill
+  disable,     ///< the time is over: axes that are still enabled are disabled
+  disarm,      ///< what the devices watch of the master is disarmed
+  nmt,         ///< nodes get their last NMT command
   done,        ///< SYNC may end
 };
 
-/// One CiA 402 axis: where its words are in the image.
+/// Whether the ordered stop was seen to succeed. The numbers are those of `stop` in status_t.
+enum class StopResult : std::uint8_t {
+  none,         ///< no stop asked for
+  under_way,    ///< it is not decided yet
+  confirmed,    ///< every axis was seen at standstill and disabled, or was disabled before
+  unconfirmed,  ///< some axis was not
+};
+
+/// One CiA 402 axis: where its words are in the image. What is not mapped is read by SDO.
 struct StopAxis {
   std::uint8_t node_index = 0;
-  SignalIndex controlword = 0;
+  std::uint8_t number = 0;  ///< of the axis within its device, from 0
+  std::optional<SignalIndex> controlword;
   std::optional<SignalIndex> statusword;
+  std::optional<SignalIndex> velocity;
+  std::optional<SignalIndex> position;
 };
 
 /// What the ordered stop sees once a cycle.
 struct StopView {
   std::span<const std::int64_t> values;  ///< the image
+  std::span<const std::uint64_t> stale;  ///< of the image, a bit for each signal
   std::span<const bool> exchanging;      ///< per node: its PDOs are exchanged
+  std::span<const NodeStatus> nodes;
+  bool disarmed = false;
   bool network_stopped = false;
 };
 
-/// Fallback of each axis -> quick stop -> disabled confirmed -> NMT -> end. Each stage has a
-/// limit, the whole ends within BusPlan::stop_timeout. CiA 402-2, state machine of the drive.
+/// Fallback of each axis -> quick stop -> standstill seen -> disabled seen -> disarmed, where every
+/// axis was confirmed -> NMT -> end. Each stage has a limit, the whole ends within
+/// BusPlan::stop_timeout. CiA 402-2, state machine of the drive.
 class OrderedStop {
  public:
-  static constexpr std::int64_t quick_stop_word = 0x0002;
-  static constexpr std::int64_t disable_voltage_word = 0x0000;
+  static constexpr std::int64_t quick_stop_word = AxisStop::quick_stop_word;
+  static constexpr std::int64_t disable_voltage_word = AxisStop::disable_voltage_word;
+  /// Other axes do not wait longer for one that can't be reached.
+  static constexpr Time longest_silence = std::chrono::seconds{1};
 
   explicit OrderedStop(const BusPlan& plan);
+  static std::vector<StopAxis> axes_of(const BusPlan& plan);
 
-  void begin(Time now) noexcept;
+  /// From `running` or `done` on.
+  void begin(Time now, std::span<const NodeStatus> nodes) noexcept;
+  /// Nothing was asked for: a master that only listens stops nobody.
+  void begin_idle(Time now) noexcept;
+  /// What an SDO has read of an axis; used in the next step.
+  void take(std::size_t axis, const AxisSample& sample) noexcept;
   /// Once a cycle, before the outputs are packed.
   void step(Time now, const StopView& view) noexcept;
+  /// No stop any more.
+  void call_off() noexcept { stage_ = StopStage::running; }
 
   StopStage stage() const noexcept { return stage_; }
+  StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
-  /// What the axes' controlwords have to be now; none: what is commanded.
-  std::optional<std::int64_t> controlword() const noexcept;
+  const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
+  /// The axes are at rest, or their time is over.
+  bool axes_done() const noexcept { return stage_ > StopStage::disable; }
+  /// What the controlword of this axis has to be now; none: what is commanded.
+  std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
-  /// The power stage is off: not ready, switch on disabled, fault, or ready to switch on.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
-    const std::int64_t state = statusword & 0x4F;
-    return state == 0x00 || state == 0x40 || state == 0x08 || (statusword & 0x6F) == 0x21;
+    return AxisStop::disabled(statusword);
   }
 
  private:
-  bool all_disabled(const StopView& view) const noexcept;
+  void look(Time now, const StopView& view) noexcept;
+  bool all_settled(Time now, const StopView& view) const noexcept;
+  bool all_confirmed() const noexcept;
   Time limit() const noexcept;
-  void advance() noexcept;
+  void enter(StopStage stage) noexcept;
+  void leave_axes(StopStage stage) noexcept;
 
   waits::StopLimits limits_;
   std::vector<StopAxis> axes_;
+  std::vector<AxisPlan> plans_;
+  std::vector<AxisStop> stops_;
+  std::vector<AxisSample> answers_;  // by SDO, since the last step
   StopStage stage_ = StopStage::running;
   Time begun_{};
   std::uint32_t steps_ = 0;  ///< in this stage

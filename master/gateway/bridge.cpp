@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "master/core/boot_report.hpp"
+#include "master/core/stop_text.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/pdo_messages.hpp"
 #include "master/gateway/printable_text.hpp"
@@ -281,6 +282,9 @@ void Bridge::add_sender(const Event& event, Notice& notice) const {
 }
 
 void Bridge::tell(const Event& event) {
+  if (event.kind == EventKind::axis_not_stopped) {
+    stop_text_ += (stop_text_.empty() ? "" : "\n") + named_axis_stop_text(master_.plan(), event);
+  }
   if (event.kind == EventKind::stopped) {
     for (const Notice& notice : outages_.take_rest(event.when)) send(notice);
   }
@@ -337,7 +341,8 @@ void Bridge::publish_status() {
                         .commands_taken = commands_.taken(),
                         .commands_refused = commands_.refused(),
                         .holders = {},
-                        .emcys = &emcys_};
+                        .emcys = &emcys_,
+                        .stop_text = stop_text_};
   for (std::size_t i = 0; i < master_.plan().nodes.size(); ++i) {
     gateway.holders.emplace_back(commands_.holder(i, cycle_at(now)));
   }

@@ -140,6 +140,7 @@ class Bridge {
   PdoOutages outages_;
   NoticeLimit limit_;
   EmcyHistory emcys_;
+  std::string stop_text_;  ///< a line for each axis that the ordered stop did not confirm
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;

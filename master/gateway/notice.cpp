@@ -43,6 +43,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::limit_exceeded:
     case EventKind::bus_error_passive:
     case EventKind::send_buffer_full:
+    case EventKind::still_armed:
       return Weight::warning;
     case EventKind::boot_failed:
     case EventKind::heartbeat_lost:
@@ -51,6 +52,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::duplicate_node:
     case EventKind::loss_reaction:
     case EventKind::mandatory_lost:
+    case EventKind::axis_not_stopped:
     case EventKind::emcy:
     case EventKind::receive_overrun:
     case EventKind::sync_lost:

@@ -115,6 +115,8 @@ status_t StatusMessages::bus_part(const StatusSnapshot& snapshot, const GatewayS
   message.bus_state = bus_state(bus.port);
   message.tx_errors = bus.port.tx_error_counter;
   message.rx_errors = bus.port.rx_error_counter;
+  message.stop = static_cast<std::int16_t>(bus.stop_result);
+  message.stop_text = gateway.stop_text;
   message.diagnosis = diagnosis_.fill(snapshot);
   return message;
 }

@@ -21,6 +21,7 @@ struct GatewayStatus {
   std::uint64_t commands_refused = 0;
   std::vector<std::string> holders;  ///< per node: who commands its outputs
   const EmcyHistory* emcys = nullptr;
+  std::string stop_text{};  ///< a line for each axis that the ordered stop did not confirm
 };
 
 /// Share of time that the wire is busy, over about the last second.

@@ -13,6 +13,7 @@
 #include "master/core/ordered_stop.hpp"
 #include "master/core/pdo_exchange.hpp"
 #include "master/core/pdo_requests.hpp"
+#include "master/core/stop_requests.hpp"
 #include "master/core/time_producer.hpp"
 #include "master/rt/arrival_prediction.hpp"
 #include "master/rt/beat_clock.hpp"
@@ -116,6 +117,17 @@ class BusLoop {
   void stop_drives_after_loss() noexcept;
   void send_outputs() noexcept;
   void step_stop() noexcept;
+  void begin_stop(Time now) noexcept;
+  StopView stop_view() const noexcept;
+  void force_axes(const OrderedStop& stop) noexcept;
+  void tell_unconfirmed(Time now) noexcept;
+  void ask_for_stop() noexcept;
+  void take_answer_of_stop() noexcept;
+  OrderedStop& active_stop() noexcept;
+  void follow_own_state() noexcept;
+  void begin_halt(Time now) noexcept;
+  void end_halt() noexcept;
+  bool silent() const noexcept;
   void take_fallbacks() noexcept;
   void call_off_fallbacks() noexcept;
   bool stalled(Time now) const noexcept;
@@ -143,6 +155,8 @@ class BusLoop {
   PdoRequests pdo_requests_;
   TimeProducer time_;
   OrderedStop stop_;
+  OrderedStop halt_;  ///< the same of a master in NMT Stopped, until it is started again
+  StopRequests stop_requests_;
   FallbackWriter fallbacks_;
   PortWatch port_watch_;
   ServiceQueue services_;
@@ -186,4 +200,5 @@ class BusLoop {
 #include "master/rt/bus_loop_front.hpp"
 #include "master/rt/bus_loop_impl.hpp"
 #include "master/rt/bus_loop_services.hpp"
+#include "master/rt/bus_loop_stop.hpp"
 #include "master/rt/bus_loop_sync.hpp"

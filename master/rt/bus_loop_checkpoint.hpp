@@ -7,9 +7,9 @@ namespace takt {
 /// Nothing is under way, so that what keep() names is all that decides what comes.
 template <Port P, class N>
 bool BusLoop<P, N>::idle() const noexcept {
-  return stop_.stage() == StopStage::running && left_from_ == left_end_ && !reply_waits_ &&
-         services_.empty() && events_.empty() && pdo_requests_.idle() && !fallbacks_.waits() &&
-         network_.idle();
+  return stop_.stage() == StopStage::running && halt_.stage() == StopStage::running &&
+         left_from_ == left_end_ && !reply_waits_ && services_.empty() && events_.empty() &&
+         pdo_requests_.idle() && !fallbacks_.waits() && network_.idle();
 }
 
 template <Port P, class N>

@@ -16,6 +16,8 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       pdo_requests_{plan},
       time_{plan.time},
       stop_{plan},
+      halt_{plan},
+      stop_requests_{plan},
       fallbacks_{plan},
       port_watch_{events_},
       clock_{plan.cycle.period},
@@ -209,27 +211,6 @@ void BusLoop<P, N>::predict_next_publish() noexcept {
   exchange_.next_publish.store(next.count(), std::memory_order_release);
 }
 
-/// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
-template <Port P, class N>
-void BusLoop<P, N>::stop_drives_after_loss() noexcept {
-  if constexpr (requires { network_.stops_drives(); }) {
-    if (!network_.stops_drives() || stop_.stage() != StopStage::running) return;
-    for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
-      const StopAxis& axis = stop_.axes()[i];
-      if (network_.demands_quick_stop(axis.node_index)) {
-        const bool disabled =
-            axis.statusword && OrderedStop::disabled(pdos_.image().values[*axis.statusword]);
-        pdos_.outputs().force(axis.controlword, disabled ? OrderedStop::disable_voltage_word
-                                                         : OrderedStop::quick_stop_word);
-        quick_stopped_[i] = 1;
-      } else if (quick_stopped_[i] != 0) {
-        pdos_.outputs().release(axis.controlword);
-        quick_stopped_[i] = 0;
-      }
-    }
-  }
-}
-
 template <Port P, class N>
 void BusLoop<P, N>::send_outputs() noexcept {
   if (follower_.arrived()) return;  // it came early: these are outputs of the next cycle
@@ -252,31 +233,6 @@ void BusLoop<P, N>::send_outputs() noexcept {
   pdos_.outputs().sent(frames.empty() ? 0 : send(frames), moment);
 }
 
-/// Begins and follows the ordered stop.
-template <Port P, class N>
-void BusLoop<P, N>::step_stop() noexcept {
-  const Time now = port_.now();
-  if (stop_.stage() == StopStage::running) {
-    if (!asked_to_stop()) return;
-    tell(EventKind::stopping, now);
-    stop_.begin(now);
-    pdos_.outputs().fall_back();
-    call_off_fallbacks();
-    pdo_requests_.cancel_all();
-  }
-  const StopStage before = stop_.stage();
-  stop_.step(now,
-             {.values = pdos_.image().values,
-              .exchanging = exchanging_,
-              .network_stopped = options_.observe || (network_.stopped() && services_.empty())});
-  if (const auto word = stop_.controlword()) {
-    for (const StopAxis& axis : stop_.axes()) pdos_.outputs().force(axis.controlword, *word);
-  }
-  if (before != StopStage::nmt && stop_.stage() == StopStage::nmt) network_.begin_stop(now);
-  done_ = stop_.stage() == StopStage::done;
-  if (done_) tell(EventKind::stopped, now);
-}
-
 template <Port P, class N>
 void BusLoop<P, N>::give_events() noexcept {
   Event event;
@@ -288,6 +244,7 @@ template <Port P, class N>
 void BusLoop<P, N>::write_status() noexcept {
   status_.cycle = clock_.cycle();
   status_.stop = stop_.stage();
+  status_.stop_result = stop_.result();
   status_.events_lost = events_.lost() + network_.events_lost();
   status_.sync = sync_state();
   status_.sync_period = follower_.period();

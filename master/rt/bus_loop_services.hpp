@@ -74,6 +74,7 @@ template <Port P, class N>
 void BusLoop<P, N>::serve_round() noexcept {
   take_requests();
   write_fallbacks();
+  ask_for_stop();
   send_time();
   const Time outputs = clock_.deadline() + plan_.cycle.output_deadline;
   Time last_look = outputs - wire_.worst_dialogue();
@@ -212,10 +213,26 @@ bool BusLoop<P, N>::submit(const Request& request) noexcept {
 }
 
 template <Port P, class N>
+void BusLoop<P, N>::take_answer_of_stop() noexcept {
+  const Time now = port_.now();
+  if (stop_requests_.take(reply_, now, active_stop())) return;
+  const ObjectKey object = stop_requests_.refused_object();
+  events_.push({.when = now,
+                .kind = EventKind::still_armed,
+                .node = stop_requests_.refusing_node(),
+                .detail = std::uint32_t{object.index} << 8U | object.sub,
+                .value = reply_.abort_code});
+}
+
+template <Port P, class N>
 void BusLoop<P, N>::give_replies() noexcept {
   for (;;) {
     if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
     if (FallbackWriter::owns(reply_)) continue;
+    if (StopRequests::owns(reply_)) {
+      take_answer_of_stop();
+      continue;
+    }
     reply_waits_ = !give_reply();
     if (reply_waits_) return;
   }

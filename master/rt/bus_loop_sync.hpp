@@ -151,7 +151,7 @@ bool BusLoop<P, N>::send_sync() noexcept {
   if constexpr (requires { network_.take_sync_restart(); }) {
     if (network_.take_sync_restart()) counter_.restart();
   }
-  if (!hold_.open(network_.nodes())) return false;
+  if (silent() || !hold_.open(network_.nodes())) return false;
   const Frame sync = counter_.used() ? sync_frame(plan_.cycle.sync_cob_id, counter_.next())
                                      : sync_frame(plan_.cycle.sync_cob_id);
   if (send({&sync, 1}) != 1) return false;

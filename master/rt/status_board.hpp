@@ -41,6 +41,7 @@ struct BusStatus {
   std::uint32_t sync_losses = 0;  ///< of a SYNC that another device makes
   Time sync_period{};             ///< the same, as measured
   StopStage stop = StopStage::running;
+  StopResult stop_result = StopResult::none;
   PortNews port;
 };
 static_assert(std::is_trivially_copyable_v<BusStatus>);

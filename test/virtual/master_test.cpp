@@ -269,5 +269,32 @@ TEST(Master, StopsInOrder) {
   EXPECT_EQ(rig.count(EventKind::stopped), 1);
 }
 
+TEST(Master, MakesNoSyncInNmtStoppedButOnlyAfterItsAxesStopped) {
+  Rig rig{test::axes()};
+  ASSERT_TRUE(rig.boot());
+  rig.command_all(0x000F, 1);
+  rig.run(3);
+  rig.recorder.frames.clear();
+  ASSERT_TRUE(
+      rig.master->submit({.kind = RequestKind::nmt, .node = 127, .command = NmtCommand::stop}));
+  rig.run(500);
+
+  const auto words = rig.recorder.with(0x201);
+  const auto syncs = rig.recorder.with(0x080);
+  ASSERT_FALSE(words.empty());
+  ASSERT_FALSE(syncs.empty());
+  EXPECT_EQ(words.back().frame.data[0] & 0x0F, 0x00);  // disable voltage
+  const auto disable = std::ranges::find_if(
+      words, [](const sim::WireFrame& wire) { return (wire.frame.data[0] & 0x0F) == 0; });
+  EXPECT_GT(syncs.back().start, disable->start);
+  EXPECT_LT(syncs.size(), 250U);
+
+  rig.recorder.frames.clear();
+  ASSERT_TRUE(
+      rig.master->submit({.kind = RequestKind::nmt, .node = 127, .command = NmtCommand::start}));
+  rig.run(20);
+  EXPECT_GT(rig.recorder.with(0x080).size(), 15U);
+}
+
 }  // namespace
 }  // namespace takt

@@ -94,7 +94,8 @@ static_assert(Port<FakePort>);
 class FakeNetwork {
  public:
   explicit FakeNetwork(const BusPlan& plan, NetworkOptions options = {})
-      : status_(plan.nodes.size()), up_(plan.nodes.size(), !options.observe) {
+      : status_(plan.nodes.size(), NodeStatus{.boot = BootState::ready, .boot_count = 1}),
+        up_(plan.nodes.size(), !options.observe) {
     newest = this;
   }
   void start(Time) noexcept {}
@@ -126,7 +127,10 @@ class FakeNetwork {
   std::span<const NodeStatus> nodes() const noexcept { return status_; }
   bool exchanges_pdos(std::size_t node) const noexcept { return up_[node] && !stopping; }
   bool starts(std::size_t node) const noexcept { return starting && *starting == node; }
-  void begin_stop(Time) noexcept { stopping = true; }
+  void begin_stop(Time, NmtCommand last) noexcept {
+    stopping = true;
+    last_command = last;
+  }
   bool stopped() const noexcept { return stopping; }
 
   void set_up(std::size_t node, bool up) { up_[node] = up; }
@@ -141,6 +145,7 @@ class FakeNetwork {
   std::optional<std::size_t> starting;
   bool refuse = false;
   bool stopping = false;
+  NmtCommand last_command = NmtCommand::start;
   std::uint64_t lost_events = 0;
   static inline FakeNetwork* newest = nullptr;  ///< the one inside the newest loop
 

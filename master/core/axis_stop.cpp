@@ -1,0 +1,160 @@
+#include "master/core/axis_stop.hpp"
+
+#include <cstdlib>
+
+namespace takt {
+namespace {
+
+constexpr Time silent_after = std::chrono::milliseconds{500};
+
+}  // namespace
+
+void Standstill::rest(Time now, bool within) noexcept {
+  if (!within || !resting_) since_ = now;
+  resting_ = within;
+  last_ = now;
+  measured_ = true;
+}
+
+void Standstill::take(Time now, const AxisSample& sample) noexcept {
+  if (sample.velocity) {
+    velocity_ = *sample.velocity;
+    by_position_ = false;
+    return rest(now, std::abs(velocity_) <= velocity_window_);
+  }
+  if (!sample.position) return;
+  by_position_ = true;
+  if (position_at_ == Time{}) {
+    anchor_ = position_ = *sample.position;
+    position_at_ = now;
+    return;
+  }
+  if (now > position_at_) {
+    const double seconds = std::chrono::duration<double>(now - position_at_).count();
+    velocity_ =
+        static_cast<std::int64_t>(static_cast<double>(*sample.position - position_) / seconds);
+  }
+  position_ = *sample.position;
+  position_at_ = now;
+  const bool within = std::abs(position_ - anchor_) <= position_window_;
+  if (!within) anchor_ = position_;
+  rest(now, within);
+}
+
+void AxisStop::begin(Time now, bool reachable) noexcept {
+  state_ = reachable ? AxisState::unseen : AxisState::exempt;
+  entered_ = answered_ = now;
+}
+
+/// The transitions of an axis. What is not listed changes nothing.
+///
+///   state     seen                                     next
+///   unseen    it is enabled                            braking
+///   unseen    it is disabled                           exempt
+///   braking   enabled, certainly at standstill         standing
+///   braking   disabled                                 settling
+///   standing  disabled                                 stopped
+///   standing  enabled, moves again                     braking
+///   settling  disabled, certainly at standstill        stopped
+///   settling  disabled, moves after the grace          dropped
+///   settling  enabled again                            braking
+///   (any)     the time is over: see cut()              cut
+AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
+  using enum AxisState;
+  const bool enabled = seen == Seen::powered || seen == Seen::standing;
+  switch (state) {
+    case unseen:
+      return enabled ? braking : exempt;
+    case braking:
+      if (!enabled) return seen == Seen::off_rest ? stopped : settling;
+      return seen == Seen::standing ? standing : braking;
+    case standing:
+      if (!enabled) return stopped;
+      return seen == Seen::powered ? braking : standing;
+    case settling:
+      if (enabled) return braking;
+      if (seen == Seen::off_move) return dropped;
+      return seen == Seen::off_rest ? stopped : settling;
+    case exempt:
+    case stopped:
+    case cut:
+    case dropped:
+      return state;
+  }
+  return state;
+}
+
+AxisStop::Seen AxisStop::judge(Time now) const noexcept {
+  if (powered_) return standstill_.certain() ? Seen::standing : Seen::powered;
+  if (standstill_.certain()) return Seen::off_rest;
+  const bool graced = state_ == AxisState::settling && now - entered_ <= settling_grace;
+  return standstill_.moves() && !graced ? Seen::off_move : Seen::off;
+}
+
+void AxisStop::go(AxisState state, Time now) noexcept {
+  if (state == state_) return;
+  if (state == AxisState::settling) velocity_then_ = standstill_.velocity();
+  state_ = state;
+  entered_ = now;
+}
+
+void AxisStop::step(Time now, const AxisSample& sample) noexcept {
+  if (!sample.empty()) answered_ = now;
+  standstill_.take(now, sample);
+  if (sample.statusword) powered_ = !disabled(*sample.statusword);
+  disabled_seen_ = disabled_seen_ || (sample.statusword && !powered_);
+  if (state_ == AxisState::unseen && !sample.statusword) return;
+  // Velocities that come without a statusword say nothing of whether it is enabled.
+  const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
+  if (needs_word && !sample.statusword && !standstill_.certain()) return;
+  // A single value outside the window in `standing` is noise until the window was left for good.
+  if (state_ == AxisState::standing && powered_ && !standstill_.moves()) return;
+  go(next(state_, judge(now)), now);
+}
+
+void AxisStop::cut() noexcept {
+  if (state_ != AxisState::braking) return;
+  velocity_then_ = standstill_.velocity();
+  state_ = AxisState::cut;
+}
+
+bool AxisStop::settled() const noexcept {
+  switch (state_) {
+    case AxisState::exempt:
+    case AxisState::stopped:
+    case AxisState::dropped:
+      return true;
+    case AxisState::cut:
+      return disabled_seen_;
+    case AxisState::unseen:
+    case AxisState::braking:
+    case AxisState::standing:
+    case AxisState::settling:
+      return false;
+  }
+  return false;
+}
+
+std::int64_t AxisStop::controlword() const noexcept {
+  const bool brakes = state_ == AxisState::unseen || state_ == AxisState::braking;
+  return brakes ? quick_stop_word : disable_voltage_word;
+}
+
+std::int64_t AxisStop::velocity() const noexcept {
+  const bool disabled_then =
+      state_ == AxisState::settling || state_ == AxisState::cut || state_ == AxisState::dropped;
+  return disabled_then ? velocity_then_ : standstill_.velocity();
+}
+
+AxisVerdict AxisStop::verdict(Time now, bool exchanging) const noexcept {
+  if (confirmed()) return AxisVerdict::stopped;
+  const bool answers = silence(now) < silent_after;
+  if (state_ == AxisState::dropped || (state_ == AxisState::cut && disabled_seen_)) {
+    return AxisVerdict::moving;
+  }
+  if (!answers) return exchanging ? AxisVerdict::silent : AxisVerdict::lost;
+  if (state_ == AxisState::settling) return AxisVerdict::moving;
+  return state_ == AxisState::unseen ? AxisVerdict::silent : AxisVerdict::enabled;
+}
+
+}  // namespace takt

@@ -1,0 +1,196 @@
+#include "master/core/stop_requests.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace takt {
+namespace {
+
+constexpr Time poll_pause = std::chrono::milliseconds{10};
+constexpr std::uint16_t axis_step = 0x800;
+
+bool keeps_alive(const NodePlan& node) {
+  return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
+    return step.action == BootAction::await_alive;
+  });
+}
+
+/// The value makes the device watch the master. 0x100C goes with 0x100D: one of them is enough.
+bool arms(const BusPlan& plan, const BootStep& step) {
+  if (step.action != BootAction::write && step.action != BootAction::write_if_differs) return false;
+  const bool any = std::ranges::any_of(step.value, [](std::byte b) { return b != std::byte{0}; });
+  switch (step.object.index) {
+    case 0x1016: {
+      const bool whole = step.object.sub != 0 && step.value.size() == 4;
+      return whole && std::to_integer<unsigned>(step.value[2]) == plan.master_id.value();
+    }
+    case 0x1006:
+      return any && plan.cycle.makes_sync();
+    case 0x100D:
+      return any;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+StopRequests::StopRequests(const BusPlan& plan)
+    : plan_{plan},
+      axes_{OrderedStop::axes_of(plan)},
+      polls_(axes_.size()),
+      failed_(plan.nodes.size()) {
+  if (plan.stop_disarm != StopDisarm::sdo) return;
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    const NodePlan& node = plan.nodes[i];
+    if (node.boot && !keeps_alive(node)) add_jobs(plan, static_cast<std::uint8_t>(i));
+  }
+}
+
+void StopRequests::add_jobs(const BusPlan& plan, std::uint8_t node_index) {
+  const NodePlan& node = plan.nodes[node_index];
+  const std::size_t first = jobs_.size();
+  for (const BootStep& step : node.boot_plan.steps) {
+    const auto same = [&](const Job& job) {
+      return job.node_index == node_index && job.object == step.object;
+    };
+    if (!arms(plan, step) || std::ranges::any_of(jobs_, same)) continue;
+    if (jobs_.size() == first) {
+      jobs_.push_back({.node = node.id.value(), .node_index = node_index});
+    }
+    jobs_.push_back({.node = node.id.value(),
+                     .node_index = node_index,
+                     .object = step.object,
+                     .bytes = static_cast<std::uint8_t>(step.value.size())});
+  }
+}
+
+void StopRequests::begin() noexcept {
+  for (Poll& poll : polls_) poll = {.waiting = poll.waiting};
+  std::ranges::fill(failed_, std::uint8_t{0});
+  next_job_ = answered_ = turn_ = 0;
+}
+
+void StopRequests::ask(std::size_t axis, Word word, std::int64_t value) noexcept {
+  constexpr std::array<std::uint16_t, 4> bases{0x6041, 0x606C, 0x6064, 0x6040};
+  const StopAxis& of = axes_[axis];
+  const auto kind = static_cast<std::size_t>(word);
+  const bool writes = word == Word::control;
+  asked_ = axis;
+  request_.id = mark | axis << 8U | kind;
+  request_.kind = writes ? RequestKind::sdo_download : RequestKind::sdo_upload;
+  request_.node = plan_.nodes[of.node_index].id.value();
+  request_.object = {static_cast<std::uint16_t>(bases[kind] + of.number * axis_step), 0};
+  request_.size = writes ? 2 : 0;
+  request_.data[0] = static_cast<std::byte>(value & 0xFF);
+  request_.data[1] = static_cast<std::byte>(value >> 8 & 0xFF);
+}
+
+bool StopRequests::read_next(std::size_t axis, bool needs_word, bool needs_motion) noexcept {
+  Poll& poll = polls_[axis];
+  if (!needs_word && !needs_motion) return false;
+  poll.word_next = needs_word && (!needs_motion || !poll.word_next);
+  const Word motion = poll.no_velocity ? Word::position : Word::velocity;
+  ask(axis, poll.word_next ? Word::status : motion);
+  return true;
+}
+
+/// A controlword that no PDO carries comes first.
+bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& stop,
+                               bool exchanging) noexcept {
+  const StopAxis& of = axes_[axis];
+  const AxisStop& state = stop.axis(axis);
+  if (polls_[axis].waiting || now < polls_[axis].due || state.settled()) return false;
+  const auto word = stop.controlword(axis);
+  const bool by_sdo = !of.controlword || !exchanging;
+  const bool known = state.state() != AxisState::unseen;
+  if (by_sdo && known && word && *word != polls_[axis].written) {
+    polls_[axis].writing = *word;
+    ask(axis, Word::control, *word);
+    return true;
+  }
+  const bool moves_unseen = !exchanging || (!of.velocity && !of.position);
+  return read_next(axis, !exchanging || !of.statusword, moves_unseen);
+}
+
+/// The writes of a device follow each other; after one that it does not take no more are tried.
+const Request* StopRequests::next_job(std::span<const NodeStatus> nodes) noexcept {
+  for (; next_job_ < jobs_.size(); ++next_job_, ++answered_) {
+    const Job& job = jobs_[next_job_];
+    const bool there = nodes[job.node_index].boot == BootState::ready;
+    if (job.object == ObjectKey{} && !there) failed_[job.node_index] = 1;
+    if (failed_[job.node_index] != 0) continue;
+    const bool nmt = job.object == ObjectKey{};
+    request_.id = mark | of_job | next_job_;
+    request_.kind = nmt ? RequestKind::nmt : RequestKind::sdo_download;
+    request_.command = NmtCommand::enter_preoperational;
+    request_.node = job.node;
+    request_.object = job.object;
+    request_.size = job.bytes;
+    std::ranges::fill(std::span{request_.data}.first(job.bytes), std::byte{0});
+    return &request_;
+  }
+  return nullptr;
+}
+
+const Request* StopRequests::next(Time now, const OrderedStop& stop,
+                                  std::span<const bool> exchanging,
+                                  std::span<const NodeStatus> nodes) noexcept {
+  if (stop.stage() == StopStage::disarm) return next_job(nodes);
+  if (stop.stage() == StopStage::running || stop.axes_done()) return nullptr;
+  for (std::size_t left = polls_.size(); left != 0; --left) {
+    turn_ = turn_ + 1 < polls_.size() ? turn_ + 1 : 0;
+    if (due_of_axis(turn_, now, stop, exchanging[axes_[turn_].node_index])) return &request_;
+  }
+  return nullptr;
+}
+
+void StopRequests::submitted() noexcept {
+  if ((request_.id & of_job) != 0) {
+    ++next_job_;
+  } else {
+    polls_[asked_].waiting = true;
+  }
+}
+
+bool StopRequests::take(const Reply& reply, Time now, OrderedStop& stop) noexcept {
+  if ((reply.id & of_job) != 0) {
+    ++answered_;
+    const Job& job = jobs_[reply.id & 0xFFFF];
+    if (reply.fault == SdoFault::none) return true;
+    refused_ = job;
+    return std::exchange(failed_[job.node_index], std::uint8_t{1}) != 0;
+  }
+  const std::size_t axis = reply.id >> 8U & 0xFFFF;
+  polls_[axis].waiting = false;
+  polls_[axis].due = now + poll_pause;
+  take_value(axis, static_cast<Word>(reply.id & 0xFF), reply, stop);
+  return true;
+}
+
+void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
+                              OrderedStop& stop) noexcept {
+  Poll& poll = polls_[axis];
+  if (word == Word::control) {
+    if (reply.fault == SdoFault::none) poll.written = poll.writing;
+    return;
+  }
+  if (reply.fault == SdoFault::aborted_by_device && word == Word::velocity) {
+    poll.no_velocity = true;
+  }
+  if (reply.fault != SdoFault::none || reply.size == 0 || reply.size > 4) return;
+  std::uint32_t raw = 0;
+  for (std::size_t i = 0; i < reply.size; ++i) {
+    raw |= std::to_integer<std::uint32_t>(reply.data[i]) << (8 * i);
+  }
+  const int unused = 32 - 8 * static_cast<int>(reply.size);
+  const auto value = static_cast<std::int32_t>(raw << unused) >> unused;
+  AxisSample sample;
+  if (word == Word::status) sample.statusword = raw & 0xFFFF;
+  if (word == Word::velocity) sample.velocity = value;
+  if (word == Word::position) sample.position = value;
+  stop.take(axis, sample);
+}
+
+}  // namespace takt

@@ -1,0 +1,100 @@
+#include "master/core/stop_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "master/core/axis_stop.hpp"
+#include "master/core/boot_report.hpp"
+#include "master/core/report_text.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+namespace takt {
+namespace {
+
+constexpr unsigned axis_step = 0x800;
+constexpr std::uint32_t by_position = 1U << 16U;
+
+unsigned axis_number(const Event& event) { return event.detail >> 8U & 0xFF; }
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+/// In the unit of the network file, below 1 m/s in mm/s; raw where there is no unit.
+std::string velocity_text(const BusPlan& plan, const Event& event) {
+  const bool differences = (event.detail & by_position) != 0;
+  const auto index =
+      static_cast<std::uint16_t>((differences ? 0x6064 : 0x606C) + axis_number(event) * axis_step);
+  const auto& signals = plan.layout.signals;
+  const auto signal = std::ranges::find_if(signals, [&](const Signal& s) {
+    return s.node.value() == event.node && s.object == ObjectKey{index, 0} && !s.unit.empty();
+  });
+  const auto raw = static_cast<double>(event.value);
+  if (signal == signals.end()) {
+    return number_text(raw) + (differences ? " counts/s" : " (606C)");
+  }
+  const double speed = std::abs(raw * signal->scale);
+  const std::string unit = signal->unit + (differences ? "/s" : "");
+  if (unit == "m/s" && speed < 1) return number_text(speed * 1000) + " mm/s";
+  return number_text(speed) + " " + unit;
+}
+
+}  // namespace
+
+std::string reaction_text(const Event& event) {
+  switch (static_cast<LossReaction>(event.value)) {
+    case LossReaction::stop_node:
+      return "NMT stop to it; it stays away until it is reset or started (`takt nmt reset`)";
+    case LossReaction::stop_group:
+      return "NMT stop to its group; the nodes stay away until they are reset or started";
+    case LossReaction::quick_stop:
+      return "quick stop of the drives that depend on it";
+    case LossReaction::report:
+      break;
+  }
+  return "it is told";
+}
+
+std::string axis_stop_text(const BusPlan& plan, const Event& event) {
+  switch (static_cast<AxisVerdict>(event.detail & 0xFF)) {
+    case AxisVerdict::stopped:
+      return "was stopped and disabled";
+    case AxisVerdict::moving:
+      return "was disabled at " + velocity_text(plan, event);
+    case AxisVerdict::enabled:
+      return "was not disabled, its velocity is " + velocity_text(plan, event);
+    case AxisVerdict::silent:
+      return "no answer for " + time_text(Time{event.value});
+    case AxisVerdict::lost:
+      return "the drive is lost, no answer for " + time_text(Time{event.value});
+  }
+  return "was not stopped";
+}
+
+std::string named_axis_stop_text(const BusPlan& plan, const Event& event) {
+  const NodePlan* const node = plan.find(event.node);
+  std::string text = node == nullptr ? "node " + std::to_string(int{event.node}) : node->name;
+  if (const unsigned axis = axis_number(event); axis != 0) {
+    text += " axis " + std::to_string(axis + 1);
+  }
+  const auto verdict = static_cast<AxisVerdict>(event.detail & 0xFF);
+  const bool sentence = verdict != AxisVerdict::silent && verdict != AxisVerdict::lost;
+  return text + (sentence ? " " : ": ") + axis_stop_text(plan, event);
+}
+
+std::string still_armed_text(const Event& event) {
+  const ObjectKey object{static_cast<std::uint16_t>(event.detail >> 8U),
+                         static_cast<std::uint8_t>(event.detail)};
+  const std::string why =
+      event.value == 0
+          ? "gave no answer"
+          : "refused it (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+  return "the write that disarms " + to_string(object) + " failed, the device " + why +
+         ": it may report that its master is gone";
+}
+
+}  // namespace takt

@@ -1,0 +1,166 @@
+#pragma once
+// Member functions of BusLoop: the ordered stop, the stop of a master in NMT Stopped, and drives
+// that stop because another node was lost.
+#include "master/rt/bus_loop.hpp"
+
+namespace takt {
+
+/// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
+template <Port P, class N>
+void BusLoop<P, N>::stop_drives_after_loss() noexcept {
+  if constexpr (requires { network_.stops_drives(); }) {
+    const bool stopping = active_stop().stage() != StopStage::running;
+    if (!network_.stops_drives() || stopping) return;
+    for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
+      const StopAxis& axis = stop_.axes()[i];
+      if (!axis.controlword) continue;
+      if (network_.demands_quick_stop(axis.node_index)) {
+        const bool disabled =
+            axis.statusword && OrderedStop::disabled(pdos_.image().values[*axis.statusword]);
+        pdos_.outputs().force(*axis.controlword, disabled ? OrderedStop::disable_voltage_word
+                                                          : OrderedStop::quick_stop_word);
+        quick_stopped_[i] = 1;
+      } else if (quick_stopped_[i] != 0) {
+        pdos_.outputs().release(*axis.controlword);
+        quick_stopped_[i] = 0;
+      }
+    }
+  }
+}
+
+template <Port P, class N>
+StopView BusLoop<P, N>::stop_view() const noexcept {
+  return {.values = pdos_.image().values,
+          .stale = pdos_.image().stale,
+          .exchanging = exchanging_,
+          .nodes = network_.nodes(),
+          .disarmed = options_.observe || stop_requests_.disarmed(),
+          .network_stopped = options_.observe || (network_.stopped() && services_.empty())};
+}
+
+/// The one whose axes are stopped now. The ordered stop takes the place of a halt.
+template <Port P, class N>
+OrderedStop& BusLoop<P, N>::active_stop() noexcept {
+  return stop_.stage() == StopStage::running ? halt_ : stop_;
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::begin_stop(Time now) noexcept {
+  tell(EventKind::stopping, now);
+  if (options_.observe) {
+    stop_.begin_idle(now);
+  } else {
+    stop_.begin(now, network_.nodes());
+  }
+  halt_.call_off();
+  stop_requests_.begin();
+  pdos_.outputs().fall_back();
+  call_off_fallbacks();
+  pdo_requests_.cancel_all();
+}
+
+/// Begins and follows the ordered stop.
+template <Port P, class N>
+void BusLoop<P, N>::step_stop() noexcept {
+  const Time now = port_.now();
+  follow_own_state();
+  if (stop_.stage() == StopStage::running) {
+    if (!asked_to_stop()) return;
+    begin_stop(now);
+  }
+  const StopStage before = stop_.stage();
+  const bool decided = stop_.axes_done();
+  stop_.step(now, stop_view());
+  force_axes(stop_);
+  if (!decided && stop_.axes_done()) tell_unconfirmed(now);
+  if (before != StopStage::nmt && stop_.stage() == StopStage::nmt) {
+    const bool resets = stop_.result() == StopResult::confirmed &&
+                        plan_.stop_disarm == StopDisarm::reset_communication;
+    network_.begin_stop(
+        now, resets ? NmtCommand::reset_communication : NmtCommand::enter_preoperational);
+  }
+  done_ = stop_.stage() == StopStage::done;
+  if (done_) tell(EventKind::stopped, now);
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::force_axes(const OrderedStop& stop) noexcept {
+  for (std::size_t i = 0; i < stop.axes().size(); ++i) {
+    const auto signal = stop.axes()[i].controlword;
+    const auto word = stop.controlword(i);
+    if (signal && word) pdos_.outputs().force(*signal, *word);
+  }
+}
+
+/// One event for each axis that was not seen at standstill and disabled.
+template <Port P, class N>
+void BusLoop<P, N>::tell_unconfirmed(Time now) noexcept {
+  for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
+    const StopAxis& axis = stop_.axes()[i];
+    const AxisStop& stop = stop_.axis(i);
+    const AxisVerdict verdict = stop.verdict(now, exchanging_[axis.node_index]);
+    if (verdict == AxisVerdict::stopped) continue;
+    const bool told_time = verdict == AxisVerdict::silent || verdict == AxisVerdict::lost;
+    events_.push({.when = now,
+                  .kind = EventKind::axis_not_stopped,
+                  .node = plan_.nodes[axis.node_index].id.value(),
+                  .detail = static_cast<std::uint32_t>(verdict) | std::uint32_t{axis.number} << 8U |
+                            (stop.by_position() ? 1U << 16U : 0U),
+                  .value = told_time ? stop.silence(now).count() : stop.velocity()});
+  }
+}
+
+/// What the stop reads and writes by SDO. A master in NMT Stopped disarms nothing: it is still
+/// there.
+template <Port P, class N>
+void BusLoop<P, N>::ask_for_stop() noexcept {
+  const OrderedStop& stop = active_stop();
+  const bool halted = &stop == &halt_ && halt_.axes_done();
+  if (options_.observe || halted || stop.stage() == StopStage::running) return;
+  const Time now = port_.now();
+  while (const Request* request = stop_requests_.next(now, stop, exchanging_, network_.nodes())) {
+    if (!network_.submit(*request, now)) return;
+    stop_requests_.submitted();
+  }
+}
+
+/// A master in NMT Stopped makes no SYNC, but only after its axes were stopped. CiA 301, 7.3.2.2.
+template <Port P, class N>
+void BusLoop<P, N>::follow_own_state() noexcept {
+  if constexpr (requires { network_.own_state(); }) {
+    if (options_.observe || stop_.stage() != StopStage::running) return;
+    const bool stopped = network_.own_state() == NmtState::stopped;
+    const bool halting = halt_.stage() != StopStage::running;
+    const Time now = port_.now();
+    if (stopped && !halting) begin_halt(now);
+    if (!stopped && halting) end_halt();
+    if (!stopped || halt_.axes_done()) return;
+    halt_.step(now, stop_view());
+    force_axes(halt_);
+  }
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::begin_halt(Time now) noexcept {
+  halt_.begin(now, network_.nodes());
+  stop_requests_.begin();
+  pdos_.outputs().fall_back();
+  call_off_fallbacks();
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::end_halt() noexcept {
+  halt_.call_off();
+  for (const StopAxis& axis : halt_.axes()) {
+    if (axis.controlword) pdos_.outputs().release(*axis.controlword);
+  }
+  pdos_.outputs().hear_again();
+}
+
+/// No SYNC in NMT Stopped. In an ordered stop SYNC is needed again to see the axes.
+template <Port P, class N>
+bool BusLoop<P, N>::silent() const noexcept {
+  return stop_.stage() == StopStage::running && halt_.axes_done();
+}
+
+}  // namespace takt

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+#include <string>
+
+#include "apps/simulate/simulation.hpp"
+#include "test/support/folder.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Machine {
+  std::string master{};
+  std::string sdo{};
+};
+
+/// Two drives that count um; `master` has more keys of it, `sdo` objects of drive z.
+LoadedNetwork machine(const test::Folder& folder, const Machine& machine = {}) {
+  const std::string axis =
+      "dcf: " TAKT_SOURCE_DIR
+      "/share/eds/takt_drive402.eds\n"
+      "    profile: cia402\n"
+      "    units: {position: {scale: 1.0e-6, unit: m}, velocity: {scale: 1.0e-6, unit: m/s}}\n"
+      "    tpdo:\n"
+      "      1: {transmission: 1, cob_id: auto, mapping: [{index: 0x6041}, {index: 0x6064}]}\n"
+      "      2: {transmission: 1, cob_id: auto, mapping: [{index: 0x606C}]}\n"
+      "      3: {enabled: false}\n"
+      "      4: {enabled: false}\n"
+      "    rpdo:\n"
+      "      1: {transmission: 1, cob_id: auto, mapping: [{index: 0x6040}, {index: 0x607A}]}\n"
+      "      2: {transmission: 1, cob_id: auto, mapping: [{index: 0x6060}]}\n"
+      "      3: {enabled: false}\n"
+      "      4: {enabled: false}\n";
+  return load_network(folder.write("net.yaml",
+                                   "bus: {name: lift, bitrate_kbit: 1000}\n"
+                                   "master: {sync_period: 4000, heartbeat_producer: 100" +
+                                       machine.master +
+                                       "}\n"
+                                       "nodes:\n"
+                                       "  y:\n    node_id: 1\n    " +
+                                       axis + "  z:\n    node_id: 2\n    " + axis + "    sdo: [" +
+                                       machine.sdo + "]\n"));
+}
+
+bool warns(const LoadedNetwork& network, const std::string& text) {
+  for (const Finding& finding : network.findings) {
+    if (finding.message.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(OrderedStopOfABus, IsConfirmedWhereEveryDriveStopsAndIsDisabled) {
+  const test::Folder folder;
+  const auto outcome = simulate(machine(folder), {.duration = 4300ms, .move = true});
+  EXPECT_EQ(outcome.axes_moved, 2U);
+  EXPECT_TRUE(outcome.stopped);
+  EXPECT_EQ(outcome.stop, StopResult::confirmed);
+  EXPECT_TRUE(outcome.unconfirmed.empty());
+}
+
+TEST(OrderedStopOfABus, TellsAtWhichVelocityADriveWasDisabled) {
+  const test::Folder folder;
+  const auto network =
+      machine(folder, {.master = ", stop_timeout: 1000", .sdo = "{index: 0x6085, value: 100}"});
+  EXPECT_TRUE(warns(network, "`z` needs"));
+
+  const auto outcome = simulate(network, {.duration = 4300ms, .move = true});
+
+  EXPECT_TRUE(outcome.stopped);
+  EXPECT_EQ(outcome.stop, StopResult::unconfirmed);
+  ASSERT_EQ(outcome.unconfirmed.size(), 1U);
+  EXPECT_EQ(outcome.unconfirmed[0].find("z was disabled at "), 0U) << outcome.unconfirmed[0];
+  EXPECT_NE(outcome.unconfirmed[0].find("mm/s"), std::string::npos) << outcome.unconfirmed[0];
+}
+
+// A ramp of 6 s, a quarter more for its detection, and the other stages.
+TEST(OrderedStopOfABus, HasTheTimeThatTheSlowestRampNeeds) {
+  const test::Folder folder;
+  const auto network =
+      machine(folder, {.sdo = "{index: 0x607F, value: 600000}, {index: 0x6085, value: 100000}"});
+
+  EXPECT_FALSE(warns(network, "`z` needs"));
+  EXPECT_EQ(network.plan.nodes[1].axes.at(0).stopping_time, 6s);
+  EXPECT_EQ(network.plan.stop_timeout, 9375ms);
+}
+
+TEST(OrderedStopOfABus, WarnsWithBothNumbersWhereTheTimeIsTooShort) {
+  const test::Folder folder;
+  const auto network =
+      machine(folder, {.master = ", stop_timeout: 5000",
+                       .sdo = "{index: 0x607F, value: 600000}, {index: 0x6085, value: 100000}"});
+
+  EXPECT_TRUE(warns(network,
+                    "drive `z` needs 6.0 s to stop from its velocity limit (607F, 6080) along "
+                    "6085:00; the ordered stop gives it 4.0 s"));
+  EXPECT_TRUE(warns(network, "Write `master: {stop_timeout: 9400}`, or a steeper ramp"));
+}
+
+TEST(OrderedStopOfABus, NeverLastsLongerThanHalfAMinuteByDefault) {
+  const test::Folder folder;
+  const auto network =
+      machine(folder, {.sdo = "{index: 0x607F, value: 600000}, {index: 0x6085, value: 1000}"});
+
+  EXPECT_EQ(network.plan.stop_timeout, 30s);
+  EXPECT_TRUE(warns(network, "drive `z` needs 600.0 s"));
+}
+
+TEST(OrderedStopOfABus, WarnsOfADriveThatCoasts) {
+  const test::Folder folder;
+  EXPECT_TRUE(warns(machine(folder, {.sdo = "{index: 0x605A, value: 0}"}), "`z` coasts"));
+}
+
+TEST(OrderedStopOfABus, DisablesADriveThatStaysInQuickStop) {
+  const test::Folder folder;
+  const auto outcome = simulate(machine(folder, {.sdo = "{index: 0x605A, value: 6}"}),
+                                {.duration = 4300ms, .move = true});
+  EXPECT_EQ(outcome.stop, StopResult::confirmed);
+}
+
+/// The devices watch the master for 300 ms (0x1016).
+constexpr Time silence = 3s;
+
+TEST(OrderedStopOfABus, LeavesNoDeviceThatMissesItsMaster) {
+  const test::Folder folder;
+  for (const std::string way : {"sdo", "reset_communication"}) {
+    const auto network = machine(folder, {.master = ", stop_disarm: " + way, .sdo = ""});
+    const auto outcome = simulate(network, {.duration = 4300ms, .move = true, .after = silence});
+    EXPECT_EQ(outcome.stop, StopResult::confirmed) << way;
+    EXPECT_EQ(outcome.emcy_after, 0U) << way;
+  }
+}
+
+TEST(OrderedStopOfABus, LeavesTheDevicesArmedWhereAnAxisIsNotConfirmed) {
+  const test::Folder folder;
+  const auto network =
+      machine(folder, {.master = ", stop_timeout: 1000", .sdo = "{index: 0x6085, value: 100}"});
+  const auto outcome = simulate(network, {.duration = 4300ms, .move = true, .after = silence});
+  EXPECT_EQ(outcome.stop, StopResult::unconfirmed);
+  EXPECT_NE(outcome.emcy_after, 0U);
+}
+
+}  // namespace
+}  // namespace takt
