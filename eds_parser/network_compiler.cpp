@@ -12,6 +12,7 @@
 #include "eds_parser/device_notes.hpp"
 #include "eds_parser/device_rules.hpp"
 #include "eds_parser/device_watch.hpp"
+#include "eds_parser/drive_questions.hpp"
 #include "eds_parser/error_control.hpp"
 #include "eds_parser/integer_of.hpp"
 #include "eds_parser/layout_compiler.hpp"
@@ -19,6 +20,7 @@
 #include "eds_parser/lss_compiler.hpp"
 #include "eds_parser/node_values.hpp"
 #include "eds_parser/pdo_compiler.hpp"
+#include "eds_parser/pdo_times.hpp"
 #include "eds_parser/profile_of.hpp"
 #include "eds_parser/sdo_servers.hpp"
 #include "eds_parser/service_ids.hpp"
@@ -33,6 +35,7 @@ constexpr std::uint32_t default_sdo_timeout_ms = 500;
 constexpr std::uint32_t default_boot_timeout_ms = 3000;
 constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
+constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
 constexpr std::uint8_t stand_in_id = 127;
 constexpr int stop_cycles = 10;  // an ordered stop without axes takes five
 
@@ -49,11 +52,6 @@ std::string channel_form(const std::string& name) {
   std::string out = lower(name);
   std::ranges::replace(out, '-', '_');
   return out;
-}
-
-bool is_cia402(const NodeSource& node) {
-  if (node.spec->profile.given) return *node.spec->profile == "cia402";
-  return profile_of(*node.dictionary) == 402 && has_drive_words(*node.dictionary);
 }
 
 class NetworkCompiler {
@@ -75,6 +73,8 @@ class NetworkCompiler {
       judge_by_device_data(node, spec_.master, report_);
     }
     assign_cob_ids(nodes_, service_ids(spec_, nodes_, report_), report_);
+    for (const NodePdos& node : nodes_) judge_pdo_times(node, plan().bitrate, report_);
+    ask_about_drives(nodes_, report_);
     for (const NodePdos& node : nodes_) add_node(node);
     error_control_.tell_unused_retry_factor();
     compile_layout(nodes_, plan(), report_);
@@ -198,6 +198,17 @@ class NetworkCompiler {
                       ") would share their LCM channels: names differ by more than case");
   }
 
+  Time longest_reboot_delay(const NodeSpec& spec, Time first) {
+    const Time longest =
+        milliseconds(spec.reboot_delay_max_ms.value_or(default_reboot_delay_max_ms));
+    if (spec.reboot_delay_max_ms.given && longest < first) {
+      report_.error(spec.reboot_delay_max_ms.pos, "range",
+                    "`reboot_delay_max_ms` of node `" + spec.name +
+                        "` is shorter than its `reboot_delay_ms`, with which the pauses begin");
+    }
+    return std::max(first, longest);
+  }
+
   void add_node(const NodePdos& source) {
     const NodeSpec& spec = *source.node.spec;
     const ObjectDictionary& dictionary = *source.node.dictionary;
@@ -212,6 +223,7 @@ class NetworkCompiler {
         .boot_plan = {},
         .sdo_timeout = milliseconds(spec.sdo_timeout_ms.value_or(default_sdo_timeout_ms)),
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
+    node.longest_reboot_delay = longest_reboot_delay(spec, node.reboot_delay);
     node.heartbeat_timeout = error_control_.heartbeat_timeout(source.node);
     node.heartbeat_period = milliseconds(*spec.boot ? error_control_.producer_ms(source.node) : 0);
     node.guard = error_control_.guard(source.node);

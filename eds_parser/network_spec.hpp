@@ -200,6 +200,7 @@ struct NodeSpec {
   Sourced<std::uint32_t> boot_timeout_ms;
   Sourced<std::uint32_t> sdo_timeout_ms;
   Sourced<std::uint32_t> reboot_delay_ms;
+  Sourced<std::uint32_t> reboot_delay_max_ms;
   Sourced<SdoBlockUse> sdo_block;
   Sourced<SdoChannel> sdo_channel;
   std::vector<SdoObjectTimeout> sdo_timeouts;

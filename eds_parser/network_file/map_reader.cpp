@@ -154,6 +154,13 @@ SourcePos MapReader::key_pos(std::string_view key) const noexcept {
   return node_.pos;
 }
 
+bool MapReader::has_slip_of(std::string_view key) const {
+  return std::ranges::any_of(node_.pairs, [&](const YamlPair& pair) {
+    const bool known = std::ranges::find(known_, pair.key) != known_.end();
+    return !known && nearest(pair.key, known_) == key;
+  });
+}
+
 void MapReader::number(std::string_view key, Sourced<double>& out) {
   if (const YamlNode* node = take(key)) {
     if (const auto value = read_number(*node, key, report_)) out = {*value, node->pos, true};

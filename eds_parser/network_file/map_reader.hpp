@@ -39,6 +39,10 @@ class MapReader {
 
   const YamlNode* take(std::string_view key);
   SourcePos key_pos(std::string_view key) const noexcept;
+  bool is_map() const noexcept { return node_.kind == YamlNode::Kind::map; }
+  /// `key` is not there, but an unknown key that is most likely a slip of it, which finish() tells.
+  /// After all keys are taken.
+  bool has_slip_of(std::string_view key) const;
 
   template <class T>
   void integer(std::string_view key, Sourced<T>& out, IntegerRange range) {

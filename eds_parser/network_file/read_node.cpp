@@ -157,6 +157,7 @@ void read_boot(MapReader& reader, NodeSpec& node) {
   reader.integer("boot_timeout_ms", node.boot_timeout_ms, {1, 600'000, " ms"});
   reader.integer("sdo_timeout_ms", node.sdo_timeout_ms, {1, 60'000, " ms"});
   reader.integer("reboot_delay_ms", node.reboot_delay_ms, {1, 600'000, " ms"});
+  reader.integer("reboot_delay_max_ms", node.reboot_delay_max_ms, {1, 600'000, " ms"});
 }
 
 void read_heartbeat(MapReader& reader, NodeSpec& node) {
@@ -308,13 +309,14 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
   reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
   if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
-  if (!has_id) report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
+  if (!has_id && !reader.has_slip_of("node_id"))
+    report.error(pos, "missing-key", "node `" + name + "` lacks `node_id` (1..127)");
   if (misnamed != nullptr) {
     report.error(reader.key_pos("eds"), "missing-key",
                  "node `" + name +
                      "` names its device file by `eds`: no reader of such files takes that; the "
                      "key is `dcf`, for an EDS as well");
-  } else if (!spec.dcf.given && node.find("dcf") == nullptr) {
+  } else if (!spec.dcf.given && node.find("dcf") == nullptr && !reader.has_slip_of("dcf")) {
     report.error(pos, "missing-key",
                  "node `" + name + "` lacks `dcf`, the name of its EDS or DCF file");
   }

@@ -32,8 +32,9 @@ class BootText {
     }
     lines_.line("boot of node {} {}: {} steps; SDO answers within {}, tried again after {}{}",
                 node_.id.value(), node_.name, node_.boot_plan.steps.size(),
-                span_text(node_.sdo_timeout), span_text(node_.reboot_delay),
+                span_text(node_.sdo_timeout), pauses(),
                 node_.start_later ? "; started with the network, by one broadcast" : "");
+    lines_.line("  NMT PRE-OPERATIONAL before the first write, unless its heartbeat says it");
     sdo_access();
     const std::vector<bool> inside = skippable(node_.boot_plan);
     const std::vector<StepFrames> frames = step_frames(node_);
@@ -43,6 +44,12 @@ class BootText {
   }
 
  private:
+  std::string pauses() const {
+    const std::string first = span_text(node_.reboot_delay);
+    if (node_.longest_reboot_delay <= node_.reboot_delay) return first;
+    return first + ", then twice as long each time up to " + span_text(node_.longest_reboot_delay);
+  }
+
   /// Only what differs from the usual.
   void sdo_access() {
     if (const auto& channel = node_.sdo.channel) {

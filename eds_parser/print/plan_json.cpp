@@ -167,6 +167,7 @@ Json node_json(const BusPlan& plan, std::size_t index) {
           {"sdo_answer_cob_id", node.sdo.channel_of(node.id).answer.id()},
           {"sdo_timeout_us", us(node.sdo_timeout)},
           {"reboot_delay_us", us(node.reboot_delay)},
+          {"reboot_delay_max_us", us(node.longest_reboot_delay)},
           {"lss", node.lss.has_value()},
           {"device_data", node.device_data},
           {"device_data_file", node.device_data_file},

@@ -109,8 +109,9 @@ struct NodePlan {
   std::uint8_t group = 0;  ///< index into BusPlan::groups + 1; 0 = none
   Time sdo_timeout{};      ///< of requests while running
   SdoAccess sdo{};
-  Time reboot_delay{};                      ///< pause before a failed boot is tried again
-  std::string device_data{};                ///< entry that was applied: "Lenze 8400 HighLine"
+  Time reboot_delay{};          ///< pause before a failed boot is tried again; it doubles up to ...
+  Time longest_reboot_delay{};  ///< ... this, while the boot fails
+  std::string device_data{};    ///< entry that was applied: "Lenze 8400 HighLine"
   std::string device_data_file{};           ///< "lenze8400.yaml"
   std::vector<std::string> device_notes{};  ///< what it says, a line each
   std::vector<EmcyText> emcy_texts{};       ///< of this device family

@@ -11,10 +11,10 @@ inline constexpr std::array<std::string_view, 8> sim_models{
 
 /// `sim: {quirks: [...]}`: what is always wrong or special with a simulated device. The last four
 /// are features (of inputs and outputs, plain301, any device), the others faults that last.
-inline constexpr std::array<std::string_view, 17> sim_quirks{
-    "late_bootup",   "no_bootup",   "bootup_storm", "self_start", "no_start",
-    "no_heartbeat",  "no_guarding", "stuck_toggle", "mute_sdo",   "mute_pdo",
-    "fixed_mapping", "lss_silent",  "lss_no_store", "loopback",   "event_timer_raster",
-    "lss",           "no_node_id"};
+inline constexpr std::array<std::string_view, 18> sim_quirks{
+    "late_bootup",        "no_bootup",     "bootup_storm", "self_start",   "no_start",
+    "preop_only",         "no_heartbeat",  "no_guarding",  "stuck_toggle", "mute_sdo",
+    "mute_pdo",           "fixed_mapping", "lss_silent",   "lss_no_store", "loopback",
+    "event_timer_raster", "lss",           "no_node_id"};
 
 }  // namespace takt

@@ -4,6 +4,7 @@
 #include "master/core/boot_report.hpp"
 #include "master/core/report_text.hpp"
 #include "master/core/request.hpp"
+#include "master/wire/sdo_abort.hpp"
 
 namespace takt {
 namespace {
@@ -151,6 +152,39 @@ std::string against_long_answer(const BootStep& step, const BootFailure& failure
          " bytes: remove it from the network file";
 }
 
+/// A slow server, or one that answers something else, is no silent one.
+std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
+  if (failure.late > node.sdo_timeout && node.sdo_timeout > Time{}) {
+    return "the device answers after " + time_text(failure.late) + ": raise `sdo_timeout_ms` of " +
+           "this node, which is " + time_text(node.sdo_timeout) + " now";
+  }
+  if (failure.answered == ObjectKey{}) return {};
+  return "the device answers with " + to_string(failure.answered) + " where " +
+         to_string(failure.object) +
+         " was asked for: its SDO server is faulty (look for other firmware), or a second SDO "
+         "client talks to it at the same time (stop other masters and tools)";
+}
+
+/// The master has ended the transfer, because the answer breaks the protocol.
+std::string against_protocol_error(const BootFailure& failure) {
+  const std::string other =
+      ". Or a second SDO client talks to the node at the same time (stop other masters and tools)";
+  if (failure.abort_code == abort_code::toggle_not_alternated) {
+    return "the device does not alternate the toggle bit of its segments, so that one may be lost "
+           "or come twice; the master has ended the transfer. Its SDO server is faulty with values "
+           "of more than 4 bytes: look for other firmware, or leave the object out" +
+           other;
+  }
+  if (failure.abort_code == abort_code::command_unknown) {
+    return "the answer has a command specifier that does not belong to the request; the master has "
+           "ended the transfer. The SDO server of the device is faulty: look for other firmware" +
+           other;
+  }
+  return "the answers break the SDO protocol, and the master has ended the transfer: the SDO "
+         "server of the device is faulty" +
+         other + ", or two nodes share the id";
+}
+
 std::string against_timeout(const BusPlan& plan, const NodePlan& node, const BootStep& step,
                             const BootFailure& failure) {
   switch (step.action) {
@@ -172,6 +206,7 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
     default:
       break;
   }
+  if (const std::string odd = against_odd_answers(node, failure); !odd.empty()) return odd;
   if (failure.downloading && (failure.moved != 0 || accepted_block(failure))) {
     return "the device fell silent in the middle of a long value: did it lose power, restart, or "
            "does another master talk to it? Raise `sdo_timeout_ms` of this node where it only is "
@@ -259,9 +294,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::aborted_by_device:
       return against_abort(node, step, failure);
     case SdoFault::aborted_by_master:
-      return "the answers break the SDO protocol: a second SDO client may be talking to the node "
-             "at "
-             "the same time (stop other masters and tools), or two nodes share the id";
+      return against_protocol_error(failure);
     case SdoFault::timeout:
       return against_timeout(plan, node, step, failure);
     case SdoFault::too_long:

@@ -11,6 +11,13 @@ bool begins_with_reset(const BootStep& step) noexcept {
          (step.action == BootAction::nmt && is_reset(step.command));
 }
 
+/// What tells whether the right device is there.
+bool is_identity(const BootStep& step) noexcept {
+  return step.action == BootAction::probe ||
+         (step.action == BootAction::expect &&
+          (step.object.index == 0x1000 || step.object.index == 0x1018));
+}
+
 }  // namespace
 
 BootRunner::BootRunner(const BootPlan& plan) noexcept
@@ -27,6 +34,8 @@ void BootRunner::start(From from, Time now) noexcept {
   reset_sent_ = started_ = false;
   guards_ = running_ = wrote_ = false;
   asks_ = from == From::silent;
+  identifies_ = from == From::identity;
+  preoperational_ = took_out_ = false;
   left_alone_ = 0;
   serial_number_.reset();
   firmware_.reset();
@@ -43,6 +52,7 @@ void BootRunner::go_to(std::size_t step) noexcept {
 
 void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
   bootup_seen_ = true;
+  preoperational_ = took_out_ = false;
   heard_ = NmtState::bootup;
   if (state_ != State::running || phase_ == Phase::nmt || phase_ == Phase::enter) return;
   if (current().action == BootAction::await_bootup) {
@@ -60,27 +70,36 @@ void BootRunner::on_bootup(Time now, SdoClient& client) noexcept {
     return;
   }
   cob_id_object_.reset();
-  differs_ = guards_ = running_ = asks_ = started_ = false;
+  differs_ = guards_ = running_ = asks_ = identifies_ = started_ = false;
   go_to(current().action == BootAction::probe ? step_ : after_reset_);
 }
 
 void BootRunner::on_heartbeat(NmtState state) noexcept {
   heard_ = state;
+  preoperational_ = state == NmtState::preoperational;
   heartbeat_seen_ = true;
   heartbeat_in_step_ = true;
 }
 
 std::optional<NmtCommand> BootRunner::nmt_to_send() const noexcept {
-  if (state_ != State::running || phase_ != Phase::nmt) return std::nullopt;
+  if (state_ != State::running) return std::nullopt;
+  if (phase_ == Phase::preop) return NmtCommand::enter_preoperational;
+  if (phase_ != Phase::nmt) return std::nullopt;
   return current().command;
 }
 
 void BootRunner::nmt_sent(Time /*now*/, SdoClient& client) noexcept {
+  if (phase_ == Phase::preop) {
+    took_out_ = took_out_ || heard_ == NmtState::operational;
+    preoperational_ = true;
+    phase_ = after_preop_;
+    return;
+  }
   started_ = current().command == NmtCommand::start;
   if (is_reset(current().command)) {
     client.drop();
     reset_sent_ = true;
-    guards_ = bootup_seen_ = false;
+    guards_ = bootup_seen_ = preoperational_ = took_out_ = false;
     heard_ = NmtState::unknown;
     cob_id_object_.reset();
   }
@@ -90,7 +109,8 @@ void BootRunner::nmt_sent(Time /*now*/, SdoClient& client) noexcept {
 Time BootRunner::deadline() const noexcept {
   if (state_ != State::running) return never;
   if (phase_ == Phase::wait) return wait_until_;
-  return phase_ == Phase::enter || phase_ == Phase::nmt ? at_once : never;
+  const bool at_work = phase_ == Phase::enter || phase_ == Phase::nmt || phase_ == Phase::preop;
+  return at_work ? at_once : never;
 }
 
 void BootRunner::excuse(Time away) noexcept {
@@ -110,6 +130,7 @@ bool BootRunner::proceed(Time now, SdoClient& client) noexcept {
       enter(now);
       return true;
     case Phase::nmt:
+    case Phase::preop:
       return false;
     case Phase::wait:
       return end_wait(now, client);
@@ -134,6 +155,10 @@ void BootRunner::enter(Time now) noexcept {
     return;
   }
   const BootStep& step = current();
+  if (identifies_ && !is_identity(step)) {
+    identifies_ = false;
+    return go_to(0);
+  }
   if (skips(step)) return next();
   attempts_ = 0;
   received_ = 0;

@@ -21,8 +21,9 @@ class BootRunner {
   enum class State : std::uint8_t { idle, running, done, failed };
   enum class From : std::uint8_t {
     beginning,
-    bootup,  ///< the node has just said boot-up: the reset at the beginning isn't needed
-    silent,  ///< it may be OPERATIONAL: its error control is set up first, then `beginning`
+    bootup,    ///< the node has just said boot-up: the reset at the beginning isn't needed
+    silent,    ///< it may be OPERATIONAL: its error control is set up first, then `beginning`
+    identity,  ///< it was another device: it is only asked who it is; the right one: `beginning`
   };
 
   /// `plan` must outlive the runner. The client is lent to each call, always the same one.
@@ -41,7 +42,8 @@ class BootRunner {
   /// The master itself was away for so long: nothing that is awaited is late by that.
   void excuse(Time away) noexcept;
 
-  /// NMT command that waits to be sent to the node; nmt_sent tells that it was.
+  /// NMT command that waits to be sent to the node; nmt_sent tells that it was. Besides those of
+  /// the plan: PRE-OPERATIONAL before something is written, unless the node says that it is.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
   void nmt_sent(Time now, SdoClient& client) noexcept;
 
@@ -59,6 +61,10 @@ class BootRunner {
   bool started() const noexcept { return started_; }
   /// The node was OPERATIONAL and is left as it is. CiA 302-2, status L.
   bool keeps_running() const noexcept { return running_; }
+  /// The node was OPERATIONAL when it was told PRE-OPERATIONAL, and was not started since.
+  bool took_out() const noexcept { return took_out_ && !started_; }
+  /// Only the identity is asked for. Still true when this has failed.
+  bool identifies() const noexcept { return identifies_; }
   /// Objects of such a node that differ from the plan, and the first of them.
   std::uint16_t left_alone() const noexcept { return left_alone_; }
   ObjectKey first_left_alone() const noexcept { return first_left_alone_; }
@@ -75,6 +81,7 @@ class BootRunner {
   enum class Phase : std::uint8_t {
     enter,        // the step has not begun
     nmt,          // its command waits to be sent
+    preop,        // PRE-OPERATIONAL waits to be sent; then the transfer goes on at `after_preop_`
     wait,         // for time or a message
     upload_next,  // an upload is to begin as soon as the client is idle
     upload,
@@ -93,6 +100,7 @@ class BootRunner {
   void begin(const BootStep& step) noexcept;
   bool skips(const BootStep& step) const noexcept;
   static bool asks(const BootStep& step) noexcept;
+  bool needs_preop() const noexcept;
   // False: has to wait.
   bool proceed(Time now, SdoClient& client) noexcept;
   bool begin_transfer(Time now, SdoClient& client) noexcept;
@@ -124,6 +132,7 @@ class BootRunner {
   std::size_t after_reset_;  // first step behind the reset that the plan may begin with
   State state_ = State::idle;
   Phase phase_ = Phase::enter;
+  Phase after_preop_ = Phase::enter;
   std::uint16_t step_ = 0;
   std::uint8_t attempts_ = 0;
   std::uint8_t restarts_ = 0;
@@ -132,7 +141,10 @@ class BootRunner {
   bool started_ = false;
   bool guards_ = false;
   bool running_ = false;
-  bool asks_ = false;  // From::silent, until a sign of life
+  bool asks_ = false;            // From::silent, until a sign of life
+  bool identifies_ = false;      // From::identity, until the identity is right
+  bool preoperational_ = false;  // it was told so or says so, and said nothing else since
+  bool took_out_ = false;        // of OPERATIONAL
   bool wrote_ = false;
   std::uint16_t left_alone_ = 0;
   ObjectKey first_left_alone_;

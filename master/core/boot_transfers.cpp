@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "master/core/boot_runner.hpp"
 #include "master/core/boot_value.hpp"
@@ -22,6 +23,10 @@ bool is_cob_id(ObjectKey object) noexcept {
 
 bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
   if (!client.idle()) return false;
+  if (needs_preop()) {
+    after_preop_ = std::exchange(phase_, Phase::preop);
+    return false;
+  }
   const BootStep& step = current();
   Time timeout = step.timeout > Time{} ? step.timeout : default_timeout;
   if (polls()) {
@@ -36,6 +41,13 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
   client.upload(step.object, buffer_, timeout);
   phase_ = phase_ == Phase::upload_next ? Phase::upload : Phase::confirm;
   return true;
+}
+
+/// Parameters are written in PRE-OPERATIONAL, which a device that starts itself leaves unasked; one
+/// that is stopped answers no SDO at all. A node that is left running is not written to.
+bool BootRunner::needs_preop() const noexcept {
+  if (preoperational_ || running_ || asks_) return false;
+  return phase_ == Phase::download_next || heard_ == NmtState::stopped;
 }
 
 void BootRunner::on_result(const SdoResult& result, Time now, SdoClient& client) noexcept {
@@ -208,7 +220,9 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .attempts = attempts_,
               .restarts = restarts_,
               .running = running_,
-              .elapsed = now - began_};
+              .elapsed = now - began_,
+              .late = client.lateness(),
+              .answered = transfer ? client.answered().value_or(ObjectKey{}) : ObjectKey{}};
   for (std::size_t i = 0; i < failure_.value.size() && i < failure_.value_size; ++i) {
     failure_.value[i] = static_cast<std::uint8_t>(value[i]);
   }

@@ -50,6 +50,8 @@ struct BootFailure {
   bool running = false;       ///< the node was OPERATIONAL and left so
   std::uint16_t emcy = 0;     ///< newest error code that came during this boot, 0 = none
   Time elapsed{};             ///< since the boot began
+  Time late{};  ///< how late answers come of requests that have timed out; 0: none has come
+  ObjectKey answered{};  ///< the object of an answer that came for another one; index 0: none
 };
 
 enum class EventKind : std::uint8_t {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -10,6 +11,7 @@ namespace takt {
 namespace {
 
 constexpr Time default_reboot_delay = std::chrono::seconds{1};
+constexpr std::uint8_t most_failed_boots = 20;  // the pause has long stopped growing
 
 bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
   return a.step == b.step && a.fault == b.fault && a.abort_code == b.abort_code &&
@@ -22,6 +24,12 @@ constexpr std::uint16_t sync_length_emcy = 0x8240;
 /// out of OPERATIONAL, until their next reset; by then they know of the counter.
 bool met_counter_too_early(const BootFailure& failure) noexcept {
   return failure.action == BootAction::await_operational && failure.emcy == sync_length_emcy;
+}
+
+/// A reset makes no other device of it.
+bool is_another_device(const BootFailure& failure) noexcept {
+  return failure.action == BootAction::expect && failure.fault == SdoFault::none &&
+         failure.object.index == 0x1018;
 }
 
 /// The first, second, fourth, eighth ...: a node that stays away must not fill the log.
@@ -61,7 +69,8 @@ void NodeSession::on_boot_done(Time now) noexcept {
   status_.boot_tried = true;
   status_.boot_letter = runner_.keeps_running() ? 'L' : '\0';
   ++status_.boot_count;
-  same_failures_ = 0;
+  same_failures_ = failed_boots_ = 0;
+  client_.forget_lateness();
   counter_excused_ = false;
   tell_replaced(now);
   tell_firmware(now);
@@ -77,7 +86,8 @@ void NodeSession::on_boot_done(Time now) noexcept {
   store_le(std::span{event.bytes}.subspan(2), runner_.first_left_alone().index);
   event.bytes[4] = runner_.first_left_alone().sub;
   shared_.events.push(event);
-  if (plan_->boot && network_started_ && plan_->start_later && !runner_.keeps_running()) {
+  const bool with_network = plan_->start_later && network_started_ && !runner_.keeps_running();
+  if (plan_->boot && (with_network || (runner_.took_out() && !plan_->start_later))) {
     own_command_ = NmtCommand::start;
   }
 }
@@ -117,13 +127,18 @@ void NodeSession::on_boot_failed(Time now) noexcept {
   // A node that should be alive and shows no sign of it is asked by SDO next: it may be OPERATIONAL
   // and have no heartbeat.
   const bool silent = failure.action == BootAction::await_alive;
-  retry_later(BootState::failed, silent ? BootRunner::From::silent : BootRunner::From::beginning,
+  const bool other = is_another_device(failure) || runner_.identifies();
+  retry_later(BootState::failed,
+              other    ? BootRunner::From::identity
+              : silent ? BootRunner::From::silent
+                       : BootRunner::From::beginning,
               now);
   if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
   if (met_counter_too_early(failure) && !std::exchange(counter_excused_, true)) {
     retry_at_ = now;  // is no failure of the node yet
     return;
   }
+  if (failed_boots_ < most_failed_boots) ++failed_boots_;
   status_.boot_tried = true;
   status_.boot_letter = failure.letter;
   if (failure.fault == SdoFault::aborted_by_device) ++status_.sdo_aborts;
@@ -140,7 +155,22 @@ void NodeSession::on_boot_failed(Time now) noexcept {
 void NodeSession::retry_later(BootState state, BootRunner::From from, Time now) noexcept {
   status_.boot = state;
   retry_from_ = from;
-  retry_at_ = now + (plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay);
+  retry_at_ = now + pause_before_retry();
+}
+
+/// Twice as long after each boot that failed.
+Time NodeSession::pause_before_retry() const noexcept {
+  const Time first = plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay;
+  const Time longest = std::max(first, plan_->longest_reboot_delay);
+  Time pause = first;
+  for (int i = 0; i < failed_boots_ && pause < longest; ++i) pause *= 2;
+  return std::min(pause, longest);
+}
+
+/// The newest boot has failed because there was no sign of the node at all.
+bool NodeSession::was_absent() const noexcept {
+  return status_.boot == BootState::failed && last_failure_.fault == SdoFault::timeout &&
+         last_failure_.node_state == NmtState::unknown;
 }
 
 /// A node that restarts again and again waits for its next turn.

@@ -145,6 +145,7 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
     if (managed_ == Managed::no) tell(EventKind::heartbeat_back, now);
     if (status_.boot == BootState::lost) retry_at_ = now;
   }
+  if (was_absent() && !halted_) retry_at_ = now;
   if (booting()) runner_.on_heartbeat(state);
   if (status_.boot == BootState::ready) tell_twin(twins_.on_heartbeat(now), now);
   look_for_fall(state, now);
@@ -177,6 +178,7 @@ void NodeSession::on_bootup(Time now) noexcept {
       retry_later(BootState::lost, BootRunner::From::beginning, now);
     return;
   }
+  failed_boots_ = 0;
   boot(BootRunner::From::bootup, now);
 }
 
@@ -269,6 +271,7 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
       break;
   }
   halted_ = false;
+  failed_boots_ = 0;
   node_was_reset();
   assume(NmtState::unknown, now);
   if (managed_ == Managed::no || stopping_ || status_.boot == BootState::idle) return;

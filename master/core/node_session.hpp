@@ -113,7 +113,8 @@ class NodeSession {
   void keep(Archive& state) noexcept {
     state(status_, client_, watch_, guard_, twins_);
     state(retry_at_, retry_from_, wanted_, heartbeats_out_, state_at_boot_, emcys_at_boot_);
-    state(same_failures_, counter_excused_, serial_number_, progress_told_, bootups_);
+    state(same_failures_, failed_boots_, counter_excused_, serial_number_, progress_told_,
+          bootups_);
     state(bootups_since_, silent_, halted_, paused_, network_started_);
     BootFailure& last = last_failure_;  // what the next one is compared with
     state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
@@ -141,6 +142,8 @@ class NodeSession {
   void on_silence(EventKind kind, Time silence, Time now) noexcept;
   void look_for_fall(NmtState state, Time now) noexcept;
   void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
+  Time pause_before_retry() const noexcept;
+  bool was_absent() const noexcept;
   void node_was_reset() noexcept;
   void disarm() noexcept;
   void assume(NmtState state, Time now) noexcept;
@@ -171,6 +174,7 @@ class NodeSession {
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
   std::uint32_t same_failures_ = 0;  // in a row
+  std::uint8_t failed_boots_ = 0;    // in a row, since a boot-up message or a command
   bool counter_excused_ = false;     // it was booted again for a SYNC that came too early
   BootFailure last_failure_;
   TwinWatch twins_;

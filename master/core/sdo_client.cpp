@@ -52,6 +52,8 @@ void SdoClient::download(ObjectKey object, std::span<const std::byte> value,
 
 void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   assert(idle());
+  if (object_ != object) answered_.reset();
+  if (begun()) previous_answer_ = given_up_ ? Frame{} : last_received_;
   object_ = object;
   timeout_ = timeout;
   last_sent_ = {};
@@ -150,6 +152,7 @@ void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
   if (from_block && state_ == State::block_upload) block_upload_.sent();
   if (from_block && state_ == State::block_download) block_download_.sent();
   if (state_ == State::idle) return;
+  if (in_initiate()) asked_at_ = now;
   if (state_ == State::falling_back) {
     block_unheard_ = true;
     return begin_plain(uploads_ ? State::upload_initiate : State::download_initiate);
@@ -171,6 +174,7 @@ void SdoClient::on_silence() noexcept {
     state_ = State::falling_back;
     return;
   }
+  if (in_initiate()) late_.timed_out(object_, asked_at_);
   abort(SdoFault::timeout, abort_code::timeout);
 }
 
@@ -178,6 +182,7 @@ void SdoClient::finish(SdoResult result) noexcept {
   state_ = State::idle;
   deadline_ = never;
   given_up_.reset();
+  late_possible_ = false;
   block_ended_ = false;
   late_segments_ = false;
   result_ = result;
@@ -189,6 +194,7 @@ void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
   to_send_ = sdo_abort(channel_.request, object_, code);
   finish({.fault = fault, .abort_code = code, .size = progress()});
   given_up_ = object_;
+  late_possible_ = fault != SdoFault::aborted_by_master;
   late_segments_ = segments;
 }
 
@@ -207,6 +213,7 @@ bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
+  late_now_ = late_.take(frame, now);
   // While a request waits to be sent, every answer belongs to an earlier one.
   if (state_ == State::idle || state_ == State::settling) return;
   if (to_send_ || !is_whole(frame)) return;
@@ -318,83 +325,6 @@ void SdoClient::on_block(const Frame& frame, Time now) noexcept {
     finish({.size = value_.size()});
   }
   block_ended_ = true;
-}
-
-void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
-  const SdoInitiate begin = decode_initiate(frame);
-  if (state_ != State::upload_initiate || begin.object != object_) return;  // a late answer
-  heard(frame);
-  if (begin.expedited) {
-    if (take_bytes(begin.payload())) finish({.size = done_});
-    return;
-  }
-  if (begin.size.value_or(0) > buffer_.size()) {
-    return abort(SdoFault::too_long, abort_code::out_of_memory);
-  }
-  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // 0: some mean "unknown"
-  state_ = State::upload_segments;
-  to_send_ = upload_segment_request(channel_.request, toggle_);
-}
-
-void SdoClient::on_upload_segment(const Frame& frame) noexcept {
-  if (state_ == State::upload_initiate || state_ == State::download_initiate) return;  // late
-  last_received_ = frame;
-  if (state_ != State::upload_segments) {
-    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
-  }
-  const SdoSegment part = decode_segment(frame);
-  if (part.toggle != toggle_) {
-    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
-  }
-  if (!take_bytes(part.payload())) return;
-  if (announced_ && done_ > *announced_) {
-    return abort(SdoFault::aborted_by_master, abort_code::length_too_high);
-  }
-  // Some announce the room for a string and send the string.
-  if (part.last) return finish({.size = done_, .shortened = done_ < announced_.value_or(0)});
-  if (part.size == 0) {  // a server that never ends
-    return abort(SdoFault::aborted_by_master, abort_code::length_mismatch);
-  }
-  toggle_ = !toggle_;
-  to_send_ = upload_segment_request(channel_.request, toggle_);
-}
-
-bool SdoClient::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
-  if (bytes.size() > buffer_.size() - done_) {
-    abort(SdoFault::too_long, abort_code::out_of_memory);
-    return false;
-  }
-  for (const std::uint8_t byte : bytes) buffer_[done_++] = std::byte{byte};
-  return true;
-}
-
-void SdoClient::on_download_confirmed(const Frame& frame) noexcept {
-  if (state_ != State::download_initiate || sdo_object(frame) != object_) return;  // a late answer
-  heard(frame);
-  if (!value_.empty() && value_.size() <= 4) return finish({.size = value_.size()});
-  state_ = State::download_segments;
-  send_segment();
-}
-
-void SdoClient::send_segment() noexcept {
-  const SdoSegment part = sdo_segment(value_.subspan(done_), toggle_);
-  done_ += part.size;
-  last_segment_sent_ = part.last;
-  to_send_ = download_segment_request(channel_.request, part);
-}
-
-void SdoClient::on_download_segment_confirmed(const Frame& frame) noexcept {
-  if (state_ == State::upload_initiate || state_ == State::download_initiate) return;  // late
-  last_received_ = frame;
-  if (state_ != State::download_segments) {
-    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
-  }
-  if (sdo_toggle(frame) != toggle_) {
-    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
-  }
-  if (last_segment_sent_) return finish({.size = done_});
-  toggle_ = !toggle_;
-  send_segment();
 }
 
 }  // namespace takt

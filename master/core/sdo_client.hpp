@@ -8,6 +8,7 @@
 #include "eds_parser/table/sdo_access.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/core/event.hpp"
+#include "master/core/late_answers.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/sdo_block_download.hpp"
 #include "master/core/sdo_block_upload.hpp"
@@ -94,10 +95,16 @@ class SdoClient {
   /// Some frame of the transfer was sent.
   bool begun() const noexcept { return last_sent_.length != 0; }
   const Frame& last_received() const noexcept { return last_received_; }
+  /// Object of an answer that came in place of the one that was asked for; none: none did.
+  std::optional<ObjectKey> answered() const noexcept { return answered_; }
+  /// How late answers come of requests that have timed out; 0: none has come.
+  Time lateness() const noexcept { return late_.longest(); }
+  void forget_lateness() noexcept { late_.reset(); }
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(block_refused_, block_ended_, late_segments_, object_, given_up_);
+    state(block_refused_, block_ended_, late_segments_, object_, given_up_, late_, answered_);
+    state(late_possible_);
   }
 
  private:
@@ -134,6 +141,8 @@ class SdoClient {
   void learn_no_block(std::uint32_t code) noexcept;
   bool is_whole(const Frame& frame) const noexcept;
   bool is_of_earlier_block(const Frame& frame) const noexcept;
+  void on_wrong_answer(const Frame& frame) noexcept;
+  void on_other_object(const Frame& frame) noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
   void on_upload_segment(const Frame& frame) noexcept;
   void on_download_confirmed(const Frame& frame) noexcept;
@@ -167,6 +176,12 @@ class SdoClient {
   std::optional<SdoResult> result_;
   std::optional<NoBlock> no_block_;
   SdoResult settled_;  ///< the result when it has settled
+  LateAnswers late_;
+  bool late_possible_ = false;         ///< the transfer before was given up in silence
+  bool late_now_ = false;              ///< the newest frame answers a request that has timed out
+  Time asked_at_{};                    ///< when the newest transfer was asked for
+  std::optional<ObjectKey> answered_;  ///< in place of what was asked for
+  Frame previous_answer_;              ///< the last one of the transfer before
   Frame last_sent_;
   Frame last_received_;
 };

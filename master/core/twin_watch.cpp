@@ -1,5 +1,9 @@
 #include "master/core/twin_watch.hpp"
 
+#include <algorithm>
+
+#include "master/wire/sdo_codec.hpp"
+
 namespace takt {
 namespace {
 
@@ -58,13 +62,15 @@ void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
   for (const Frame& frame : frames) {
     const Request request = frame.id == sdo_request_ ? request_of(frame) : Request::other;
     if (request == Request::other) continue;
+    objects_ = {sdo_object(frame), objects_[0]};
     block_ = request == Request::block;
     asked_ += !block_;
   }
 }
 
 std::optional<DuplicateSign> TwinWatch::on_sdo_answer(const Frame& frame, Time now) noexcept {
-  if (block_ || !answers_transfer(frame)) return std::nullopt;
+  const bool asked_for = std::ranges::find(objects_, sdo_object(frame)) != objects_.end();
+  if (block_ || !answers_transfer(frame) || !asked_for) return std::nullopt;
   ++answered_;
   return answered_ <= asked_ + most_surplus ? std::nullopt : once(DuplicateSign::answers, now);
 }

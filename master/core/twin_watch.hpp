@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@ class TwinWatch {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(window_begin_, heartbeats_, full_windows_, asked_, answered_, block_, told_);
+    state(objects_);
   }
 
  private:
@@ -36,10 +38,11 @@ class TwinWatch {
   CobId sdo_request_;
   Time window_begin_{};
   std::uint32_t heartbeats_ = 0;
-  std::uint32_t full_windows_ = 0;  // in a row, with too many heartbeats
-  std::uint32_t asked_ = 0;         // SDO transfers begun
-  std::uint32_t answered_ = 0;      // and answered
-  bool block_ = false;              // the newest transfer: its answers are counted otherwise
+  std::uint32_t full_windows_ = 0;      // in a row, with too many heartbeats
+  std::uint32_t asked_ = 0;             // SDO transfers begun
+  std::uint32_t answered_ = 0;          // and answered
+  bool block_ = false;                  // the newest transfer: its answers are counted otherwise
+  std::array<ObjectKey, 2> objects_{};  // of the newest two requests: twins answer those
   Time told_ = Time::min();
 };
 

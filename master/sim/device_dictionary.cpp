@@ -43,6 +43,8 @@ Abort Device::write(ObjectKey key, Time now, std::span<const std::byte> data) no
   if (const Abort refused = faults_.on_write(key); refused != Abort::none) return refused;
   const Abort refused = store_.may_write(key, data);
   if (refused != Abort::none) return refused;
+  const bool late = state_ != DeviceState::preoperational && key.index < 0x2000;
+  if (faults_.preop_only && late) return Abort::device_state;
   if (faults_.ignores_write(key)) return Abort::none;
   Object& object = *store_.find(key);
   if (object.is_bytes()) {

@@ -29,6 +29,7 @@ struct DeviceFaults {
   GuardingResponder::Fault guarding = GuardingResponder::Fault::none;
   bool self_start = false;
   bool no_start = false;
+  bool preop_only = false;
   bool fixed_mapping = false;
   SdoFaults sdo{};
   Time bootup_delay{};

@@ -6,7 +6,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::array<std::pair<FaultKind, std::string_view>, 30> names{{
+constexpr std::array<std::pair<FaultKind, std::string_view>, 31> names{{
     {FaultKind::loss, "loss"},
     {FaultKind::duplicate, "duplicate"},
     {FaultKind::delay, "delay"},
@@ -28,6 +28,7 @@ constexpr std::array<std::pair<FaultKind, std::string_view>, 30> names{{
     {FaultKind::bootup_storm, "bootup_storm"},
     {FaultKind::self_start, "self_start"},
     {FaultKind::no_start, "no_start"},
+    {FaultKind::preop_only, "preop_only"},
     {FaultKind::fixed_mapping, "fixed_mapping"},
     {FaultKind::lss_silent, "lss_silent"},
     {FaultKind::lss_no_store, "lss_no_store"},

@@ -35,6 +35,7 @@ enum class FaultKind : std::uint8_t {
   bootup_storm,    ///< a boot-up message every `time`
   self_start,      ///< the node goes to OPERATIONAL by itself after its boot-up
   no_start,        ///< NMT start is not obeyed
+  preop_only,      ///< objects below 0x2000 can be written in PRE-OPERATIONAL only
   fixed_mapping,   ///< PDO mapping is read-only
   lss_silent,      ///< no answer to LSS
   lss_no_store,    ///< LSS store fails with error 2

@@ -173,6 +173,9 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::no_start:
       faults.no_start = begins;
       return;
+    case FaultKind::preop_only:
+      faults.preop_only = begins;
+      return;
     case FaultKind::fixed_mapping:
       faults.fixed_mapping = begins;
       return;

@@ -61,6 +61,7 @@ const std::string load = "605#231110016C6F6164";
 const std::string save = "605#2310100173617665";
 const std::string bootup = "705#00";
 const std::string start = "000#0105";
+const std::string preop = "000#8005";                  // before the first write
 const std::string heartbeat = "605#2B17100064000000";  // every 100 ms
 const std::string consumer = "605#231610012C017F00";   // of the master's, 300 ms
 const std::string period = "605#2306100010270000";     // of SYNC, 10000 us
@@ -73,8 +74,8 @@ TEST(RestoreOrder, ResetsTheNodeAndWritesOnlyToWhatCameBack) {
   const Story story{plant};
   plant.run(4s);
 
-  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, load, "000#8105", bootup, heartbeat, consumer,
-                                period, "605#2B00200007000000", start}));
+  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, preop, load, "000#8105", bootup, preop,
+                                heartbeat, consumer, period, "605#2B00200007000000", start}));
   EXPECT_EQ(plant.device(5).objects().number({0x2001, 0}), 100) << "the default";
   EXPECT_EQ(plant.node().boot, BootState::ready);
 }
@@ -87,7 +88,7 @@ TEST(RestoreOrder, AsksWhoIsThereBeforeAndWhetherItIsBackAfterwards) {
   const Lines before(story.lines.begin(), std::ranges::find(story.lines, load));
   EXPECT_EQ(before,
             (Lines{"000#8205", bootup, "605#4000100000000000", "605#4000100000000000",
-                   "605#4018100100000000", "605#4018100200000000", "605#4018100400000000"}));
+                   "605#4018100100000000", "605#4018100200000000", "605#4018100400000000", preop}));
   Lines after = from(story.lines, load);
   ASSERT_GT(after.size(), 4U);
   after.resize(4);
@@ -102,7 +103,7 @@ TEST(RestoreOrder, WaitsForABootUpThatComesLate) {
   plant.run(8s);
 
   const Lines after = from(story.lines, load);
-  EXPECT_EQ(after, (Lines{load, "000#8105", bootup, heartbeat, consumer, period,
+  EXPECT_EQ(after, (Lines{load, "000#8105", bootup, preop, heartbeat, consumer, period,
                           "605#2B00200007000000", start}));
 }
 
@@ -114,7 +115,7 @@ TEST(RestoreOrder, ThatIsRefusedChangesNothingAndStartsNothing) {
   const Story story{plant};
   plant.run(1s);
 
-  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, load}));
+  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, preop, load}));
   EXPECT_EQ(plant.node().boot, BootState::failed);
 }
 
@@ -126,9 +127,9 @@ TEST(RestoreOrder, ThatIsNotAnsweredIsNotWrittenAgainByTheSameBoot) {
   const Story story{plant};
   plant.run(6s);
 
-  ASSERT_GE(story.lines.size(), 4U);
-  EXPECT_EQ(Lines(story.lines.begin(), story.lines.begin() + 4),
-            (Lines{"000#8205", bootup, load, "605#8011100100000405"}));
+  ASSERT_GE(story.lines.size(), 5U);
+  EXPECT_EQ(Lines(story.lines.begin(), story.lines.begin() + 5),
+            (Lines{"000#8205", bootup, preop, load, "605#8011100100000405"}));
   EXPECT_EQ(std::ranges::count(story.lines, load), 1);
   EXPECT_EQ(std::ranges::count(story.lines, start), 0);
 }
@@ -142,7 +143,7 @@ TEST(StoreOrder, ComesAfterAllThatWasWrittenAndBeforeTheStart) {
   const Story story{plant};
   plant.run(4s);
 
-  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, heartbeat, consumer, period,
+  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, preop, heartbeat, consumer, period,
                                 "605#2B00200007000000",                          // sdo:
                                 "605#23001801850100C0",                          // TPDO1 off
                                 "605#2F00180205000000",                          // type 5
@@ -157,9 +158,9 @@ TEST(StoreOrder, KeepsAConfigurationThatTheNextBootRestoresNothingOf) {
             "configuration_time: 1234, sdo: [{index: 0x2000, value: 7}]")};
   Story story{plant};
   plant.run(4s);
-  EXPECT_EQ(from(story.lines, load),
-            (Lines{load, "000#8105", bootup, heartbeat, consumer, period, "605#2B00200007000000",
-                   "605#23201001983A0000", "605#23201002D2040000", save, start}));
+  EXPECT_EQ(from(story.lines, load), (Lines{load, "000#8105", bootup, preop, heartbeat, consumer,
+                                            period, "605#2B00200007000000", "605#23201001983A0000",
+                                            "605#23201002D2040000", save, start}));
 
   story.lines.clear();
   plant.nmt(NmtCommand::reset_node, 5);
@@ -179,9 +180,9 @@ TEST(StoreOrder, ReplacesTheConfigurationOfAnotherDay) {
   const Story story{plant};
   plant.run(4s);
 
-  EXPECT_EQ(from(story.lines, load),
-            (Lines{load, "000#8105", bootup, heartbeat, consumer, period, "605#2B00200007000000",
-                   "605#23201001983A0000", "605#23201002D2040000", save, start}));
+  EXPECT_EQ(from(story.lines, load), (Lines{load, "000#8105", bootup, preop, heartbeat, consumer,
+                                            period, "605#2B00200007000000", "605#23201001983A0000",
+                                            "605#23201002D2040000", save, start}));
   EXPECT_EQ(plant.device(5).objects().number({0x2001, 0}), 100);
 }
 
@@ -193,8 +194,8 @@ TEST(StoreOrder, ThatIsRefusedLeavesTheNodeUnstarted) {
   const Story story{plant};
   plant.run(1s);
 
-  EXPECT_EQ(story.lines,
-            (Lines{"000#8205", bootup, heartbeat, consumer, period, "605#2B00200007000000", save}));
+  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, preop, heartbeat, consumer, period,
+                                "605#2B00200007000000", save}));
 }
 
 // verification
@@ -263,7 +264,7 @@ TEST(ConciseOrder, IsThatOfTheFileWithEveryValueOnceMoreWhereTheFileHasItAgain) 
   const Story story{plant};
   plant.run(4s);
 
-  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, heartbeat, consumer, period,
+  EXPECT_EQ(story.lines, (Lines{"000#8205", bootup, preop, heartbeat, consumer, period,
                                 "605#2B01200005000000",  // 2001 = 5
                                 "605#210220000A000000",  // 2002, 10 bytes
                                 "605#006C6F776572206C", "605#1965667400000000",
@@ -284,7 +285,7 @@ TEST(ConciseOrder, EndsAtTheValueThatIsRefused) {
   plant.run(1s);
 
   EXPECT_EQ(story.lines,
-            (Lines{"000#8205", bootup, heartbeat, consumer, period, "605#2B01200005000000",
+            (Lines{"000#8205", bootup, preop, heartbeat, consumer, period, "605#2B01200005000000",
                    "605#210220000A000000", "605#006C6F776572206C", "605#1965667400000000",
                    "605#2B0020002C010000"}));
   EXPECT_NE(plant.text_of(EventKind::boot_failed).find("2000:00"), std::string::npos);
@@ -297,12 +298,27 @@ TEST(ConciseOrder, IsRestoredBeforeAndStoredAfter) {
   const Story story{plant};
   plant.run(4s);
 
-  EXPECT_EQ(
-      story.lines,
-      (Lines{"000#8205", bootup, load, "000#8105", bootup, heartbeat, consumer, period,
-             "605#2B01200005000000", "605#210220000A000000", "605#006C6F776572206C",
-             "605#1965667400000000", "605#2B0020002C010000", "605#2B01200058020000",
-             "605#23001801850100C0", "605#2F00180205000000", "605#2300180185010040", save, start}));
+  EXPECT_EQ(story.lines, (Lines{"000#8205",
+                                bootup,
+                                preop,
+                                load,
+                                "000#8105",
+                                bootup,
+                                preop,
+                                heartbeat,
+                                consumer,
+                                period,
+                                "605#2B01200005000000",
+                                "605#210220000A000000",
+                                "605#006C6F776572206C",
+                                "605#1965667400000000",
+                                "605#2B0020002C010000",
+                                "605#2B01200058020000",
+                                "605#23001801850100C0",
+                                "605#2F00180205000000",
+                                "605#2300180185010040",
+                                save,
+                                start}));
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(StartUp, NmtCommandsKeepTheirInhibitTime) {
   } times;
   plant.world.observe(&times);
   plant.run(3s);
-  ASSERT_EQ(times.starts.size(), 6u);
+  ASSERT_EQ(times.starts.size(), 9u) << "reset, PRE-OPERATIONAL and start of each node";
   for (std::size_t i = 1; i < times.starts.size(); ++i) {
     EXPECT_GE(times.starts[i] - times.starts[i - 1], 99ms);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -34,6 +35,10 @@ struct FakeNode {
   Time bootup_delay = 20ms;
   Time heartbeat_period{};
   std::uint8_t state = 0x7F;
+
+  std::function<void(Frame&)> tamper;  // with its SDO answers
+  bool answers_in_turn = false;        // one after another, `latency` each
+  Time busy_until{};
 
   std::vector<ObjectKey> writes;
   int resets = 0;
@@ -88,7 +93,9 @@ struct FakeNode {
       return;
     }
     frame.id = CobId::base(0x580U + id);
-    if (!mute_sdo) sending.push_back({now + latency, frame});
+    if (tamper) tamper(frame);
+    busy_until = (answers_in_turn ? std::max(busy_until, now) : now) + latency;
+    if (!mute_sdo) sending.push_back({busy_until, frame});
   }
   void on_sdo(const Frame& frame, Time now) {
     const auto& d = frame.data;

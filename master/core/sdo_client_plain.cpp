@@ -1,0 +1,102 @@
+#include "master/core/sdo_client.hpp"
+#include "master/wire/sdo_abort.hpp"
+
+// Transfers without blocks: expedited and in segments. CiA 301, 7.2.4.3.3 to 7.2.4.3.8.
+
+namespace takt {
+
+/// An answer that fits no request, unless it may belong to an earlier one: that of a transfer that
+/// was given up comes late, and CAN repeats a frame now and then.
+void SdoClient::on_wrong_answer(const Frame& frame) noexcept {
+  if (late_possible_ || frame == previous_answer_ || frame == last_received_) return;
+  last_received_ = frame;
+  abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+}
+
+/// Of another object than was asked for, and of none that was asked for before.
+void SdoClient::on_other_object(const Frame& frame) noexcept {
+  if (late_now_ || frame == previous_answer_) return;
+  last_received_ = frame;
+  answered_ = sdo_object(frame);
+}
+
+void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
+  const SdoInitiate begin = decode_initiate(frame);
+  if (begin.object != object_) return on_other_object(frame);
+  if (state_ != State::upload_initiate) return on_wrong_answer(frame);
+  heard(frame);
+  if (begin.expedited) {
+    if (take_bytes(begin.payload())) finish({.size = done_});
+    return;
+  }
+  if (begin.size.value_or(0) > buffer_.size()) {
+    return abort(SdoFault::too_long, abort_code::out_of_memory);
+  }
+  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // 0: some mean "unknown"
+  state_ = State::upload_segments;
+  to_send_ = upload_segment_request(channel_.request, toggle_);
+}
+
+void SdoClient::on_upload_segment(const Frame& frame) noexcept {
+  if (in_initiate()) return on_wrong_answer(frame);
+  last_received_ = frame;
+  if (state_ != State::upload_segments) {
+    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+  }
+  const SdoSegment part = decode_segment(frame);
+  if (part.toggle != toggle_) {
+    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
+  }
+  if (!take_bytes(part.payload())) return;
+  if (announced_ && done_ > *announced_) {
+    return abort(SdoFault::aborted_by_master, abort_code::length_too_high);
+  }
+  // Some announce the room for a string and send the string.
+  if (part.last) return finish({.size = done_, .shortened = done_ < announced_.value_or(0)});
+  if (part.size == 0) {  // a server that never ends
+    return abort(SdoFault::aborted_by_master, abort_code::length_mismatch);
+  }
+  toggle_ = !toggle_;
+  to_send_ = upload_segment_request(channel_.request, toggle_);
+}
+
+bool SdoClient::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
+  if (bytes.size() > buffer_.size() - done_) {
+    abort(SdoFault::too_long, abort_code::out_of_memory);
+    return false;
+  }
+  for (const std::uint8_t byte : bytes) buffer_[done_++] = std::byte{byte};
+  return true;
+}
+
+void SdoClient::on_download_confirmed(const Frame& frame) noexcept {
+  if (sdo_object(frame) != object_) return on_other_object(frame);
+  if (state_ != State::download_initiate) return on_wrong_answer(frame);
+  heard(frame);
+  if (!value_.empty() && value_.size() <= 4) return finish({.size = value_.size()});
+  state_ = State::download_segments;
+  send_segment();
+}
+
+void SdoClient::send_segment() noexcept {
+  const SdoSegment part = sdo_segment(value_.subspan(done_), toggle_);
+  done_ += part.size;
+  last_segment_sent_ = part.last;
+  to_send_ = download_segment_request(channel_.request, part);
+}
+
+void SdoClient::on_download_segment_confirmed(const Frame& frame) noexcept {
+  if (in_initiate()) return on_wrong_answer(frame);
+  last_received_ = frame;
+  if (state_ != State::download_segments) {
+    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+  }
+  if (sdo_toggle(frame) != toggle_) {
+    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
+  }
+  if (last_segment_sent_) return finish({.size = done_});
+  toggle_ = !toggle_;
+  send_segment();
+}
+
+}  // namespace takt
