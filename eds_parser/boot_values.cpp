@@ -1,7 +1,10 @@
 #include "eds_parser/boot_values.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -300,6 +303,23 @@ class ValueSteps {
                      *sdo.quoted + "; write it without them");
   }
 
+  /// `-128..127, or 0x80..0xFF as bits`.
+  static std::string range_text(DataType type, std::int64_t low, std::int64_t high) {
+    const unsigned bits = bit_width(type);
+    if (!is_signed(type) || bits >= 63) return std::to_string(low) + ".." + std::to_string(high);
+    const auto bits_text = [bits](std::int64_t value) {
+      std::array<char, 16> digits{};
+      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, 16).ptr;
+      std::string text{digits.data(), end};
+      std::ranges::transform(text, text.begin(),
+                             [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      const std::size_t width = (bits + 3) / 4;
+      return "0x" + std::string(width - std::min(width, text.size()), '0') + text;
+    };
+    return std::to_string(low) + ".." + std::to_string(-low - 1) + ", or " + bits_text(-low) +
+           ".." + bits_text(high) + " as bits";
+  }
+
   /// A bit pattern of the width (0xFFFFFFFF for -1) passes as well.
   bool fits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
     const unsigned bits = bit_width(sub.type);
@@ -311,8 +331,7 @@ class ValueSteps {
         bits >= 63 ? std::numeric_limits<std::int64_t>::max() : (std::int64_t{1} << bits) - 1;
     if (value < low || value > high) {
       wrong_value(sdo, sub,
-                  "holds " + std::to_string(low) + ".." + std::to_string(high) + ", not " +
-                      std::to_string(value));
+                  "holds " + range_text(sub.type, low, high) + ", not " + std::to_string(value));
       return false;
     }
     return true;

@@ -137,6 +137,19 @@ class CobIdAssigner {
     return !pdo.is_tpdo && !pdo.named && !is_own(node, pdo);
   }
 
+  /// The network file gives one PDO the id that another one sends with by its device file.
+  static bool is_clash(const EffectivePdo& pdo, const User* other) {
+    return pdo.is_tpdo && other != nullptr && other->pdo->origin == CobIdOrigin::network_file;
+  }
+
+  void tell_clash(const User& user, const User& other, std::uint32_t free) {
+    report_.error(other.pdo->cob_id_pos, "cob-id-clash",
+                  "`cob_id` " + to_string(other.pdo->cob_id) + " of " + other.text() +
+                      " is that of " + user.text() + " in " + user.node->dictionary->file +
+                      ": write `cob_id: auto` for one of them (" + user.text() + " would get " +
+                      hex(free, 3) + ")");
+  }
+
   /// `other`: who has the id already; nullptr: `service` says why no PDO may have it.
   void move(NodePdos& node, EffectivePdo& pdo, const User* other, const std::string& service) {
     const User user{&pdo, &node.node};
@@ -144,6 +157,10 @@ class CobIdAssigner {
     const std::uint32_t free = automatic(node, pdo);
     if (free == 0) return none_free(user, pdo);
     const CobId id = CobId::base(free);
+    if (is_clash(pdo, other)) {
+      tell_clash(user, *other, free);
+      return take(node, pdo, id);
+    }
     const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
                              node.node.dictionary->file + ", which " +
                              (other == nullptr ? service : "is " + other->text()) +

@@ -63,11 +63,12 @@ struct PdoRule {
   DeviceFact fact;
   bool is_tpdo = true;
   NumberRange numbers{1, 512};
-  std::vector<NumberRange> types;  ///< transmission types; empty: those of CiA 301
-  bool without_timer = false;      ///< the event timer has to be 0
-  bool without_rtr = false;        ///< no remote requests
-  bool no_more_entries = false;    ///< the mapping takes no more objects than by default
-  bool no_gaps = false;            ///< used only together with the one before
+  std::vector<NumberRange> types;    ///< transmission types; empty: those of CiA 301
+  bool without_timer = false;        ///< the event timer has to be 0
+  bool without_rtr = false;          ///< no remote requests
+  bool no_more_entries = false;      ///< the mapping takes no more objects than by default
+  bool no_gaps = false;              ///< used only together with the one before
+  std::vector<NumberRange> answers;  ///< types of which a TPDO only answers the RPDO of its number
   PdoFunction function = PdoFunction::process_data;
 };
 

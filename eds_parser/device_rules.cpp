@@ -36,6 +36,7 @@ class Judge {
       if (rule != nullptr) remote_requests(pdo, *rule);
       if (rule != nullptr && is_used(pdo)) entries(pdo, *rule);
       if (rule != nullptr && is_used(pdo)) gap(pdo, *rule);
+      if (rule != nullptr && is_used(pdo)) answer(pdo, *rule);
       if (pdo.is_tpdo && is_set(pdo, 3)) inhibit(pdo);
     }
     sync_producer();
@@ -117,6 +118,36 @@ class Judge {
     report_.error(pdo.pos, "device-data",
                   label(pdo) + " can't be used without " + (pdo.is_tpdo ? "TPDO" : "RPDO") +
                       std::to_string(pdo.number - 1) + " on " + data_.name + source(rule.fact));
+  }
+
+  /// A TPDO that is sent as an answer only needs who asks.
+  void answer(const EffectivePdo& pdo, const PdoRule& rule) {
+    const auto covers = [&](const NumberRange& range) { return range.contains(pdo.transmission); };
+    if (!pdo.is_tpdo || pdo.event_timer != 0 || std::ranges::none_of(rule.answers, covers)) return;
+    const auto asks = [&](const EffectivePdo& other) {
+      return !other.is_tpdo && other.number == pdo.number && is_used(other);
+    };
+    if (std::ranges::any_of(node_.pdos, asks)) return;
+    const std::string rpdo = "RPDO" + std::to_string(pdo.number);
+    report_.warning(pos_of(pdo, &PdoSpec::transmission, 2), "device-data",
+                    label(pdo) + " of transmission type " + std::to_string(pdo.transmission) +
+                        " is sent only as the answer to " + rpdo +
+                        ", which is off: it never comes. Switch " + rpdo + " on" +
+                        other_type(rule) + source(rule.fact));
+  }
+
+  /// `, or write "transmission: 254"`, where the device knows another type.
+  static std::string other_type(const PdoRule& rule) {
+    const auto has = [](const std::vector<NumberRange>& list, std::uint32_t type) {
+      return std::ranges::any_of(list, [&](const NumberRange& r) { return r.contains(type); });
+    };
+    for (const std::uint32_t type : {254U, 1U}) {
+      const bool known = rule.types.empty() || has(rule.types, type);
+      if (!known || has(rule.answers, type)) continue;
+      return ", or write `transmission: " + std::to_string(type) + "`" +
+             (type == 1 ? " (every SYNC)" : " (on change)");
+    }
+    return "";
   }
 
   /// The network file counts in 100 us, as CiA 301 does; the device in its own unit.

@@ -117,7 +117,7 @@ class LayoutCompiler {
                .on_request = pdo.on_request,
                .drop_late = pdo.drop_late};
     if (pdo.is_tpdo) {
-      row.inhibit = std::chrono::microseconds{std::int64_t{pdo.inhibit_time} * pdo.inhibit_unit_us};
+      row.inhibit = std::chrono::microseconds{inhibit_us(pdo)};
       row.event_timer = std::chrono::milliseconds{pdo.event_timer};
       row.deadline = deadline_of(pdo);
     } else {
@@ -127,11 +127,16 @@ class LayoutCompiler {
     return row;
   }
 
-  /// `event_deadline`; else, where the device repeats by itself, 1.5 of its timer and 10 ms.
+  static std::int64_t inhibit_us(const EffectivePdo& pdo) {
+    return std::int64_t{pdo.inhibit_time} * pdo.inhibit_unit_us;
+  }
+
+  /// `event_deadline`; else, where the device repeats by itself, 1.5 of its timer, its inhibit time
+  /// (which may delay each repetition) and 10 ms.
   static Time deadline_of(const EffectivePdo& pdo) {
     if (pdo.master_timer != 0) return std::chrono::milliseconds{pdo.master_timer};
     if (pdo.synchronous() || pdo.event_timer == 0) return Time{};
-    return std::chrono::microseconds{pdo.event_timer * 1500 + 10'000};
+    return std::chrono::microseconds{pdo.event_timer * 1500 + 10'000 + inhibit_us(pdo)};
   }
 
   /// Inputs mapped twice are two signals; an output is one, copied into every RPDO that maps it.

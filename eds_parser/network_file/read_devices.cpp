@@ -211,9 +211,10 @@ class DeviceReader {
 
   void pdo(const YamlNode& item, bool is_tpdo) {
     MapReader reader{item, is_tpdo ? "`tpdo`" : "`rpdo`", report_};
-    PdoRule rule{.fact = {}, .is_tpdo = is_tpdo, .types = {}};
+    PdoRule rule{.fact = {}, .is_tpdo = is_tpdo, .types = {}, .answers = {}};
     take_range(reader, "numbers", rule.numbers, {1, 512});
-    if (const YamlNode* types = reader.take("transmission")) read_types(*types, rule);
+    if (const YamlNode* types = reader.take("transmission")) read_types(*types, rule.types);
+    if (const YamlNode* types = reader.take("answers_rpdo")) read_types(*types, rule.answers);
     Sourced<bool> without_timer;
     reader.boolean("without_timer", without_timer);
     rule.without_timer = *without_timer;
@@ -237,14 +238,14 @@ class DeviceReader {
     data_.pdos.push_back(std::move(rule));
   }
 
-  void read_types(const YamlNode& node, PdoRule& rule) {
+  void read_types(const YamlNode& node, std::vector<NumberRange>& out) {
     if (node.kind != YamlNode::Kind::sequence || node.items.empty() || node.items.size() > 256) {
       report_.error(node.pos, "wrong-type",
-                    "`transmission` is a list of numbers and ranges: [[1, 240], 254, 255]");
+                    "transmission types are a list of numbers and ranges: [[1, 240], 254, 255]");
       return;
     }
     for (const YamlNode* item : node.items) {
-      if (const auto types = range(*item, "transmission", {0, 255})) rule.types.push_back(*types);
+      if (const auto types = range(*item, "transmission", {0, 255})) out.push_back(*types);
     }
   }
 

@@ -54,7 +54,8 @@ std::optional<SdoSpec> read_object(const YamlNode& item, std::string_view key,
   const YamlNode* value = reader.take("value");
   reader.finish();
   if (value == nullptr) {
-    report.error(item.pos, "missing-key", reader.what() + " lacks `value`");
+    const bool told = !reader.is_map() || !object || reader.has_slip_of("value");
+    if (!told) report.error(item.pos, "missing-key", reader.what() + " lacks `value`");
     return {};
   }
   if (!object) return {};

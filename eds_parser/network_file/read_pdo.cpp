@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <map>
 
 #include "eds_parser/network_file/sections.hpp"
@@ -26,6 +27,47 @@ void read_cob_id(MapReader& reader, PdoSpec& pdo) {
   }
 }
 
+bool is_hex(std::string_view text) {
+  return !text.empty() && text.size() <= 4 &&
+         std::ranges::all_of(text, [](unsigned char c) { return std::isxdigit(c) != 0; });
+}
+
+/// An index as a whole; one that is written without 0x is told how it would be right.
+std::optional<std::uint16_t> read_index(const YamlNode& node, NetworkReport& report) {
+  const bool has_letter =
+      std::ranges::any_of(node.text, [](unsigned char c) { return std::isalpha(c) != 0; });
+  if (node.kind == YamlNode::Kind::scalar && has_letter && is_hex(node.text)) {
+    report.error(node.pos, "not-a-number",
+                 "`index`: `" + node.text + "` is hexadecimal without 0x: write 0x" + node.text);
+    return {};
+  }
+  const auto value = read_integer(node, "index", {1, 0xFFFF}, report);
+  if (!value) return {};
+  return static_cast<std::uint16_t>(*value);
+}
+
+/// `0x6064` or `0x6064:0`, index and sub-index in hex.
+std::optional<ObjectKey> read_short_key(const YamlNode& node, std::string_view key,
+                                        NetworkReport& report) {
+  const std::size_t colon = node.text.find(':');
+  YamlNode index = node;
+  index.text = node.text.substr(0, colon);
+  const auto value = read_index(index, report);
+  if (!value) return {};
+  if (colon == std::string::npos) return ObjectKey{*value, 0};
+  std::string_view sub = std::string_view{node.text}.substr(colon + 1);
+  if (sub.starts_with("0x") || sub.starts_with("0X")) sub.remove_prefix(2);
+  if (!is_hex(sub) || sub.size() > 2) {
+    report.error(node.pos, "not-a-number",
+                 "`" + std::string{key} + "`: `" + node.text.substr(0, 40) +
+                     "` is no object: 0x6064, or 0x6064:0 with the sub-index in hex");
+    return {};
+  }
+  std::uint8_t number = 0;
+  std::from_chars(sub.data(), sub.data() + sub.size(), number, 16);
+  return ObjectKey{*value, number};
+}
+
 void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
   const YamlNode* node = reader.take("mapping");
   if (node == nullptr) return;
@@ -33,7 +75,7 @@ void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
   if (node->kind != YamlNode::Kind::sequence) {
     report.error(node->pos, "wrong-type",
                  "`mapping` of " + what +
-                     " is a list of `{index: 0x6041, sub_index: 0}`, this is " +
+                     " is a list of `0x6041:0` or `{index: 0x6041, sub_index: 0}`, this is " +
                      std::string{name(node->kind)});
     return;
   }
@@ -43,18 +85,27 @@ void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
     report.error(node->pos, "too-many", "`mapping` of " + what + " has more than 64 entries");
     return;
   }
+  bool complete = true;
   for (const YamlNode* item : node->items) {
+    if (item->kind == YamlNode::Kind::scalar) {
+      const auto key = read_short_key(*item, "mapping", report);
+      if (key) pdo.mapping.value.push_back({.object = *key, .bits = {}, .pos = item->pos});
+      complete = complete && key;
+      continue;
+    }
     MapReader entry{*item, "a mapping entry of " + what, report};
     MappingSpec mapping{.object = {}, .bits = {}, .pos = item->pos};
     const auto key = read_object_key(entry, item->pos);
     Sourced<std::uint8_t> bits;
     entry.integer("bits", bits, {1, 64});
     entry.finish();
+    complete = complete && key;
     if (!key) continue;
     mapping.object = *key;
     if (bits.given) mapping.bits = *bits;
     pdo.mapping.value.push_back(mapping);
   }
+  if (!complete) pdo.enabled.value = false;  // what is left of it says nothing
 }
 
 void check_types(const PdoSpec& pdo, std::string_view key, const std::string& what,
@@ -144,10 +195,12 @@ std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos) {
   Sourced<std::uint16_t> index;
   Sourced<std::uint8_t> sub;
   const bool has_index = reader.take("index") != nullptr;
-  reader.integer("index", index, {1, 0xFFFF});
+  if (const YamlNode* node = reader.take("index")) {
+    if (const auto value = read_index(*node, reader.report())) index = {*value, node->pos, true};
+  }
   reader.integer("sub_index", sub, {0, 0xFF});
   if (index.given) return ObjectKey{*index, *sub};
-  if (!has_index) {
+  if (!has_index && reader.is_map() && !reader.has_slip_of("index")) {
     reader.report().error(pos, "missing-key", reader.what() + " lacks `index`");
   }
   return std::nullopt;

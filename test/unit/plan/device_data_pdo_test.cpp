@@ -100,5 +100,22 @@ TEST(DeviceDataPdos, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
             plan.device_notes.end());
 }
 
+TEST(DeviceDataPdos, ATpdoOfADrv28ThatOnlyAnswersAnRpdoWhichIsOffIsAWarning) {
+  const auto net = drv28("tpdo: {2: {transmission: 255}}, rpdo: {2: {enabled: false}}");
+  const std::string said = net.said("device-data");
+  EXPECT_NE(said.find("TPDO2 of node `pump` of transmission type 255 is sent only as the answer to "
+                      "RPDO2, which is off: it never comes. Switch RPDO2 on, or write "
+                      "`transmission: 254` (on change)"),
+            std::string::npos)
+      << said;
+}
+
+TEST(DeviceDataPdos, ATpdoOfADrv28ThatIsSentOtherwiseNeedsNoRpdo) {
+  EXPECT_EQ(drv28("tpdo: {2: {transmission: 254}}, rpdo: {2: {enabled: false}}").complaints(),
+            Complaints{});
+  EXPECT_EQ(drv28("tpdo: {2: {transmission: 255}}, rpdo: {2: {transmission: 1}}").complaints(),
+            Complaints{});
+}
+
 }  // namespace
 }  // namespace takt
