@@ -174,7 +174,8 @@ void AxisControl::reset_faults() {
 
 bool AxisControl::in_mode() const noexcept {
   return std::ranges::all_of(axes_, [this](const Axis& axis) {
-    return !axis.signals.mode_display || axis.shown_mode == std::to_underlying(mode_);
+    if (!axis.signals.mode_display) return axis.signals.mode.has_value();
+    return axis.shown_mode == std::to_underlying(mode_);
   });
 }
 

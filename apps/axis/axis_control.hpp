@@ -67,7 +67,8 @@ class AxisControl {
   void set_goal(Index axis, DriveGoal goal) { axes_[at(axis)].drive.set_goal(goal); }
   void reset_faults();
   void set_mode(DriveMode mode) noexcept { mode_ = mode; }
-  /// Whether every axis shows the mode (0x6061), as far as it is mapped.
+  /// Whether every axis shows the mode (0x6061). Where that is not mapped, whether the mode is
+  /// commanded (0x6060 is mapped); an axis with neither is in a mode that nobody knows: false.
   bool in_mode() const noexcept;
 
   // One value an axis. Axes that are not in Operation enabled keep to their position and rest;

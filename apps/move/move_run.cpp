@@ -142,6 +142,12 @@ bool MoveRun::enable() {
     if (axes_.drive(i).enabled()) continue;
     progress_.say(fmt::format("{}: not enabled, {}", axes_.name(i), name(axes_.drive(i).state())));
   }
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    if (axes_.signals(i).mode_display || axes_.signals(i).mode) continue;
+    progress_.say(axes_.name(i) +
+                  ": its mode of operation is not known: map 0x6060 into an RPDO, "
+                  "or 0x6061 into a TPDO where `sdo:` writes 0x6060");
+  }
   if (axes_.all_enabled()) progress_.say("not all axes show mode 8, cyclic synchronous position");
   return false;
 }

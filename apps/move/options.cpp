@@ -2,6 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
+
+#include "apps/known_words/known_words.hpp"
 
 namespace takt {
 namespace {
@@ -57,6 +60,10 @@ ParsedMove parse_move(int argc, char** argv) {
   app.add_option("--wait", options.wait_seconds, "for the daemon and its devices, s")
       ->check(positive());
   add_motion_options(app, options);
+  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
+    return {options, 2};
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -7,37 +7,11 @@
 #include <tuple>
 #include <unistd.h>
 
+#include "apps/known_words/known_words.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 
 namespace {
-
-/// Names of the subcommands of `app`.
-std::string commands_of(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* verb : app.get_subcommands({})) names += ' ' + verb->get_name();
-  return names;
-}
-
-/// CLI11 says of `takt frob` that a subcommand is missing. False: a word that is none was told.
-bool commands_known(const CLI::App& app, int argc, char** argv) {
-  const CLI::App* at = &app;
-  std::string path = app.get_name();
-  for (int i = 1; i < argc && !at->get_subcommands({}).empty(); ++i) {
-    const std::string word = argv[i];
-    if (word.starts_with('-')) return true;
-    const auto verbs =
-        at->get_subcommands([&word](const CLI::App* verb) { return verb->check_name(word); });
-    if (verbs.empty()) {
-      std::fprintf(stderr, "%s: no command '%s'; there are:%s\n", path.c_str(), word.c_str(),
-                   commands_of(*at).c_str());
-      return false;
-    }
-    path += ' ' + word;
-    at = verbs.front();
-  }
-  return true;
-}
 
 /// Why not all of stdout has been written; empty: it has. The reason of a write that failed long
 /// ago is that of one more.
@@ -87,7 +61,10 @@ int run(int argc, char** argv) {
   takt::add_nmt(app, exit_code);
   takt::add_lss(app, exit_code);
   takt::add_param(app, exit_code);
-  if (!commands_known(app, argc, argv)) return 2;
+  if (const std::string wrong = takt::unknown_word(app, argc, argv); !wrong.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
+    return 2;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

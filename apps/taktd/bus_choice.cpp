@@ -4,6 +4,10 @@
 
 namespace takt {
 
+bool lacks_bus(const DaemonOptions& options, const LoadedNetwork& network) {
+  return !options.bus && network.plan.interface.empty();
+}
+
 std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network) {
   BusPlan& plan = network.plan;
   if (options.bus) {

@@ -6,8 +6,11 @@
 
 namespace takt {
 
-/// The bus to run on: of the command line, else of the network file, else "sim". A bus to which the
-/// file gives no name is named after it.
+/// Neither the network file nor the command line names a bus: the daemon has none to run on.
+bool lacks_bus(const DaemonOptions& options, const LoadedNetwork& network);
+
+/// The bus to run on: of the command line, else of the network file; "sim": a simulated one. A bus
+/// to which the file gives no name is named after it.
 std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network);
 
 }  // namespace takt

@@ -9,10 +9,21 @@
 #include "apps/taktd/daemon.hpp"
 #include "apps/taktd/options.hpp"
 #include "apps/taktd/summary.hpp"
+#include "eds_parser/budget/budget.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {
 namespace {
+
+/// The verdict of `takt budget`, told where frames can be too late.
+bool fits_the_bus(const LoadedNetwork& network, const std::string& file) {
+  if (bus_fits(network.plan)) return true;
+  std::fprintf(stderr,
+               "taktd: in the worst case frames are too late on this bus: `takt budget %s` says "
+               "which, and the cheapest change with which they are not\n",
+               file.c_str());
+  return false;
+}
 
 int run(const DaemonOptions& options) {
   LoadedNetwork network = load_network(options.network_file);
@@ -26,7 +37,15 @@ int run(const DaemonOptions& options) {
       std::fprintf(stderr, "taktd: can't write to stdout: %s\n", std::strerror(errno));
       return static_cast<int>(Exit::refused);
     }
-    return static_cast<int>(Exit::good);
+    return static_cast<int>(fits_the_bus(network, options.network_file) ? Exit::good
+                                                                        : Exit::refused);
+  }
+  if (lacks_bus(options, network)) {
+    std::fprintf(stderr,
+                 "taktd: %s names no bus: write `bus: {interface: can0}` into it, or start taktd "
+                 "with --bus can0 (--bus sim simulates bus and devices)\n",
+                 options.network_file.c_str());
+    return static_cast<int>(Exit::wrong_use);
   }
   Daemon daemon{std::move(network), options};
   return static_cast<int>(daemon.run());

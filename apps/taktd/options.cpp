@@ -1,9 +1,11 @@
 #include "apps/taktd/options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <map>
 
 #include "apps/duration/duration.hpp"
+#include "apps/known_words/known_words.hpp"
 #include "eds_parser/table/lcm_url.hpp"
 
 namespace takt {
@@ -15,10 +17,10 @@ constexpr const char* description =
 
 constexpr const char* footer = R"(
 Examples:
-  taktd lift.yaml                      on the interface that the file names
+  taktd lift.yaml                      on the `interface:` of the file
   taktd lift.yaml --bus vcan0          on another one
   taktd lift.yaml --bus sim --for 10s  simulated bus and devices, no hardware needed
-  taktd lift.yaml --check              compile everything, touch no bus
+  taktd lift.yaml --check              compile everything, touch no bus; 1: frames can be too late
   taktd lift.yaml --observe            listen only: send nothing at all
   taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
   taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
@@ -64,6 +66,10 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
                "BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`, or not");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
   app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
+  if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
+    return std::unexpected{2};
+  }
   try {
     app.parse(argc, argv);
     if (!rt.empty()) options.rt = rt_modes.at(rt);

@@ -11,7 +11,7 @@ namespace takt {
 /// The command line of taktd.
 struct DaemonOptions {
   std::string network_file;
-  std::optional<std::string> bus;  ///< else the network file's interface, else "sim"
+  std::optional<std::string> bus;  ///< else the network file's interface
   std::optional<RtMode> rt;        ///< else the network file's
   std::string lcm_url;
   std::string events_file;

@@ -363,5 +363,29 @@ TEST(AxisControl, CommandsTheModeWhereItIsMapped) {
   EXPECT_TRUE(axes.in_mode());
 }
 
+TEST(AxisControl, IsInNoModeWhereTheModeIsNeitherMappedNorShown) {
+  ImageInput input;
+  input.take(two_axes());
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_mode(DriveMode::cyclic_position);
+  input.take(image(1, {enabled, 1, 0, 0}));
+  axes.on_image(input);
+
+  EXPECT_FALSE(axes.in_mode());
+}
+
+TEST(AxisControl, IsInTheModeThatItCommandsWhereNoneIsShown) {
+  layout_t layout = two_axes();
+  layout.signals[1] = signal(5, 0x606C, false, 32);
+  layout.signals[5] = signal(5, 0x6060, true, 8);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+
+  EXPECT_TRUE(axes.in_mode());
+}
+
 }  // namespace
 }  // namespace takt
