@@ -77,7 +77,8 @@ class NodeAuditor {
     SupervisionRemedy remedy = supervision_remedy(plan_, index_, values_);
     out_.master_remedy = std::move(remedy.master);
     out_.remedy.insert(out_.remedy.end(), remedy.node.begin(), remedy.node.end());
-    if (remedy.node.empty()) {
+    if (!remedy.why.empty()) out_.besides.push_back(remedy.why);
+    if (remedy.node.empty() && remedy.master.empty()) {
       out_.besides.emplace_back(
           "it can watch neither heartbeat nor guarding: only its power, or a hardware enable, "
           "stops it");

@@ -1,5 +1,6 @@
 #include "apps/audit/device_values.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace takt {
@@ -19,11 +20,21 @@ bool writes(BootAction action) {
          action == enable_pdo;
 }
 
+/// 0x1016 without its count, 0x100C and 0x100D.
+bool is_supervision(ObjectKey key) {
+  return key.index == 0x100C || key.index == 0x100D || (key.index == 0x1016 && key.sub != 0);
+}
+
+bool is_writable(const DeviceObject& object) {
+  return object.access != Access::ro && object.access != Access::constant;
+}
+
 }  // namespace
 
 DeviceValues::DeviceValues(const NodePlan& node, const DeviceTable& device) {
   for (const DeviceObject& object : device.objects) {
     values_[object.key] = number_of(object.value);
+    if (is_supervision(object.key) && is_writable(object)) supervision_.push_back(object);
   }
   if (!node.boot) return;
   for (const BootStep& step : node.boot_plan.steps) {
@@ -56,6 +67,14 @@ void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
 
 void DeviceValues::missing(ObjectKey key) {
   if (values_.erase(key) != 0) note(to_string(key) + " stands in the EDS; the device has none");
+}
+
+bool DeviceValues::takes(std::uint16_t index, std::int64_t value) const {
+  return std::ranges::any_of(supervision_, [&](const DeviceObject& object) {
+    const bool fits =
+        value >= object.low_limit.value_or(value) && value <= object.high_limit.value_or(value);
+    return object.key.index == index && fits;
+  });
 }
 
 bool DeviceValues::has(std::uint16_t index) const {

@@ -97,19 +97,62 @@ Supervision supervision_of(const BusPlan& plan, std::size_t node_index,
   return Finder{plan, node_index, values}.run();
 }
 
+namespace {
+
+constexpr std::int64_t usual_heartbeat_ms = 100;
+constexpr int missed_heartbeats = 3;
+constexpr std::int64_t guard_ms = 100;
+constexpr std::int64_t life_time_factor = 3;
+
+/// 0x1016 as the boot would write it.
+std::int64_t consumer_entry(const BusPlan& plan) {
+  const std::int64_t ms = plan.master_heartbeat == Time{} ? usual_heartbeat_ms
+                                                          : plan.master_heartbeat / milliseconds{1};
+  return (std::int64_t{plan.master_id.value()} << 16) | (missed_heartbeats * ms);
+}
+
+/// No entry of 0x1016 is left for the master: each watches another node.
+bool watches_only_others(const BusPlan& plan, const DeviceValues& values) {
+  const std::uint64_t entries = std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127);
+  for (std::uint8_t sub = 1; sub <= entries; ++sub) {
+    const std::uint64_t entry = values.get({0x1016, sub}).value_or(0);
+    const std::uint64_t node = (entry >> 16) & 0xFF;
+    const bool other = node != 0 && node <= 127 && node != plan.master_id.value();
+    if (!other || (entry & 0xFFFF) == 0) return false;
+  }
+  return entries != 0;
+}
+
+}  // namespace
+
 SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
                                      const DeviceValues& values) {
   SupervisionRemedy remedy;
-  if (!plan.nodes[node_index].boot) remedy.node.emplace_back("boot: true   # takt configures it");
-  if (values.has(0x1016)) {
+  const bool boots = plan.nodes[node_index].boot;
+  if (!boots) remedy.node.emplace_back("boot: true   # takt configures it");
+  const bool full = watches_only_others(plan, values);
+  if (!full && values.takes(0x1016, consumer_entry(plan))) {
     if (plan.master_heartbeat == Time{}) {
       remedy.master = "master: {heartbeat_producer: 100}   # ms";
+    } else if (boots) {  // it is the default: the network file says false
+      remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
     }
-    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
-  } else if (values.has(0x100C) && values.has(0x100D)) {
+    return remedy;
+  }
+  if (full) {
+    remedy.why =
+        "each entry of its 1016 watches another node: it can't watch the master's heartbeat";
+  } else if (values.has(0x1016)) {
+    remedy.why =
+        "its 1016 can't be written, or by the limits of its EDS does not hold the master's node id "
+        "and a time: it can't watch the master's heartbeat";
+  }
+  if (values.takes(0x100C, guard_ms) && values.takes(0x100D, life_time_factor)) {
     remedy.node.emplace_back("heartbeat_producer: 0");
     remedy.node.emplace_back("guard_time: 100   # ms");
     remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
+  } else {
+    remedy.node.clear();
   }
   return remedy;
 }

@@ -21,10 +21,12 @@ struct Supervision {
 /// Heartbeat consumer (0x1016), life guarding (0x100C, 0x100D), SYNC (0x1006), deadlines of RPDOs.
 Supervision supervision_of(const BusPlan& plan, std::size_t node_index, const DeviceValues& values);
 
-/// Lines for the network file that make it notice. `master`: the one for the master is needed.
+/// Lines for the network file that make it notice, none that are the default already. `master`: the
+/// one for the master is needed. Both empty: nothing in the network file can make it notice.
 struct SupervisionRemedy {
   std::vector<std::string> node{};
   std::string master{};
+  std::string why{};  ///< why it can't watch heartbeats although it has 0x1016
 };
 SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
                                      const DeviceValues& values);

@@ -97,6 +97,9 @@ std::vector<Example> examples() {
       {"leading-zero", Kind::objects, "[2000]\nDataType=0x0006\nDefaultValue=08\n"},
       {"limit-above-type", Kind::objects, "[2000]\nDataType=3\nLowLimit=-32768\nHighLimit=32768\n"},
       {"limits-inverted", Kind::objects, "[2000]\nDataType=2\nLowLimit=0\nHighLimit=0xFF\n"},
+      {"limits-of-16-bits", Kind::objects,
+       "[1016]\nObjectType=8\nSubNumber=2\n[1016sub0]\nDataType=5\nAccessType=ro\nDefaultValue=1\n"
+       "[1016sub1]\nDataType=7\nAccessType=rw\nLowLimit=0\nHighLimit=65535\n"},
       {"list-count-missing", Kind::objects, "[OptionalObjects]\n1=0x1008\n"},
       {"list-count-wrong", Kind::objects,
        "[OptionalObjects]\nSupportedObjects=5\n1=0x1008\n2=0x1009\n3=0x100A\n"},
