@@ -67,11 +67,10 @@ class Walk {
   void single() {
     using enum FaultKind;
     constexpr std::array kinds{
-        loss,         duplicate,    delay,         error_frames,   power_off,
-        drift,        mute_sdo,     slow_sdo,      no_bootup,      late_bootup,
-        no_heartbeat, bootup_storm, self_start,    no_start,       mute_pdo,
-        device_error, reset,        bus_off,       stall_master,   stall_master,
-        no_guarding,  stuck_toggle, fixed_mapping, interface_down, preop_only};
+        loss,         duplicate,    delay,       error_frames, power_off,     drift,
+        mute_sdo,     slow_sdo,     no_bootup,   late_bootup,  no_heartbeat,  bootup_storm,
+        self_start,   no_start,     mute_pdo,    device_error, reset,         bus_off,
+        stall_master, stall_master, no_guarding, stuck_toggle, fixed_mapping, interface_down};
     Fault fault{.kind = kinds[random_.below(kinds.size())]};
     if (random_.chance(0.8)) fault.node = node();
     fault.probability = random_.chance(0.1) ? 1.0 : 0.01 * random_.below(40);

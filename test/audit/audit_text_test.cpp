@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -69,6 +70,41 @@ TEST(Audit, SaysWhereAMasterWithoutHeartbeatCanNotBeWatched) {
 
   EXPECT_EQ(audit.nodes[0].verdict, Failsafe::goes_on);
   EXPECT_EQ(audit.nodes[0].master_remedy, "master: {heartbeat_producer: 100}   # ms");
+}
+
+TEST(Audit, AdvisesNothingThatIsTheDefaultAlready) {
+  const auto network = two_nodes({}, {}, "heartbeat_producer: 0");
+
+  const NodeAudit drive = audit_of(network).nodes[0];
+
+  EXPECT_EQ(drive.remedy, std::vector<std::string>{}) << "the device watches the master by default";
+  for (const std::string& besides : drive.besides) {
+    EXPECT_EQ(besides.find("can watch neither"), std::string::npos) << besides;
+  }
+}
+
+TEST(Audit, NamesWhatWorksWhereTheHeartbeatConsumerHoldsNoNodeId) {
+  auto network = two_nodes({"heartbeat_consumer: false"}, {});
+  for (DeviceObject& object : network.devices[0].objects) {
+    if (object.key.index == 0x1016 && object.key.sub != 0) object.high_limit = 0xFFFF;
+  }
+
+  const NodeAudit drive = audit_of(network).nodes[0];
+
+  for (const std::string& line : drive.remedy) {
+    EXPECT_EQ(line.find("heartbeat_consumer"), std::string::npos) << line;
+  }
+  const bool told = std::ranges::any_of(drive.besides, [](const std::string& text) {
+    return text.find("does not hold the master's node id and a time") != std::string::npos;
+  });
+  EXPECT_TRUE(told);
+  const bool guards = std::ranges::any_of(drive.remedy, [](const std::string& line) {
+    return line.find("life_time_factor: 3") != std::string::npos;
+  });
+  const bool none = std::ranges::any_of(drive.besides, [](const std::string& text) {
+    return text.find("can watch neither") != std::string::npos;
+  });
+  EXPECT_NE(guards, none) << "life guarding where the device has it, else nothing";
 }
 
 TEST(Audit, NamesEachOutputThatStays) {

@@ -45,10 +45,41 @@ class Tools:
 def wrong_use(tools):
     tools.says("takt names the commands it has", ["takt", "plam"], 2, "no command 'plam'", " plan ")
     tools.says("takt eds names the commands it has", ["takt", "eds", "chek"], 2, "no command 'chek'", " check")
+    tools.says("a wrong command has a guess", ["takt", "plam"], 2, "did you mean 'plan'?")
+    tools.says("so has one of a command", ["takt", "eds", "chek"], 2, "did you mean 'check'?")
+    tools.says("a wrong option has a guess", ["takt", "plan", "--jsn", DEMO], 2, "takt plan: no option '--jsn'", "did you mean '--json'?")
+    tools.says("so has one with a value", ["takt", "simulate", DEMO, "--sead=3"], 2, "no option '--sead'", "did you mean '--seed'?")
+    tools.says("so has one of taktd", ["taktd", DEMO, "--chek"], 2, "taktd: no option '--chek'", "did you mean '--check'?")
+    tools.says("so has one of takt-move", ["takt-move", "--sin"], 2, "did you mean '--sine'?")
+    tools.says("a far one has none", ["takt", "plan", "--zzzzzz", DEMO], 2, "no option '--zzzzzz'; takt plan --help lists them")
+    tools.says("behind -- are no options", ["takt", "plan", "--", "--jsn"], 2, "--jsn")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
                     ["top"], ["sdo"], ["nmt"]):
         tools.says(" ".join(["takt", *command, "--help"]) + " has an example", ["takt", *command, "--help"], 0, "Example")
+
+
+def the_bus_is_named(tools):
+    tools.says("taktd needs a bus", ["taktd", DEMO], 2, "two_axes.yaml names no bus", "interface: can0", "--bus can0", "--bus sim")
+    tools.says("taktd --check needs none", ["taktd", DEMO, "--check"], 0)
+    tools.says("takt plan needs none", ["takt", "plan", DEMO], 0)
+    tools.says("takt simulate needs none", ["takt", "simulate", DEMO, "--for", "100ms"], 0)
+
+
+def budget_and_check_agree(tools):
+    axis = ("{dcf: " + str(ROOT / "share/eds/takt_drive402.eds") + ", heartbeat_producer: 100, on_loss: report, "
+            "tpdo: {1: {transmission: 1, mapping: [0x6041, 0x6064]}, 2: {transmission: 1, mapping: [0x606C, 0x6077, 0x6061]}, "
+            "3: {enabled: false}, 4: {enabled: false}}, "
+            "rpdo: {1: {transmission: 1, mapping: [0x6040, 0x607A]}, 2: {transmission: 1, mapping: [0x6060]}, "
+            "3: {enabled: false}, 4: {enabled: false}}, node_id: ")
+    with tempfile.TemporaryDirectory() as folder:
+        for drives, period in ((120, 80000), (2, 80000)):
+            net = pathlib.Path(folder) / f"{drives}.yaml"
+            nodes = "".join(f"  a{i}: {axis}{i}}}\n" for i in range(1, drives + 1))
+            net.write_text(f"bus: {{name: big}}\nmaster: {{sync_period: {period}, heartbeat_producer: 100}}\nnodes:\n{nodes}")
+            budget, checked = tools.run(["takt", "budget", net]), tools.run(["taktd", net, "--check"])
+            check(f"takt budget and taktd --check agree: {drives} drives at {period} us", budget.returncode == checked.returncode,
+                  f"{budget.returncode} and {checked.returncode}: {checked.stderr[-600:]}")
 
 
 def numbers_are_decimal_or_hex(tools):
@@ -196,6 +227,8 @@ def main(binaries):
     tools = Tools(binaries)
     with tempfile.TemporaryDirectory() as folder:
         wrong_use(tools)
+        the_bus_is_named(tools)
+        budget_and_check_agree(tools)
         numbers_are_decimal_or_hex(tools)
         times(tools)
         full_disk(tools)
