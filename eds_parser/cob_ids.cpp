@@ -159,6 +159,7 @@ class CobIdAssigner {
     const CobId id = CobId::base(free);
     if (is_clash(pdo, other)) {
       tell_clash(user, *other, free);
+      pdo.origin = CobIdOrigin::automatic;
       return take(node, pdo, id);
     }
     const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
