@@ -23,7 +23,9 @@ struct FrontRound {
   void run() const {
     const Time next = next_image();
     const Time latest = serve();
-    wait(next, latest);
+    // An image was published meanwhile: whether it was found is for the next round to see. Its
+    // prediction is over, and after a stall in the middle of this round would be long over.
+    if (next_image() == next) wait(next, latest);
   }
 };
 

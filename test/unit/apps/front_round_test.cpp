@@ -98,7 +98,26 @@ TEST(FrontRound, AsksForTheNextImageBeforeItLooksForImages) {
 
   round.run();
 
-  EXPECT_EQ(order, "nsw");
+  EXPECT_EQ(order, "nsnw");
+}
+
+/// After a stall in the middle of a round the wait for the old prediction took up to 20 ms.
+TEST(FrontRound, DoesNotWaitWhereAnImageWasPublishedMeanwhile) {
+  Time prediction{7};
+  int waits = 0;
+  const FrontRound round{.next_image = [&] { return prediction; },
+                         .serve =
+                             [&] {
+                               prediction = Time{14};
+                               return Time{100};
+                             },
+                         .wait = [&](Time, Time) { ++waits; }};
+
+  round.run();
+  EXPECT_EQ(waits, 0);
+
+  round.run();
+  EXPECT_EQ(waits, 1);
 }
 
 }  // namespace
