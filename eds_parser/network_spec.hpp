@@ -149,7 +149,8 @@ enum class FallbackPolicy : std::uint8_t { quick_stop, hold, zero, safe, disable
 
 struct TimeoutSpec {
   Sourced<FallbackPolicy> fallback;
-  Sourced<std::uint32_t> after_cycles;
+  Sourced<std::uint32_t> after;         ///< ms; 0: no limit
+  Sourced<std::uint32_t> after_cycles;  ///< 0: no limit
 };
 
 /// What the master does to a node before it talks to it.

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::int64_t quick_stop_command = 0x0002;
 constexpr std::int64_t disable_voltage_command = 0x0000;
-constexpr std::uint32_t quick_stop_cycles = 3;
-constexpr Time hold_time = std::chrono::milliseconds{100};
+constexpr std::uint32_t fewest_cycles = 3;
+constexpr std::chrono::milliseconds default_time_to_live{50};
 
 enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
 
@@ -105,14 +105,21 @@ void apply_units(const NodeSource& node, Signal& signal) {
   signal.unit = unit->unit;
 }
 
+/// Time to live of commands, in cycles; 0: no limit.
+std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period) {
+  if (timeout.after_cycles.given) return *timeout.after_cycles;
+  const Time after =
+      timeout.after.given ? std::chrono::milliseconds{*timeout.after} : Time{default_time_to_live};
+  if (after == Time{0}) return 0;
+  const auto cycles = static_cast<std::uint32_t>((after + period - Time{1}) / period);
+  return std::max(fewest_cycles, cycles);
+}
+
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal) {
   const TimeoutSpec& timeout = node.spec->on_timeout;
   const auto policy =
       timeout.fallback.value_or(cia402 ? FallbackPolicy::quick_stop : FallbackPolicy::hold);
-  const auto hold_cycles =
-      static_cast<std::uint32_t>(std::max<Time::rep>(quick_stop_cycles, hold_time / period));
-  signal.fallback_cycles = timeout.after_cycles.value_or(
-      policy == FallbackPolicy::hold ? hold_cycles : quick_stop_cycles);
+  signal.fallback_cycles = fallback_cycles(timeout, period);
   signal.safe_value = safe_value(node, cia402, signal);
   switch (policy) {
     case FallbackPolicy::hold:

@@ -197,6 +197,15 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
   }
 }
 
+void warn_of_no_limit(const TimeoutSpec& timeout, NetworkReport& report) {
+  for (const Sourced<std::uint32_t>* after : {&timeout.after, &timeout.after_cycles}) {
+    if (!after->given || after->value != 0) continue;
+    report.warning(after->pos, "no-time-to-live",
+                   "0 means no limit: outputs keep their last command when its application dies; "
+                   "that is for latched outputs of I/O nodes only");
+  }
+}
+
 void read_timeout(MapReader& outer, NodeSpec& node) {
   const YamlNode* map = outer.take("on_timeout");
   if (map == nullptr) return;
@@ -208,7 +217,13 @@ void read_timeout(MapReader& outer, NodeSpec& node) {
       node.on_timeout.fallback = {static_cast<FallbackPolicy>(*choice), fallback->pos, true};
     }
   }
+  reader.integer("after", node.on_timeout.after, {0, 3'600'000, " ms"});
   reader.integer("after_cycles", node.on_timeout.after_cycles, {0, 1'000'000});
+  if (node.on_timeout.after.given && node.on_timeout.after_cycles.given) {
+    outer.report().error(node.on_timeout.after_cycles.pos, "duplicate-key",
+                         "`after` (ms) and `after_cycles` say the same thing: keep one of them");
+  }
+  warn_of_no_limit(node.on_timeout, outer.report());
   reader.finish();
 }
 

@@ -170,12 +170,12 @@ TEST(Seeds, WithoutFeedbackATargetWaitsForItsCommand) {
   EXPECT_EQ(find(net.plan, 0x607A).safe_value, std::nullopt);
 }
 
-TEST(Fallback, ADriveStopsQuicklyAfterThreeCyclesByDefault) {
+TEST(Fallback, ADriveStopsQuicklyAfter50MillisecondsByDefault) {
   const auto net = two_axes();
 
   EXPECT_EQ(find(net.plan, 0x6040).fallback, Fallback::value);
   EXPECT_EQ(find(net.plan, 0x6040).fallback_value, 0x0002);
-  EXPECT_EQ(find(net.plan, 0x6040).fallback_cycles, 3U);
+  EXPECT_EQ(find(net.plan, 0x6040).fallback_cycles, 13U);
   EXPECT_EQ(find(net.plan, 0x60FF).fallback, Fallback::value);
   EXPECT_EQ(find(net.plan, 0x60FF).fallback_value, 0);
   EXPECT_EQ(find(net.plan, 0x607A).fallback, Fallback::hold);
@@ -197,11 +197,26 @@ TEST(Fallback, PoliciesDoWhatTheySay) {
   EXPECT_EQ(find(safe.plan, 0x607A).fallback, Fallback::hold);
 }
 
-TEST(Fallback, ANodeThatIsNoDriveHoldsFor100Milliseconds) {
+TEST(Fallback, BeginsAfterMillisecondsOrCyclesButNotBothAndNotBeforeThreeCycles) {
+  const auto cycles = [](const std::string& timeout) {
+    return find(two_axes("  on_timeout: {" + timeout + "}\n").plan, 0x6040).fallback_cycles;
+  };
+  EXPECT_EQ(cycles("after: 80"), 20U);
+  EXPECT_EQ(cycles("after: 81"), 21U);
+  EXPECT_EQ(cycles("after: 1"), 3U);
+  EXPECT_EQ(cycles("after_cycles: 2"), 2U);
+  EXPECT_EQ(cycles("after: 0"), 0U) << "no limit";
+  EXPECT_THAT(two_axes("  on_timeout: {after: 0}\n").complaints(),
+              testing::Contains(HasSubstr("warning [no-time-to-live]")));
+  EXPECT_THAT(two_axes("  on_timeout: {after: 8, after_cycles: 2}\n").complaints(),
+              testing::Contains(HasSubstr("error [duplicate-key]")));
+}
+
+TEST(Fallback, ANodeThatIsNoDriveHoldsAfterTheSameTime) {
   const auto net = two_axes("  profile: none\n");
 
   EXPECT_EQ(find(net.plan, 0x6040).fallback, Fallback::hold);
-  EXPECT_EQ(find(net.plan, 0x6040).fallback_cycles, 25U);
+  EXPECT_EQ(find(net.plan, 0x6040).fallback_cycles, 13U);
   EXPECT_EQ(find(net.plan, 0x6040).safe_value, std::nullopt);
 }
 
