@@ -13,6 +13,7 @@
 
 #include "apps/black_box/recording_format.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/passing_trouble.hpp"
 #include "master/linux/start_thread.hpp"
 
 namespace takt {
@@ -69,13 +70,13 @@ std::expected<std::unique_ptr<BlackBox>, std::string> BlackBox::open(const Black
   };
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
-  if (error) return refused(error.message());
+  if (error && !is_passing_trouble(error.value())) return refused(error.message());
   const auto probe = options.folder / ".takt";
   if (std::FILE* const file = std::fopen(probe.c_str(), "wb")) {
     std::fclose(file);
     std::filesystem::remove(probe, error);
-  } else {
-    return refused(std::error_code{errno, std::generic_category()}.message());
+  } else if (const int why = errno; !is_passing_trouble(why)) {
+    return refused(std::error_code{why, std::generic_category()}.message());
   }
   forget_incomplete(options.folder, file_name(head.bus));
   return std::unique_ptr<BlackBox>{new BlackBox{options, plan, std::move(head), std::move(say)}};

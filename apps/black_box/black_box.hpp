@@ -30,7 +30,8 @@ class BlackBox {
   /// A recording is written; `file` is empty where that failed.
   using Say = std::function<void(const std::string& sentence, const std::string& file)>;
 
-  /// An error is a sentence: the folder can't be written. `plan` outlives the box.
+  /// An error is a sentence: the folder can't be written. A disk that only takes nothing now is
+  /// none: each recording is tried, and what becomes of it is told. `plan` outlives the box.
   static std::expected<std::unique_ptr<BlackBox>, std::string> open(const BlackBoxOptions& options,
                                                                     const BusPlan& plan,
                                                                     RecordingHead head, Say say);

@@ -1,6 +1,7 @@
 #include "apps/taktd/daemon.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "master/core/boot_report.hpp"
 #include "master/gateway/random_number.hpp"
 #include "master/linux/clock.hpp"
+#include "master/linux/passing_trouble.hpp"
 #include "master/linux/start_thread.hpp"
 
 namespace takt {
@@ -99,8 +101,11 @@ Exit Daemon::exit_of_cut_stop() const {
 std::optional<Exit> Daemon::open() {
   if (const auto trouble = claim_bus()) return trouble;
   if (!options_.events_file.empty() && !reporter_.open_events(options_.events_file)) {
-    reporter_.say(Weight::error, "--events " + options_.events_file + ": can't be written");
-    return Exit::wrong_use;
+    const bool passing = is_passing_trouble(errno);
+    reporter_.say(passing ? Weight::warning : Weight::error,
+                  "--events " + options_.events_file + ": can't be written: " +
+                      std::strerror(errno) + (passing ? "; running without it" : ""));
+    if (!passing) return Exit::wrong_use;
   }
   auto url = parse_lcm_url(choose_lcm_url(options_.lcm_url, network_.lcm.url));
   if (!url) {

@@ -1,6 +1,7 @@
 #include "apps/taktd/reporter.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "master/linux/clock.hpp"
 
@@ -19,6 +20,9 @@ void Reporter::tell(const Notice& notice) {
   if (!events_) return;
   tell_lost();
   write(notice);
+  if (events_->has_thread() || std::exchange(without_thread_told_, true)) return;
+  say(Weight::warning,
+      "--events: no thread can be created for it; its lines wait, and it is tried again");
 }
 
 /// In the file too, where the gap is.

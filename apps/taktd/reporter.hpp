@@ -16,7 +16,7 @@ class Reporter {
  public:
   explicit Reporter(const BusPlan& plan) : plan_{plan} {}
 
-  /// False: the file can't be written.
+  /// False: the file can't be written, and errno says why.
   bool open_events(const std::string& path);
 
   void tell(const Notice& notice);
@@ -38,6 +38,7 @@ class Reporter {
   const BusPlan& plan_;
   ErrorLog log_;
   std::unique_ptr<LineWriter> events_;
+  bool without_thread_told_ = false;
   std::array<std::uint64_t, 3> told_{};
 };
 

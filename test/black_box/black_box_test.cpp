@@ -232,6 +232,20 @@ TEST_F(BlackBoxTest, LosesNoRecordingToAFullDiskAndLeavesNoHalfOne) {
   EXPECT_FALSE(files().contains("lift-20200101T000000.log"));
 }
 
+TEST_F(BlackBoxTest, IsThereThoughNoFileCanBeMadeNow) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  open();
+  ::setrlimit(RLIMIT_NOFILE, &before);
+
+  box->on_request("asked for", now);
+  pass(200ms);
+  await_files();
+  EXPECT_EQ(files().size(), 3U);
+}
+
 TEST_F(BlackBoxTest, RemovesWhatARunLeftBehindThatWasEndedWhileItWrote) {
   std::filesystem::create_directories(folder / "box");
   for (const char* name : {".part-lift-20200101T000000.log", ".part-pump-20200101T000000.log",
