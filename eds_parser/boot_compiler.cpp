@@ -41,10 +41,10 @@ class BootCompiler {
     ConfigurationDate date{spec_, dictionary_, steps_, report_};
     date.skip_if_there();
     restore();
-    if (!date.used()) append_error_control(part_);
+    append_error_control(part_);
     append_emergency(part_);
     append_time(part_);
-    if (!date.used()) append_sync(part_);
+    append_sync(part_);
     if (!tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
     for (const EffectivePdo& pdo : node_.pdos) append_pdo(dictionary_, pdo, steps_);
     if (tweaks_.values_after_pdos) append_values(node_.node, context_, steps_, report_);
@@ -140,7 +140,7 @@ class BootCompiler {
   }
 
   /// What the device watches of the master was disarmed at the end of the last ordered stop: every
-  /// boot arms it again, whatever the configuration date says.
+  /// boot looks at it again, whatever the configuration date says, and writes what differs.
   void arm() {
     append_error_control(part_);
     append_sync(part_);
