@@ -75,7 +75,7 @@ histogram_t histogram_message(std::string name, const HistogramSnapshot& times) 
   return message;
 }
 
-float BusLoad::update(Time now, std::uint64_t wire_bits) {
+float LoadMeter::update(Time now, std::uint64_t wire_bits) {
   samples_.push_back({.when = now, .bits = wire_bits});
   while (samples_.size() > 2 && now - samples_[1].when >= load_window) samples_.pop_front();
   const Sample& oldest = samples_.front();

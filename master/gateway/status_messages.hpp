@@ -25,9 +25,9 @@ struct GatewayStatus {
 };
 
 /// Share of time that the wire is busy, over about the last second.
-class BusLoad {
+class LoadMeter {
  public:
-  explicit BusLoad(std::uint32_t bitrate) : bitrate_{bitrate} {}
+  explicit LoadMeter(std::uint32_t bitrate) : bitrate_{bitrate} {}
   float update(Time now, std::uint64_t wire_bits);
 
  private:
@@ -58,7 +58,7 @@ class StatusMessages {
 
   const BusPlan& plan_;
   StatusIdentity identity_;
-  BusLoad load_;
+  LoadMeter load_;
   Diagnosis diagnosis_;
 };
 

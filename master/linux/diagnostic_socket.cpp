@@ -55,7 +55,7 @@ struct DiagnosticSocket::State {
   IntruderWatch watch;
   FileDescriptor socket;
   Time next_look{};
-  BusTraffic traffic;
+  HeardTraffic traffic;
   std::uint64_t lost_before = 0;  // by sockets before this one
   MessageBatch<can_frame, batch_frames, can_control_bytes> can;
   MessageBatch<UnixBusRecord, batch_frames, 0> unix_bus;
@@ -162,6 +162,6 @@ void DiagnosticSocket::poll(const OnFrame& on_frame) {
 
 bool DiagnosticSocket::take(Event& event) { return state_->watch.take(event); }
 
-BusTraffic DiagnosticSocket::traffic() const noexcept { return state_->traffic; }
+HeardTraffic DiagnosticSocket::traffic() const noexcept { return state_->traffic; }
 
 }  // namespace takt

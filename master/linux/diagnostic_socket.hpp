@@ -13,7 +13,7 @@
 namespace takt {
 
 /// What has gone over the bus since the socket was opened.
-struct BusTraffic {
+struct HeardTraffic {
   std::uint64_t frames = 0;
   std::uint64_t bits = 0;  ///< with the stuff bits of average data; load = bits / (t * bit rate)
   std::uint64_t lost = 0;  ///< frames that this socket was too slow for
@@ -40,7 +40,7 @@ class DiagnosticSocket {
   /// looked for once a second.
   void poll(const OnFrame& on_frame = {});
   bool take(Event& event);
-  BusTraffic traffic() const noexcept;
+  HeardTraffic traffic() const noexcept;
 
  private:
   struct State;
