@@ -75,10 +75,11 @@ class NodeAuditor {
 
   void advise_supervision() {
     SupervisionRemedy remedy = supervision_remedy(plan_, index_, values_);
+    const bool helpless = remedy.node.empty() && remedy.master.empty();
     out_.master_remedy = std::move(remedy.master);
     out_.remedy.insert(out_.remedy.end(), remedy.node.begin(), remedy.node.end());
     if (!remedy.why.empty()) out_.besides.push_back(remedy.why);
-    if (remedy.node.empty() && remedy.master.empty()) {
+    if (helpless) {
       out_.besides.emplace_back(
           "it can watch neither heartbeat nor guarding: only its power, or a hardware enable, "
           "stops it");

@@ -235,8 +235,6 @@ std::span<const NodeStatus> Network::nodes() const noexcept { return statuses_; 
 
 bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
   if (node_index >= statuses_.size()) return false;
-  // A heartbeat from before the stop command may still arrive and say OPERATIONAL.
-  if (stopping_ && sessions_[node_index].stopped()) return false;
   const NodeStatus& node = statuses_[node_index];
   return (node.boot == BootState::ready || node.boot == BootState::idle) &&
          node.nmt == NmtState::operational;

@@ -83,7 +83,10 @@ void BusLoop<P, N>::follow_nodes() noexcept {
     }
     // Without knowing of SYNC no cycle can wait for answers to it.
     const bool beats = !options_.observe || follower_.used();
-    const Reception heard = beats ? Reception::full : Reception::listening;
+    // At the end of an ordered stop a heartbeat from before the last NMT command may still say
+    // OPERATIONAL.
+    const Reception beating = stop_.axes_done() ? Reception::early : Reception::full;
+    const Reception heard = beats ? beating : Reception::listening;
     const bool listen = options_.observe || !plan_.nodes[i].boot;
     hearing_ = hearing_ || exchanging || listen;
     const Reception expected = network_.starts(i) ? Reception::early : Reception::off;

@@ -81,7 +81,10 @@ void expect_shape(const json& object, const Shape& shape, const std::string& whe
 const Shape bus_shape = {
     {"bus", 's'},         {"interface", 's'}, {"bitrate", 'n'}, {"master_id", 'n'},
     {"start_nodes", 'b'}, {"cycle", 'o'},     {"nodes", 'l'},   {"master_heartbeat_us", 'n'},
-    {"image", 'o'},       {"lcm", 'o'},       {"waits", 'l'}};
+    {"image", 'o'},       {"lcm", 'o'},       {"waits", 'l'},   {"limits", 'l'}};
+const Shape limit_shape = {{"node", 's'},  {"axis", 'N'},    {"index", 'N'},     {"sub", 'N'},
+                           {"limit", 's'}, {"source", 's'},  {"low", 'N'},       {"high", 'N'},
+                           {"unit", 's'},  {"signals", 'l'}, {"proposal?", 's'}, {"because?", 's'}};
 const Shape wait_shape = {{"wait", 's'}, {"limit_us", 'n'}, {"what", 's'}};
 const Shape cycle_shape = {{"period_us", 'n'},       {"sync", 'b'},
                            {"sync_cob_id", 'n'},     {"sync_overflow", 'n'},
@@ -111,6 +114,7 @@ const Shape node_shape = {
     {"sdo_answer_cob_id", 'n'},
     {"sdo_timeout_us", 'n'},
     {"reboot_delay_us", 'n'},
+    {"reboot_delay_max_us", 'n'},
     {"lss", 'b'},
     {"device_data", 's'},
     {"device_data_file", 's'},
@@ -152,6 +156,7 @@ TEST(ExportJson, HasTheKeysThatOtherProgramsRelyOn) {
     expect_shape(document, bus_shape, name);
     expect_shape(document["cycle"], cycle_shape, name + " cycle");
     for (const auto& wait : document["waits"]) expect_shape(wait, wait_shape, name + " waits");
+    for (const auto& limit : document["limits"]) expect_shape(limit, limit_shape, name + " limits");
     for (const auto& node : document["nodes"]) {
       const std::string where = name + ' ' + node.value("name", "");
       expect_shape(node, node_shape, where);

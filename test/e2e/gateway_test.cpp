@@ -139,6 +139,8 @@ TEST(Gateway, OutlivesClientsThatMisbehave) {
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
   Client client{path};
+  client.say("[6] 1 r 0x1000 0 u32\n");
+  EXPECT_EQ(client.line("[6]"), "[6] 131474");
   client.say(std::string(100'000, 'x'));
   EXPECT_EQ(client.line("[0]"), "[0] ERROR: 101 (syntax error: the line is too long)");
   client.say("\n[7] 1 r 0x1000 0 u32");

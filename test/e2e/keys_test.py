@@ -52,9 +52,9 @@ def main(binaries):
         try:
             until("a hub", lambda: re.search(r"LCM_DEFAULT_URL=(tcpq://\S+)", log.read_text()))
             url = re.search(r"LCM_DEFAULT_URL=(tcpq://\S+)", log.read_text())[1]
-            upload = ["sdo", "upload", "io", "1000", "--lcm-url", url]
-            until("an answer to who has the key", lambda: takt(binaries, *upload, "--keys", keys).returncode == 0)
-            unsigned = takt(binaries, *upload)
+            read = ["sdo", "read", "io", "1000", "u32", "--lcm-url", url]
+            until("an answer to who has the key", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
+            unsigned = takt(binaries, *read)
             assert unsigned.returncode == 3 and "does it ask for a key" in unsigned.stderr, unsigned
             until("a word about it", lambda: "it came without an envelope" in log.read_text())
 
@@ -63,8 +63,8 @@ def main(binaries):
             replaced = folder / "next"
             takt(binaries, "keys", "new", replaced, "--name", "desk")
             replaced.rename(keys)
-            until("new keys", lambda: takt(binaries, *upload, "--keys", keys).returncode == 0)
-            old = takt(binaries, *upload, "--keys", mine)
+            until("new keys", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
+            old = takt(binaries, *read, "--keys", mine)
             assert old.returncode == 3 and "does it have this key" in old.stderr, old
         finally:
             daemon.kill()

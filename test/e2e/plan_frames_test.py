@@ -38,11 +38,15 @@ class Boot:
         self.steps = node["boot_plan"]
         request, answer = 0x600 + node["id"], 0x580 + node["id"]
         self.frames = [f for f in frames if f[0] in (request, answer) or f[0] == 0 and f[1][2:] == f"{node['id']:02X}"]
+        self.preoperational = (0, f"80{node['id']:02X}")
         self.at = 0
         self.same = True
 
     def take(self, pattern, step):
-        """The next frame, and for SDO its answer, which is returned."""
+        """The next frame, and for SDO its answer, which is returned. NMT enter pre-operational, which a boot sends
+        before its first write, is part of no step."""
+        if self.frames[self.at] == self.preoperational and not re.fullmatch(pattern, "000#" + self.preoperational[1]):
+            self.at += 1
         cob_id, data = self.frames[self.at]
         sent = f"{cob_id:03X}#{data}"
         assert re.fullmatch(pattern, sent), f"step {step}: plan has {pattern}, sent was {sent}"

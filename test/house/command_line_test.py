@@ -63,7 +63,7 @@ def the_bus_is_named(tools):
     tools.says("taktd needs a bus", ["taktd", DEMO], 2, "two_axes.yaml names no bus", "interface: can0", "--bus can0", "--bus sim")
     tools.says("taktd --check needs none", ["taktd", DEMO, "--check"], 0)
     tools.says("takt plan needs none", ["takt", "plan", DEMO], 0)
-    tools.says("takt simulate needs none", ["takt", "simulate", DEMO, "--for", "100ms"], 0)
+    tools.says("takt simulate needs none", ["takt", "simulate", DEMO, "--for", "1s"], 0)
 
 
 def budget_and_check_agree(tools):

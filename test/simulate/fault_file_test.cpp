@@ -99,7 +99,7 @@ TEST_F(FaultFileTest, ReadsEveryLineOfItsDescriptionWhichHasEveryKind) {
         << sim::name(static_cast<sim::FaultKind>(kind)) << " is not described";
     ++kinds;
   }
-  EXPECT_EQ(kinds, 30u);
+  EXPECT_EQ(kinds, 31u);
   EXPECT_EQ(told.size(), kinds);
   EXPECT_EQ(file.faults.size(), static_cast<std::size_t>(std::ranges::count(block, '{')))
       << "one on each line";

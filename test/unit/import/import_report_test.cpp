@@ -237,7 +237,7 @@ TEST_F(Import, NamesEveryKeyAsUsedOrIgnored) {
       "    node_id: 2\n"
       "    tpdo: {1: {cob_id: auto, transmission: 1, mapping: [{index: 0x6041}, {index: "
       "0x6064}]}}\n"
-      "    sdo: [{index: 0x6081, sub_index: 0, value: 1000}]\n");
+      "    sdo: [{index: 0x6081, sub_index: 0, value: 1000}, {index: 0x6060, value: 1}]\n");
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "options.dcf_path").fate, KeyFate::ignored);
