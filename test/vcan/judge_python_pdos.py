@@ -71,12 +71,12 @@ class Application:
 
     def run_while(self, process):
         until = time.monotonic() + 180
-        asked = False
+        self.stopped_at = float("inf")  # wall clock of the order to stop
         while process.poll() is None:
             self.bus.handle_timeout(50)
-            if not asked and (self.images >= IMAGES + 30 or time.monotonic() > until):
+            if self.stopped_at == float("inf") and (self.images >= IMAGES + 30 or time.monotonic() > until):
+                self.stopped_at = time.time()
                 process.terminate()
-                asked = True
 
 
 def numbers(frames, identifier):
@@ -189,7 +189,9 @@ def main(binaries):
         frames = operational(read_log(log))
         cob_ids = {key: pdo.cob_id for key, pdo in application.pdos.items()}
         check(sorted(cob_ids) == [(False, 1), (False, 2), (False, 3), (True, 1), (True, 2)], f"taktd tells its PDOs: {cob_ids}")
-        for judge in (judge_each_nth, judge_events, judge_timer):
+        # The ordered stop sends every RPDO in each cycle.
+        judge_each_nth([frame for frame in frames if frame[0] < application.stopped_at], cob_ids)
+        for judge in (judge_events, judge_timer):
             judge(frames, cob_ids)
         judge_image(frames, application, cob_ids)
         judge_dissector(check, log, 500)
