@@ -46,7 +46,7 @@ TEST_F(KeyFileTest, HasSeveralKeysWithNames) {
 }
 
 TEST_F(KeyFileTest, ThatOthersCanUseIsRefusedWithTheCommandThatMendsIt) {
-  for (const mode_t mode : {0640, 0604, 0620, 0602, 0610}) {
+  for (const mode_t mode : {0640U, 0604U, 0620U, 0602U, 0610U}) {
     write("plant " + zeros + "\n", mode);
     EXPECT_EQ(error(),
               "key file " + path + ": others than its owner can use it: chmod 600 " + path);
