@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <fmt/format.h>
 #include <utility>
 
 namespace takt {
@@ -113,13 +114,13 @@ class PatternParser {
       case '*':
       case '+':
       case '?':
-        return refuse(std::string{"nothing stands before '"} + c + "'");
+        return refuse(fmt::format("nothing stands before '{}'", c));
       case '{':
       case '}':
         return refuse("repetition by '{}' is not supported");
       case '^':
       case '$':
-        return refuse(std::string{"'"} + c + "' stands inside the pattern");
+        return refuse(fmt::format("'{}' stands inside the pattern", c));
       default:
         return literal(c);
     }
@@ -144,7 +145,7 @@ class PatternParser {
     if (left_.empty()) return refuse("a backslash ends the pattern");
     const char c = take();
     const bool word = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    if (word) return refuse(std::string{"'\\"} + c + "' is not supported");
+    if (word) return refuse(fmt::format("'\\{}' is not supported", c));
     return literal(c);
   }
 
