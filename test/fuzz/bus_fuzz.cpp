@@ -83,6 +83,7 @@ class Bus {
       demand(!takt::describe(network().plan, event).empty());
     }
     for (takt::Reply reply; master_.take(reply);) {
+      if (reply.id == 0) continue;  // a device has written 0x1F82 of the master
       demand(answered_.insert(reply.id).second);
       demand(reply.size <= takt::request_bytes);
     }
