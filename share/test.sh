@@ -97,8 +97,9 @@ fuzz() {
   seconds=${TAKT_FUZZ:-60}
   cmake --preset fuzz -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
   fuzz_one eds "$seconds" -dict=test/fuzz/eds.dict && fuzz_one network $((seconds / 2)) -dict=test/fuzz/network.dict || return 1
+  # One seed: a finding comes from a change and not from luck. Longer runs with other seeds belong to a release.
   for target in bus trace recording message broker text; do
-    fuzz_one $target $((seconds / 3)) || return 1
+    fuzz_one $target $((seconds / 3)) -seed=1 || return 1
   done
 }
 
