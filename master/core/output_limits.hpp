@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// Why a command isn't sent, in SI.
+/// The limit that a refused command would break, and by how much. Values are in SI units.
 struct LimitBreach {
   LimitKind kind = LimitKind::range;
   float measured = 0;

@@ -14,7 +14,7 @@ class FrontGap {
   /// It may sleep until `due`.
   void sleeps_until(Time due) noexcept { due_ = due; }
 
-  /// How long it did not run, the last time.
+  /// Length of the newest gap: how long the front thread did not run.
   Time length() const noexcept { return length_; }
   /// Commands that come now may have waited over the gap. A transport's own thread needs a moment
   /// to hand over what was in the kernel's buffers.
