@@ -16,16 +16,15 @@ namespace {
 constexpr std::uint16_t axis_objects = 0x800;  // CiA 402: distance of two axes of a device
 constexpr std::int64_t profile_position = 1;   // 6060
 
-/// `rad/s` of `rad`.
-bool is_rate_of(std::string_view unit, const std::string& base, LimitKind kind) {
+}  // namespace
+
+bool is_limit_rate(std::string_view unit, const std::string& base, LimitKind kind) {
   constexpr std::array<std::string_view, 1> per_second{"/s"};
   constexpr std::array<std::string_view, 4> per_second_squared{"/s^2", "/s2", "/s²", "/s/s"};
   const auto is = [&](std::string_view ending) { return unit == base + std::string{ending}; };
   if (kind == LimitKind::velocity) return std::ranges::any_of(per_second, is);
   return std::ranges::any_of(per_second_squared, is);
 }
-
-}  // namespace
 
 AxisLimits::AxisLimits(const NodeSource& node, std::size_t node_index, std::uint8_t axis,
                        BusPlan& plan, LimitTable& table, NetworkReport& report)
@@ -78,6 +77,10 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   }
 }
 
+double AxisLimits::cycle_seconds() const {
+  return std::chrono::duration<double>(plan_.cycle.period).count();
+}
+
 LimitLine& AxisLimits::line(LimitKind kind, LimitSource source) {
   LimitLine& line = plan_.limits.lines.emplace_back();
   line.node_index = static_cast<std::uint8_t>(node_index_);
@@ -127,7 +130,7 @@ bool AxisLimits::has_unit(SignalIndex index, std::string_view kind, SourcePos po
 bool AxisLimits::follows_position(LimitKind kind) const {
   if (positions_.empty()) return true;
   const std::string unit = unit_of(kind);
-  return is_rate_of(unit, table_.signal(positions_[0]).unit, kind);
+  return is_limit_rate(unit, table_.signal(positions_[0]).unit, kind);
 }
 
 void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
@@ -139,7 +142,8 @@ void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
 
 void AxisLimits::position(const Sourced<RangeSpec>& range) {
   if (!range.given) {
-    if (!positions_.empty()) line(LimitKind::position, LimitSource::none);
+    if (positions_.empty() || device_position()) return;
+    line(LimitKind::position, LimitSource::none);
     return;
   }
   LimitLine& entry = line(LimitKind::position, LimitSource::file);
@@ -161,12 +165,13 @@ void AxisLimits::magnitude(SignalIndex signal, double si, LimitKind kind, Source
 
 void AxisLimits::velocity(const Sourced<double>& limit) {
   if (!limit.given) {
-    if (!positions_.empty() || !velocities_.empty()) line(LimitKind::velocity, LimitSource::none);
+    if ((positions_.empty() && velocities_.empty()) || device_velocity()) return;
+    line(LimitKind::velocity, LimitSource::none);
     return;
   }
   LimitLine& entry = line(LimitKind::velocity, LimitSource::file);
   entry.high = *limit;
-  const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
+  const double seconds = cycle_seconds();
   const bool comparable = follows_position(LimitKind::velocity);
   if (!comparable && has_unit(positions_[0], "velocity", limit.pos)) {
     tell_other_unit(LimitKind::velocity, limit.pos);
@@ -188,12 +193,12 @@ void AxisLimits::velocity(const Sourced<double>& limit) {
 void AxisLimits::acceleration(const Sourced<double>& limit) {
   if (!limit.given) {
     const bool shown = !positions_.empty() || !velocities_.empty();
-    if (shown) line(LimitKind::acceleration, LimitSource::none);
+    if (shown && !device_acceleration()) line(LimitKind::acceleration, LimitSource::none);
     return;
   }
   LimitLine& entry = line(LimitKind::acceleration, LimitSource::file);
   entry.high = *limit;
-  const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
+  const double seconds = cycle_seconds();
   const bool comparable = follows_position(LimitKind::acceleration);
   if (!comparable && has_unit(positions_[0], "acceleration", limit.pos)) {
     tell_other_unit(LimitKind::acceleration, limit.pos);

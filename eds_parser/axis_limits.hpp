@@ -8,6 +8,9 @@
 
 namespace takt {
 
+/// `rad/s` of `rad` for a velocity, `rad/s^2` for an acceleration.
+bool is_limit_rate(std::string_view unit, const std::string& base, LimitKind kind);
+
 /// Compiles the limits of one axis of a drive: a row for each output that shows them, a line for
 /// each kind.
 class AxisLimits {
@@ -29,6 +32,19 @@ class AxisLimits {
   void step(const Sourced<double>& limit);
   void torque(const Sourced<double>& limit);
   void jerk(const Sourced<double>& limit);
+
+  // Limits that the drive tells in each boot: axis_device_limits.cpp. False: it has no such object,
+  // or no output can be held against it.
+  bool device_position();
+  bool device_velocity();
+  bool device_acceleration();
+  /// A readable object of 32 bits.
+  bool tells(ObjectKey object) const;
+  /// The line that the last limits of the plan belong to.
+  LimitLine& device_line(LimitKind kind, ObjectKey object, double scale);
+  void read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound, double factor);
+  double cycle_seconds() const;
+
   void magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos);
   void describe_position_rows(const AxisLimitsSpec& limits);
   double modulus(const Sourced<double>& modulo, SignalIndex signal) const;

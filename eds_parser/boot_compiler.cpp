@@ -1,6 +1,7 @@
 #include "eds_parser/boot_compiler.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "eds_parser/boot_error_control.hpp"
 #include "eds_parser/boot_limits.hpp"
@@ -52,6 +53,7 @@ class BootCompiler {
     store();
     date.land();
     if (date.used()) arm();
+    limits();
     start();
     BootPlan plan = steps_.take();
     judge_limits(node_, plan, report_);
@@ -178,6 +180,24 @@ class BootCompiler {
     }
     steps_.integer(BootAction::write_if_changed, key, save_signature, "store parameters (\"save\")")
         .timeout = std::max(restore_timeout, context_.sdo_timeout);
+  }
+
+  /// Each object that holds a limit is read once, however many outputs it bounds.
+  void limits() {
+    std::vector<ObjectKey> read;
+    const auto once = [&](ObjectKey object) {
+      if (std::ranges::find(read, object) != read.end()) return;
+      read.push_back(object);
+      steps_
+          .integer(BootAction::read_limit, object, 0,
+                   "limit of the drive, where the network file has none")
+          .value.clear();
+    };
+    for (const DeviceLimit& limit : context_.limits) {
+      if (limit.node_index != context_.node_index) continue;
+      once(limit.object);
+      if (limit.bound == DeviceBound::range) once(upper_object(limit));
+    }
   }
 
   void start() {

@@ -4,6 +4,7 @@
 #include "eds_parser/network_spec.hpp"
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
@@ -26,6 +27,8 @@ struct BootContext {
   bool start_nodes = true;
   bool start_all = false;  ///< not by the plan of each node
   bool cia402 = false;
+  std::span<const DeviceLimit> limits{};  ///< of all nodes
+  std::uint8_t node_index = 0;
   Time sdo_timeout{};
   Time boot_timeout{};
 };

@@ -37,7 +37,8 @@ constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
 constexpr std::uint8_t stand_in_id = 127;
-constexpr int stop_cycles = 10;  // an ordered stop without axes takes five
+constexpr std::uint8_t stray_index = 255;  // of a node that has no place in the plan
+constexpr int stop_cycles = 10;            // an ordered stop without axes takes five
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
@@ -308,7 +309,7 @@ class NetworkCompiler {
   void add_boot(std::size_t index) {
     const NodePdos& source = nodes_[index];
     NodePlan& node = plan().nodes[index];
-    if (node.boot) compile_boot_of(source, node);
+    if (node.boot) compile_boot_of(source, node, static_cast<std::uint8_t>(index));
     set_device_watch(*source.node.dictionary, node);
   }
 
@@ -318,10 +319,10 @@ class NetworkCompiler {
     judge_by_device_data(source, spec_.master, report_);
     check_node_values(source, report_);
     NodePlan node{.name = source.node.spec->name, .id = source.node.id};
-    if (*source.node.spec->boot) compile_boot_of(source, node);
+    if (*source.node.spec->boot) compile_boot_of(source, node, stray_index);
   }
 
-  void compile_boot_of(const NodePdos& source, NodePlan& node) {
+  void compile_boot_of(const NodePdos& source, NodePlan& node, std::uint8_t node_index) {
     const MasterSpec& master = spec_.master;
     const std::uint16_t master_ms = *master.heartbeat_producer;
     const BootContext context{
@@ -341,6 +342,8 @@ class NetworkCompiler {
         .start_nodes = *master.start_nodes,
         .start_all = *master.start_all_nodes,
         .cia402 = node.cia402,
+        .limits = out_.plan.limits.device,
+        .node_index = node_index,
         .sdo_timeout = node.sdo_timeout,
         .boot_timeout =
             milliseconds(source.node.spec->boot_timeout_ms.value_or(default_boot_timeout_ms))};

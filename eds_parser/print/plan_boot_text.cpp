@@ -79,6 +79,7 @@ class BootText {
       case BootAction::probe:
       case BootAction::read_serial:
       case BootAction::read_firmware:
+      case BootAction::read_limit:
       case BootAction::disable_pdo:
         return {};
       case BootAction::skip_if_same:

@@ -41,7 +41,7 @@ std::string source(const LimitLine& line) {
     case LimitSource::file:
       return "from the network file" + (line.signals.empty() ? unchecked : "");
     case LimitSource::device:
-      return "from the device at boot, " + to_string(line.object);
+      return "read from the device at boot, " + to_string(line.object);
   }
   return {};
 }

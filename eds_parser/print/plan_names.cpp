@@ -58,6 +58,8 @@ std::string_view action_name(BootAction action) noexcept {
       return "read serial";
     case BootAction::read_firmware:
       return "read firmware";
+    case BootAction::read_limit:
+      return "read limit";
     case BootAction::pause:
       return "pause";
   }

@@ -55,6 +55,7 @@ class Frames {
       case BootAction::await_value:
       case BootAction::read_serial:
       case BootAction::read_firmware:
+      case BootAction::read_limit:
       case BootAction::expect:
         return {.first = upload(step.object)};
       case BootAction::await_bootup:

@@ -40,6 +40,7 @@ enum class BootAction : std::uint8_t {
   write_if_changed,   ///< as write, where this boot has written anything
   read_serial,        ///< upload `object`, to know the device again; may be missing
   read_firmware,      ///< upload `object`, to compare it with NodePlan::firmware; may be missing
+  read_limit,         ///< upload `object`, a limit of a drive, see DeviceLimit; may be missing
   await_operational,  ///< the node reports OPERATIONAL within `timeout` (heartbeat or SDO-silent
                       ///< wait)
   pause,              ///< wait for `timeout`

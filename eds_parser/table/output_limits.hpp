@@ -38,6 +38,8 @@ struct LimitLine {
   std::optional<double> low{};   ///< position and range only
   std::optional<double> high{};  ///< upper limit, or greatest magnitude
   std::string unit{};
+  double scale = 1.0;                  ///< `source` device: value of the object x scale + offset,
+  double offset = 0.0;                 ///< in `unit`
   std::vector<SignalIndex> signals{};  ///< the outputs that are checked; none: nothing is
   std::string proposal{};              ///< `velocity: 2.5`; where there is no limit
   std::string because{};               ///< where the proposal comes from
@@ -65,9 +67,39 @@ struct OutputLimit {
   bool profile = false;  ///< 6060 is no output, and the file sets profile position mode
 };
 
+/// What a value that is read from a device becomes.
+enum class DeviceBound : std::uint8_t {
+  range,  ///< OutputLimit::low, and OutputLimit::high from the next sub-index; INTEGER32
+  size,   ///< both, as a magnitude; UNSIGNED32
+  rate,   ///< OutputLimit::rate; UNSIGNED32
+  bend,   ///< OutputLimit::bend; UNSIGNED32
+};
+
+/// A limit that a device tells in each boot. It holds where it is plausible, see limit_names.hpp.
+struct DeviceLimit {
+  std::uint8_t node_index = 0;
+  ObjectKey object{};
+  SignalIndex signal = 0;
+  DeviceBound bound = DeviceBound::size;
+  double factor = 1.0;     ///< value of the device x factor = the bound in counts of the signal
+  std::uint16_t line = 0;  ///< place in LimitsPlan::lines
+};
+
+/// Where the upper end of a range is.
+constexpr ObjectKey upper_object(const DeviceLimit& limit) noexcept {
+  return {limit.object.index, static_cast<std::uint8_t>(limit.object.sub + 1)};
+}
+
+/// A limit as a boot has read it.
+struct LimitReading {
+  ObjectKey object{};
+  std::uint32_t value = 0;
+};
+
 /// All limits of a bus.
 struct LimitsPlan {
   std::vector<OutputLimit> outputs{};  ///< ascending signals
+  std::vector<DeviceLimit> device{};   ///< by node
   std::vector<LimitLine> lines{};      ///< by node, axis and kind
 };
 

@@ -23,7 +23,9 @@ bool is_identity(const BootStep& step) noexcept {
 BootRunner::BootRunner(const BootPlan& plan) noexcept
     : plan_{&plan},
       after_reset_{static_cast<std::size_t>(
-          std::ranges::find_if_not(plan.steps, begins_with_reset) - plan.steps.begin())} {}
+          std::ranges::find_if_not(plan.steps, begins_with_reset) - plan.steps.begin())},
+      limits_(static_cast<std::size_t>(
+          std::ranges::count(plan.steps, BootAction::read_limit, &BootStep::action))) {}
 
 void BootRunner::start(From from, Time now) noexcept {
   state_ = State::running;
@@ -39,6 +41,7 @@ void BootRunner::start(From from, Time now) noexcept {
   left_alone_ = 0;
   serial_number_.reset();
   firmware_.reset();
+  limits_read_ = 0;
   bootup_seen_ = from == From::bootup;
   heartbeat_seen_ = false;
   heard_ = from == From::bootup ? NmtState::bootup : NmtState::unknown;
@@ -242,6 +245,7 @@ void BootRunner::begin(const BootStep& step) noexcept {
     case BootAction::verify:
     case BootAction::read_serial:
     case BootAction::read_firmware:
+    case BootAction::read_limit:
     case BootAction::write_if_differs:
       phase_ = Phase::upload_next;
       return;

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/firmware.hpp"
+#include "eds_parser/table/output_limits.hpp"
 #include "eds_parser/table/waits.hpp"
 #include "master/core/event.hpp"
 #include "master/core/request.hpp"
@@ -71,6 +73,10 @@ class BootRunner {
   std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
   /// As the device tells it, where the plan asks.
   std::optional<Firmware> firmware() const noexcept { return firmware_; }
+  /// What this boot has read of the limits of the device.
+  std::span<const LimitReading> limits() const noexcept {
+    return std::span{limits_}.first(limits_read_);
+  }
   /// Bytes of the program that is being downloaded; 0: none is.
   std::size_t program_size() const noexcept;
   /// The plan has come to where the node is guarded.
@@ -114,6 +120,7 @@ class BootRunner {
   void on_confirmed(const SdoResult& result, Time now, const SdoClient& client) noexcept;
   void on_written() noexcept;
   void take_firmware() noexcept;
+  void take_limit() noexcept;
   void remember_cob_id() noexcept;
   void write_cob_id() noexcept;
   void fail(const SdoResult& result, Time now, const SdoClient& client) noexcept {
@@ -150,6 +157,8 @@ class BootRunner {
   ObjectKey first_left_alone_;
   std::optional<std::uint32_t> serial_number_;
   std::optional<Firmware> firmware_;
+  std::vector<LimitReading> limits_;  // as many as the plan reads, of which so many are there:
+  std::size_t limits_read_ = 0;
   bool bootup_seen_ = false;
   bool bootup_in_step_ = false;
   bool heartbeat_in_step_ = false;

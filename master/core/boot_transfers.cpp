@@ -100,6 +100,9 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
     case BootAction::read_firmware:
       if (result.fault == SdoFault::none) take_firmware();
       return next();
+    case BootAction::read_limit:
+      if (result.fault == SdoFault::none) take_limit();
+      return next();
     case BootAction::disable_pdo:
     case BootAction::enable_pdo:
       if (cob_id_object_ == step.object) return write_cob_id();
@@ -123,6 +126,17 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
   }
   to_write_ = step.value;
   phase_ = Phase::download_next;
+}
+
+/// The objects have 32 bits. A node that restarts in its boot is asked again.
+void BootRunner::take_limit() noexcept {
+  if (received_ != 4) return;
+  const LimitReading reading{current().object, load_le<std::uint32_t>(received())};
+  const auto place = std::ranges::find(limits(), reading.object, &LimitReading::object);
+  const auto index = static_cast<std::size_t>(place - limits().begin());
+  if (index == limits_.size()) return;
+  limits_[index] = reading;
+  limits_read_ = std::max(limits_read_, index + 1);
 }
 
 /// A number is a revision, anything else a text.

@@ -70,6 +70,8 @@ enum class EventKind : std::uint8_t {
   firmware_differs,  ///< from what the device data were taken for; value: Firmware::packed
   no_sdo_block,      ///< its SDO server knows none: all goes by segments until it is reset; value:
                      ///< abort code, 0: it gave no answer; detail: index << 8 | sub
+  limit_read,  ///< of a drive, in its boot; value: as the device says, of a range the lower end in
+               ///< its upper half; detail: place in LimitsPlan::lines << 8 | LimitVerdict
   program_progress,  ///< value: bytes that the device has taken, detail: of how many
   lss_assigned,      ///< the node had no id and has got it; value: its serial number
   lss_not_assigned,  ///< it was found without id, but did not take it, or (outcome nobody) others
@@ -127,6 +129,12 @@ enum class EventKind : std::uint8_t {
 enum class DuplicateSign : std::uint8_t {
   heartbeats,  ///< more heartbeats than one producer sends
   answers,     ///< several answers to one SDO request
+};
+
+/// What a limit that a device tells is good for.
+enum class LimitVerdict : std::uint8_t {
+  good,
+  implausible,  ///< it is ignored
 };
 
 enum class RefusedBecause : std::uint8_t {

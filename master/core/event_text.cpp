@@ -378,6 +378,8 @@ std::string line(const BusPlan& plan, const Event& event) {
       return signal_line(plan, event);
     case EventKind::limit_exceeded:
       return limit_text(plan, event);
+    case EventKind::limit_read:
+      return read_limit_text(plan, event);
     default:
       break;
   }

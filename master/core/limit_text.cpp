@@ -35,6 +35,18 @@ double raw_number(const Signal& signal, std::int64_t raw) {
   return signal.type == DataType::real64 ? std::bit_cast<double>(raw) : static_cast<double>(raw);
 }
 
+/// `-1.5 .. 1.5 rad`, `2 rad/s`.
+std::string read_value(const LimitLine& line, std::int64_t value) {
+  const auto in_unit = [&](double raw) { return raw * line.scale + line.offset; };
+  if (line.kind != LimitKind::position) {
+    return number(in_unit(static_cast<double>(value)), line.unit);
+  }
+  const double low = in_unit(static_cast<double>(value >> 32));
+  const double high = in_unit(static_cast<double>(static_cast<std::int32_t>(value)));
+  const auto [first, last] = std::minmax(low, high);
+  return number(first, "") + " .. " + number(last, line.unit);
+}
+
 }  // namespace
 
 std::string limit_text(const BusPlan& plan, const Event& event) {
@@ -52,6 +64,21 @@ std::string limit_text(const BusPlan& plan, const Event& event) {
          number(double{measured}, unit) + ", limit " + number(double{limit}, unit) +
          "; it isn't sent, and the outputs of the node take their fallback until a command is "
          "inside again";
+}
+
+std::string read_limit_text(const BusPlan& plan, const Event& event) {
+  const std::size_t place = event.detail >> 8U;
+  if (place >= plan.limits.lines.size()) return "a limit of the drive";
+  const LimitLine& line = plan.limits.lines[place];
+  const std::string key{name(line.kind)};
+  const std::string axis = line.axis > 1 ? " of axis " + std::to_string(line.axis) : "";
+  const std::string what = key + axis + " " + read_value(line, event.value) +
+                           ", read from the device (" + to_string(line.object) + ")";
+  if (static_cast<LimitVerdict>(event.detail & 0xFFU) == LimitVerdict::good) {
+    return "limit: " + what;
+  }
+  return "no limit: " + what + ", is implausible and is ignored; write `limits: {" + key +
+         ": ...}` into the network file";
 }
 
 }  // namespace takt

@@ -8,5 +8,7 @@ namespace takt {
 
 /// The line of a `limit_exceeded` event: signal, what was measured, its limit, what was commanded.
 std::string limit_text(const BusPlan& plan, const Event& event);
+/// The line of a `limit_read` event.
+std::string read_limit_text(const BusPlan& plan, const Event& event);
 
 }  // namespace takt

@@ -78,6 +78,8 @@ std::string_view name(EventKind kind) noexcept {
       return "fallback_ended";
     case EventKind::outputs_held:
       return "outputs_held";
+    case EventKind::limit_read:
+      return "limit_read";
     case EventKind::limit_exceeded:
       return "limit_exceeded";
     case EventKind::bus_error_passive:

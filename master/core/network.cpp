@@ -240,6 +240,11 @@ bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
          node.nmt == NmtState::operational;
 }
 
+std::span<const LimitReading> Network::limits_read(std::size_t node_index) const noexcept {
+  if (node_index >= sessions_.size()) return {};
+  return sessions_[node_index].limits_read();
+}
+
 bool Network::starts(std::size_t node_index) const noexcept {
   return node_index < sessions_.size() && sessions_[node_index].starts();
 }

@@ -63,6 +63,9 @@ class Network {
   /// Its boot has started it: it may be OPERATIONAL some time before it says so.
   bool starts(std::size_t node_index) const noexcept;
 
+  /// What the newest boot of this node has read of its limits.
+  std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
+
   /// The loss of some node stops drives.
   bool stops_drives() const noexcept { return stops_drives_; }
   /// Loss of a node demands that the drives of this node stop. LossReaction::quick_stop.

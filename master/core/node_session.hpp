@@ -73,6 +73,7 @@ class NodeSession {
   void excuse(Time away) noexcept;
 
   /// Its boot has started it and waits for a sign of that.
+  std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
   bool starts() const noexcept { return booting() && runner_.started(); }
   /// The network is started: nodes that come later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "eds_parser/table/limit_names.hpp"
+
 namespace takt {
 namespace {
 
@@ -44,6 +46,7 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
     const auto place = static_cast<std::uint16_t>(i);
     places_[limits_[i].signal] = place;
     if (limits_[i].mode) places_[*limits_[i].mode] = place;
+    slots_[i] = fresh_slot(i);
   }
 }
 
@@ -51,8 +54,48 @@ void OutputLimits::open(std::size_t node_index) noexcept {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (signal_of(i).node_index != node_index) continue;
     set_refused(i, false);
-    slots_[i] = Slot{};
+    slots_[i] = fresh_slot(i);
   }
+}
+
+OutputLimits::Slot OutputLimits::fresh_slot(std::size_t place) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  Slot slot;
+  slot.low = limit.low;
+  slot.high = limit.high;
+  slot.rate = limit.rate;
+  slot.bend = limit.bend;
+  slot.bounded = limit.low != -OutputLimit::none || limit.high != OutputLimit::none ||
+                 limit.step != OutputLimit::none || limit.rate != OutputLimit::none ||
+                 limit.bend != OutputLimit::none;
+  return slot;
+}
+
+bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept {
+  const auto first = static_cast<std::int32_t>(low);
+  const auto last = static_cast<std::int32_t>(high);
+  const bool is_range = what.bound == DeviceBound::range;
+  if (is_range ? !plausible_range(first, last) : !plausible_size(high)) return false;
+  Slot& slot = slots_[places_[what.signal]];
+  slot.bounded = true;
+  const double size = high * what.factor;
+  switch (what.bound) {
+    case DeviceBound::range:
+      slot.low = std::max(slot.low, first * what.factor);
+      slot.high = std::min(slot.high, last * what.factor);
+      return true;
+    case DeviceBound::size:
+      slot.low = std::max(slot.low, -size);
+      slot.high = std::min(slot.high, size);
+      return true;
+    case DeviceBound::rate:
+      slot.rate = std::min(slot.rate, size);
+      return true;
+    case DeviceBound::bend:
+      slot.bend = std::min(slot.bend, size);
+      return true;
+  }
+  return false;
 }
 
 /// As the wire carries it: bits beyond the width of the object are cut.
@@ -114,41 +157,43 @@ double OutputLimits::most(std::size_t place, double counts, double at) const noe
 std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value,
                                                  bool from_actual) const {
   const OutputLimit& limit = limits_[place];
-  if (value >= limit.low && value <= limit.high) return std::nullopt;
-  double low = limit.low;
-  double high = limit.high;
+  const Slot& slot = slots_[place];
+  if (value >= slot.low && value <= slot.high) return std::nullopt;
+  double low = slot.low;
+  double high = slot.high;
   const auto reach = [&](double where) {
     low = std::min(low, where);
     high = std::max(high, where);
   };
-  if (slots_[place].known) reach(slots_[place].value);
+  if (slot.known) reach(slot.value);
   if (from_actual) {
     if (const auto where = actual(place)) reach(*where);
   }
   if (value >= low && value <= high) return std::nullopt;
   const Signal& signal = signal_of(place);
-  const double bound = value < low ? limit.low : limit.high;
+  const double bound = value < low ? slot.low : slot.high;
   return breach(limit.range, value * signal.scale + signal.offset,
                 bound * signal.scale + signal.offset);
 }
 
 std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& way) const noexcept {
   const OutputLimit& limit = limits_[place];
+  const Slot& slot = slots_[place];
   const double scale = std::abs(signal_of(place).scale);
   const double length = std::abs(way.distance);
   if (!(length <= most(place, limit.step * way.cycles, way.at))) {
     return breach(LimitKind::step, length / way.cycles * scale, limit.step * scale);
   }
-  if (!(length <= most(place, limit.rate * way.cycles, way.at))) {
+  if (!(length <= most(place, slot.rate * way.cycles, way.at))) {
     const double per_second = scale / seconds_;
-    return breach(limit.rate_of, length / way.cycles * per_second, limit.rate * per_second);
+    return breach(limit.rate_of, length / way.cycles * per_second, slot.rate * per_second);
   }
-  const bool bent_only = limit.step == OutputLimit::none && limit.rate == OutputLimit::none;
-  const double reach = limit.bend * longest_gap_ * longest_gap_;
+  const bool bent_only = limit.step == OutputLimit::none && slot.rate == OutputLimit::none;
+  const double reach = slot.bend * longest_gap_ * longest_gap_;
   if (way.start == Start::standing && bent_only && !(length <= most(place, reach, way.at))) {
     const double per_square = scale / (seconds_ * seconds_ * longest_gap_ * longest_gap_);
     return breach(LimitKind::acceleration, length * per_square,
-                  limit.bend * scale / (seconds_ * seconds_));
+                  slot.bend * scale / (seconds_ * seconds_));
   }
   return std::nullopt;
 }
@@ -157,7 +202,7 @@ std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& w
 std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
                                                    const Way& way) const noexcept {
   const Slot& slot = slots_[place];
-  const double bend = limits_[place].bend;
+  const double bend = slot.bend;
   if (bend == OutputLimit::none) return std::nullopt;
   const double before = way.cycles < longest_gap_ ? slot.speed : 0.0;
   const double apart = (way.cycles + slot.gap) / 2;

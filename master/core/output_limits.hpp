@@ -41,6 +41,12 @@ class OutputLimits {
   /// The node exchanges PDOs from now on: nothing was sent to it so far.
   void open(std::size_t node_index) noexcept;
 
+  /// What a device has told of itself, a range from `low` to `high`, else `high`. It holds until
+  /// the node is opened again. False: it is implausible, and is ignored.
+  bool narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept;
+  /// It has a limit to be held against.
+  bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
+
   /// None: `raw` may be sent. `mode`: of the axis, as it is commanded.
   std::optional<LimitBreach> judge(std::size_t place, std::int64_t raw, std::int64_t mode,
                                    Obeying obeying, std::uint64_t cycle) const noexcept;
@@ -65,9 +71,14 @@ class OutputLimits {
 
  private:
   struct Slot {
-    double value = 0;  ///< sent last
-    double speed = 0;  ///< per cycle, with which it came
-    double gap = 1;    ///< cycles that it took
+    double low = -OutputLimit::none;
+    double high = OutputLimit::none;
+    double rate = OutputLimit::none;
+    double bend = OutputLimit::none;
+    bool bounded = false;  ///< there is a limit, of the file or of the device
+    double value = 0;      ///< sent last
+    double speed = 0;      ///< per cycle, with which it came
+    double gap = 1;        ///< cycles that it took
     std::uint64_t cycle = 0;
     std::uint64_t refused_at = 0;
     bool known = false;    ///< something was sent since the node was opened
@@ -77,7 +88,8 @@ class OutputLimits {
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(value, speed, gap, cycle, refused_at, known, news, refused, profile);
+      state(low, high, rate, bend, bounded, value, speed, gap, cycle, refused_at, known, news,
+            refused, profile);
     }
   };
   enum class Start : std::uint8_t { moving, standing };
@@ -103,6 +115,7 @@ class OutputLimits {
   std::optional<LimitBreach> outside(std::size_t place, double value, bool from_actual) const;
   std::optional<LimitBreach> too_far(std::size_t place, const Way& way) const noexcept;
   std::optional<LimitBreach> too_sharp(std::size_t place, const Way& way) const noexcept;
+  Slot fresh_slot(std::size_t place) const noexcept;
   void set_refused(std::size_t place, bool refused) noexcept;
 
   const BusPlan& plan_;

@@ -38,6 +38,10 @@ class PdoOutputs {
   /// From now on the node's RPDOs may go out; commands given before are forgotten.
   void open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept;
   void shut(std::size_t node_index) noexcept;
+  /// Limits that the node has told in its boot, after open(). Each is told, the implausible ones
+  /// are ignored.
+  void learn(std::size_t node_index, std::span<const LimitReading> readings,
+             OutputMoment moment) noexcept;
 
   /// The frames that are due, in the order of the table; valid until the next call. `set_points`
   /// holds one per output signal.

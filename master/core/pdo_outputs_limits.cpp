@@ -1,9 +1,44 @@
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <optional>
 
 #include "master/core/pdo_outputs.hpp"
 
 namespace takt {
+namespace {
+
+std::optional<std::uint32_t> value_of(std::span<const LimitReading> readings,
+                                      ObjectKey object) noexcept {
+  const auto found = std::ranges::find(readings, object, &LimitReading::object);
+  return found == readings.end() ? std::nullopt : std::optional{found->value};
+}
+
+}  // namespace
+
+void PdoOutputs::learn(std::size_t node_index, std::span<const LimitReading> readings,
+                       OutputMoment moment) noexcept {
+  std::optional<std::uint16_t> told;
+  for (const DeviceLimit& limit : plan_.limits.device) {
+    if (limit.node_index != node_index) continue;
+    const bool is_range = limit.bound == DeviceBound::range;
+    const auto first = value_of(readings, limit.object);
+    const auto last = is_range ? value_of(readings, upper_object(limit)) : first;
+    if (!first || !last) continue;
+    const auto verdict =
+        limits_.narrow(limit, *first, *last) ? LimitVerdict::good : LimitVerdict::implausible;
+    if (told == limit.line) continue;
+    told = limit.line;
+    const auto low = static_cast<std::int32_t>(*first);
+    events_.push(
+        {.when = moment.now,
+         .cycle = moment.cycle,
+         .kind = EventKind::limit_read,
+         .node = plan_.nodes[node_index].id.value(),
+         .detail = std::uint32_t{limit.line} << 8U | static_cast<std::uint32_t>(verdict),
+         .value = is_range ? std::int64_t{low} * 0x1'0000'0000 + *last : std::int64_t{*first}});
+  }
+}
 
 bool PdoOutputs::limited_row_open(std::size_t place) const noexcept {
   return rows_[plan_.layout.signals[limits_.limit(place).signal].row].open;
@@ -68,7 +103,7 @@ void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_poi
 void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
   limits_.expire(moment.cycle);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
-    if (limited_row_open(i)) judge_news(i, set_points, moment);
+    if (limits_.bounds(i) && limited_row_open(i)) judge_news(i, set_points, moment);
   }
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const SignalIndex signal = limits_.limit(i).signal;

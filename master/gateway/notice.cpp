@@ -18,6 +18,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::bus_recovered:
     case EventKind::program_progress:
     case EventKind::no_sdo_block:
+    case EventKind::limit_read:
     case EventKind::network_ready:
     case EventKind::lss_assigned:
     case EventKind::interface_up:

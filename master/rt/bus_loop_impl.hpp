@@ -77,6 +77,9 @@ void BusLoop<P, N>::follow_nodes() noexcept {
       exchanging_[i] = exchanging;
       if (exchanging) {
         pdos_.outputs().open(i, newest_set_points().points);
+        if constexpr (requires { network_.limits_read(i); }) {
+          pdos_.outputs().learn(i, network_.limits_read(i), {clock_.cycle(), port_.now()});
+        }
       } else {
         pdos_.outputs().shut(i);
       }

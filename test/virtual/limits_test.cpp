@@ -69,6 +69,80 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
             "fallback until a command is inside again");
 }
 
+/// The limits of one axis are known from its device only: 607D says 0 .. 300.
+BusPlan told_in_the_boot() {
+  BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 50});
+  const SignalIndex target = 3;
+  plan.limits.outputs = {{.signal = target, .range = LimitKind::position, .wraps = true}};
+  plan.limits.lines = {{.axis = 1,
+                        .object = {0x607D, 1},
+                        .kind = LimitKind::position,
+                        .source = LimitSource::device,
+                        .signals = {target}}};
+  plan.limits.device = {{.object = {0x607D, 1}, .signal = target, .bound = DeviceBound::range}};
+  return plan;
+}
+
+DeviceTable device_with_range(const BusPlan& plan, std::uint32_t low, std::uint32_t high) {
+  DeviceTable device =
+      test::loopback_device(plan.nodes[0].id, plan.pdos.tpdos[0], plan.pdos.rpdos[0]);
+  for (std::uint8_t sub = 1; sub <= 2; ++sub) {
+    device.objects.push_back({.key = {0x607D, sub},
+                              .type = DataType::integer32,
+                              .access = Access::rw,
+                              .value = sim::little_endian(sub == 1 ? low : high, 4),
+                              .low_limit = {},
+                              .high_limit = {}});
+  }
+  std::ranges::sort(device.objects, {}, &DeviceObject::key);
+  return device;
+}
+
+TEST(LimitedMaster, SendsNoJumpBeyondALimitThatOnlyTheDeviceKnows) {
+  const BusPlan plan = told_in_the_boot();
+  Rig rig{plan, {.devices = {device_with_range(plan, 0, 300)}}};
+  ASSERT_TRUE(rig.boot());
+  EXPECT_EQ(rig.count(EventKind::limit_read), 1);
+  rig.command_all(0x000F, 10, 1000);
+  rig.run(5);
+  rig.recorder.frames.clear();
+
+  rig.command_all(0x000F, 510, 1000);
+  rig.run(5);
+
+  const auto frames = rig.recorder.with(0x201);
+  ASSERT_GE(frames.size(), 4U);
+  for (const sim::WireFrame& wire : frames) EXPECT_EQ(position_in(wire.frame), 10);
+  EXPECT_EQ(frames.back().frame.data[0], 0x02);
+  EXPECT_EQ(rig.count(EventKind::limit_exceeded), 1);
+}
+
+TEST(LimitedMaster, TakesWhatTheDeviceSaysAfterEachOfItsBoots) {
+  const BusPlan plan = told_in_the_boot();
+  Rig rig{plan, {.devices = {device_with_range(plan, 0, 0)}}};
+  ASSERT_TRUE(rig.boot());
+  rig.command_all(0x000F, 510, 1000);
+  rig.run(5);
+  EXPECT_EQ(position_in(rig.recorder.with(0x201).back().frame), 510);
+
+  rig.world->add({.kind = sim::FaultKind::override_value,
+                  .node = plan.nodes[0].id,
+                  .object = ObjectKey{0x607D, 2},
+                  .value = sim::little_endian(300, 4)});
+  rig.world->add({.kind = sim::FaultKind::reset, .node = plan.nodes[0].id});
+  rig.run(200);
+  ASSERT_TRUE(rig.boot());
+  EXPECT_EQ(rig.count(EventKind::limit_read), 2);
+  rig.recorder.frames.clear();
+  rig.command_all(0x000F, 510, 1000);
+  rig.run(5);
+
+  EXPECT_EQ(rig.count(EventKind::limit_exceeded), 1);
+  for (const sim::WireFrame& wire : rig.recorder.with(0x201)) {
+    EXPECT_NE(position_in(wire.frame), 510);
+  }
+}
+
 TEST(LimitedMaster, HoldsAControllerInTheBusThreadToTheSameLimits) {
   struct Jumper final : Controller {
     void update(const ImageView&, OutputWriter& out) noexcept override {

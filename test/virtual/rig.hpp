@@ -86,6 +86,7 @@ class Rig {
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
       NodePlan& node = plan.nodes[i];
       node.boot_plan = short_boot();
+      read_limits(plan, i);
       node.heartbeat_timeout = options.heartbeat_timeout;
       node.reboot_delay = std::chrono::milliseconds{100};
       node.sdo_timeout = std::chrono::milliseconds{100};
@@ -173,6 +174,21 @@ class Rig {
   ImageView last;
 
  private:
+  /// Before the start, as the compiler of boots does it.
+  static void read_limits(BusPlan& plan, std::size_t node_index) {
+    auto& steps = plan.nodes[node_index].boot_plan.steps;
+    const auto read = [&](ObjectKey object) {
+      BootStep step = boot_step(BootAction::read_limit);
+      step.object = object;
+      steps.insert(steps.end() - 2, step);
+    };
+    for (const DeviceLimit& limit : plan.limits.device) {
+      if (limit.node_index != node_index) continue;
+      read(limit.object);
+      if (limit.bound == DeviceBound::range) read(upper_object(limit));
+    }
+  }
+
   std::size_t axes_ = 0;
 };
 

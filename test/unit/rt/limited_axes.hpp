@@ -63,6 +63,12 @@ class LimitedAxes {
     command(axis, position);
     cycle();
   }
+  /// The node exchanges PDOs anew; nothing was told in its boot.
+  void open(unsigned axis) { pdos_.outputs().open(axis, points_); }
+  void learn(unsigned axis, std::span<const LimitReading> readings) {
+    pdos_.outputs().learn(axis, readings, next_moment());
+  }
+  const BusPlan& plan() const { return plan_; }
   void lose_frames(bool lost) { goes_out_ = !lost; }
 
   std::int64_t controlword(unsigned axis = 0) const {
