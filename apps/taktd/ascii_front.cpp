@@ -22,12 +22,21 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(const s
       where,
       {.connected = [&gateway](int client) { gateway.connect(client); },
        .line = [&gateway](int client, std::string_view line) { gateway.command(client, line); },
+       .old_line =
+           [&front = *front](int client, std::string_view line) {
+             front.gateway_.refuse_waited(client, line, front.bridge_->newest_gap());
+           },
        .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
        .gone = [&gateway](int client) { gateway.disconnect(client); },
        .owed = [&gateway](int client) { return gateway.owes(client); }});
   if (!server) return std::unexpected{server.error()};
   front->server_ = std::move(*server);
   return front;
+}
+
+void AsciiFront::serve() {
+  if (std::exchange(gaps_, bridge_->gaps()) != bridge_->gaps()) server_->mark_waiting();
+  server_->serve();
 }
 
 void AsciiFront::attach(Master& master, Bridge& bridge) {

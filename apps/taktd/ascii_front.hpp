@@ -23,7 +23,7 @@ class AsciiFront {
 
   /// Before the first serve(); both outlive it.
   void attach(Master& master, Bridge& bridge);
-  void serve() { server_->serve(); }
+  void serve();
   void watch(std::vector<pollfd>& descriptors) const { server_->watch(descriptors); }
   const std::string& where() const noexcept { return server_->where(); }
 
@@ -34,6 +34,7 @@ class AsciiFront {
   Bridge* bridge_ = nullptr;
   AsciiGateway gateway_;
   std::unique_ptr<AsciiServer> server_;
+  std::uint64_t gaps_ = 0;  // of the bridge, that were heard of
 };
 
 }  // namespace takt

@@ -68,6 +68,17 @@ void AsciiGateway::command(int client, std::string_view line) {
   if (*command) run(client, found->second, **command);
 }
 
+void AsciiGateway::refuse_waited(int client, std::string_view line, Time waited) {
+  const auto command = parse_ascii(line);
+  if (!command) return refuse(client, command.error());
+  if (!*command) return;
+  refuse(client,
+         {.sequence = (*command)->sequence,
+          .error = AsciiError::internal_state,
+          .why = "taktd did not run for " + std::to_string(waited / std::chrono::milliseconds{1}) +
+                 " ms, and this line may have waited as long: send it again"});
+}
+
 void AsciiGateway::refuse_long_line(int client) {
   refuse(client, {.sequence = 0, .error = AsciiError::syntax, .why = "the line is too long"});
 }

@@ -40,6 +40,8 @@ class AsciiGateway final : public FrontGuest {
   }
   /// One line, any bytes. Each command is answered exactly once, by the number in front of it.
   void command(int client, std::string_view line);
+  /// The same of a line that waited while nobody served: it is refused, whatever it says.
+  void refuse_waited(int client, std::string_view line, Time waited);
   /// A line was so long that it was dropped.
   void refuse_long_line(int client);
 

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <utility>
@@ -152,6 +153,7 @@ void AsciiServer::take_lines(Client& client, const TimeBudget& budget) {
     client.unhandled = from != 0 && !budget.is_left();
     if (client.unhandled) break;
     take_line(client, std::string_view{client.unread}.substr(from, end - from));
+    client.old -= std::min(client.old, end + 1 - from);
     from = end + 1;
   }
   client.unread.erase(0, from);
@@ -159,6 +161,7 @@ void AsciiServer::take_lines(Client& client, const TimeBudget& budget) {
   if (!client.has_commanded && !may_become_command(client.unread)) return close_foreign(client);
   if (client.unread.size() <= longest_line) return;
   if (!std::exchange(client.skips, true)) drop_long_line(client);
+  client.old -= std::min(client.old, client.unread.size());
   client.unread.clear();
 }
 
@@ -170,7 +173,16 @@ void AsciiServer::take_line(Client& client, std::string_view line) {
     if (first == FirstLine::foreign) return close_foreign(client);
     client.has_commanded = first == FirstLine::command;
   }
-  handler_.line(client.id, line);
+  (client.old != 0 ? handler_.old_line : handler_.line)(client.id, line);
+}
+
+void AsciiServer::mark_waiting() {
+  accept_clients();
+  for (const auto& client : clients_) {
+    int in_socket = 0;
+    if (::ioctl(client->socket.get(), FIONREAD, &in_socket) != 0) in_socket = 0;
+    client->old = client->unread.size() + static_cast<std::size_t>(in_socket);
+  }
 }
 
 void AsciiServer::drop_long_line(Client& client) {

@@ -26,7 +26,8 @@ class AsciiServer {
   struct Handler {
     std::function<void(int client)> connected;
     std::function<void(int client, std::string_view line)> line;
-    std::function<void(int client)> too_long;  ///< a line, which is dropped
+    std::function<void(int client, std::string_view line)> old_line;  ///< see mark_waiting()
+    std::function<void(int client)> too_long;                         ///< a line, which is dropped
     std::function<void(int client)> gone;
     /// An answer is on its way: a client that writes no more is kept until it has it.
     std::function<bool(int client)> owed;
@@ -41,6 +42,8 @@ class AsciiServer {
 
   /// Adds the end of the line. To a client that has gone: nothing.
   void send(int client, std::string_view line);
+  /// Nobody has served for long: every line that has begun to arrive by now is an old one.
+  void mark_waiting();
   /// Takes clients and lines, sends what can be sent.
   void serve();
   void watch(std::vector<pollfd>& descriptors) const;
@@ -53,6 +56,7 @@ class AsciiServer {
     FileDescriptor socket;
     std::string unread;
     std::string unsent;
+    std::size_t old = 0;  // bytes, of `unread` and then of the socket, that are to be old lines
     bool has_commanded = false;
     bool unhandled = false;  // whole lines wait for the next round
     bool skips = false;      // the rest of a line that was too long

@@ -83,6 +83,7 @@ void Bridge::notice_gap() {
   if (!gap_.ran(now)) return;
   skip_images_ = true;
   if (!gap_.discards_requests(now)) return;
+  ++gaps_;
   const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
   tell({.when = now,
         .cycle = cycle_at(now),

@@ -57,6 +57,9 @@ class Bridge {
   /// told.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
                std::span<const std::int64_t> values);
+  /// How often this thread did not run for so long that requests which waited are discarded.
+  std::uint64_t gaps() const noexcept { return gaps_; }
+  Time newest_gap() const noexcept { return gap_.length(); }
   /// Everything that can be done now. True: there was an image.
   bool serve();
   /// When status_t, layout_t or timing_t are due next.
@@ -155,6 +158,7 @@ class Bridge {
   Time sync_time_{};         // of the newest image
   Time judged_{};            // of the commands that are staged: when their age was judged first
   FrontGap gap_;
+  std::uint64_t gaps_ = 0;
   bool skip_images_ = false;  // those that waited over a gap
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;

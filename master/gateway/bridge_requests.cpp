@@ -23,7 +23,7 @@ std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
   using std::chrono::microseconds;
   if (gap_.discards_requests(now)) {
     return "taktd did not run for " + std::to_string(gap_.length() / std::chrono::milliseconds{1}) +
-           " ms, and the request may have waited as long: ask again";
+           " ms, and this may have waited as long: ask again";
   }
   const auto wall = std::chrono::duration_cast<microseconds>(now + clocks_.wall_offset()).count();
   constexpr std::int64_t most = 10'000'000;
@@ -69,7 +69,9 @@ void Bridge::on_transfer(Bytes data) {
   const auto transfer = decode<transfer_t>(data);
   if (!transfer) return tell_damaged(channels_.transfer, transfer.error());
   const Time now = clocks_.now();
-  if (age_trouble(transfer->utime, now).empty()) transfers_.take(*transfer, now);
+  const std::string trouble = age_trouble(transfer->utime, now);
+  if (trouble.empty()) return transfers_.take(*transfer, now);
+  transfers_.take_old(*transfer, trouble);
 }
 
 void Bridge::tell_transfer(transfer_state_t state) {

@@ -43,6 +43,12 @@ void Transfers::take(const transfer_t& message, Time now) {
   sinks_.state(state_of(*job));
 }
 
+void Transfers::take_old(const transfer_t& message, const std::string& why) {
+  if (message.action == "end") return;
+  if (const Job* const job = find(message)) return sinks_.state(state_of(*job));
+  refuse(message, why);
+}
+
 void Transfers::begin(const transfer_t& message, Time now) {
   if (message.action != "download" && message.action != "upload") {
     if (message.action == "end") return;

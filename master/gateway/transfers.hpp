@@ -31,6 +31,9 @@ class Transfers {
             Sinks sinks);
 
   void take(const transfer_t& message, Time now);
+  /// It has waited for too long: nothing is done, and its sender is told why, or how far its file
+  /// is.
+  void take_old(const transfer_t& message, const std::string& why);
   /// False: the reply belongs to somebody else.
   bool finish(const Reply& reply);
   /// Progress of what runs; the end of what nobody wants any more.

@@ -207,6 +207,20 @@ TEST(AsciiGateway, RefusesMoreThanSixteenCommandsAtOnce) {
       (std::deque<std::string>{"[17] ERROR: 102 (request not processed due to internal state)"}));
 }
 
+TEST(AsciiGateway, DoesNothingOfALineThatWaitedAndSaysSo) {
+  GatewayRig rig{test::axes({.nodes = 1})};
+  rig.connect();
+  rig.gateway.refuse_waited(1, "[7] 1 stop", 2500ms);
+  rig.gateway.refuse_waited(1, "", 2500ms);
+  rig.gateway.refuse_waited(1, "[8] 1 nonsense", 2500ms);
+
+  ASSERT_EQ(rig.said.size(), 2U);
+  EXPECT_EQ(rig.said[0].find("[7] ERROR: 102 ("), 0U) << rig.said[0];
+  EXPECT_NE(rig.said[0].find("taktd did not run for 2500 ms"), std::string::npos) << rig.said[0];
+  EXPECT_EQ(rig.said[1].find("[8] ERROR: 101 ("), 0U) << rig.said[1];
+  EXPECT_FALSE(rig.gateway.owes(1));
+}
+
 TEST(AsciiGateway, ForgetsAClientThatHasLeft) {
   GatewayRig rig{axes({.nodes = 1})};
   ASSERT_TRUE(rig.rig.boot());

@@ -21,6 +21,7 @@ class AsciiServerTest : public testing::Test {
   AsciiServer::Handler handler() {
     return {.connected = [this](int client) { connected.push_back(client); },
             .line = [this](int, std::string_view line) { lines.emplace_back(line); },
+            .old_line = [this](int, std::string_view line) { old_lines.emplace_back(line); },
             .too_long = [this](int) { ++too_long; },
             .gone = [this](int client) { gone.push_back(client); },
             .owed = [this](int) { return owed; }};
@@ -61,6 +62,7 @@ class AsciiServerTest : public testing::Test {
   const std::string path_ = folder_ / "gateway";
   test::StepClock clock{std::chrono::microseconds{50}};
   std::unique_ptr<AsciiServer> server;
+  std::vector<std::string> old_lines;
   std::vector<std::string> lines;
   std::vector<int> connected;
   std::vector<int> gone;
@@ -255,6 +257,31 @@ TEST_F(AsciiServerTest, ListensOnLoopbackWhenAskedTo) {
   EXPECT_FALSE(AsciiServer::listen("tcp:", handler()));
   EXPECT_FALSE(AsciiServer::listen("/tmp/x", handler()));
   EXPECT_FALSE(AsciiServer::listen("unix:", handler()));
+}
+
+TEST_F(AsciiServerTest, LinesThatHaveBegunToArriveBeforeNobodyServedAreOldOnes) {
+  listen();
+  const FileDescriptor socket = connect();
+  write(socket, "[1] help\n[2] 5 r");
+  serve();
+  ASSERT_EQ(lines, std::vector<std::string>{"[1] help"});
+  write(socket, " 0x1000 0 u32\n[3] 5 start\n[4] 5 st");
+  const FileDescriptor late{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const auto address = unix_address(path_);
+  ASSERT_EQ(::connect(late.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address),
+            0);
+  write(late, "[1] 5 stop\n");
+
+  server->mark_waiting();
+  serve();
+  write(socket, "op\n[5] 5 start\n");
+  serve();
+  write(late, "[2] 5 start\n");
+  serve();
+
+  EXPECT_EQ(old_lines, (std::vector<std::string>{"[2] 5 r 0x1000 0 u32", "[3] 5 start",
+                                                 "[1] 5 stop", "[4] 5 stop"}));
+  EXPECT_EQ(lines, (std::vector<std::string>{"[1] help", "[5] 5 start", "[2] 5 start"}));
 }
 
 }  // namespace

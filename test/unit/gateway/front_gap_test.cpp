@@ -39,6 +39,7 @@ class Waiting final : public Transport {
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
     if (const auto image = decode<image_t>(data)) images.push_back(image->cycle);
     if (const auto reply = decode<reply_t>(data)) replies.push_back(reply->text);
+    if (const auto state = decode<transfer_state_t>(data)) transfers.push_back(*state);
     static_cast<void>(channel);
     return true;
   }
@@ -60,6 +61,7 @@ class Waiting final : public Transport {
   std::vector<std::pair<std::string, std::vector<std::byte>>> waiting;
   std::vector<std::int64_t> images;
   std::vector<std::string> replies;
+  std::vector<transfer_state_t> transfers;
 };
 
 class StoppedDaemon : public testing::Test {
@@ -159,6 +161,48 @@ TEST_F(StoppedDaemon, RefusesRequestsThatWaitedOrAreOldByTheirTime) {
   EXPECT_NE(lcm.replies[0].find("did not run for 2"), std::string::npos) << lcm.replies[0];
   EXPECT_NE(lcm.replies[1].find("more than 10 s away"), std::string::npos) << lcm.replies[1];
   EXPECT_EQ(lcm.replies[2], "");
+}
+
+TEST_F(StoppedDaemon, AnswersTransfersThatWaitedOrAreOldByTheirTimeAndDoesNothing) {
+  transfer_t transfer{};
+  transfer.schema = message_schema;
+  transfer.session = 7;
+  transfer.sender = "tool";
+  transfer.action = "upload";
+  transfer.node_id = 1;
+  transfer.index = 0x1000;
+  const auto now = [&] { return clocks.now() / std::chrono::microseconds{1}; };
+  transfer.id = 1;
+  transfer.utime = now();
+  lcm.arrive(bridge.channels().transfer, transfer);
+  rig.world->advance_to(rig.world->now() + 2s);
+  bridge.serve();
+  for (int i = 0; i < 10; ++i) cycle();
+  transfer.id = 2;
+  transfer.utime = now() - 11'000'000;
+  lcm.arrive(bridge.channels().transfer, transfer);
+  transfer.action = "end";  // nobody waits for an answer
+  lcm.arrive(bridge.channels().transfer, transfer);
+  for (int i = 0; i < 10; ++i) cycle();
+
+  ASSERT_EQ(lcm.transfers.size(), 2U);
+  EXPECT_EQ(lcm.transfers[0].id, 1);
+  EXPECT_EQ(lcm.transfers[0].stage, "failed");
+  EXPECT_NE(lcm.transfers[0].text.find("did not run for 2"), std::string::npos);
+  EXPECT_EQ(lcm.transfers[1].id, 2);
+  EXPECT_NE(lcm.transfers[1].text.find("more than 10 s away"), std::string::npos);
+}
+
+TEST_F(StoppedDaemon, CountsTheGapsAfterWhichLinesOfItsTextGatewayAreOld) {
+  EXPECT_EQ(bridge.gaps(), 0U);
+  rig.world->advance_to(rig.world->now() + 200ms);
+  bridge.serve();
+  EXPECT_EQ(bridge.gaps(), 0U);
+  rig.world->advance_to(rig.world->now() + 2s);
+  bridge.serve();
+  for (int i = 0; i < 10; ++i) cycle();
+  EXPECT_EQ(bridge.gaps(), 1U);
+  EXPECT_GE(bridge.newest_gap(), 2s);
 }
 
 }  // namespace
