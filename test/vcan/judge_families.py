@@ -2,8 +2,8 @@
 """judge_families.py BIN: the device families of the PDO matrix on vcan0.
 
 The course of test/virtual/pdo_matrix_cells.hpp, 20 times as slow, for all families at once: this script is their
-master. Then taktd is, with other types. Where the machine itself stood
-still a run has another try, three in all. Wireshark's dissector reads all of it. Runs inside with-vcan. Exit code 1: a check failed.
+master. Then taktd is, with other types. Wireshark's dissector reads all of it. Runs inside with-vcan. Where that has no
+virtual time, a run has another try, three in all. Exit code 1: a check failed.
 """
 import collections
 import pathlib

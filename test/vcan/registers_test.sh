@@ -5,7 +5,7 @@
 set -u
 case $(uname -m) in x86_64 | i?86) ;; *) exit 77 ;; esac
 with_vcan=$1 libraries=$2
-export WITH_VCAN_LIBRARY=$libraries/libwhole_registers.so
+export WITH_VCAN_LIBRARIES=$libraries
 unset WITH_VCAN_REGISTERS
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -59,6 +59,6 @@ guest plain; expect put_fp_registers "with -x plain it panics on a host with 11 
 guest whole; expect "numbers are right" "with -x whole it calculates there"
 WITH_VCAN_REGISTERS=whole "$with_vcan" -m uml -t 300 echo "chosen by the variable" >"$folder/said" 2>&1
 expect "chosen by the variable" "WITH_VCAN_REGISTERS=whole is the same"
-WITH_VCAN_LIBRARY=$folder/none guest whole; expect "build the target whole_registers" "without the library it says what to build"
+WITH_VCAN_LIBRARIES=$folder/none guest whole; expect "build the target whole_registers" "without the library it says what to build"
 guest some; expect "is auto, whole or plain" "a wrong way is refused"
 [ $failures -eq 0 ]

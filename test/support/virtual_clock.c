@@ -1,0 +1,158 @@
+/* Preloaded into user-mode-linux: the guest has a clock of its own, which a busy host does not disturb.
+ *
+ * The guest's time is the processor time that it has used, divided by `speed`, plus the time that it was idle. When it
+ * has nothing to do, its clock is moved to its next timer at once. While the host runs other processes, the guest's
+ * clock stands still. So no program in the guest is late because of the host, and a test that waits costs no time.
+ *
+ * UML 6.1 reads one clock (CLOCK_MONOTONIC), sets one timer of the host, and sleeps in sigsuspend. It runs a process of
+ * the guest as a process of the host that it traces, and waits for that in waitpid. These are the functions that are
+ * replaced here. UML calls all of them from one thread.
+ */
+#include <dlfcn.h>
+#include <errno.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/types.h>
+#include <time.h>
+
+typedef long long Nanoseconds;
+
+enum { second = 1000000000 };
+
+static int speed = 1; /* The guest's processor is so many times as fast as that of the host. */
+
+static int (*host_clock_gettime)(clockid_t, struct timespec*);
+static int (*host_timer_settime)(timer_t, int, const struct itimerspec*, struct itimerspec*);
+static int (*host_sigaction)(int, const struct sigaction*, struct sigaction*);
+static int (*host_sigsuspend)(const sigset_t*);
+static pid_t (*host_waitpid)(pid_t, int*, int);
+static int (*host_clone)(int (*)(void*), void*, int, void*, ...);
+
+static Nanoseconds idle;               /* the sum of all jumps */
+static Nanoseconds of_processes;       /* processor time of the guest's processes */
+static Nanoseconds booted;             /* processor time that the kernel took until its first process */
+static pid_t running;                  /* the process that UML waits for, or 0 */
+static Nanoseconds running_from;       /* its processor time when that wait began */
+static Nanoseconds expiry = -1;        /* of the guest's timer, by the guest's clock; -1: it is off */
+static Nanoseconds interval;
+static timer_t timer;
+static void (*guest_alarm)(int, siginfo_t*, void*);
+
+static Nanoseconds of(struct timespec time) { return (Nanoseconds)time.tv_sec * second + time.tv_nsec; }
+
+static struct timespec to_timespec(Nanoseconds time) { return (struct timespec){time / second, time % second}; }
+
+static Nanoseconds processor_time(clockid_t clock) {
+  struct timespec time;
+  return host_clock_gettime(clock, &time) == 0 ? of(time) : -1;
+}
+
+static clockid_t clock_of(pid_t process) { return (clockid_t)(~(unsigned)process << 3 | 2); }
+
+static Nanoseconds used_by_running(void) {
+  const Nanoseconds used = running ? processor_time(clock_of(running)) : -1;
+  return used < running_from ? 0 : used - running_from;
+}
+
+static Nanoseconds used(void) {
+  return processor_time(CLOCK_PROCESS_CPUTIME_ID) + of_processes + used_by_running();
+}
+
+static Nanoseconds now(void) { return idle + (used() - booted) / speed + booted; }
+
+/* The processor time of the guest grows more slowly than the host's clock, so the host's timer is never too late. */
+static void arm(Nanoseconds left) {
+  const Nanoseconds host = left > 0 ? left * speed : 1;
+  host_timer_settime(timer, 0, &(struct itimerspec){{0, 0}, to_timespec(host)}, NULL);
+}
+
+static void on_alarm(int number, siginfo_t* information, void* context) {
+  const int error = errno;
+  const Nanoseconds left = expiry - now();
+  if (expiry >= 0 && left > 0) {
+    arm(left);
+  } else {
+    const int due = expiry >= 0;
+    expiry = due && interval > 0 ? expiry + interval : -1;
+    if (expiry >= 0) arm(expiry - now());
+    if (due) guest_alarm(number, information, context);
+  }
+  errno = error;
+}
+
+int clock_gettime(clockid_t clock, struct timespec* time) {
+  if (clock != CLOCK_MONOTONIC) return host_clock_gettime(clock, time);
+  *time = to_timespec(now());
+  return 0;
+}
+
+int timer_settime(timer_t which, int flags, const struct itimerspec* wanted, struct itimerspec* old) {
+  (void)flags, (void)old;
+  timer = which;
+  const Nanoseconds left = of(wanted->it_value);
+  interval = of(wanted->it_interval);
+  expiry = left > 0 ? now() + left : -1;
+  if (left > 0) {
+    arm(left);
+    return 0;
+  }
+  return host_timer_settime(which, 0, wanted, NULL);
+}
+
+int timer_gettime(timer_t which, struct itimerspec* found) {
+  (void)which;
+  const Nanoseconds left = expiry < 0 ? 0 : expiry - now();
+  *found = (struct itimerspec){to_timespec(interval), to_timespec(expiry >= 0 && left < 1 ? 1 : left)};
+  return 0;
+}
+
+int sigaction(int number, const struct sigaction* wanted, struct sigaction* old) {
+  if (number != SIGALRM || !wanted || !(wanted->sa_flags & SA_SIGINFO)) return host_sigaction(number, wanted, old);
+  struct sigaction mine = *wanted;
+  guest_alarm = wanted->sa_sigaction;
+  mine.sa_sigaction = on_alarm;
+  return host_sigaction(number, &mine, old);
+}
+
+/* UML has nothing to do: SIGALRM is blocked except in here. Another signal that waits comes before the jump. */
+int sigsuspend(const sigset_t* mask) {
+  sigset_t pending;
+  sigpending(&pending);
+  if (expiry >= 0 && !sigismember(&pending, SIGIO)) {
+    const Nanoseconds left = expiry - now();
+    if (left > 0) idle += left;
+    arm(0);
+  }
+  return host_sigsuspend(mask);
+}
+
+/* The kernel measures the processor in ticks of its clock when it starts, so the guest is fast only from its first
+ * process on. Threads of UML itself share its memory. */
+int clone(int (*function)(void*), void* stack, int flags, void* argument, ...) {
+  if (!(flags & CLONE_VM) && speed == 1) {
+    booted = used();
+    speed = 8;
+  }
+  return host_clone(function, stack, flags, argument);
+}
+
+pid_t waitpid(pid_t process, int* status, int options) {
+  if (process <= 0) return host_waitpid(process, status, options);
+  running_from = processor_time(clock_of(process));
+  running = process;
+  const pid_t result = host_waitpid(process, status, options);
+  const int error = errno;
+  of_processes += used_by_running();
+  running = 0;
+  errno = error;
+  return result;
+}
+
+__attribute__((constructor)) static void find_functions(void) {
+  *(void**)&host_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
+  *(void**)&host_timer_settime = dlsym(RTLD_NEXT, "timer_settime");
+  *(void**)&host_sigaction = dlsym(RTLD_NEXT, "sigaction");
+  *(void**)&host_sigsuspend = dlsym(RTLD_NEXT, "sigsuspend");
+  *(void**)&host_waitpid = dlsym(RTLD_NEXT, "waitpid");
+  *(void**)&host_clone = dlsym(RTLD_NEXT, "clone");
+}
