@@ -1,9 +1,12 @@
 #include "eds_parser/axis_compiler.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "eds_parser/object_words.hpp"
 #include "eds_parser/table/waits.hpp"
@@ -54,8 +57,8 @@ class BootedValues {
 
 class AxisCompiler {
  public:
-  AxisCompiler(const BootedValues& values, const UnitsSpec& units, std::uint8_t number)
-      : values_{values}, units_{units}, number_{number} {}
+  AxisCompiler(const BootedValues& values, const NodeSpec& spec, std::uint8_t number)
+      : values_{values}, units_{spec.units}, limits_{spec.limits}, number_{number} {}
 
   AxisPlan run() const {
     AxisPlan axis{.number = number_, .quick_stop_option = option()};
@@ -67,9 +70,11 @@ class AxisCompiler {
         axis.stopping_time = seconds(*limit / (*deceleration * acceleration_ratio()));
       }
     }
-    windows(axis, limit);
+    if (const auto window = standstill_velocity(limit)) set_windows(axis, *window);
     return axis;
   }
+  /// The windows of standstill follow from nothing that is known of this axis.
+  bool windows_are_guessed() const { return !standstill_velocity(velocity_limit()); }
 
  private:
   ObjectKey at(unsigned index, std::uint8_t sub = 0) const {
@@ -103,14 +108,27 @@ class AxisCompiler {
     return *units_.position->scale / *units_.velocity->scale;
   }
 
-  /// 0x607F, and 0x6080 (revolutions of the motor in a minute) behind the gear. In units of 0x606C.
+  /// 0x607F, 0x6080 (revolutions of the motor in a minute) behind the gear, and what the network
+  /// file lets be commanded; the lowest counts. In units of 0x606C.
   std::optional<double> velocity_limit() const {
-    const auto profile = values_.positive(at(0x607F));
+    std::optional<double> lowest = values_.positive(at(0x607F));
+    const auto take = [&](double limit) { lowest = std::min(lowest.value_or(limit), limit); };
     const auto motor = values_.positive(at(0x6080));
     const auto per_turn = positions_per_turn();
-    if (!motor || !per_turn) return profile;
-    const double turning = *motor / 60 * *per_turn * positions_in_velocity();
-    return profile ? std::min(*profile, turning) : turning;
+    if (motor && per_turn) take(*motor / 60 * *per_turn * positions_in_velocity());
+    if (const auto commanded = commanded_velocity()) take(*commanded);
+    return lowest;
+  }
+
+  /// `limits: {velocity}` of the network file, in units of 0x606C.
+  std::optional<double> commanded_velocity() const {
+    const Sourced<double>* velocity = &limits_.all.velocity;
+    for (const AxisOverrideSpec& own : limits_.axes) {
+      if (own.axis == number_ + 1 && own.limits.velocity.given) velocity = &own.limits.velocity;
+    }
+    if (!velocity->given || *(*velocity) <= 0) return std::nullopt;
+    const auto& unit = units_.velocity ? units_.velocity : units_.position;
+    return *(*velocity) / (unit ? std::abs(*unit->scale) : 1.0);
   }
 
   /// Position units for each revolution of the motor: 0x6092 over 0x6091, else 0x608F.
@@ -126,22 +144,47 @@ class AxisCompiler {
     return *above / *below;
   }
 
-  /// Standstill is the velocity threshold of the device (0x606F), at most a hundredth of its
-  /// velocity limit; a thousandth of it where the device has no threshold.
-  void windows(AxisPlan& axis, std::optional<double> limit) const {
+  /// Below it an axis counts as standing still: the velocity threshold of the device (0x606F), at
+  /// most a hundredth of its velocity limit; without a threshold a thousandth of the limit; without
+  /// a limit a hundredth of a revolution in a second, the position window of the device (0x6067) in
+  /// 50 ms, or what is small in the unit of the network file. In units of 0x606C.
+  std::optional<double> standstill_velocity(std::optional<double> limit) const {
     const auto threshold = values_.positive(at(0x606F));
-    if (!limit && !threshold) return;
-    const double window = !limit      ? *threshold
-                          : threshold ? std::min(*threshold, *limit / 100)
-                                      : *limit / 1000;
-    axis.velocity_window = std::max<std::int64_t>(1, std::llround(window));
-    constexpr double looks_in_a_second = 20;  // Standstill::standstill_time is 50 ms
-    const double travel = window / positions_in_velocity() / looks_in_a_second;
-    axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, 1e9)));
+    if (limit && threshold) return std::min(*threshold, *limit / 100);
+    if (limit) return *limit / 1000;
+    if (threshold) return threshold;
+    if (const auto turn = positions_per_turn()) return *turn / 100 * positions_in_velocity();
+    if (const auto window = values_.positive(at(0x6067))) {
+      return *window * looks_in_a_second * positions_in_velocity();
+    }
+    return small_in_unit();
   }
+
+  std::optional<double> small_in_unit() const {
+    struct Small {
+      std::string_view unit;
+      double in_a_second;
+    };
+    static constexpr std::array<Small, 5> small{
+        {{"m", 1e-3}, {"mm", 1.0}, {"rad", 1e-2}, {"deg", 0.5}, {"°", 0.5}}};
+    if (!units_.position) return std::nullopt;
+    const auto* const found = std::ranges::find(small, units_.position->unit, &Small::unit);
+    if (found == small.end()) return std::nullopt;
+    return found->in_a_second / std::abs(*units_.position->scale) * positions_in_velocity();
+  }
+
+  void set_windows(AxisPlan& axis, double window) const {
+    constexpr double most = 1e9;
+    axis.velocity_window = std::max<std::int64_t>(1, std::llround(std::min(window, most)));
+    const double travel = window / positions_in_velocity() / looks_in_a_second;
+    axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, most)));
+  }
+
+  static constexpr double looks_in_a_second = 20;  // Standstill::standstill_time is 50 ms
 
   const BootedValues& values_;
   const UnitsSpec& units_;
+  const LimitsSpec& limits_;
   std::uint8_t number_;
 };
 
@@ -155,17 +198,30 @@ std::string axis_name(const NodePlan& node, const AxisPlan& axis) {
          (axis.number == 0 ? "" : " (axis " + std::to_string(axis.number + 1) + ")");
 }
 
+void tell_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec,
+                NetworkReport& report) {
+  report.note(spec.pos, "standstill",
+              "drive " + axis_name(node, axis) +
+                  " has no velocity threshold (606F) and no velocity limit (607F, 6080): the "
+                  "ordered stop takes " +
+                  std::to_string(axis.velocity_window) +
+                  " raw units of 606C for standstill; write `limits: {velocity: ...}`, of which a "
+                  "thousandth counts then");
+}
+
 }  // namespace
 
 std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& device,
-                                   const UnitsSpec& units) {
+                                   const NodeSpec& spec, NetworkReport& report) {
   std::vector<AxisPlan> axes;
   if (!node.cia402) return axes;
   const BootedValues values{node, device};
   for (std::uint8_t number = 0; number < axes_per_node; ++number) {
     const auto controlword = static_cast<std::uint16_t>(0x6040 + number * axis_step);
     if (!values.has({controlword, 0})) continue;
-    axes.push_back(AxisCompiler{values, units, number}.run());
+    const AxisCompiler axis{values, spec, number};
+    axes.push_back(axis.run());
+    if (axis.windows_are_guessed()) tell_guess(node, axes.back(), spec, report);
   }
   return axes;
 }
@@ -200,7 +256,7 @@ void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& rep
       report.warning(pos, "stop-time",
                      "drive " + axis_name(node, axis) + " needs " +
                          seconds_text(axis.stopping_time) +
-                         " to stop from its velocity limit (607F, 6080) along " + ramp +
+                         " to stop from its velocity limit (607F, 6080, `limits:`) along " + ramp +
                          ":00; the ordered stop gives it " + seconds_text(given) +
                          ", then it is disabled while it moves. " +
                          (possible ? "Write `master: {stop_timeout: " + std::to_string(ms * 100) +

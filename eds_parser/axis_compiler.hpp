@@ -9,9 +9,10 @@
 namespace takt {
 
 /// The CiA 402 axes of a device as the ordered stop needs them, from the values that the device has
-/// once it has booted: its file, and what the boot plan writes over it.
+/// once it has booted: its file, and what the boot plan writes over it. `spec`: its units and
+/// limits.
 std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& device,
-                                   const UnitsSpec& units);
+                                   const NodeSpec& spec, NetworkReport& report);
 
 /// The longest of `plan`; 0: none is known.
 Time longest_stopping_time(const BusPlan& plan) noexcept;

@@ -133,8 +133,8 @@ class NetworkCompiler {
   void stop() {
     BusPlan& bus = plan();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const UnitsSpec& units = nodes_[i].node.spec->units;
-      bus.nodes[i].axes = compile_axes(bus.nodes[i], out_.devices[i], units);
+      bus.nodes[i].axes =
+          compile_axes(bus.nodes[i], out_.devices[i], *nodes_[i].node.spec, report_);
     }
     const auto& written = spec_.master.stop_timeout_ms;
     bus.stop_timeout = written.given ? milliseconds(*written)

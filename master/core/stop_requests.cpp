@@ -16,7 +16,7 @@ bool keeps_alive(const NodePlan& node) {
   });
 }
 
-/// The value makes the device watch the master. 0x100C goes with 0x100D: one of them is enough.
+/// The value makes the device watch the master.
 bool arms(const BusPlan& plan, const BootStep& step) {
   if (step.action != BootAction::write && step.action != BootAction::write_if_differs) return false;
   const bool any = std::ranges::any_of(step.value, [](std::byte b) { return b != std::byte{0}; });
@@ -27,6 +27,7 @@ bool arms(const BusPlan& plan, const BootStep& step) {
     }
     case 0x1006:
       return any && plan.cycle.makes_sync();
+    case 0x100C:
     case 0x100D:
       return any;
     default:

@@ -27,8 +27,8 @@ class StopRequests {
 
   /// The answer to one of these requests: nobody else asked.
   static bool owns(const Reply& reply) noexcept { return (reply.id & mark) != 0; }
-  /// What was read goes to `stop`. False: the device did not take a write that disarms it; see
-  /// refused().
+  /// Hands what was read to `stop`. False: the device did not take a write that disarms it; see
+  /// refusing_node() and refused_object().
   bool take(const Reply& reply, Time now, OrderedStop& stop) noexcept;
   /// Of the newest take() that gave false.
   std::uint8_t refusing_node() const noexcept { return refused_.node; }

@@ -1,5 +1,7 @@
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
+#include <vector>
 
 #include "apps/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
@@ -90,9 +92,10 @@ TEST(OrderedStopOfABus, WarnsWithBothNumbersWhereTheTimeIsTooShort) {
       machine(folder, {.master = ", stop_timeout: 5000",
                        .sdo = "{index: 0x607F, value: 600000}, {index: 0x6085, value: 100000}"});
 
-  EXPECT_TRUE(warns(network,
-                    "drive `z` needs 6.0 s to stop from its velocity limit (607F, 6080) along "
-                    "6085:00; the ordered stop gives it 4.0 s"));
+  EXPECT_TRUE(
+      warns(network,
+            "drive `z` needs 6.0 s to stop from its velocity limit (607F, 6080, `limits:`) along "
+            "6085:00; the ordered stop gives it 4.0 s"));
   EXPECT_TRUE(warns(network, "Write `master: {stop_timeout: 9400}`, or a steeper ramp"));
 }
 
@@ -128,6 +131,66 @@ TEST(OrderedStopOfABus, LeavesNoDeviceThatMissesItsMaster) {
     EXPECT_EQ(outcome.stop, StopResult::confirmed) << way;
     EXPECT_EQ(outcome.emcy_after, 0U) << way;
   }
+}
+
+/// What the master wrote by SDO to node 1 after the stop began, as the candump log has it.
+std::vector<std::string> written_in_the_stop(const LoadedNetwork& network,
+                                             const test::Folder& folder) {
+  const std::string log = folder.path() / "log";
+  const auto outcome =
+      simulate(network, {.duration = 4300ms, .move = true, .after = silence, .candump = log});
+  EXPECT_EQ(outcome.stop, StopResult::confirmed);
+  EXPECT_EQ(outcome.emcy_after, 0U);
+  std::vector<std::string> written;
+  std::ifstream in{log};
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t id = line.rfind(' ') + 1;
+    const bool download = line.compare(id, 5, "601#2") == 0;
+    if (download && std::stod(line.substr(1)) > 4.3) written.push_back(line.substr(id));
+  }
+  return written;
+}
+
+/// One drive that has life guarding; `node` and `master` are more keys.
+LoadedNetwork guarded(const test::Folder& folder, const std::string& node,
+                      const std::string& master = "heartbeat_producer: 0") {
+  return load_network(folder.write("net.yaml",
+                                   "bus: {name: lift, bitrate_kbit: 1000}\n"
+                                   "master: {sync_period: 4000, " +
+                                       master +
+                                       "}\n"
+                                       "nodes:\n"
+                                       "  y:\n"
+                                       "    node_id: 1\n"
+                                       "    dcf: " TAKT_SOURCE_DIR
+                                       "/share/eds/astraada_drv28.eds\n" +
+                                       node));
+}
+
+TEST(OrderedStopOfABus, DisarmsLifeGuardingWithBothOfItsObjects) {
+  const test::Folder folder;
+  const auto network =
+      guarded(folder, "    heartbeat_producer: 0\n    guard_time: 100\n    life_time_factor: 3\n");
+  EXPECT_EQ(written_in_the_stop(network, folder),
+            (std::vector<std::string>{"601#2B0C100000000000", "601#2F0D100000000000",
+                                      "601#2306100000000000"}));
+}
+
+TEST(OrderedStopOfABus, DisarmsThePeriodOfSyncAlone) {
+  const test::Folder folder;
+  const auto network = guarded(folder, "    heartbeat_producer: 0\n    retry_factor: 0\n");
+  EXPECT_EQ(written_in_the_stop(network, folder),
+            (std::vector<std::string>{"601#2306100000000000"}));
+}
+
+TEST(OrderedStopOfABus, DisarmsNothingOfANodeThatIsKeptAlive) {
+  const test::Folder folder;
+  const auto network =
+      guarded(folder,
+              "    heartbeat_producer: 0\n    guard_time: 100\n    life_time_factor: 3\n"
+              "    reset: keep_alive\n");
+  const auto outcome = simulate(network, {.duration = 4300ms, .after = silence});
+  EXPECT_NE(outcome.emcy_after, 0U) << "it is to miss its master";
 }
 
 TEST(OrderedStopOfABus, LeavesTheDevicesArmedWhereAnAxisIsNotConfirmed) {
