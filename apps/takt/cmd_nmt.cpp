@@ -38,6 +38,12 @@ int run_on_bus(const NmtOptions& options) {
   return 0;
 }
 
+/// A command that ends the PDO exchange leaves when the axes were stopped in order.
+std::chrono::seconds patience(const std::string& command) {
+  const bool after_axes = command == "stop" || command == "preop";
+  return std::chrono::seconds{after_axes ? 65 : 3};  // `stop_timeout` is at most 60 s
+}
+
 int run(const NmtOptions& options) {
   if (!options.bus.empty()) return run_on_bus(options);
   auto daemon = DaemonClient::find(options.live);
@@ -49,7 +55,7 @@ int run(const NmtOptions& options) {
   request.service = "nmt";
   request.node_id = node ? *node : std::int16_t{id->value()};
   request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
-  const auto reply = daemon->ask(std::move(request), std::chrono::seconds{3});
+  const auto reply = daemon->ask(std::move(request), patience(options.command));
   if (!reply) return complain(reply.error().sentence, reply.error().code);
   return reply->good != 0 ? 0 : complain(reply->text, 1);
 }
@@ -59,6 +65,8 @@ int run(const NmtOptions& options) {
 void add_nmt(CLI::App& app, int& exit_code) {
   auto* verb = app.add_subcommand("nmt", "start, stop, reset nodes");
   verb->footer(
+      "Axes that are enabled are stopped in order before stop and preop are sent: the command\n"
+      "lasts as long. A reset is sent at once, and --bus sends every command at once.\n\n"
       "Examples:\n  takt nmt reset 5\n  takt nmt preop all --bus-name lift\n"
       "  takt nmt start 5 --bus can0      without a daemon");
   auto options = std::make_shared<NmtOptions>();

@@ -380,6 +380,7 @@ void Daemon::watch_lateness() {
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
   recorder_.on_fault(notice);
+  if (notice.kind == name(EventKind::stopping)) unconfirmed_.clear();
   if (notice.kind == name(EventKind::axis_not_stopped)) {
     unconfirmed_ += (unconfirmed_.empty() ? ": " : "; ") + notice.text;
   }

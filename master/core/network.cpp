@@ -20,6 +20,7 @@ void recount(bool now, std::vector<bool>::reference known, std::size_t& sum) noe
 Network::Network(const BusPlan& plan, NetworkOptions options)
     : plan_{plan},
       observe_{options.observe},
+      nmt_stop_{options.nmt_stop},
       lss_{plan, requests_, events_},
       nmt_gate_{plan.start_up.nmt_inhibit},
       start_{plan},
@@ -254,6 +255,8 @@ void Network::begin_stop(Time now, NmtCommand last) noexcept {
   stopping_ = true;
   command_master(NmtCommand::enter_preoperational);
   command_ = nullptr;
+  awaits_axes_.reset();
+  axes_at_rest_.reset();
   while (!broadcasts_.empty()) {
     NmtMessage dropped;
     broadcasts_.pop(dropped);

@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,8 +25,15 @@
 
 namespace takt {
 
+/// When an NMT command leaves that ends the PDO exchange of axes.
+enum class NmtStop : std::uint8_t {
+  immediate,
+  after_axes,  ///< when axes_at_rest() says that the axes which it reaches were stopped
+};
+
 struct NetworkOptions {
   bool observe = false;  ///< listen only: nothing is ever sent
+  NmtStop nmt_stop = NmtStop::immediate;
 };
 
 /// The NMT master: owns the machines of all nodes, routes service frames to them and shares the
@@ -92,6 +100,14 @@ class Network {
   /// NMT part of the ordered stop: pending requests are answered, nodes get their last command.
   /// With reset communication those of `keep_alive` go to pre-operational all the same.
   void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
+  /// NMT stop, or enter pre-operational, of this node (0: of all) waits for axes_at_rest().
+  std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
+  /// The axes of the command that waits were stopped, or their time is over: it may leave.
+  void axes_at_rest() noexcept { axes_at_rest_ = awaits_axes_; }
+  /// Every axis was stopped, for the rest of an ordered stop: no command waits any more.
+  void every_axis_at_rest() noexcept { axes_at_rest_ = 0; }
+  /// An ordered stop begins: the command that waits for its axes is answered and never leaves.
+  void drop_awaiting() noexcept;
   /// The master itself, as NMT has commanded it.
   NmtState own_state() const noexcept { return own_state_; }
   /// All frames of the stop have been handed out.
@@ -115,6 +131,7 @@ class Network {
   void send_heartbeat(Time now, Outbox& out) noexcept;
   void send_commands(Time now, Outbox& out) noexcept;
   bool send_command(const NmtMessage& message, Time now, Outbox& out) noexcept;
+  bool waits_for_axes(const NmtMessage& message) const noexcept;
   void command_master(NmtCommand command) noexcept;
   void send_own_commands(Time now, Outbox& out) noexcept;
   void follow_start(Time now) noexcept;
@@ -134,6 +151,9 @@ class Network {
 
   const BusPlan& plan_;
   bool observe_;
+  NmtStop nmt_stop_;
+  std::optional<std::uint8_t> awaits_axes_;   // node of the command that waits for its axes
+  std::optional<std::uint8_t> axes_at_rest_;  // the same; it may leave
   bool stopping_ = false;
   bool stops_drives_ = false;  // some node's loss does
   EventQueue events_;

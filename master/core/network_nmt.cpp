@@ -6,6 +6,13 @@
 // NMT of the whole network: its start, and what the loss of one node means to the others.
 
 namespace takt {
+namespace {
+
+bool ends_exchange(NmtCommand command) noexcept {
+  return command == NmtCommand::stop || command == NmtCommand::enter_preoperational;
+}
+
+}  // namespace
 
 void Network::follow_start(Time now) noexcept {
   if (observe_ || stopping_) return;
@@ -105,14 +112,43 @@ void Network::command_master(NmtCommand command) noexcept {
   }
 }
 
-/// False: no room, or too soon.
+/// It would take the PDOs from axes that may be enabled. A reset is not held up: it is also the
+/// remedy for a device that does not stop.
+bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
+  if (nmt_stop_ == NmtStop::immediate || !ends_exchange(message.command)) return false;
+  if (axes_at_rest_ == 0 || axes_at_rest_ == message.node) return false;
+  return std::ranges::any_of(plan_.nodes, [&](const NodePlan& node) {
+    return node.cia402 && (message.node == 0 || message.node == node.id.value());
+  });
+}
+
+void Network::drop_awaiting() noexcept {
+  if (!awaits_axes_) return;
+  if (command_ != nullptr) requests_.answer(*command_, SdoFault::cancelled);
+  command_ = nullptr;
+  NmtMessage dropped;
+  while (broadcasts_.pop(dropped)) {
+  }
+  awaits_axes_.reset();
+  axes_at_rest_.reset();
+}
+
+/// False: no room, too soon, or axes have to be stopped first.
 bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noexcept {
   if (message.node == plan_.master_id.value()) {
     command_master(message.command);
     return true;
   }
+  if (waits_for_axes(message)) {
+    if (!awaits_axes_) awaits_axes_ = message.node;
+    return false;
+  }
   if (!nmt_gate_.open(now) || !out.push(encode(message))) return false;
   nmt_gate_.sent(now);
+  if (ends_exchange(message.command) && awaits_axes_ == message.node) {
+    awaits_axes_.reset();
+    axes_at_rest_.reset();
+  }
   if (message.node == 0) command_master(message.command);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     if (message.node != 0 && index_[message.node] != i) continue;

@@ -69,19 +69,23 @@ OrderedStop::OrderedStop(const BusPlan& plan)
   }
 }
 
-void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes) noexcept {
+void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes,
+                        std::uint8_t node_index) noexcept {
   begun_ = now;
+  node_index_ = node_index;
   enter(StopStage::fallback);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     stops_[i] = AxisStop{plans_[i]};
     answers_[i] = {};
     const NodeStatus& node = nodes[axes_[i].node_index];
-    stops_[i].begin(now, node.boot_count != 0 || node.boot == BootState::ready);
+    const bool was_ready = node.boot_count != 0 || node.boot == BootState::ready;
+    stops_[i].begin(now, reaches(i) && was_ready);
   }
 }
 
 void OrderedStop::begin_idle(Time now) noexcept {
   begun_ = now;
+  node_index_ = every_node;
   enter(StopStage::fallback);
   for (AxisStop& stop : stops_) {
     stop = AxisStop{};
@@ -119,6 +123,11 @@ bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
     if (!stops_[i].settled() && !unreachable) return false;
   }
   return true;
+}
+
+bool OrderedStop::nothing_to_stop() const noexcept {
+  return std::ranges::all_of(
+      stops_, [](const AxisStop& stop) { return stop.state() == AxisState::exempt; });
 }
 
 bool OrderedStop::all_confirmed() const noexcept {
@@ -206,6 +215,7 @@ void OrderedStop::step(Time now, const StopView& view) noexcept {
 }
 
 std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noexcept {
+  if (!reaches(axis)) return std::nullopt;
   const AxisState state = stops_[axis].state();
   switch (stage_) {
     case StopStage::fallback:  // which may be to disable; but an axis that moves is not disabled

@@ -65,8 +65,11 @@ class OrderedStop {
   explicit OrderedStop(const BusPlan& plan);
   static std::vector<StopAxis> axes_of(const BusPlan& plan);
 
-  /// From `running` or `done` on.
-  void begin(Time now, std::span<const NodeStatus> nodes) noexcept;
+  static constexpr std::uint8_t every_node = 0xFF;
+
+  /// From `running` or `done` on. `node_index`: only the axes of this node are stopped.
+  void begin(Time now, std::span<const NodeStatus> nodes,
+             std::uint8_t node_index = every_node) noexcept;
   /// Nothing was asked for: a master that only listens stops nobody.
   void begin_idle(Time now) noexcept;
   /// What an SDO has read of an axis; used in the next step.
@@ -80,6 +83,14 @@ class OrderedStop {
   StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
   const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
+  /// This axis is stopped; the others go on as they are commanded.
+  bool reaches(std::size_t axis) const noexcept {
+    return node_index_ == every_node || axes_[axis].node_index == node_index_;
+  }
+  /// The node whose axes are stopped, or every_node.
+  std::uint8_t target() const noexcept { return node_index_; }
+  /// Every axis that is to be stopped was disabled when the stop began.
+  bool nothing_to_stop() const noexcept;
   /// The axes are at rest, or their time is over.
   bool axes_done() const noexcept { return stage_ > StopStage::disable; }
   /// What the controlword of this axis has to be now; none: what is commanded.
@@ -104,7 +115,8 @@ class OrderedStop {
   std::vector<AxisSample> answers_;  // by SDO, since the last step
   StopStage stage_ = StopStage::running;
   Time begun_{};
-  std::uint32_t steps_ = 0;  ///< in this stage
+  std::uint32_t steps_ = 0;               ///< in this stage
+  std::uint8_t node_index_ = every_node;  ///< whose axes are stopped
 };
 
 }  // namespace takt

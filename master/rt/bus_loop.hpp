@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -120,12 +121,15 @@ class BusLoop {
   void begin_stop(Time now) noexcept;
   StopView stop_view() const noexcept;
   void force_axes(const OrderedStop& stop) noexcept;
-  void tell_unconfirmed(Time now) noexcept;
+  void tell_unconfirmed(const OrderedStop& stop, Time now) noexcept;
   void ask_for_stop() noexcept;
   void take_answer_of_stop() noexcept;
   OrderedStop& active_stop() noexcept;
+  bool stops_in_order(std::size_t axis) noexcept;
   void follow_own_state() noexcept;
-  void begin_halt(Time now) noexcept;
+  std::optional<std::uint8_t> halt_target() const noexcept;
+  void begin_halt(Time now, std::uint8_t node_index) noexcept;
+  void step_halt(Time now) noexcept;
   void end_halt() noexcept;
   bool silent() const noexcept;
   void take_fallbacks() noexcept;
@@ -155,7 +159,7 @@ class BusLoop {
   PdoRequests pdo_requests_;
   TimeProducer time_;
   OrderedStop stop_;
-  OrderedStop halt_;  ///< the same of a master in NMT Stopped, until it is started again
+  OrderedStop halt_;  ///< the same before NMT ends the PDO exchange; in NMT Stopped it lasts on
   StopRequests stop_requests_;
   FallbackWriter fallbacks_;
   PortWatch port_watch_;

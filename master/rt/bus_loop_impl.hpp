@@ -12,7 +12,7 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       exchange_{exchange},
       options_{options},
       pdos_{plan, events_},
-      network_{plan, {.observe = options.observe}},
+      network_{plan, {.observe = options.observe, .nmt_stop = NmtStop::after_axes}},
       pdo_requests_{plan},
       time_{plan.time},
       stop_{plan},

@@ -1,6 +1,6 @@
 #pragma once
-// Member functions of BusLoop: the ordered stop, the stop of a master in NMT Stopped, and drives
-// that stop because another node was lost.
+// Member functions of BusLoop: the ordered stop, the stop of axes before NMT ends their PDO
+// exchange, and drives that stop because another node was lost.
 #include "master/rt/bus_loop.hpp"
 
 namespace takt {
@@ -9,11 +9,10 @@ namespace takt {
 template <Port P, class N>
 void BusLoop<P, N>::stop_drives_after_loss() noexcept {
   if constexpr (requires { network_.stops_drives(); }) {
-    const bool stopping = active_stop().stage() != StopStage::running;
-    if (!network_.stops_drives() || stopping) return;
+    if (!network_.stops_drives()) return;
     for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
       const StopAxis& axis = stop_.axes()[i];
-      if (!axis.controlword) continue;
+      if (!axis.controlword || stops_in_order(i)) continue;
       if (network_.demands_quick_stop(axis.node_index)) {
         const bool disabled =
             axis.statusword && OrderedStop::disabled(pdos_.image().values[*axis.statusword]);
@@ -45,6 +44,12 @@ OrderedStop& BusLoop<P, N>::active_stop() noexcept {
 }
 
 template <Port P, class N>
+bool BusLoop<P, N>::stops_in_order(std::size_t axis) noexcept {
+  const OrderedStop& stop = active_stop();
+  return stop.stage() != StopStage::running && stop.reaches(axis);
+}
+
+template <Port P, class N>
 void BusLoop<P, N>::begin_stop(Time now) noexcept {
   tell(EventKind::stopping, now);
   if (options_.observe) {
@@ -53,6 +58,7 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
     stop_.begin(now, network_.nodes());
   }
   halt_.call_off();
+  if constexpr (requires { network_.drop_awaiting(); }) network_.drop_awaiting();
   stop_requests_.begin();
   pdos_.outputs().fall_back();
   call_off_fallbacks();
@@ -72,7 +78,10 @@ void BusLoop<P, N>::step_stop() noexcept {
   const bool decided = stop_.axes_done();
   stop_.step(now, stop_view());
   force_axes(stop_);
-  if (!decided && stop_.axes_done()) tell_unconfirmed(now);
+  if constexpr (requires { network_.every_axis_at_rest(); }) {
+    if (stop_.axes_done()) network_.every_axis_at_rest();
+  }
+  if (!decided && stop_.axes_done()) tell_unconfirmed(stop_, now);
   if (before != StopStage::nmt && stop_.stage() == StopStage::nmt) {
     const bool resets = stop_.result() == StopResult::confirmed &&
                         plan_.stop_disarm == StopDisarm::reset_communication;
@@ -94,19 +103,19 @@ void BusLoop<P, N>::force_axes(const OrderedStop& stop) noexcept {
 
 /// One event for each axis that was not seen at standstill and disabled.
 template <Port P, class N>
-void BusLoop<P, N>::tell_unconfirmed(Time now) noexcept {
-  for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
-    const StopAxis& axis = stop_.axes()[i];
-    const AxisStop& stop = stop_.axis(i);
-    const AxisVerdict verdict = stop.verdict(now, exchanging_[axis.node_index]);
+void BusLoop<P, N>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept {
+  for (std::size_t i = 0; i < stop.axes().size(); ++i) {
+    const StopAxis& axis = stop.axes()[i];
+    const AxisStop& one = stop.axis(i);
+    const AxisVerdict verdict = one.verdict(now, exchanging_[axis.node_index]);
     if (verdict == AxisVerdict::stopped) continue;
     const bool told_time = verdict == AxisVerdict::silent || verdict == AxisVerdict::lost;
     events_.push({.when = now,
                   .kind = EventKind::axis_not_stopped,
                   .node = plan_.nodes[axis.node_index].id.value(),
                   .detail = static_cast<std::uint32_t>(verdict) | std::uint32_t{axis.number} << 8U |
-                            (stop.by_position() ? 1U << 16U : 0U),
-                  .value = told_time ? stop.silence(now).count() : stop.velocity()});
+                            (one.by_position() ? 1U << 16U : 0U),
+                  .value = told_time ? one.silence(now).count() : one.velocity()});
   }
 }
 
@@ -124,43 +133,70 @@ void BusLoop<P, N>::ask_for_stop() noexcept {
   }
 }
 
-/// A master in NMT Stopped makes no SYNC, but only after its axes were stopped. CiA 301, 7.3.2.2.
+/// The node whose axes are to be stopped before its PDO exchange ends, or every node.
+template <Port P, class N>
+std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
+  if (network_.own_state() == NmtState::stopped) return OrderedStop::every_node;
+  const auto node = network_.awaits_axes();
+  if (!node) return std::nullopt;
+  return *node == 0 ? OrderedStop::every_node : static_cast<std::uint8_t>(plan_.index_of(*node));
+}
+
+/// A node that NMT stops or sends to pre-operational exchanges no PDOs any more, and a master in
+/// NMT Stopped makes no SYNC (CiA 301, 7.3.2.2): the axes are stopped before that.
 template <Port P, class N>
 void BusLoop<P, N>::follow_own_state() noexcept {
   if constexpr (requires { network_.own_state(); }) {
     if (options_.observe || stop_.stage() != StopStage::running) return;
-    const bool stopped = network_.own_state() == NmtState::stopped;
+    const auto target = halt_target();
     const bool halting = halt_.stage() != StopStage::running;
     const Time now = port_.now();
-    if (stopped && !halting) begin_halt(now);
-    if (!stopped && halting) end_halt();
-    if (!stopped || halt_.axes_done()) return;
-    halt_.step(now, stop_view());
-    force_axes(halt_);
+    if (halting && target != halt_.target()) end_halt();
+    if (!target) return;
+    if (halt_.stage() == StopStage::running) begin_halt(now, *target);
+    step_halt(now);
   }
 }
 
+/// Tells the network once that the axes are at rest, or that their time is over.
 template <Port P, class N>
-void BusLoop<P, N>::begin_halt(Time now) noexcept {
-  halt_.begin(now, network_.nodes());
+void BusLoop<P, N>::step_halt(Time now) noexcept {
+  if (!halt_.axes_done()) {
+    halt_.step(now, stop_view());
+    force_axes(halt_);
+    if (halt_.axes_done()) tell_unconfirmed(halt_, now);
+  }
+  if (halt_.axes_done() || halt_.nothing_to_stop()) network_.axes_at_rest();
+}
+
+template <Port P, class N>
+void BusLoop<P, N>::begin_halt(Time now, std::uint8_t node_index) noexcept {
+  halt_.begin(now, network_.nodes(), node_index);
   stop_requests_.begin();
+  if (node_index != OrderedStop::every_node) return;
   pdos_.outputs().fall_back();
   call_off_fallbacks();
 }
 
 template <Port P, class N>
 void BusLoop<P, N>::end_halt() noexcept {
-  halt_.call_off();
-  for (const StopAxis& axis : halt_.axes()) {
-    if (axis.controlword) pdos_.outputs().release(*axis.controlword);
+  const bool all = halt_.target() == OrderedStop::every_node;
+  for (std::size_t i = 0; i < halt_.axes().size(); ++i) {
+    const auto controlword = halt_.axes()[i].controlword;
+    if (controlword && halt_.reaches(i)) pdos_.outputs().release(*controlword);
   }
-  pdos_.outputs().hear_again();
+  halt_.call_off();
+  if (all) pdos_.outputs().hear_again();
 }
 
 /// No SYNC in NMT Stopped. In an ordered stop SYNC is needed again to see the axes.
 template <Port P, class N>
 bool BusLoop<P, N>::silent() const noexcept {
-  return stop_.stage() == StopStage::running && halt_.axes_done();
+  if constexpr (requires { network_.own_state(); }) {
+    return stop_.stage() == StopStage::running && halt_.axes_done() &&
+           network_.own_state() == NmtState::stopped;
+  }
+  return false;
 }
 
 }  // namespace takt

@@ -1,0 +1,134 @@
+// NMT commands that end the PDO exchange of axes: the axes are stopped first.
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <optional>
+
+#include "test/virtual/rig.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Rig;
+
+constexpr std::uint32_t first_words = 0x201;
+constexpr std::uint32_t second_words = 0x202;
+
+/// Two loop-back drives that are enabled.
+class NmtStopOfAxes : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(rig.boot());
+    rig.command_all(0x000F, 1);
+    rig.run(3);
+    rig.recorder.frames.clear();
+  }
+  void order(NmtCommand command, std::uint8_t node) {
+    ASSERT_TRUE(
+        rig.master->submit({.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
+  }
+  /// When a controlword with these lowest bits was sent for the first time.
+  std::optional<Time> word_at(std::uint32_t id, unsigned low_bits) const {
+    for (const sim::WireFrame& wire : rig.recorder.with(id)) {
+      if ((wire.frame.data[0] & 0x0FU) == low_bits) {
+        return wire.start;
+      }
+    }
+    return std::nullopt;
+  }
+  std::optional<Time> nmt_at(std::uint8_t command, std::uint8_t node) const {
+    for (const sim::WireFrame& wire : rig.recorder.with(0x000)) {
+      if (wire.frame.data[0] == command && wire.frame.data[1] == node) return wire.start;
+    }
+    return std::nullopt;
+  }
+  Rig rig{test::axes()};
+};
+
+TEST_F(NmtStopOfAxes, LeavesWhenEveryAxisWasStoppedAndDisabled) {
+  order(NmtCommand::stop, 0);
+  rig.run(500);
+
+  const auto stop = nmt_at(0x02, 0);
+  ASSERT_TRUE(stop);
+  for (const std::uint32_t words : {first_words, second_words}) {
+    ASSERT_TRUE(word_at(words, 0x02)) << "quick stop";
+    ASSERT_TRUE(word_at(words, 0x00)) << "disable voltage";
+    EXPECT_LT(*word_at(words, 0x02) + 50ms, *word_at(words, 0x00)) << "standstill is seen";
+    EXPECT_LT(*word_at(words, 0x00), *stop);
+  }
+  EXPECT_LT(rig.recorder.with(0x080).back().start, *stop + 5ms) << "no SYNC in NMT Stopped";
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
+}
+
+TEST_F(NmtStopOfAxes, IsAnsweredWhenItWasSent) {
+  order(NmtCommand::stop, 0);
+  rig.run(5);
+  Reply reply;
+  EXPECT_FALSE(rig.master->take(reply));
+  rig.run(200);
+  ASSERT_TRUE(rig.master->take(reply));
+  EXPECT_EQ(reply.fault, SdoFault::none);
+}
+
+TEST_F(NmtStopOfAxes, LeavesTheAxesOfOtherNodesAlone) {
+  for (const NmtCommand command : {NmtCommand::stop, NmtCommand::enter_preoperational}) {
+    rig.recorder.frames.clear();
+    order(command, 1);
+    for (int i = 0; i < 200; ++i) {  // its application goes on
+      rig.command(1, 0x000F, 1);
+      rig.run(1);
+    }
+
+    const auto sent = nmt_at(static_cast<std::uint8_t>(command), 1);
+    ASSERT_TRUE(sent);
+    ASSERT_TRUE(word_at(first_words, 0x00));
+    EXPECT_LT(*word_at(first_words, 0x00), *sent);
+    for (const sim::WireFrame& wire : rig.recorder.with(second_words)) {
+      ASSERT_EQ(wire.frame.data[0], 0x0F);
+    }
+    EXPECT_GT(rig.recorder.with(0x080).size(), 190U);
+
+    order(NmtCommand::start, 1);
+    rig.run(5);
+    rig.command_all(0x000F, 1);
+    rig.run(2);
+    EXPECT_EQ(rig.recorder.with(first_words).back().frame.data[0], 0x0F) << "it is free again";
+  }
+}
+
+TEST_F(NmtStopOfAxes, LeavesAtOnceWhereTheAxesAreDisabled) {
+  rig.command_all(0x0000, 1);
+  rig.run(3);
+  rig.recorder.frames.clear();
+  order(NmtCommand::stop, 0);
+  rig.run(3);
+  EXPECT_TRUE(nmt_at(0x02, 0));
+}
+
+TEST_F(NmtStopOfAxes, DoesNotWaitForADriveThatIsGone) {
+  rig.world->power(2_node, false);
+  order(NmtCommand::stop, 0);
+  rig.run(900);
+  EXPECT_TRUE(nmt_at(0x02, 0));
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 1);
+}
+
+TEST_F(NmtStopOfAxes, GivesWayToTheOrderedStop) {
+  order(NmtCommand::stop, 1);
+  rig.run(5);
+  rig.master->request_stop();
+  for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
+  ASSERT_TRUE(rig.master->finished());
+  EXPECT_EQ(rig.status().stop_result, StopResult::confirmed);
+  EXPECT_FALSE(nmt_at(0x02, 1));
+}
+
+TEST_F(NmtStopOfAxes, ResetsAreNotHeldUp) {
+  order(NmtCommand::reset_node, 1);
+  rig.run(2);
+  EXPECT_TRUE(nmt_at(0x81, 1));
+}
+
+}  // namespace
+}  // namespace takt
