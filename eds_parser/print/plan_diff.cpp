@@ -14,7 +14,7 @@
 namespace takt {
 namespace {
 
-enum class Part : std::uint8_t { bus, node, image, lcm, boot };
+enum class Part : std::uint8_t { bus, node, image, limits, lcm, boot };
 
 /// Sections in the order of a plan: all nodes, then all boots.
 using Key = std::pair<Part, unsigned>;
@@ -93,6 +93,8 @@ Sections sections_of(const BusPlan& plan, std::optional<NodeId> only) {
   }
   sections[{Part::image, 0}] =
       without_padding(without_numbers(text_of([&](PlanLines& l) { add_image(l, plan, only); })));
+  sections[{Part::limits, 0}] =
+      without_padding(text_of([&](PlanLines& lines) { add_limits(lines, plan, only); }));
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (!only || *only == plan.nodes[i].id) add_node_sections(sections, plan, i);
   }
@@ -141,6 +143,8 @@ std::string_view part_name(Part part) {
       return "node";
     case Part::image:
       return "image";
+    case Part::limits:
+      return "limits";
     case Part::lcm:
       return "lcm";
     case Part::boot:

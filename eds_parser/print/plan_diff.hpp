@@ -25,7 +25,7 @@ std::string node_diff(const PlanSide& before, const PlanSide& after, NodeId node
 
 /// What differs in one part of a plan, line by line, without the lines' indentation.
 struct PlanChange {
-  std::string_view part;       ///< bus (with the cycle), node, image, lcm, boot
+  std::string_view part;       ///< bus (with the cycle), node, image, limits, lcm, boot
   std::optional<NodeId> node;  ///< of the parts node and boot
   std::vector<std::string> removed;
   std::vector<std::string> added;

@@ -140,5 +140,30 @@ TEST_F(PlanDiff, ShowsWhatADeviceDataEntryChanges) {
   EXPECT_THAT(text, Not(HasSubstr("\n-  TPDO")));
 }
 
+const std::string limited =
+    "master: {sync_period: 10000}\narm: {node_id: 5, " + drive +
+    ", profile: cia402, units: {position: {scale: 0.001, unit: rad}}, "
+    "rpdo: {1: {transmission: 1, mapping: [{index: 0x6040}, {index: 0x607A}]}}, limits: {";
+
+TEST_F(PlanDiff, AnotherLimitIsADifference) {
+  const std::string text = diff(limited + "position: [-1, 1], step: 0.1}}\n",
+                                limited + "position: [-1, 100], step: 0.1}}\n");
+
+  EXPECT_THAT(text, HasSubstr("-  arm  position  -1 .. 1 rad  from the network file\n"));
+  EXPECT_THAT(text, HasSubstr("+  arm  position  -1 .. 100 rad  from the network file\n"));
+  EXPECT_THAT(text, Not(HasSubstr("-  arm  step")));
+}
+
+TEST_F(PlanDiff, ALimitThatTheDeviceTellsFromNowOnIsADifference) {
+  const LoadedNetwork before = load(limited + "position: [-1, 1], step: 0.1}}\n");
+  const LoadedNetwork after = load(limited + "step: 0.1}}\n");
+  const auto changes = plan_changes({before.plan, "old"}, {after.plan, "new"}, std::nullopt);
+
+  const auto found = std::ranges::find(changes, "limits", &PlanChange::part);
+  ASSERT_NE(found, changes.end());
+  ASSERT_EQ(found->added.size(), 1U);
+  EXPECT_THAT(found->added[0], HasSubstr("read from the device at boot, 607D:01"));
+}
+
 }  // namespace
 }  // namespace takt
