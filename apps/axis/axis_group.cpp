@@ -89,6 +89,7 @@ void AxisGroup::serve() {
   std::vector<pollfd> descriptors;
   int ready = 1;
   for (int i = 0; i < most_rounds && ready > 0; ++i) {  // all that waits: only the newest counts
+    input_.set_time(std::chrono::nanoseconds{Clock::now().time_since_epoch()}.count());
     lcm_->serve(
         [this](std::string_view channel, std::span<const std::byte> data) { take(channel, data); });
     descriptors.clear();

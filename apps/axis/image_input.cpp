@@ -13,6 +13,8 @@ constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
 constexpr int most_strange = 3;  // images: so many that follow each other are the bus
 constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t quiet_periods = 20;
+constexpr std::int64_t longest_period_ns = 60 * second_ns;
 constexpr std::uint64_t least_ahead = 16;  // cycles, however long they are
 
 /// How many cycles `to` is ahead of `from`, which is not greater; the two may be anything.
@@ -45,10 +47,10 @@ bool ImageInput::Parts::mark(std::size_t part) {
 
 bool ImageInput::take(const layout_t& part) {
   if (part.schema != message_schema || !is_part(part.part, part.parts)) return false;
-  if (part.total_signals < 1 || part.total_signals > most_signals || part.period_ns < 1) {
-    return false;
-  }
+  const bool has_period = part.period_ns >= 1 && part.period_ns <= longest_period_ns;
+  if (part.total_signals < 1 || part.total_signals > most_signals || !has_period) return false;
   if (has_layout() && part.hash == hash_ && part.session == session_) return false;
+  if (session_lives()) return false;
   const auto total = static_cast<std::size_t>(part.total_signals);
   if (part.hash != new_hash_ || part.session != new_session_ || new_signals_.size() != total ||
       layout_parts_.seen.size() != static_cast<std::size_t>(part.parts)) {
@@ -83,6 +85,12 @@ void ImageInput::finish() {
   strange_images_ = 0;
   values_.assign(signals_.size(), 0);
   stale_.assign(signals_.size(), 0);
+}
+
+/// Whoever forges a layout while the daemon runs changes nothing; one that has restarted repeats
+/// its layout once a second.
+bool ImageInput::session_lives() const noexcept {
+  return has_image_ && now_ns_ - image_ns_ < std::max(quiet_ns, quiet_periods * period_ns_);
 }
 
 bool ImageInput::belongs(const image_t& part) const noexcept {
@@ -127,6 +135,7 @@ bool ImageInput::take(const image_t& part) {
   values_.swap(new_values_);
   stale_.swap(new_stale_);
   cycle_ = new_cycle_;
+  image_ns_ = now_ns_;
   has_image_ = true;
   return true;
 }

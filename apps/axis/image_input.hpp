@@ -9,9 +9,15 @@ namespace takt {
 /// What has come over LCM, put together from its parts: the layout, and the newest image that is
 /// whole. Parts that do not belong together (another session, layout or cycle) are left out. An
 /// image whose cycle is older, or more than a second ahead, counts when two more have followed it:
-/// a single forged or late one changes nothing.
+/// a single forged or late one changes nothing. Another layout, or that of another session, counts
+/// only when no image of the session before has come for `quiet_ns` (20 periods where that is
+/// more).
 class ImageInput {
  public:
+  static constexpr std::int64_t quiet_ns = 200'000'000;
+
+  /// The time of what is taken from now on, by a clock that never goes back.
+  void set_time(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
   /// True: with this part a layout is complete that differs from the one before.
   bool take(const layout_t& part);
   /// True: with this part a newer image is complete.
@@ -38,6 +44,7 @@ class ImageInput {
   void begin(const layout_t& part);
   void finish();
   bool belongs(const image_t& part) const noexcept;
+  bool session_lives() const noexcept;
   bool is_next(std::int64_t cycle) const noexcept;
   bool is_confirmed(std::int64_t cycle) noexcept;
 
@@ -51,6 +58,9 @@ class ImageInput {
   std::int64_t new_hash_ = 0;
   std::int64_t new_period_ns_ = 0;
   Parts layout_parts_;
+
+  std::int64_t now_ns_ = 0;
+  std::int64_t image_ns_ = 0;  // when the newest image came
 
   bool has_image_ = false;
   std::int64_t cycle_ = -1;

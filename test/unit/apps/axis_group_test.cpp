@@ -143,6 +143,37 @@ TEST_F(Group, TellsThatTheDaemonHasRestarted) {
   EXPECT_EQ(group_.axes().drive(0).goal(), DriveGoal::disabled);
 }
 
+TEST_F(Group, IsNotRestartedByAForgedLayoutBetweenImages) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  group_.wait(0ns);
+  group_.axes().set_goal(DriveGoal::enabled);
+  layout_t forged = two_axes();
+  forged.session = 78;
+  lcm_.arrive("LIFT_IMAGE", image(3, {0, 0, 1000, 0}));
+  lcm_.arrive("LIFT_LAYOUT", forged);
+
+  EXPECT_EQ(group_.wait(0ns), Input::fresh);
+  EXPECT_EQ(group_.axes().drive(0).goal(), DriveGoal::enabled);
+}
+
+TEST_F(Group, GoesOverToAnotherSessionWhenTheImagesOfTheFirstHaveCeased) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  group_.wait(0ns);
+  lcm_.arrive("LIFT_IMAGE", image(3, {0, 0, 1000, 0}));
+  group_.wait(0ns);
+  layout_t again = two_axes();
+  again.session = 78;
+
+  Input input = Input::nothing;
+  const auto limit = std::chrono::steady_clock::now() + 60s;
+  while (input != Input::restarted && std::chrono::steady_clock::now() < limit) {
+    lcm_.arrive("LIFT_LAYOUT", again);
+    input = group_.wait(5ms);
+  }
+  EXPECT_EQ(input, Input::restarted);
+  EXPECT_EQ(group_.input().session(), 78);
+}
+
 TEST_F(Group, KeepsWhatTheDaemonTells) {
   event_t event{};
   event.kind = "command_refused";

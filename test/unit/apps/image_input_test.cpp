@@ -101,6 +101,7 @@ TEST(ImageInput, StartsAnewWithTheLayoutOfAnotherSession) {
   input.take(image(1000, {1, 2, 3, 4}));
   layout_t again = two_axes();
   again.session = 78;
+  input.set_time(ImageInput::quiet_ns);
   EXPECT_TRUE(input.take(again));
   EXPECT_FALSE(input.has_image());
   image_t first = image(1, {1, 2, 3, 4});
@@ -175,6 +176,65 @@ TEST(ImageInput, LateImagesNeverAddUpToAnotherBus) {
     EXPECT_TRUE(input.take(image(100 + i, {2, 2, 2, 2})));
   }
   EXPECT_EQ(input.cycle(), 109);
+}
+
+layout_t forged_layout() {
+  layout_t forged = two_axes();
+  forged.session = 78;
+  return forged;
+}
+
+TEST(ImageInput, KeepsToItsSessionWhileImagesOfItCome) {
+  ImageInput input = with_layout();
+  for (std::int64_t cycle = 1; cycle <= 500; ++cycle) {
+    input.set_time(cycle * 2'000'000);
+    input.take(image(cycle, {1, 2, 3, 4}));
+    EXPECT_FALSE(input.take(forged_layout()));
+  }
+  layout_t other_hash = two_axes();
+  other_hash.hash += 1;
+  EXPECT_FALSE(input.take(other_hash));
+  EXPECT_EQ(input.session(), testing::session);
+  EXPECT_TRUE(input.has_image());
+}
+
+TEST(ImageInput, TakesAnotherSessionWhenTheImagesOfItsOwnHaveCeased) {
+  ImageInput input = with_layout();
+  input.set_time(1'000'000'000);
+  input.take(image(1, {1, 2, 3, 4}));
+  input.set_time(1'000'000'000 + ImageInput::quiet_ns - 1);
+  EXPECT_FALSE(input.take(forged_layout()));
+  input.set_time(1'000'000'000 + ImageInput::quiet_ns);
+  EXPECT_TRUE(input.take(forged_layout()));
+  EXPECT_EQ(input.session(), 78);
+  EXPECT_FALSE(input.has_image());
+}
+
+TEST(ImageInput, ComesBackFromASessionThatHasNoImages) {
+  ImageInput input;
+  EXPECT_TRUE(input.take(forged_layout()));
+  EXPECT_TRUE(input.take(two_axes()));
+  EXPECT_EQ(input.session(), testing::session);
+}
+
+TEST(ImageInput, WaitsLongerWhereTheBusIsSlow) {
+  ImageInput input;
+  layout_t slow = two_axes();
+  slow.period_ns = 100'000'000;
+  input.take(slow);
+  input.set_time(0);
+  input.take(image(1, {1, 2, 3, 4}));
+  input.set_time(1'999'999'999);  // 20 periods are 2 s
+  EXPECT_FALSE(input.take(forged_layout()));
+  input.set_time(2'000'000'000);
+  EXPECT_TRUE(input.take(forged_layout()));
+}
+
+TEST(ImageInput, LeavesOutALayoutWithAPeriodThatNoBusHas) {
+  ImageInput input;
+  layout_t forged = two_axes();
+  forged.period_ns = 1LL << 62U;
+  EXPECT_FALSE(input.take(forged));
 }
 
 }  // namespace
