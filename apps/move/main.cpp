@@ -1,5 +1,6 @@
 #include <csignal>
 #include <fmt/format.h>
+#include <memory>
 #include <sched.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include "apps/axis/open_lcm.hpp"
 #include "apps/move/move_run.hpp"
 #include "apps/move/options.hpp"
+#include "master/gateway/checked_transport.hpp"
 #include "master/gateway/key_file.hpp"
 
 namespace {
@@ -40,6 +42,18 @@ int main(int argc, char** argv) {
   if (!lcm) {
     fmt::print(stderr, "takt-move: {}\n", lcm.error());
     return 3;
+  }
+  if (options.check_images) {
+    if (options.keys.empty()) {
+      fmt::print(stderr, "takt-move: --check-images needs a key file: --keys FILE\n");
+      return 2;
+    }
+    auto keys = takt::WatchedKeyFile::open(options.keys);
+    if (!keys) {
+      fmt::print(stderr, "takt-move: {}\n", keys.error());
+      return 2;
+    }
+    *lcm = std::make_unique<takt::CheckedTransport>(std::move(*lcm), std::move(*keys));
   }
   takt::AxisGroup group{std::move(*lcm),
                         {.bus = options.bus,

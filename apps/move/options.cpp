@@ -49,6 +49,10 @@ ParsedMove parse_move(int argc, char** argv) {
   app.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
       ->type_name("FILE")
       ->envname("TAKT_KEYS");
+  app.add_flag("--check-images", options.check_images,
+               "believe only what the daemon has signed (`authenticate: images`); else "
+               "TAKT_CHECK_IMAGES=true")
+      ->envname("TAKT_CHECK_IMAGES");
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");
   to->delimiter(',')->check(finite);
   app.add_flag("--sine", only_sine, "a sine (without --to: only a sine)");

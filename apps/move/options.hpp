@@ -11,8 +11,9 @@ namespace takt {
 struct MoveOptions {
   std::string bus;
   std::string lcm_url;
-  std::string keys;        ///< key file; empty: no envelopes
-  std::vector<double> to;  ///< one an axis, or one for all; empty: a default distance from here
+  std::string keys;           ///< key file; empty: no envelopes
+  bool check_images = false;  ///< only what the daemon has signed is believed
+  std::vector<double> to;     ///< one an axis, or one for all; empty: a default distance from here
   bool point = true;
   bool sine = true;
   double seconds = 10.0;  ///< of the point-to-point move and the sine together

@@ -101,8 +101,8 @@ int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const std::string events = channel_name(bus, "EVENT");
-  auto lcm = LcmClient::open(options.live.lcm_url, {any_bus("EVENT")});
-  if (!lcm) return complain(lcm.error(), 3);
+  auto lcm = open_live(options.live, {any_bus("EVENT")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
   while (!interrupted) {
     lcm->serve(
         [&](std::string_view channel, std::span<const std::byte> data) {

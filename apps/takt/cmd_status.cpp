@@ -136,8 +136,8 @@ int run(const StatusOptions& all) {
   const LiveOptions& options = all.live;
   std::vector<std::string> channels{any_bus("STATUS"), any_bus("SYNC")};
   if (all.pdos) channels.push_back(any_bus("PDOS"));
-  auto lcm = LcmClient::open(options.lcm_url, channels);
-  if (!lcm) return complain(lcm.error(), 3);
+  auto lcm = open_live(options, channels);
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
   BusViews views;
   listen(*lcm, views, monotonic_now() + first_limit,
          [&] { return !chosen(views, options.bus_name).empty(); });

@@ -85,8 +85,8 @@ int run(const TimingOptions& options) {
   const auto daemon = DaemonClient::find(options.live);
   if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
   const std::string& bus = daemon->status().bus;
-  auto lcm = LcmClient::open(options.live.lcm_url, {any_bus("TIMING"), any_bus("IMAGE")});
-  if (!lcm) return complain(lcm.error(), 3);
+  auto lcm = open_live(options.live, {any_bus("TIMING"), any_bus("IMAGE")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
   TimingEar ear{std::move(*lcm), bus};
   ear.next();  // from here on all rows are of the same second
   do {

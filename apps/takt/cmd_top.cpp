@@ -89,10 +89,9 @@ void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
 }
 
 int run(const TopArguments& arguments) {
-  auto lcm = LcmClient::open(arguments.live.lcm_url,
-                             {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
-                              any_bus("TIMING"), any_bus("EVENT"), any_bus("SYNC")});
-  if (!lcm) return complain(lcm.error(), 3);
+  auto lcm = open_live(arguments.live, {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
+                                        any_bus("TIMING"), any_bus("EVENT"), any_bus("SYNC")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
   BusViews views;
   const bool live = !arguments.once && ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0;
   if (!live) return show_once(*lcm, views, arguments.live.bus_name);

@@ -85,6 +85,22 @@ void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<boo
   }
 }
 
+std::expected<LcmClient, LiveError> open_live(const LiveOptions& options,
+                                              const std::vector<std::string>& patterns) {
+  std::optional<WatchedKeyFile> signers;
+  if (options.check_images) {
+    if (options.keys.empty()) {
+      return std::unexpected{LiveError{"--check-images needs a key file: --keys FILE", 2}};
+    }
+    auto keys = WatchedKeyFile::open(options.keys);
+    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
+    signers = std::move(*keys);
+  }
+  auto lcm = LcmClient::open(options.lcm_url, patterns, signers);
+  if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
+  return std::move(*lcm);
+}
+
 std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
   std::optional<EnvelopeSeal> seal;
   if (!options.keys.empty()) {
@@ -92,9 +108,8 @@ std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& opt
     if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
     seal.emplace(keys->front(), random_number());
   }
-  auto lcm = LcmClient::open(options.lcm_url,
-                             {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
-  if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
+  auto lcm = open_live(options, {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
+  if (!lcm) return std::unexpected{lcm.error()};
   BusViews views;
   const auto found = [&] { return !chosen(views, options.bus_name).empty(); };
   listen(*lcm, views, monotonic_now() + find_limit, found);

@@ -51,6 +51,10 @@ class DaemonClient {
   std::optional<EnvelopeSeal> seal_;  // none: no keys
 };
 
+/// LCM as these options say. The error has an exit code.
+std::expected<LcmClient, LiveError> open_live(const LiveOptions& options,
+                                              const std::vector<std::string>& patterns);
+
 /// The buses of which status has come: the one that is called so, also in capitals, or all.
 std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name);
 

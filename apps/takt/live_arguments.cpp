@@ -30,6 +30,10 @@ void add_live_options(CLI::App& verb, LiveOptions& options) {
   verb.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
       ->type_name("FILE")
       ->envname("TAKT_KEYS");
+  verb.add_flag("--check-images", options.check_images,
+                "believe only what the daemon has signed (`authenticate: images`); else "
+                "TAKT_CHECK_IMAGES=true")
+      ->envname("TAKT_CHECK_IMAGES");
 }
 
 std::optional<ObjectKey> parse_object(std::string_view text) {

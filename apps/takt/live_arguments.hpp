@@ -14,7 +14,8 @@ struct LiveOptions {
   std::string lcm_url;
   std::string bus_name;  ///< empty: the only one there is
   bool json = false;
-  std::string keys;  ///< key file; empty: messages are sent without an envelope
+  std::string keys;           ///< key file; empty: messages are sent without an envelope
+  bool check_images = false;  ///< only what the daemon has signed is believed
 };
 
 void add_live_options(CLI::App& verb, LiveOptions& options);

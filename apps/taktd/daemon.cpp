@@ -163,6 +163,7 @@ std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
           .bus = network_.plan.name,
           .session = session_,
           .guarded = std::move(guarded),
+          .signs = network_.lcm.signs,
           .say = [this](const std::string& sentence) { on_refused_envelope(sentence); }});
   return std::nullopt;
 }

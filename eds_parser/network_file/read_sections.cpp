@@ -264,12 +264,21 @@ void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   Sourced<bool> broker;
   Sourced<bool> typed{.value = true, .pos = {}};
   Sourced<std::string> keys;
+  Sourced<std::string> authenticate{.value = "commands", .pos = {}};
   reader.text("keys", keys);
+  reader.text("authenticate", authenticate);
   reader.text("url", url);
   reader.boolean("broker", broker);
   reader.boolean("typed", typed);
   reader.finish();
-  spec.lcm = {.url = *url, .broker = *broker, .typed = *typed, .keys = *keys};
+  const bool signs = *authenticate == "images";
+  spec.lcm = {.url = *url, .broker = *broker, .typed = *typed, .keys = *keys, .signs = signs};
+  if (!signs && *authenticate != "commands") {
+    report.error(authenticate.pos, "lcm",
+                 "`authenticate` of `lcm` is `commands` or `images`, not `" + *authenticate + "`");
+  } else if (authenticate.given && keys->empty()) {
+    report.error(authenticate.pos, "lcm", "`authenticate` of `lcm` needs `keys: FILE` beside it");
+  }
   if (!url.given) return;
   const auto parsed = parse_lcm_url(*url);
   if (!parsed) report.error(url.pos, "lcm-url", "`url` of `lcm`: " + parsed.error());

@@ -37,6 +37,7 @@ struct LcmOptions {
   bool broker = false;  ///< serve tcpq:// on loopback by ourselves
   bool typed = true;    ///< a typed message of each node as well
   std::string keys;     ///< key file: commands are taken in envelopes only; empty: no keys
+  bool signs = false;   ///< with keys: all that is published goes out in envelopes as well
 };
 
 }  // namespace takt

@@ -83,7 +83,8 @@ std::expected<envelope_t, EnvelopeFault> EnvelopeGuard::open(Bytes bytes, Time w
   if (key == keys_.end()) return std::unexpected{EnvelopeFault::unknown_key};
   if (!has_mac(bytes, mac_of(bytes, *key))) return std::unexpected{EnvelopeFault::forged};
   // From here on somebody with a key has made it.
-  if (envelope->session != session_) return std::unexpected{EnvelopeFault::other_session};
+  if (session_ && envelope->session != *session_)
+    return std::unexpected{EnvelopeFault::other_session};
   constexpr std::int64_t last_utime = Time::max().count() / 1000;
   if (envelope->utime > last_utime) return std::unexpected{EnvelopeFault::from_the_future};
   const Time made = std::chrono::microseconds{std::max<std::int64_t>(0, envelope->utime)};

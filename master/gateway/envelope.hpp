@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <expected>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,16 +48,17 @@ enum class EnvelopeFault : std::uint8_t {
 };
 std::string_view text(EnvelopeFault fault) noexcept;
 
-/// Opens envelopes: the daemon's side. What it lets through was made by somebody who has a key, for
-/// this session, within the last second, and comes once and in order. Remembers at most
-/// `most_senders` senders. One thread.
+/// Opens envelopes: the side of whoever hears them. What it lets through was made by somebody who
+/// has a key, for this session, within the last second, and comes once and in order. Remembers at
+/// most `most_senders` senders. One thread.
 class EnvelopeGuard {
  public:
   static constexpr Time longest_age = std::chrono::seconds{1};
   static constexpr std::size_t most_senders = 256;
   static constexpr std::size_t most_bytes = 65536;  ///< of an envelope
 
-  explicit EnvelopeGuard(std::int64_t session) : session_{session} {}
+  /// No session: envelopes of any one are good.
+  explicit EnvelopeGuard(std::optional<std::int64_t> session) : session_{session} {}
 
   void set_keys(std::vector<EnvelopeKey> keys) { keys_ = std::move(keys); }
   /// `wall` is the time of CLOCK_REALTIME.
@@ -72,7 +74,7 @@ class EnvelopeGuard {
 
   std::expected<void, EnvelopeFault> check_sender(const envelope_t& envelope, Time made, Time wall);
 
-  std::int64_t session_;
+  std::optional<std::int64_t> session_;
   std::vector<EnvelopeKey> keys_;
   std::vector<Sender> senders_;
 };

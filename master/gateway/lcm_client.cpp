@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "master/gateway/checked_transport.hpp"
 #include "master/gateway/lcm_transport.hpp"
 #include "master/gateway/lcm_url.hpp"
 #include "master/gateway/tcpq_client.hpp"
@@ -33,8 +34,9 @@ std::expected<std::unique_ptr<Transport>, std::string> open_one(const LcmUrl& ur
 
 }  // namespace
 
-std::expected<LcmClient, std::string> LcmClient::open(const std::string& url,
-                                                      const std::vector<std::string>& patterns) {
+std::expected<LcmClient, std::string> LcmClient::open(
+    const std::string& url, const std::vector<std::string>& patterns,
+    const std::optional<WatchedKeyFile>& signers) {
   const auto parsed = parse_lcm_url(choose_lcm_url(url, {}));
   if (!parsed) return std::unexpected{parsed.error()};
   LcmClient client;
@@ -50,7 +52,10 @@ std::expected<LcmClient, std::string> LcmClient::open(const std::string& url,
                            ". No hub answers at tcpq://127.0.0.1:7700 either: is "
                            "taktd running?"};
   }
-  for (const auto& transport : client.transports_) {
+  for (auto& transport : client.transports_) {
+    if (signers) {
+      transport = std::make_unique<CheckedTransport>(std::move(transport), *signers);
+    }
     for (const std::string& pattern : patterns) transport->subscribe(pattern);
   }
   return client;

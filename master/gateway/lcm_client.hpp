@@ -1,10 +1,12 @@
 #pragma once
 #include <expected>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"
+#include "master/gateway/key_file.hpp"
 #include "master/gateway/transport.hpp"
 
 namespace takt {
@@ -14,8 +16,11 @@ namespace takt {
 class LcmClient {
  public:
   /// `url` empty: LCM_DEFAULT_URL, else both of the above. An error is a sentence.
-  static std::expected<LcmClient, std::string> open(const std::string& url,
-                                                    const std::vector<std::string>& patterns);
+  /// `signers`: only what somebody has signed with one of these keys is heard, see
+  /// CheckedTransport.
+  static std::expected<LcmClient, std::string> open(
+      const std::string& url, const std::vector<std::string>& patterns,
+      const std::optional<WatchedKeyFile>& signers = std::nullopt);
 
   void publish(const std::string& channel, std::span<const std::byte> data);
   /// Hands over what arrives until `until`, at the latest, or until one round brought something.

@@ -6,6 +6,7 @@
 
 #include "eds_parser/table/lcm_channel.hpp"
 #include "master/gateway/printable_text.hpp"
+#include "master/gateway/random_number.hpp"
 
 namespace takt {
 namespace {
@@ -24,8 +25,23 @@ SecuredTransport::SecuredTransport(Transport& inner, const Clocks& clocks, Watch
       keys_{std::move(keys)},
       options_{std::move(options)},
       secured_channel_{channel_name(options_.bus, "SECURED")},
+      signed_channel_{channel_name(options_.bus, "SIGNED")},
       guard_{options_.session} {
+  use_keys();
+}
+
+/// The first key of the file signs.
+void SecuredTransport::use_keys() {
   guard_.set_keys(keys_.keys());
+  if (options_.signs) seal_.emplace(keys_.keys().front(), random_number());
+}
+
+bool SecuredTransport::publish(const std::string& channel, std::span<const std::byte> data) {
+  const bool good = inner_.publish(channel, data);
+  if (!seal_ || !inner_.wanted(signed_channel_)) return good;
+  const Time wall = clocks_.now() + clocks_.wall_offset();
+  return inner_.publish(signed_channel_, seal_->seal(channel, data, options_.session, wall)) &&
+         good;
 }
 
 bool SecuredTransport::is_guarded(std::string_view channel) const noexcept {
@@ -43,7 +59,7 @@ void SecuredTransport::reread_keys(Time now) {
   const auto read = keys_.reread();
   if (!read) return;
   if (*read) {
-    guard_.set_keys(keys_.keys());
+    use_keys();
     options_.say(keys_.path() + " has changed: " + std::to_string(keys_.keys().size()) +
                  " keys are good from now on");
   } else {

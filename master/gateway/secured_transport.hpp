@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ class SecuredTransport final : public Transport {
     std::string bus;
     std::int64_t session = 0;
     std::vector<std::string> guarded;  ///< channels that need an envelope
+    bool signs = false;  ///< what is published goes out on BUS_SIGNED as well, in envelopes
     /// Hears what was refused, at most once a second for the same reason.
     std::function<void(const std::string& sentence)> say;
   };
@@ -27,9 +29,7 @@ class SecuredTransport final : public Transport {
   /// `inner` has BUS_SECURED subscribed; it and `clocks` outlive this.
   SecuredTransport(Transport& inner, const Clocks& clocks, WatchedKeyFile keys, Options options);
 
-  bool publish(const std::string& channel, std::span<const std::byte> data) override {
-    return inner_.publish(channel, data);
-  }
+  bool publish(const std::string& channel, std::span<const std::byte> data) override;
   bool wanted(std::string_view channel) const override { return inner_.wanted(channel); }
   void subscribe(const std::string& pattern) override { inner_.subscribe(pattern); }
   void serve(const MessageHandler& handler) override;
@@ -45,12 +45,15 @@ class SecuredTransport final : public Transport {
   bool is_echo(Bytes envelope, Time now);
   void refuse(const std::string& what);
   void reread_keys(Time now);
+  void use_keys();
 
   Transport& inner_;
   const Clocks& clocks_;
   WatchedKeyFile keys_;
   Options options_;
   std::string secured_channel_;
+  std::string signed_channel_;
+  std::optional<EnvelopeSeal> seal_;  // none: nothing is signed
   EnvelopeGuard guard_;
   RateLimit told_{std::chrono::seconds{1}};
   Time next_look_{};

@@ -11,7 +11,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NETWORK = f"""
 bus: {{name: keyed}}
-lcm: {{url: "tcpq://127.0.0.1:0", broker: true, keys: bus.keys}}
+lcm: {{url: "tcpq://127.0.0.1:0", broker: true, keys: bus.keys, authenticate: images}}
 realtime: {{mode: off, spin_us: 0}}
 master: {{node_id: 127, sync_period: 20000}}
 nodes:
@@ -58,12 +58,21 @@ def main(binaries):
             assert unsigned.returncode == 3 and "does it ask for a key" in unsigned.stderr, unsigned
             until("a word about it", lambda: "it came without an envelope" in log.read_text())
 
+            status = ["status", "--check-images", "--lcm-url", url]
+            until("signed states", lambda: takt(binaries, *status, "--keys", keys).returncode == 0)
+            stranger = folder / "stranger.keys"
+            takt(binaries, "keys", "new", stranger, "--name", "plant")
+            unknown = takt(binaries, *status, "--keys", stranger)
+            assert unknown.returncode == 3 and "signed messages only" in unknown.stderr, unknown
+            assert takt(binaries, *status).returncode == 2, "without a key nothing can be checked"
+
             mine = folder / "mine.keys"
             shutil.copy(keys, mine)
             replaced = folder / "next"
             takt(binaries, "keys", "new", replaced, "--name", "desk")
             replaced.rename(keys)
             until("new keys", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
+            until("states signed anew", lambda: takt(binaries, *status, "--keys", keys).returncode == 0)
             old = takt(binaries, *read, "--keys", mine)
             assert old.returncode == 3 and "does it have this key" in old.stderr, old
         finally:

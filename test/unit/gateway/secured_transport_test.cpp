@@ -28,7 +28,10 @@ class HandClocks final : public Clocks {
 /// Brings what a test puts into it.
 class FakeLcm final : public Transport {
  public:
-  bool publish(const std::string&, std::span<const std::byte>) override { return true; }
+  bool publish(const std::string& channel, std::span<const std::byte> data) override {
+    sent.emplace_back(channel, Octets(data.begin(), data.end()));
+    return true;
+  }
   void subscribe(const std::string&) override {}
   void serve(const MessageHandler& handler) override {
     for (const auto& [channel, data] : std::exchange(waiting, {})) handler(channel, data);
@@ -38,6 +41,7 @@ class FakeLcm final : public Transport {
   std::string url() const override { return {}; }
 
   std::vector<std::pair<std::string, Octets>> waiting;
+  std::vector<std::pair<std::string, Octets>> sent;
 };
 
 class SecuredTransportTest : public testing::Test {
@@ -138,6 +142,34 @@ TEST_F(SecuredTransportTest, TakesNewKeysWithoutAStop) {
       << "the old secret is good no more";
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0], path + " has changed: 1 keys are good from now on");
+}
+
+TEST_F(SecuredTransportTest, SignsNothingThatItPublishesUnlessAsked) {
+  secured.publish("LIFT_IMAGE", message);
+  ASSERT_EQ(lcm.sent.size(), 1U);
+  EXPECT_EQ(lcm.sent[0].first, "LIFT_IMAGE");
+}
+
+TEST_F(SecuredTransportTest, PublishesASignedCopyOfEveryMessageWhereThatIsAsked) {
+  SecuredTransport signing{lcm,
+                           clocks,
+                           WatchedKeyFile::open(path).value(),
+                           {.bus = "lift", .session = 42, .guarded = {}, .signs = true, .say = {}}};
+  signing.publish("LIFT_IMAGE", message);
+  signing.publish("LIFT_STATUS", Octets(7));
+
+  ASSERT_EQ(lcm.sent.size(), 4U);
+  EXPECT_EQ(lcm.sent[0].first, "LIFT_IMAGE");
+  EXPECT_EQ(lcm.sent[1].first, "LIFT_SIGNED");
+  EnvelopeGuard guard{std::nullopt};
+  guard.set_keys({{.name = "plant"}});
+  const auto image = guard.open(lcm.sent[1].second, clocks.wall());
+  const auto status = guard.open(lcm.sent[3].second, clocks.wall());
+  ASSERT_TRUE(image && status);
+  EXPECT_EQ(image->channel, "LIFT_IMAGE");
+  EXPECT_EQ(image->session, 42);
+  EXPECT_EQ(image->data.size(), 5U);
+  EXPECT_EQ(status->channel, "LIFT_STATUS");
 }
 
 }  // namespace

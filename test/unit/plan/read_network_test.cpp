@@ -259,6 +259,16 @@ TEST(ReadNetwork, AnSdoValueInQuotesKeepsItsText) {
   EXPECT_EQ(sdo[2].quoted, std::nullopt);
 }
 
+TEST(ReadNetwork, LcmAuthenticatesImagesWhereAskedAndWithKeysOnly) {
+  EXPECT_FALSE(read(with_node("lcm: {keys: a.keys}\n")).spec.lcm.signs);
+  EXPECT_FALSE(read(with_node("lcm: {keys: a.keys, authenticate: commands}\n")).spec.lcm.signs);
+  EXPECT_TRUE(read(with_node("lcm: {keys: a.keys, authenticate: images}\n")).spec.lcm.signs);
+  EXPECT_THAT(read(with_node("lcm: {keys: a.keys, authenticate: all}\n")).complaints(),
+              ElementsAre("1:35 error [lcm]"));
+  EXPECT_THAT(read(with_node("lcm: {authenticate: images}\n")).complaints(),
+              ElementsAre("1:21 error [lcm]"));
+}
+
 TEST(ReadNetwork, AUnicastAddressIsNoUdpmUrl) {
   const auto net = read(with_node("lcm: {url: \"udpm://127.0.0.1:7667\"}\n"));
 

@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+#include "master/gateway/channel_pattern.hpp"
+#include "master/gateway/envelope.hpp"
+#include "master/gateway/key_file.hpp"
+#include "master/gateway/transport.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+
+/// A program's transport that believes only what the daemon has signed (`authenticate: images`):
+/// it hears the envelopes of BUS_SIGNED and hands over what is inside. Messages without an
+/// envelope, and forged, altered, repeated, delayed or reordered envelopes, are dropped. The key
+/// file is read again within a second when it changes. One thread.
+class CheckedTransport final : public Transport {
+ public:
+  /// `wall` gives the time of CLOCK_REALTIME.
+  CheckedTransport(std::unique_ptr<Transport> inner, WatchedKeyFile keys,
+                   std::function<Time()> wall = realtime_now);
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) override {
+    return inner_->publish(channel, data);
+  }
+  bool wanted(std::string_view channel) const override { return inner_->wanted(channel); }
+  void subscribe(const std::string& pattern) override;
+  void serve(const MessageHandler& handler) override;
+  void watch(std::vector<pollfd>& descriptors) const override { inner_->watch(descriptors); }
+  bool good() const override { return inner_->good(); }
+  std::string url() const override { return inner_->url() + " (signed messages only)"; }
+
+  /// Messages that were dropped.
+  std::uint64_t refused() const noexcept { return refused_; }
+
+ private:
+  void take(std::string_view channel, Bytes data, const MessageHandler& handler);
+  void reread_keys();
+
+  std::unique_ptr<Transport> inner_;
+  WatchedKeyFile keys_;
+  std::function<Time()> wall_;
+  EnvelopeGuard guard_{std::nullopt};
+  std::vector<ChannelPattern> patterns_;
+  Time next_look_{};
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace takt
