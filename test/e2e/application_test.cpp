@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <gtest/gtest.h>
 #include <optional>
@@ -34,9 +35,16 @@ class WatchedAxis {
     }
     return true;
   }
+  /// Takes what has arrived.
+  void drain() {
+    StampedFrame got;
+    while (channel_.receive(got, milliseconds{0})) take(got.frame);
+  }
   bool moving() const noexcept { return changes_ > 50 && (controlword_ & 0x0F) == 0x0F; }
   /// CiA 402: bit 2 of the controlword at 0 demands the quick stop.
   bool quick_stop() const noexcept { return (controlword_ & 0x06) == 0x02; }
+  std::int32_t farthest() const noexcept { return farthest_; }
+  void forget_farthest() noexcept { farthest_ = 0; }
   /// SYNCs since the target changed for the last time.
   int syncs_at_rest() const noexcept { return syncs_; }
 
@@ -47,6 +55,7 @@ class WatchedAxis {
     controlword_ = frame.data[0] | frame.data[1] << 8;
     std::uint32_t target = 0;
     for (std::size_t i = 6; i > 2; --i) target = target << 8 | frame.data[i - 1];
+    farthest_ = std::max(farthest_, static_cast<std::int32_t>(target));
     if (target == target_) return;
     target_ = target;
     ++changes_;
@@ -57,6 +66,7 @@ class WatchedAxis {
   CobId rpdo_;
   int controlword_ = 0;
   std::uint32_t target_ = 0;
+  std::int32_t farthest_ = 0;
   int changes_ = 0;
   int syncs_ = 0;
 };
@@ -86,6 +96,61 @@ TEST(StoppedApplication, ItsAxesQuickStopAfterTheTimeToLive) {
   EXPECT_GE(axis.syncs_at_rest(), 5);
   EXPECT_LE(axis.syncs_at_rest(), 60);
   EXPECT_TRUE(daemon.hear([&] { return daemon.events("fallback_begun") > 0; }));
+}
+
+/// The application goes on for seconds and dies before taktd runs again: nothing of that moves an
+/// axis any more.
+TEST(KilledApplication, ItsCommandsThatWaitedInAStoppedDaemonMoveNothing) {
+  constexpr std::int64_t standing = 1000;
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path(), [](std::string& text) {
+    text = std::regex_replace(text, std::regex{"  limits: [^\\n]*"}, "");  // age alone decides
+    text = std::regex_replace(text, std::regex{"after_cycles: \\d+"}, "after_cycles: 50");
+  });
+  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
+  ASSERT_TRUE(devices.says("3 devices on"));
+  DaemonProcess daemon{network, {"--bus", bus}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  auto channel = FrameChannel::open(bus);
+  ASSERT_TRUE(channel.has_value());
+  WatchedAxis axis{*channel, CobId::base(0x201)};
+  std::int64_t target = 0;
+  const auto command = [&](std::int64_t cycles_more) {
+    const std::int64_t word = daemon.value("shoulder", "statusword");
+    const std::int64_t next = (word & 0x4F) == 0x40 ? 0x06 : (word & 0x6F) == 0x21 ? 0x07 : 0x0F;
+    command_t made = daemon.command_for("application", {{"shoulder.controlword", next},
+                                                        {"shoulder.modes_of_operation", 8},
+                                                        {"shoulder.target_position", target}});
+    made.cycle += cycles_more;
+    daemon.command(made);
+  };
+  ASSERT_TRUE(daemon.work(
+      [&] {
+        if ((daemon.value("shoulder", "statusword") & 0x6F) == 0x27 && target < standing) {
+          target += 20;
+        }
+        command(0);
+        axis.drain();
+      },
+      [&] { return daemon.value("shoulder", "position_actual_value") >= standing - 10; }));
+
+  daemon.signal(SIGSTOP);
+  for (int i = 0; i < 150; ++i) {
+    target += 20;
+    command(i % 3 == 0 ? 0 : i);  // as an application that counts cycles by itself, or does not
+    axis.drain();
+    std::this_thread::sleep_for(milliseconds{20});
+  }
+  axis.forget_farthest();
+  daemon.signal(SIGCONT);
+
+  EXPECT_TRUE(axis.watch([&] { return axis.quick_stop(); }));
+  EXPECT_TRUE(daemon.hear([&] { return daemon.events("front_gap") > 0; }));
+  const std::int64_t cycle = daemon.bus().cycle();
+  EXPECT_TRUE(daemon.hear([&] { return daemon.bus().cycle() >= cycle + 200; }));
+  EXPECT_TRUE(axis.watch([&] { return axis.syncs_at_rest() >= 100; }));
+  EXPECT_LE(axis.farthest(), standing);
 }
 
 /// Set-points that were computed meanwhile collapse into one: no drive could follow it.

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -102,6 +104,20 @@ TEST_F(Taktd, RefusesSecondSendersAndOldSessions) {
     return daemon.events("command_refused", "belong to 'first'") > 0 &&
            daemon.events("command_refused", "another session") > 0;
   }));
+}
+
+/// A session that follows from the clock could be guessed: two starts would be close together.
+TEST_F(Taktd, HasASessionThatNobodyCanGuess) {
+  std::array<std::int64_t, 2> sessions{};
+  for (std::int64_t& session : sessions) {
+    DaemonProcess daemon{slow_network(folder_.path())};
+    ASSERT_TRUE(daemon.hear([&] { return daemon.bus().session() != 0; }));
+    session = daemon.bus().session();
+  }
+  constexpr std::uint64_t a_minute_of_ns = 1ULL << 36U;
+  const auto apart =
+      static_cast<std::uint64_t>(sessions[0]) - static_cast<std::uint64_t>(sessions[1]);
+  EXPECT_GT(std::min(apart, 0 - apart), a_minute_of_ns) << sessions[0] << " " << sessions[1];
 }
 
 TEST_F(Taktd, SurvivesGarbageOnItsChannels) {

@@ -97,7 +97,11 @@ class StoppedDaemon : public testing::Test {
                 lcm,
                 clocks,
                 {.session = 7, .interface = {}, .realtime = {}},
-                [this](const Notice& notice) { told.push_back(notice.kind); }};
+                [this](const Notice& notice) {
+                  told.push_back(notice.kind);
+                  if (notice.kind == "fallback_begun") fallback = notice.text;
+                }};
+  std::string fallback;  // how it was told
 };
 
 TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
@@ -203,6 +207,15 @@ TEST_F(StoppedDaemon, CountsTheGapsAfterWhichLinesOfItsTextGatewayAreOld) {
   for (int i = 0; i < 10; ++i) cycle();
   EXPECT_EQ(bridge.gaps(), 1U);
   EXPECT_GE(bridge.newest_gap(), 2s);
+}
+
+TEST_F(StoppedDaemon, TellsTheKeyTheTimeAndTheSenderOfAFallback) {
+  lcm.arrive(bridge.channels().command, command(6));
+  for (int i = 0; i < 20; ++i) cycle();
+
+  EXPECT_NE(fallback.find("on_timeout: after"), std::string::npos) << fallback;
+  EXPECT_NE(fallback.find("20 ms"), std::string::npos) << fallback;
+  EXPECT_NE(fallback.find("its last sender was 'app'"), std::string::npos) << fallback;
 }
 
 }  // namespace
