@@ -89,6 +89,7 @@ void AsciiServer::accept_clients() {
     if (clients_.size() == most_clients && !displace_silent()) continue;
     auto client = std::make_unique<Client>();
     client->id = next_id_++;
+    client->since = clock_();
     client->socket = std::move(socket);
     clients_.push_back(std::move(client));
     handler_.connected(clients_.back()->id);
@@ -136,7 +137,7 @@ void AsciiServer::receive(Client& client, const TimeBudget& budget) {
     if (size <= 0) {
       client.ended = size == 0;
       client.closed = size < 0 && !would_wait(errno);
-      return;
+      return close_silent(client);
     }
     client.unread.append(chunk.data(), static_cast<std::size_t>(size));
     take_lines(client, budget);
@@ -196,6 +197,15 @@ void AsciiServer::close_foreign(Client& client) {
        "[0] ERROR: 101 (syntax error: the first line is no command of CiA 309-3, such as '[1] "
        "help'; the connection is closed)");
   client.unread.clear();
+  client.closed = true;
+}
+
+/// Everything that it has sent was read: a place is for those who command.
+void AsciiServer::close_silent(Client& client) {
+  const bool waits = !client.closed && !client.ended && !client.has_commanded;
+  if (!waits || clock_() - client.since < first_line_limit) return;
+  send(client.id,
+       "[0] ERROR: 101 (no command came within 2 s, such as '[1] help'; the connection is closed)");
   client.closed = true;
 }
 

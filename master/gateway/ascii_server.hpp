@@ -16,11 +16,12 @@ namespace takt {
 /// Lines of text from and to clients of a UNIX socket, or of TCP on loopback. Everything is
 /// bounded: clients, the length of a line, what waits to be sent, the time of each serve(). A
 /// client whose first line is no command of CiA 309-3 is closed before anything of it is handed
-/// over. No call waits. One thread.
+/// over, and one that gives no command within 2 s is closed, too. No call waits. One thread.
 class AsciiServer {
  public:
   static constexpr std::size_t most_clients = 8;
   static constexpr std::size_t longest_line = 4096;
+  static constexpr Time first_line_limit = std::chrono::seconds{2};
   static constexpr std::size_t most_unsent = 256 * 1024;  ///< a client that reads no more is left
 
   struct Handler {
@@ -54,6 +55,7 @@ class AsciiServer {
   struct Client {
     int id = 0;
     FileDescriptor socket;
+    Time since{};  // when it connected
     std::string unread;
     std::string unsent;
     std::size_t old = 0;  // bytes, of `unread` and then of the socket, that are to be old lines
@@ -78,6 +80,7 @@ class AsciiServer {
   void take_line(Client& client, std::string_view line);
   void drop_long_line(Client& client);
   void close_foreign(Client& client);
+  void close_silent(Client& client);
   void remove_closed();
   static void flush(Client& client);
   bool is_through(const Client& client) const;

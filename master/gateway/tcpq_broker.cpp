@@ -64,33 +64,61 @@ void TcpqBroker::accept_clients(Time now) {
     FileDescriptor socket{
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
     if (!socket) return;
-    if (clients_.size() == most_clients && !make_room()) continue;
-    clients_.push_back(std::make_unique<Client>(Client{
-        .connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client}, .since = now}));
+    if (clients_.size() == most_clients && !make_room(now)) continue;
+    clients_.push_back(std::make_unique<Client>(
+        Client{.connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client},
+               .since = now,
+               .heard = now,
+               .read = now}));
   }
 }
 
-/// Connections that have asked for nothing give way to a new one, the oldest first.
-bool TcpqBroker::make_room() {
-  auto idle = std::ranges::find_if(clients_,
-                                   [](const auto& client) { return !client->connection.opened(); });
-  if (idle == clients_.end()) idle = std::ranges::find(clients_, false, &Client::has_asked);
+/// Connections that have asked for nothing give way to a new one, the oldest first; then, one in a
+/// second, the one that has sent nothing for the longest time. LCM's clients connect again, so that
+/// in the end everybody has a turn; a program that commands is never the one that is idle.
+bool TcpqBroker::make_room(Time now) {
   const std::string full = "there are " + std::to_string(most_clients) + " connections already";
-  if (idle == clients_.end()) {
+  auto unasked = std::ranges::find_if(
+      clients_, [](const auto& client) { return !client->connection.opened(); });
+  if (unasked == clients_.end()) unasked = std::ranges::find(clients_, false, &Client::has_asked);
+  if (unasked != clients_.end()) {
+    close(**unasked, full + ", and it had asked for nothing yet");
+  } else if (Client* const idle = idle_client(now)) {
+    displaced_ = now;
+    close(*idle, full + ", and it had sent nothing for 10 s");
+  } else {
     if (told_.allow(full, options_.clock())) {
       options_.say("LCM hub: a new connection was refused: " + full);
     }
     return false;
   }
-  close(**idle, full + ", and it had asked for nothing yet");
   remove_closed();
   return true;
+}
+
+/// The one that sent something the longest time ago; null: all of them work, or it is too soon.
+TcpqBroker::Client* TcpqBroker::idle_client(Time now) {
+  if (now - displaced_ < displacing_pause) return nullptr;
+  const auto idle =
+      std::ranges::min_element(clients_, {}, [](const auto& client) { return client->heard; });
+  return now - (*idle)->heard < idle_limit ? nullptr : idle->get();
 }
 
 void TcpqBroker::close_unopened(Time now) {
   for (const auto& client : clients_) {
     if (client->connection.opened() || now - client->since < opening_limit) continue;
     close(*client, "its opening was incomplete after 2 s");
+  }
+}
+
+/// What it does not read would wait for it for ever, up to a megabyte.
+void TcpqBroker::close_unread(Time now) {
+  for (const auto& client : clients_) {
+    const bool reads =
+        !client->connection.wants_to_write() ||
+        std::exchange(client->taken, client->connection.taken()) != client->connection.taken();
+    if (reads) client->read = now;
+    if (now - client->read >= reading_limit) close(*client, "it has read nothing for 10 s");
   }
 }
 
@@ -108,8 +136,10 @@ void TcpqBroker::add_pattern(Client& client, std::string_view pattern) {
   }
 }
 
-void TcpqBroker::take(Client& client, const tcpq::Message& message, const MessageHandler& handler) {
+void TcpqBroker::take(Client& client, const tcpq::Message& message, Time now,
+                      const MessageHandler& handler) {
   client.has_asked = true;
+  client.heard = now;
   switch (message.type) {
     case tcpq::Type::subscribe:
       add_pattern(client, message.channel);
@@ -128,7 +158,7 @@ void TcpqBroker::take(Client& client, const tcpq::Message& message, const Messag
 }
 
 /// The round begins with another client each time that the budget ends before the clients do.
-void TcpqBroker::receive(const MessageHandler& handler) {
+void TcpqBroker::receive(Time now, const MessageHandler& handler) {
   const TimeBudget budget{options_.clock, front_budget::broker};
   const std::size_t count = clients_.size();
   if (turn_ >= count) turn_ = 0;
@@ -136,8 +166,8 @@ void TcpqBroker::receive(const MessageHandler& handler) {
   for (std::size_t i = 0; i < count; ++i) {
     Client& client = *clients_[(first + i) % count];
     client.connection.flush();
-    client.connection.receive([&](const tcpq::Message& message) { take(client, message, handler); },
-                              budget);
+    client.connection.receive(
+        [&](const tcpq::Message& message) { take(client, message, now, handler); }, budget);
     turn_ = (first + i + 1) % count;
     if (!budget.is_left()) return;
   }
@@ -150,8 +180,9 @@ void TcpqBroker::remove_closed() {
 void TcpqBroker::serve(const MessageHandler& handler) {
   const Time now = options_.clock();
   accept_clients(now);
-  receive(handler);
+  receive(now, handler);
   close_unopened(now);
+  close_unread(now);
   remove_closed();
 }
 

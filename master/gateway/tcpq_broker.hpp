@@ -25,6 +25,10 @@ class TcpqBroker final : public Transport {
   static constexpr std::size_t most_characters = 32768;  ///< of the patterns of all connections
   static constexpr std::size_t longest_name = 63;        ///< of a channel, as LCM's own
   static constexpr Time opening_limit = std::chrono::seconds{2};
+  static constexpr Time reading_limit = std::chrono::seconds{10};  ///< without reading anything
+  /// Where there is no place left, a connection that has sent nothing for so long gives way.
+  static constexpr Time idle_limit = std::chrono::seconds{10};
+  static constexpr Time displacing_pause = std::chrono::seconds{1};
 
   struct Options {
     FrontClock clock = monotonic_now;
@@ -52,6 +56,9 @@ class TcpqBroker final : public Transport {
     tcpq::Connection connection;
     ChannelPatterns patterns{};
     Time since{};            // when it connected
+    Time heard{};            // when it sent a message
+    Time read{};             // when it read, or there was nothing to read
+    std::uint64_t taken{};   // by then
     bool has_asked = false;  // it has subscribed or published
   };
 
@@ -59,11 +66,13 @@ class TcpqBroker final : public Transport {
   TcpqBroker(FileDescriptor listener, std::uint16_t port, Options options)
       : listener_{std::move(listener)}, port_{port}, options_{std::move(options)} {}
   void accept_clients(Time now);
-  bool make_room();
+  bool make_room(Time now);
+  Client* idle_client(Time now);
   void close_unopened(Time now);
-  void receive(const MessageHandler& handler);
+  void close_unread(Time now);
+  void receive(Time now, const MessageHandler& handler);
   void relay(const tcpq::Message& message);
-  void take(Client& client, const tcpq::Message& message, const MessageHandler& handler);
+  void take(Client& client, const tcpq::Message& message, Time now, const MessageHandler& handler);
   void add_pattern(Client& client, std::string_view pattern);
   void close(Client& client, const std::string& why);
   void remove_closed();
@@ -73,6 +82,7 @@ class TcpqBroker final : public Transport {
   Options options_;
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
   std::size_t turn_ = 0;                          // of the client that is served first
+  Time displaced_ = -displacing_pause;            // when a connection last gave way that had asked
   ChannelPatterns own_;
   RateLimit told_{std::chrono::seconds{10}};
 };

@@ -44,6 +44,7 @@ void Connection::flush() noexcept {
       break;
     }
     sent_ += static_cast<std::size_t>(taken);
+    taken_ += static_cast<std::uint64_t>(taken);
   }
   if (sent_ == unsent_.size()) {
     unsent_.clear();

@@ -24,6 +24,8 @@ class Connection {
   bool opened() const noexcept { return parser_.opened(); }
   bool wants_to_write() const noexcept { return sent_ < unsent_.size(); }
   std::uint64_t lost() const noexcept { return lost_; }
+  /// Bytes that the kernel has taken since the beginning.
+  std::uint64_t taken() const noexcept { return taken_; }
 
   /// False: no room, the message is lost.
   bool queue(const Message& message);
@@ -49,6 +51,7 @@ class Connection {
   std::vector<std::byte> unsent_;
   std::size_t sent_ = 0;  // of unsent_
   std::uint64_t lost_ = 0;
+  std::uint64_t taken_ = 0;
   bool unhandled_ = false;
   bool closed_ = false;
 };

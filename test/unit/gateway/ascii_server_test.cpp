@@ -177,6 +177,37 @@ TEST_F(AsciiServerTest, EightSilentClientsLockNobodyOut) {
   EXPECT_EQ(lines, (std::vector<std::string>{"[1] help"}));
 }
 
+TEST_F(AsciiServerTest, ClosesAClientThatGivesNoCommandWithinTwoSeconds) {
+  listen();
+  const FileDescriptor silent = connect();
+  const FileDescriptor half = connect();
+  write(half, "# a comment\n[1] he");
+  const FileDescriptor whole = connect();
+  write(whole, "[1] help\n");
+  while (lines.size() < 2) serve();
+
+  clock.pass(std::chrono::milliseconds{1900});
+  server->serve();
+  EXPECT_TRUE(gone.empty());
+  clock.pass(std::chrono::milliseconds{100});
+  server->serve();
+
+  EXPECT_EQ(gone, (std::vector<int>{connected[0], connected[1]}));
+  EXPECT_EQ(read(silent),
+            "[0] ERROR: 101 (no command came within 2 s, such as '[1] help'; the connection is "
+            "closed)\r\n");
+}
+
+TEST_F(AsciiServerTest, ReadsWhatWaitedBeforeItCountsAsSilent) {
+  listen();
+  const FileDescriptor client = connect();
+  write(client, "[1] help\n");
+  clock.pass(std::chrono::seconds{10});  // nobody served it meanwhile
+  while (lines.empty()) serve();
+  server->serve();
+  EXPECT_TRUE(gone.empty());
+}
+
 TEST_F(AsciiServerTest, ClosesWhoeverSpeaksAnotherProtocolBeforeAnyCommandOfIt) {
   listen();
   const std::vector<std::string> foreign{

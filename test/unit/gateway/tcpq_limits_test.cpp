@@ -231,21 +231,102 @@ TEST_F(TcpqLimits, SixtyFourSilentConnectionsLockNobodyOut) {
   EXPECT_EQ(broker->clients(), 64U);
 }
 
-TEST_F(TcpqLimits, ConnectionsThatWorkAreNotGivenUpForNewOnes) {
-  auto broker = make(0us);
-  std::vector<Peer> working;
-  for (int i = 0; i < 64; ++i) {
-    working.emplace_back(broker->port()).open().subscribe("WORK_" + std::to_string(i));
-    ASSERT_TRUE(serve_until(*broker, [&] { return broker->wanted("WORK_" + std::to_string(i)); }));
+/// As many connections as there are places, which have subscribed.
+class FullHouse : public TcpqLimits {
+ protected:
+  FullHouse() : broker{make(0us)} {
+    for (int i = 0; i < 64; ++i) {
+      peers.emplace_back(broker->port()).open().subscribe(name(i));
+      EXPECT_TRUE(serve_until(*broker, [&] { return broker->wanted(name(i)); }));
+    }
+  }
+  static std::string name(int i) { return "WORK_" + std::to_string(i); }
+  void publish(int i) {
+    heard.clear();
+    broker->subscribe("COMMAND");
+    peers[static_cast<std::size_t>(i)].publish("COMMAND");
+    const MessageHandler listen = [&](std::string_view channel, std::span<const std::byte>) {
+      heard = channel;
+    };
+    for (int rounds = 0; rounds < 6000 && heard.empty(); ++rounds) broker->serve(listen);
+    EXPECT_EQ(heard, "COMMAND");
+  }
+  bool gets_in(const std::string& channel) {
+    peers.emplace_back(broker->port()).open().subscribe(channel);
+    told.clear();
+    return serve_until(*broker, [&] { return broker->wanted(channel) || !told.empty(); }) &&
+           serve_until(*broker,
+                       [&] {
+                         return broker->wanted(channel) ||
+                                told.back().find("refused") != std::string::npos;
+                       }) &&
+           broker->wanted(channel);
   }
 
-  Peer late{broker->port()};
-  late.open().subscribe("LATE");
+  std::unique_ptr<TcpqBroker> broker;
+  std::vector<Peer> peers;
+  std::string heard;
+};
 
-  EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty(); }));
+TEST_F(FullHouse, KeepsWhoHasSentSomethingWithinTenSeconds) {
+  clock.pass(9999ms);
+  EXPECT_FALSE(gets_in("LATE"));
   EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a new connection was refused: there are 64 "
                                             "connections already"}));
-  for (int i = 0; i < 64; ++i) EXPECT_TRUE(broker->wanted("WORK_" + std::to_string(i)));
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(broker->wanted(name(i)));
+}
+
+TEST_F(FullHouse, GivesThePlaceOfTheOneThatSentNothingForTheLongestTime) {
+  clock.pass(4s);
+  publish(0);
+  clock.pass(6s);
+  EXPECT_TRUE(gets_in("LATE"));
+  EXPECT_TRUE(broker->wanted(name(0)));
+  EXPECT_FALSE(broker->wanted(name(1)));
+  EXPECT_EQ(broker->clients(), 64U);
+}
+
+TEST_F(FullHouse, NeverGivesThePlaceOfAProgramThatCommands) {
+  for (int i = 0; i < 30; ++i) {
+    clock.pass(5s);
+    publish(0);
+    gets_in("LATE_" + std::to_string(i));
+  }
+  EXPECT_TRUE(broker->wanted(name(0)));
+}
+
+TEST_F(FullHouse, GivesOnePlaceInASecond) {
+  clock.pass(10s);
+  EXPECT_TRUE(gets_in("FIRST"));
+  EXPECT_FALSE(gets_in("SECOND"));
+  clock.pass(1s);
+  EXPECT_TRUE(gets_in("THIRD"));
+}
+
+TEST_F(TcpqLimits, AConnectionThatReadsNothingForTenSecondsIsClosed) {
+  auto broker = make(0us);
+  Peer deaf{broker->port()};
+  deaf.open().subscribe("IMAGE");
+  Peer reader{broker->port()};
+  reader.open().subscribe("SMALL");
+  ASSERT_TRUE(
+      serve_until(*broker, [&] { return broker->wanted("IMAGE") && broker->wanted("SMALL"); }));
+  const Octets large(100'000);
+  for (int i = 0; i < 200; ++i) broker->publish("IMAGE", large);
+  broker->publish("SMALL", {});
+  broker->serve(ignore);
+
+  clock.pass(9s);
+  broker->serve(ignore);
+  EXPECT_EQ(broker->clients(), 2U);
+  clock.pass(2s);
+  broker->serve(ignore);
+
+  EXPECT_EQ(broker->clients(), 1U);
+  EXPECT_TRUE(broker->wanted("SMALL"));
+  EXPECT_EQ(
+      told,
+      (std::vector<std::string>{"LCM hub: a connection was closed: it has read nothing for 10 s"}));
 }
 
 TEST_F(TcpqLimits, OneByteAtATimeIsReadLikeAnythingElse) {
