@@ -59,7 +59,7 @@ class LimitsCompiler {
                         std::to_string(own.axis));
     }
     const auto place = first_place(limits.all);
-    if (place && axes.empty()) {
+    if (place && axes.empty() && every_output_is_mapped(nodes_[index])) {
       report_.error(*place, "limits",
                     "no RPDO of node `" + source.spec->name +
                         "` carries a set-point of a drive (607A, 60FF, 6071 ...): the limits of "
@@ -73,6 +73,17 @@ class LimitsCompiler {
       AxisLimits{source, index, axis, plan_, table_, report_}.compile(own);
     }
     for (const ObjectLimitSpec& limit : limits.objects) object(index, limit);
+  }
+
+  /// Otherwise what is wrong with the mapping is told already, and no limit is to blame.
+  static bool every_output_is_mapped(const NodePdos& node) {
+    return std::ranges::all_of(node.node.spec->rpdos, [&](const PdoSpec& written) {
+      const auto pdo = std::ranges::find_if(node.pdos, [&](const EffectivePdo& one) {
+        return !one.is_tpdo && one.number == written.number;
+      });
+      return !written.mapping.given ||
+             (pdo != node.pdos.end() && pdo->mapping.size() >= written.mapping->size());
+    });
   }
 
   /// Axes with a set-point in an RPDO.

@@ -229,11 +229,14 @@ class Loader {
     EdsFile& file = files_[key];
     file = read_eds_file(path, id);
     if (!file.readable) {
+      const std::size_t before = out_.findings.size();
       std::ranges::copy_if(file.findings, std::back_inserter(out_.findings), [](const Finding& f) {
         return f.severity == Severity::error;  // the rest follows from it: any binary has hundreds
       });
-      error(node.dcf.pos, "no-device-file",
-            "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF");
+      const bool told = out_.findings.size() != before;
+      out_.findings.push_back(
+          {path_.string(), node.dcf.pos, told ? Severity::note : Severity::error, "no-device-file",
+           "node `" + node.name + "`: `" + *node.dcf + "` can't be read as an EDS or DCF"});
       return nullptr;
     }
     add_device_finding(path, file, id);

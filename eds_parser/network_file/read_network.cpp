@@ -49,7 +49,7 @@ class NetworkReader {
       if (!is_section(pair.key) && !pair.key.starts_with('.')) read_top_level(pair);
     }
     if (const YamlNode* nodes = root_.find("nodes")) read_nodes(*nodes);
-    if (!found_node_) {
+    if (!found_node_ && !slipped_) {
       report_.error(root_.pos, "no-nodes",
                     "no node is described: expected `nodes:` with `NAME: {node_id: 1..127, dcf: "
                     "FILE.eds}`");
@@ -75,6 +75,7 @@ class NetworkReader {
       add(pair);
       return;
     }
+    slipped_ = slipped_ || nearest(pair.key, section_names) == "nodes";
     report_.error(pair.key_pos, "unknown-key",
                   "unknown section `" + pair.key + "` (a node would have a `node_id`)" +
                       did_you_mean(pair.key, section_names));
@@ -124,6 +125,7 @@ class NetworkReader {
   NetworkReport report_;
   std::set<std::pair<SourcePos, std::string_view>> told_;
   bool found_node_ = false;
+  bool slipped_ = false;  ///< `nodes` is misspelled, and that is told
 };
 
 }  // namespace
