@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/eds_commands.hpp"
@@ -10,6 +11,7 @@
 #include "eds_parser/eds.hpp"
 #include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/print/findings_json.hpp"
+#include "master/gateway/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -47,7 +49,9 @@ int show(const ShowOptions& options) {
   if (options.json) {
     print_json(std::cout, file.dictionary, file.findings);
   } else {
-    print_text(std::cout, file.dictionary);
+    std::ostringstream text;
+    print_text(text, file.dictionary);
+    std::cout << printable_lines(text.str());
   }
   return 0;
 }

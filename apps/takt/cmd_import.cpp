@@ -12,6 +12,7 @@
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/gateway/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -83,11 +84,14 @@ void print_text(const Options& options, const Imported& imported) {
     if (options.brief && key.fate == KeyFate::used) continue;
     const std::string what = key.value.empty() ? key.path : key.path + ": " + key.value;
     const std::string place = fmt::format("{}:{}", key.pos.line, key.pos.column);
-    fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), what, key.why);
+    fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), printable_text(what),
+               printable_text(key.why));
   }
   if (!report.unasked.empty()) fmt::print("without a word in the file taktd sets:\n");
   for (const std::string& line : report.unasked) fmt::print("  {}\n", line);
-  for (const Finding& finding : report.others) fmt::print("{}\n", to_string(finding));
+  for (const Finding& finding : report.others) {
+    fmt::print("{}\n", printable_text(to_string(finding)));
+  }
   if (is_nodelist(options)) {
     fmt::print("{}\n", last_line(options, imported));
     return;
