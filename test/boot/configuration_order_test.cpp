@@ -186,6 +186,22 @@ TEST(StoreOrder, ReplacesTheConfigurationOfAnotherDay) {
   EXPECT_EQ(plant.device(5).objects().number({0x2001, 0}), 100);
 }
 
+/// An ordered stop disarms the device and leaves the date of its configuration as it is.
+TEST(StoreOrder, ArmsTheDeviceAgainThoughItsConfigurationIsThere) {
+  Plant plant{
+      valve("store_configuration: 1, configuration_date: 15000, configuration_time: 1234, "
+            "sdo: [{index: 0x2000, value: 7}]")};
+  stored_before(plant, {0x1020, 1}, 15000);
+  stored_before(plant, {0x1020, 2}, 1234);
+  stored_before(plant, {0x1016, 1}, 0);
+  const Story story{plant};
+  plant.run(4s);
+
+  EXPECT_EQ(std::ranges::count(story.lines, consumer), 1);
+  EXPECT_EQ(std::ranges::count(story.lines, "605#2B00200007000000"), 0) << "that is there";
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+}
+
 TEST(StoreOrder, ThatIsRefusedLeavesTheNodeUnstarted) {
   sim::Fault refused{.kind = sim::FaultKind::refuse_write, .node = 5_node};
   refused.object = ObjectKey{0x1010, 1};

@@ -1,0 +1,164 @@
+// Member functions of Daemon: what is opened, and who else is looked for, before the first frame is
+// sent.
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+#include "apps/taktd/bus_choice.hpp"
+#include "apps/taktd/daemon.hpp"
+#include "eds_parser/table/lcm_channel.hpp"
+#include "master/linux/clock.hpp"
+#include "master/linux/passing_trouble.hpp"
+
+namespace takt {
+namespace {
+
+// For another master: LCM may take a moment to be there, its status comes at 10 Hz.
+constexpr Time lcm_patience = std::chrono::seconds{1};
+constexpr Time status_listening = std::chrono::milliseconds{250};
+constexpr Time look = std::chrono::milliseconds{10};
+
+}  // namespace
+
+std::optional<Exit> Daemon::open() {
+  if (const auto trouble = claim_bus()) return trouble;
+  if (!options_.events_file.empty() && !reporter_.open_events(options_.events_file)) {
+    const bool passing = is_passing_trouble(errno);
+    reporter_.say(passing ? Weight::warning : Weight::error,
+                  "--events " + options_.events_file + ": can't be written: " +
+                      std::strerror(errno) + (passing ? "; running without it" : ""));
+    if (!passing) return Exit::wrong_use;
+  }
+  auto url = parse_lcm_url(choose_lcm_url(options_.lcm_url, network_.lcm.url));
+  if (!url) {
+    reporter_.say(Weight::error, url.error());
+    return Exit::wrong_use;
+  }
+  if (!options_.gateway.empty()) {
+    auto gateway = AsciiFront::open(options_.gateway, network_.plan);
+    if (!gateway) {
+      reporter_.say(Weight::error, gateway.error());
+      return Exit::wrong_use;
+    }
+    gateway_ = std::move(*gateway);
+    reporter_.say(Weight::note, "CiA 309-3 gateway on " + gateway_->where());
+  }
+  auto bus = DaemonBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
+  if (!bus) {
+    reporter_.say(Weight::error, bus.error().message);
+    return Exit::bus_trouble;
+  }
+  bus_ = std::move(*bus);
+  for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
+  if (const auto trouble = open_black_box()) return trouble;
+  return open_lcm(std::move(*url));
+}
+
+std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
+  const Channels channels{network_.plan.name};
+  std::vector<std::string> heard = channels.heard();
+  if (network_.lcm.typed) {
+    std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
+  }
+  const std::vector<std::string> guarded = heard;
+  heard.push_back(channels.status);  // of another master
+  heard.push_back(channel_name(network_.plan.name, "SECURED"));
+  link_ = std::make_unique<LcmLink>(
+      std::move(url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
+      [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
+  if (const auto trouble = open_keys(guarded)) return trouble;
+  return look_for_master();
+}
+
+/// With keys, all that commands the bus has to come in envelopes.
+std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
+  if (network_.lcm.keys.empty()) return std::nullopt;
+  const auto folder = std::filesystem::path{options_.network_file}.parent_path();
+  auto keys = WatchedKeyFile::open(folder / network_.lcm.keys);
+  if (!keys) {
+    reporter_.say(Weight::error, keys.error());
+    return Exit::wrong_use;
+  }
+  secured_ = std::make_unique<SecuredTransport>(
+      *link_, clocks_, std::move(*keys),
+      SecuredTransport::Options{
+          .bus = network_.plan.name,
+          .session = session_,
+          .guarded = std::move(guarded),
+          .signs = network_.lcm.signs,
+          .say = [this](const std::string& sentence) { on_refused_envelope(sentence); }});
+  return std::nullopt;
+}
+
+std::optional<Exit> Daemon::claim_bus() {
+  if (options_.observe) return std::nullopt;
+  auto claim = BusClaim::take(BusName::parse(bus_name_));
+  if (!claim) {
+    reporter_.say(Weight::error, claim.error().message);
+    return Exit::bus_trouble;
+  }
+  claim_.emplace(std::move(*claim));
+  return std::nullopt;
+}
+
+/// Before the first frame is sent.
+std::optional<Exit> Daemon::look_for_master() {
+  if (options_.observe) return std::nullopt;
+  OtherMaster other{network_.plan, bus_name_, session_};
+  listen(other);
+  if (other.warning()) reporter_.say(Weight::warning, *other.warning());
+  if (other.refusal()) {
+    reporter_.say(Weight::error, *other.refusal());
+    return Exit::bus_trouble;
+  }
+  if (StopSignal::count() == 0) return std::nullopt;
+  reporter_.say(Weight::note, "told to stop before the start");
+  return Exit::good;
+}
+
+/// Commands that come meanwhile are of nobody who has heard from this master, and are dropped.
+void Daemon::listen(OtherMaster& other) {
+  DiagnosticSocket* const ear = bus_->diagnostics();
+  const std::string status = Channels{network_.plan.name}.status;
+  const Time begin = clocks_.now();
+  Time until = begin + lcm_patience;
+  const Time frames_until = ear != nullptr ? begin + other.listening_time() : begin;
+  bool lcm_is_there = false;
+  for (Time now = begin; now < std::max(frames_until, until); now = clocks_.now()) {
+    if (other.refusal() || StopSignal::count() > 0) return;
+    descriptors_.clear();
+    if (ear != nullptr) descriptors_.push_back({.fd = ear->fd(), .events = POLLIN, .revents = 0});
+    link_->watch(descriptors_);
+    wait_.wait(descriptors_, never, std::min(std::max(frames_until, until), now + look));
+    if (ear != nullptr) ear->poll([&](const StampedFrame& heard) { other.on_frame(heard.frame); });
+    link_->serve([&](std::string_view channel, Bytes data) {
+      if (channel != status) return;
+      if (const auto message = decode<status_t>(data)) other.on_status(*message, realtime_now());
+    });
+    if (lcm_is_there || link_->url().empty()) continue;
+    lcm_is_there = true;
+    until = clocks_.now() + (link_->url().starts_with("memq") ? Time{0} : status_listening);
+  }
+}
+
+std::optional<Exit> Daemon::open_black_box() {
+  const RecordingOptions& wanted = network_.recording;
+  const std::string& folder = options_.black_box.empty() ? wanted.folder : options_.black_box;
+  if (folder.empty()) return std::nullopt;
+  RecordingHead head{.bus = network_.plan.name,
+                     .interface = network_.plan.interface,
+                     .network = options_.network_file,
+                     .fingerprint = plan_fingerprint(network_.plan),
+                     .observe = options_.observe};
+  const auto opened = recorder_.open({.folder = folder, .bytes = wanted.bytes, .keep = wanted.keep},
+                                     network_.plan, std::move(head));
+  if (opened) return std::nullopt;
+  reporter_.say(Weight::error, opened.error());
+  return Exit::wrong_use;
+}
+
+}  // namespace takt

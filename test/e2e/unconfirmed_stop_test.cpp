@@ -1,0 +1,59 @@
+// Exit code 6: the ordered stop was not confirmed.
+#include <csignal>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "test/e2e/daemon_process.hpp"
+#include "test/e2e/process.hpp"
+#include "test/support/folder.hpp"
+
+namespace takt::test {
+namespace {
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  ASSERT_NE(at, std::string::npos) << what;
+  text.replace(at, what.size(), by);
+}
+
+TEST(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path());
+  DaemonProcess daemon{network, {"--bus", bus}};
+  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  devices.signal(SIGKILL);  // whether the drives move is not known any more
+  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+
+  daemon.signal(SIGTERM);
+
+  EXPECT_EQ(daemon.wait(), 6);
+  EXPECT_NE(daemon.log().find("the ordered stop was not confirmed: node 1 'shoulder': the drive is "
+                              "lost, no answer for "),
+            std::string::npos)
+      << daemon.log();
+  EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 2U);
+}
+
+/// A ramp of minutes, and a second for the stop.
+TEST(UnconfirmedStop, OfASimulationIs6) {
+  const Folder folder;
+  const auto network = slow_network(folder.path(), [](std::string& text) {
+    replace(text, "heartbeat_producer: 100    # ms",
+            "heartbeat_producer: 100\n  stop_timeout: 1000");
+    replace(text, "{index: 0x6081, value: 100000}",
+            "{index: 0x6085, value: 10}\n    - {index: 0x6081, value: 100000}");
+  });
+
+  const Ended moving =
+      run({TAKT, "simulate", network.string(), "--for", "4300ms", "--move"}, folder.path());
+  EXPECT_EQ(moving.exit_code, 6) << moving.output;
+  EXPECT_NE(moving.output.find("shoulder was disabled at "), std::string::npos) << moving.output;
+
+  const Ended resting = run({TAKT, "simulate", network.string(), "--for", "4300ms"}, folder.path());
+  EXPECT_EQ(resting.exit_code, 0) << resting.output;
+}
+
+}  // namespace
+}  // namespace takt::test
