@@ -47,11 +47,11 @@ TEST(UnconfirmedStop, OfASimulationIs6) {
   });
 
   const Ended moving =
-      run({TAKT, "simulate", network.string(), "--for", "4300ms", "--move"}, folder.path());
+      run({TAKT, "simulate", network.string(), "--for", "6s", "--move"}, folder.path());
   EXPECT_EQ(moving.exit_code, 6) << moving.output;
   EXPECT_NE(moving.output.find("shoulder was disabled at "), std::string::npos) << moving.output;
 
-  const Ended resting = run({TAKT, "simulate", network.string(), "--for", "4300ms"}, folder.path());
+  const Ended resting = run({TAKT, "simulate", network.string(), "--for", "6s"}, folder.path());
   EXPECT_EQ(resting.exit_code, 0) << resting.output;
 }
 
