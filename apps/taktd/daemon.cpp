@@ -150,10 +150,9 @@ std::optional<Exit> Daemon::start() {
 }
 
 void Daemon::loop() {
-  const FrontRound round{
-      .next_image = [this] { return master_->next_publish(); },
-      .serve = [this] { return serve(); },
-      .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};
+  FrontRound round{.next_image = [this] { return master_->next_publish(); },
+                   .serve = [this] { return serve(); },
+                   .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};
   signals_.let_through();
   while (!master_->finished() && !gives_up(clocks_.now())) round.run();
 }

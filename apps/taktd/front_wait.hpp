@@ -21,7 +21,4 @@ class FrontWait {
   const sigset_t* mask_;
 };
 
-/// How long to sleep at `now` when the next image is predicted for `next_image`.
-Time pause_before_image(Time now, Time next_image) noexcept;
-
 }  // namespace takt

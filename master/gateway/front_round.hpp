@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 
 #include "eds_parser/table/time.hpp"
@@ -20,13 +21,38 @@ struct FrontRound {
   /// Waits for work or for the next image.
   std::function<void(Time next_image, Time latest)> wait;
 
-  void run() const {
-    const Time next = next_image();
-    const Time latest = serve();
-    // An image was published meanwhile: whether it was found is for the next round to see. Its
-    // prediction is over, and after a stall in the middle of this round would be long over.
-    if (next_image() == next) wait(next, latest);
+  void run() {
+    do {
+      step();
+    } while (due != Step::predict);
   }
+  /// One of the three steps of run(), for a simulation in which time passes between them.
+  void step() {
+    switch (due) {
+      case Step::predict:
+        predicted = next_image();
+        due = Step::serve;
+        return;
+      case Step::serve:
+        latest = serve();
+        due = Step::wait;
+        return;
+      case Step::wait:
+        due = Step::predict;
+        // An image was published meanwhile: whether it was found is for the next round to see. Its
+        // prediction is over, and after a stall in the middle of this round would be long over.
+        if (next_image() == predicted) wait(predicted, latest);
+        return;
+    }
+  }
+
+  enum class Step : std::uint8_t { predict, serve, wait };
+  Step due = Step::predict;
+  Time predicted{};
+  Time latest{};
 };
+
+/// How long to sleep at `now` when the next image is predicted for `next_image`.
+Time pause_before_image(Time now, Time next_image) noexcept;
 
 }  // namespace takt

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <gtest/gtest.h>
 
-#include "apps/taktd/front_wait.hpp"
-
 namespace takt {
 namespace {
 
@@ -28,9 +26,9 @@ class VirtualFront {
 
   /// The longest time that an image waited for the front thread.
   Time longest_delay(unsigned images) {
-    const FrontRound round{.next_image = [this] { return next_image(); },
-                           .serve = [this] { return serve(); },
-                           .wait = [this](Time next, Time latest) { wait(next, latest); }};
+    FrontRound round{.next_image = [this] { return next_image(); },
+                     .serve = [this] { return serve(); },
+                     .wait = [this](Time next, Time latest) { wait(next, latest); }};
     while (taken_ < images) round.run();
     return longest_;
   }
@@ -79,22 +77,22 @@ TEST(FrontRound, NeverSleepsOverAnImageWhereverTheBusThreadPublishes) {
 
 TEST(FrontRound, AsksForTheNextImageBeforeItLooksForImages) {
   std::string order;
-  const FrontRound round{.next_image =
-                             [&] {
-                               order += 'n';
-                               return Time{7};
-                             },
-                         .serve =
-                             [&] {
-                               order += 's';
-                               return Time{9};
-                             },
-                         .wait =
-                             [&](Time next, Time latest) {
-                               order += 'w';
-                               EXPECT_EQ(next, Time{7});
-                               EXPECT_EQ(latest, Time{9});
-                             }};
+  FrontRound round{.next_image =
+                       [&] {
+                         order += 'n';
+                         return Time{7};
+                       },
+                   .serve =
+                       [&] {
+                         order += 's';
+                         return Time{9};
+                       },
+                   .wait =
+                       [&](Time next, Time latest) {
+                         order += 'w';
+                         EXPECT_EQ(next, Time{7});
+                         EXPECT_EQ(latest, Time{9});
+                       }};
 
   round.run();
 
@@ -105,13 +103,13 @@ TEST(FrontRound, AsksForTheNextImageBeforeItLooksForImages) {
 TEST(FrontRound, DoesNotWaitWhereAnImageWasPublishedMeanwhile) {
   Time prediction{7};
   int waits = 0;
-  const FrontRound round{.next_image = [&] { return prediction; },
-                         .serve =
-                             [&] {
-                               prediction = Time{14};
-                               return Time{100};
-                             },
-                         .wait = [&](Time, Time) { ++waits; }};
+  FrontRound round{.next_image = [&] { return prediction; },
+                   .serve =
+                       [&] {
+                         prediction = Time{14};
+                         return Time{100};
+                       },
+                   .wait = [&](Time, Time) { ++waits; }};
 
   round.run();
   EXPECT_EQ(waits, 0);
