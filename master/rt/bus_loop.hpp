@@ -97,7 +97,7 @@ class BusLoop {
   void learn(bool in_time) noexcept;
   void publish() noexcept;
   void run_controller(const ImageStamp& stamp) noexcept;
-  void predict_next_publish() noexcept;
+  void predict_next_publish(Time now) noexcept;
   void excuse_absence() noexcept;
   void serve() noexcept;
   void serve_round() noexcept;

@@ -42,7 +42,7 @@ void BusLoop<P, N>::start() noexcept {
   last_sync_ = now;
   clock_.start(now + clock_.period());
   network_.start(now);
-  predict_next_publish();
+  predict_next_publish(now);
 }
 
 template <Port P, class N>
@@ -189,7 +189,7 @@ void BusLoop<P, N>::publish() noexcept {
   const WorkingImage& image = pdos_.image();
   exchange_.images.publish(stamp, image.values, image.stale, pdos_.inputs().marks());
   exchange_.timing.sync_to_publish.record(now - sync_time_);
-  predict_next_publish();
+  predict_next_publish(now);
   port_watch_.on_news(news, now);
   run_controller(stamp);
   pdos_.inputs().forget_marks();
@@ -212,8 +212,11 @@ void BusLoop<P, N>::run_controller(const ImageStamp& stamp) noexcept {
 }
 
 template <Port P, class N>
-void BusLoop<P, N>::predict_next_publish() noexcept {
-  const Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
+void BusLoop<P, N>::predict_next_publish(Time now) noexcept {
+  Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
+  // After a stall within the cycle: the clock will skip what is over.
+  const Time late = now - next;
+  if (late > Time{}) next += (late / clock_.period() + 1) * clock_.period();
   exchange_.next_publish.store(next.count(), std::memory_order_release);
 }
 

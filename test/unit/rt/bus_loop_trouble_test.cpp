@@ -108,6 +108,23 @@ TEST(BusLoop, TwoStallsInARowMakeNoBurstOfSyncs) {
   }
 }
 
+/// The front thread sleeps by the prediction; one that is long over lets it look for images only
+/// every 20 ms.
+TEST(BusLoop, AfterAStallWithinACyclePredictsTheNextImage) {
+  Loop bus;
+  bus.run(5);
+
+  bus.port.receive_stall = 50ms;
+  bus.run(1);
+  const Time predicted{bus.exchange->next_publish.load()};
+  bus.run(1);
+
+  ImageView image;
+  ASSERT_TRUE(bus.newest(image));
+  EXPECT_GE(predicted, image.publish_time - 500us);
+  EXPECT_LE(predicted, image.publish_time + 500us);
+}
+
 TEST(BusLoop, CommandOlderThanItsTimeToLiveFallsBack) {
   Loop bus;
   bus.run(1);

@@ -37,7 +37,7 @@ class FakePort {
     return some;
   }
   std::size_t receive(std::span<StampedFrame> in) noexcept {
-    note("receive", now_);
+    note("receive", now_ + std::exchange(receive_stall, Time{}));
     std::size_t count = 0;
     for (auto frame = inbox.begin(); frame != inbox.end() && count < in.size();) {
       if (frame->when > now_) {
@@ -76,8 +76,9 @@ class FakePort {
   std::vector<std::string> calls;
   std::function<void(const Frame&)> on_sent;
   PortNews news_now;
-  Time stall{};         ///< the next precise sleep comes back so much late
-  Time second_stall{};  ///< and the one after it
+  Time stall{};          ///< the next precise sleep comes back so much late
+  Time second_stall{};   ///< and the one after it
+  Time receive_stall{};  ///< the next receive() takes so long
   std::size_t room = 1000;
   int error = 0;
 
