@@ -9,6 +9,8 @@
 #include <unistd.h>
 #include <vector>
 
+#include "apps/soak/front_run.hpp"
+
 namespace takt {
 namespace {
 
@@ -26,7 +28,11 @@ struct Record {
                         .faults = faults,
                         .requests = requests,
                         .boots = boots,
-                        .events = events};
+                        .events = events,
+                        .commands = commands,
+                        .moves = moves,
+                        .forged = forged,
+                        .troubles = troubles};
     if (invariant[0] != 0) {
       outcome.violation = {
           .cycle = cycle, .when = when, .invariant = invariant.data(), .what = what.data()};
@@ -41,6 +47,10 @@ struct Record {
   std::uint64_t requests = 0;
   std::uint64_t boots = 0;
   std::uint64_t events = 0;
+  std::uint64_t commands = 0;
+  std::uint64_t moves = 0;
+  std::uint64_t forged = 0;
+  std::uint64_t troubles = 0;
   std::uint64_t cycle = 0;
   Time when{};
   std::array<char, 64> invariant{};
@@ -63,7 +73,11 @@ Record record_of(std::uint32_t worker, const SoakOutcome& outcome) {
                 .faults = outcome.faults,
                 .requests = outcome.requests,
                 .boots = outcome.boots,
-                .events = outcome.events};
+                .events = outcome.events,
+                .commands = outcome.commands,
+                .moves = outcome.moves,
+                .forged = outcome.forged,
+                .troubles = outcome.troubles};
   if (outcome.violation) {
     record.cycle = outcome.violation->cycle;
     record.when = outcome.violation->when;
@@ -77,11 +91,28 @@ bool put(int pipe, const Record& record) {
   return ::write(pipe, &record, sizeof record) == static_cast<ssize_t>(sizeof record);
 }
 
+/// The walk on the bus, and that of the front thread.
+SoakOutcome run(const LoadedNetwork& network, const SoakPlan& plan, const SoakOptions& options) {
+  if (plan.part == SoakPart::front) return soak_front(network, options);
+  SoakOutcome outcome = soak(network, options);
+  if (plan.part == SoakPart::bus || outcome.violation) return outcome;
+  const SoakOutcome front = soak_front(network, options);
+  outcome.simulated += front.simulated;
+  outcome.images += front.images;
+  outcome.events += front.events;
+  outcome.commands = front.commands;
+  outcome.moves = front.moves;
+  outcome.forged = front.forged;
+  outcome.troubles = front.troubles;
+  outcome.violation = front.violation;
+  return outcome;
+}
+
 void work(const LoadedNetwork& network, const SoakPlan& plan, std::uint32_t worker, int pipe) {
   SoakOptions options = plan.run;
   for (options.seed = plan.first + worker; options.seed <= plan.last; options.seed += plan.jobs) {
     if (!put(pipe, {.worker = worker, .begins = true, .seed = options.seed})) return;
-    if (!put(pipe, record_of(worker, soak(network, options)))) return;
+    if (!put(pipe, record_of(worker, run(network, plan, options)))) return;
   }
 }
 

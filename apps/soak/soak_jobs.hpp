@@ -6,10 +6,18 @@
 
 namespace takt {
 
+/// Which walks each seed is for.
+enum class SoakPart : std::uint8_t {
+  bus,    ///< the bus thread and the devices: soak()
+  front,  ///< the front thread and programs: soak_front()
+  both,
+};
+
 struct SoakPlan {
   std::uint64_t first = 1;
   std::uint64_t last = 100;
   unsigned jobs = 1;
+  SoakPart part = SoakPart::both;
   SoakOptions run{};
 };
 

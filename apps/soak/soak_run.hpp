@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/soak/front_meddle.hpp"
 #include "apps/soak/verdict.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
@@ -21,6 +22,7 @@ struct SoakOptions {
   bool verbose = false;                      ///< faults and events to stderr
   /// Called after each cycle, before the judges look: what it breaks, they have to tell.
   std::function<void(Exchange&, sim::World&)> meddle{};
+  FrontMeddle front{};
 };
 
 /// What one run did, and what it did wrong.
@@ -34,6 +36,10 @@ struct SoakOutcome {
   std::uint64_t requests = 0;
   std::uint64_t boots = 0;  ///< that ended well
   std::uint64_t events = 0;
+  std::uint64_t commands = 0;  ///< that programs have sent
+  std::uint64_t moves = 0;     ///< positions of theirs on the wire
+  std::uint64_t forged = 0;    ///< messages
+  std::uint64_t troubles = 0;  ///< of programs: stalls, deaths, rivals, replays ...
   std::optional<Violation> violation{};
 };
 

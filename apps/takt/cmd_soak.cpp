@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstring>
 #include <iostream>
+#include <map>
 
 #include "apps/duration/duration.hpp"
 #include "apps/soak/soak_jobs.hpp"
@@ -19,8 +20,12 @@ struct Arguments {
   std::string seeds = "1..100";
   std::string run_for = "20s";
   double hours = 0;
+  std::string part = "both";
   SoakPlan plan;
 };
+
+const std::map<std::string, SoakPart> parts{
+    {"bus", SoakPart::bus}, {"front", SoakPart::front}, {"both", SoakPart::both}};
 
 /// Sums over all runs.
 struct Sum {
@@ -68,6 +73,10 @@ void add(Sum& sum, const SoakReport& report) {
   total.requests += one.requests;
   total.boots += one.boots;
   total.events += one.events;
+  total.commands += one.commands;
+  total.moves += one.moves;
+  total.forged += one.forged;
+  total.troubles += one.troubles;
 }
 
 int run(Arguments& arguments) {
@@ -80,8 +89,11 @@ int run(Arguments& arguments) {
     std::cerr << "takt soak: --seeds " << arguments.seeds << " is not like 17 or 1..200\n";
     return 2;
   }
+  plan.part = parts.at(arguments.part);
   if (arguments.hours > 0) {
-    const double one = std::chrono::duration<double, std::ratio<3600>>(plan.run.duration).count();
+    const auto walks = plan.part == SoakPart::both ? 2 : 1;
+    const double one =
+        std::chrono::duration<double, std::ratio<3600>>(walks * plan.run.duration).count();
     plan.last = plan.first + static_cast<std::uint64_t>(std::ceil(arguments.hours / one)) - 1;
   }
   Sum sum;
@@ -102,7 +114,9 @@ int run(Arguments& arguments) {
   std::cout << sum.runs << " seeds, " << hours << " h of bus '" << network.plan.name
             << "': " << total.images << " images, " << total.frames << " frames (" << total.rubbish
             << " rubbish), " << total.faults << " faults, " << total.boots << " boots, "
-            << total.requests << " requests, " << total.events << " events; " << sum.bad
+            << total.requests << " requests, " << total.events << " events, " << total.commands
+            << " commands (" << total.forged << " forged), " << total.moves << " moves, "
+            << total.troubles << " troubles; " << sum.bad
             << (sum.bad == 1 ? " violation" : " violations") << std::endl;
   std::cerr << static_cast<long>(hours * 3600 / elapsed()) << " times real time\n";
   return sum.bad == 0 ? 0 : 1;
@@ -122,12 +136,18 @@ void add_soak(CLI::App& app, int& exit_code) {
         return parse_duration(text) ? "" : "'" + text + "' is not a time like 20s or 1h";
       })
       ->capture_default_str();
+  command
+      ->add_option("--part", arguments->part,
+                   "of each seed: the walk on the bus, that of the front thread, or both")
+      ->check(CLI::IsMember{{"bus", "front", "both"}})
+      ->capture_default_str();
   command->add_option("--hours", arguments->hours, "as many seeds as make so many hours of bus")
       ->check(CLI::PositiveNumber);
   add_number(*command, "--jobs", arguments->plan.jobs, "processes")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  command->add_option("--candump", arguments->plan.run.candump, "all frames (for one seed)");
+  command->add_option("--candump", arguments->plan.run.candump,
+                      "all frames (for one seed); FILE.front: of the front thread's walk");
   command->add_flag("--verbose", arguments->plan.run.verbose, "faults and events (for one seed)");
   command->footer(
       "Faults: lost, late, doubled and broken frames, babbling and rubbish, devices that go, "
@@ -139,9 +159,19 @@ void add_soak(CLI::App& app, int& exit_code) {
       "numbers rise, no stale output, no burst of SYNCs, every node in a named state, every wait\n"
       "ends, every request answered once, memory flat, all nodes come back, the stop ends in "
       "time.\n"
+      "The walk of the front thread: taktd with its LCM gateway and several programs that move "
+      "axes,\n"
+      "which are stopped, die, end and come again, jump, or have the name of another; messages "
+      "that "
+      "are\n"
+      "slow, repeated, forged and damaged. Must hold: no output older than its time to live by the "
+      "true\n"
+      "clock, no program moves what another holds, no output outside `limits:`, no wait of the "
+      "front\n"
+      "thread too long, no program deaf, no stop that confirms more than the drives did.\n"
       "Exit code 1: something did not hold; each line names seed, cycle and what it was.\n\n"
       "Example:\n  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
-      "  takt soak share/demo/two_axes.yaml --seed 17 --verbose");
+      "  takt soak share/demo/two_axes.yaml --seed 17 --part front --verbose");
   command->callback([arguments, &exit_code] {
     try {
       exit_code = run(*arguments);

@@ -1,0 +1,92 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "apps/simulate/stage.hpp"
+#include "apps/simulate/staged_port.hpp"
+#include "apps/simulate/virtual_lcm.hpp"
+#include "master/gateway/bridge.hpp"
+#include "master/gateway/clocks.hpp"
+#include "master/gateway/front_round.hpp"
+#include "master/master.hpp"
+#include "master/sim/random.hpp"
+
+namespace takt {
+
+/// Clocks of the machine that the simulated programs run on.
+class VirtualClocks final : public Clocks {
+ public:
+  explicit VirtualClocks(const sim::World& world) : world_{world} {}
+  Time now() const noexcept override { return world_.now(); }
+  Time wall_offset() const noexcept override { return wall_; }
+  /// Somebody sets the wall clock.
+  void set_wall(Time offset) noexcept { wall_ = offset; }
+
+ private:
+  const sim::World& world_;
+  Time wall_ = std::chrono::days{20454};
+};
+
+/// taktd in virtual time: its bus thread is cycle(), its front thread is the actor. Both are those
+/// of the daemon: the Master and the Bridge, in the order of FrontRound.
+class VirtualDaemon final : public Actor, private FrontGuest {
+ public:
+  struct Hears {
+    /// Each image when the front thread has it in its hands.
+    std::function<void(const ImageView& image, Time now)> image;
+    std::function<void(const Notice& notice)> notice;
+    std::function<void(const Event& event)> event;
+  };
+  /// Alters the round of each new process, for tests.
+  using Meddle = std::function<void(FrontRound& round)>;
+
+  VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& lcm, const Clocks& clocks,
+                sim::Random random);
+  void hear(Hears hears) { hears_ = std::move(hears); }
+  void meddle(Meddle meddle) { meddle_ = std::move(meddle); }
+
+  /// A new process, with a session of its own.
+  void start();
+  /// The process is gone at once, with everything that waits in its queue. Not within a cycle.
+  void kill();
+  /// The next cycle of the bus thread.
+  void cycle() { master_->cycle(); }
+  /// The front thread does nothing before `until`.
+  void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
+
+  bool runs() const noexcept { return bridge_ != nullptr; }
+  bool finished() const noexcept { return master_->finished(); }
+  void request_stop() { master_->request_stop(); }
+  std::int64_t session() const noexcept { return session_; }
+  const Master& master() const noexcept { return *master_; }
+  const Bridge& bridge() const noexcept { return *bridge_; }
+  Time stalled_until() const noexcept { return stalled_until_; }
+
+  Time next() const noexcept override;
+  void act(Time now) override;
+
+ private:
+  void wait(Time next_image, Time latest) noexcept;
+  Time some(Time longest) noexcept;
+  void take(const Reply&) override {}
+  void hear(const Event& event) override;
+  void see(const ImageView& image) override;
+
+  const BusPlan& plan_;
+  StagedPort& port_;
+  const Clocks& clocks_;  // of the front thread
+  sim::Random random_;
+  VirtualEndpoint& lcm_;
+  Hears hears_;
+  Meddle meddle_;
+  std::int64_t session_ = 0;
+  std::unique_ptr<Master> master_;
+  std::unique_ptr<Bridge> bridge_;
+  FrontRound round_;
+  Time wake_ = never;   // of the wait, or when the next step of the round begins
+  bool waits_ = false;  // a message ends the wait
+  Time stalled_until_{};
+};
+
+}  // namespace takt

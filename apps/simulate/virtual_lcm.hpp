@@ -1,0 +1,81 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "master/gateway/transport.hpp"
+#include "master/sim/random.hpp"
+#include "master/sim/world.hpp"
+
+namespace takt {
+
+class VirtualLcm;
+
+/// One program's connection to a VirtualLcm: a queue as that of a socket, in which messages wait
+/// until serve() takes them.
+class VirtualEndpoint final : public Transport {
+ public:
+  VirtualEndpoint(VirtualLcm& lcm, std::size_t room) : lcm_{lcm}, room_{room} {}
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) override;
+  /// Whole names only, no patterns.
+  void subscribe(const std::string& channel) override { channels_.push_back(channel); }
+  void serve(const MessageHandler& handler) override;
+  void watch(std::vector<pollfd>&) const override {}
+  bool good() const override { return true; }
+  std::string url() const override { return "virtual"; }
+
+  /// When the oldest message that waits has arrived; `never`: none is on its way.
+  Time next_arrival() const noexcept { return waiting_.empty() ? never : waiting_.front().arrival; }
+  /// Everything that waits is lost, as with the process that had the socket.
+  void close() {
+    waiting_.clear();
+    channels_.clear();
+  }
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  friend class VirtualLcm;
+  struct Message {
+    std::shared_ptr<const std::string> channel;
+    std::shared_ptr<const std::vector<std::byte>> data;
+    Time arrival{};
+  };
+  bool hears(std::string_view channel) const noexcept;
+
+  VirtualLcm& lcm_;
+  std::size_t room_;
+  std::vector<std::string> channels_;
+  std::deque<Message> waiting_;
+  std::uint64_t dropped_ = 0;
+};
+
+/// LCM in memory and in virtual time: every message reaches everybody who hears its channel after a
+/// random delay, in order; a full queue loses the newest message.
+class VirtualLcm {
+ public:
+  VirtualLcm(const sim::World& world, sim::Random random) : world_{world}, random_{random} {}
+
+  /// `room`: messages of its queue. Lives as long as this.
+  VirtualEndpoint& join(std::size_t room);
+  /// Messages take up to this long from now on.
+  void set_delay(Time longest) noexcept { delay_ = longest; }
+  Time now() const noexcept { return world_.now(); }
+  std::uint64_t messages() const noexcept { return messages_; }
+
+ private:
+  friend class VirtualEndpoint;
+  void carry(const std::string& channel, std::span<const std::byte> data);
+  Time delay() noexcept;
+
+  const sim::World& world_;
+  sim::Random random_;
+  Time delay_ = std::chrono::microseconds{150};
+  std::vector<std::unique_ptr<VirtualEndpoint>> endpoints_;
+  std::uint64_t messages_ = 0;
+};
+
+}  // namespace takt

@@ -1,0 +1,125 @@
+#include "apps/soak/forger.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "master/gateway/messages.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t memory = 8192;   // commands
+constexpr Time as_good_as_new = 2s;    // a command that is younger may still be obeyed
+constexpr std::int64_t low_bits = 15;  // of a position: who has sent it
+constexpr std::int64_t nobody = 6;
+constexpr std::int64_t far_ahead = 50'000;  // cycles: nobody is silent for so long
+
+}  // namespace
+
+Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge, sim::Random random)
+    : plan_{plan}, judge_{judge}, random_{random}, lcm_{lcm.join(1000)}, channels_{plan.name} {
+  lcm_.subscribe(channels_.command);
+  lcm_.subscribe(channels_.image);
+}
+
+void Forger::act(Time now) {
+  lcm_.serve([&](std::string_view channel, Bytes data) {
+    if (channel == channels_.image) {
+      image_.assign(data.begin(), data.end());
+      return;
+    }
+    heard_.push_back({.when = now, .command = {data.begin(), data.end()}});
+    if (heard_.size() > memory) heard_.pop_front();
+  });
+}
+
+void Forger::publish(const std::string& channel, Bytes data) {
+  ++sent_;
+  lcm_.publish(channel, data);
+}
+
+void Forger::act_up(Time now) {
+  switch (random_.below(4)) {
+    case 0:
+      return forge_image();
+    case 1:
+      return send_rubbish();
+    case 2:
+      return replay(now);
+    default:
+      return forge_command();
+  }
+}
+
+void Forger::replay(Time now) {
+  const auto old = std::ranges::partition_point(
+      heard_, [&](const Heard& heard) { return heard.when < now - as_good_as_new; });
+  const auto many = static_cast<std::uint32_t>(old - heard_.begin());
+  if (many == 0) return;
+  const std::uint32_t first = random_.below(many);
+  const std::uint32_t last = std::min(many, first + 1 + random_.below(60));
+  const bool from_no_cycle = random_.chance(0.5);
+  for (std::uint32_t i = first; i < last; ++i) {
+    auto command = decode<command_t>(heard_[i].command);
+    if (!command) continue;
+    if (from_no_cycle) command->cycle = 0;
+    if (random_.chance(0.1)) command->time_to_live = 0x7FFF'FFFF;
+    publish(channels_.command, encode(*command, buffer_));
+  }
+}
+
+/// The newest command with another position, which nobody obeys for one of several reasons.
+void Forger::forge_command() {
+  if (heard_.empty()) return;
+  auto command = decode<command_t>(heard_.back().command);
+  if (!command) return;
+  const std::array<std::int64_t, 6> wrong_cycles{
+      0,
+      -1,
+      command->cycle + far_ahead + random_.below(100'000),
+      std::int64_t{1} << 62,
+      std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
+      command->cycle - 100'000};
+  const bool other_session = random_.chance(0.2);
+  if (other_session) {
+    command->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
+  } else {
+    command->cycle = wrong_cycles[random_.below(wrong_cycles.size())];
+  }
+  if (random_.chance(0.3)) command->time_to_live = 0x7FFF'FFFF;
+  for (std::size_t i = 0; i < command->signals.size(); ++i) {
+    const auto signal = static_cast<SignalIndex>(command->signals[i]);
+    if (plan_.layout.signals[signal].object.index != 0x607A) continue;
+    command->values[i] = (command->values[i] & ~low_bits) | nobody;  // within every limit
+    judge_.forged(signal, command->values[i]);
+  }
+  publish(channels_.command, encode(*command, buffer_));
+}
+
+void Forger::forge_image() {
+  auto image = decode<image_t>(image_);
+  if (!image) return;
+  image->cycle =
+      random_.chance(0.5) ? std::int64_t{1} << 62 : image->cycle + random_.below(1'000'000);
+  publish(channels_.image, encode(*image, buffer_));
+}
+
+/// Bytes of any length, or a command that is cut off, on any channel.
+void Forger::send_rubbish() {
+  std::vector<std::byte> bytes;
+  if (!heard_.empty() && random_.chance(0.5)) {
+    bytes = heard_.back().command;
+    bytes.resize(random_.below(static_cast<std::uint32_t>(bytes.size())));
+  } else {
+    bytes.resize(random_.below(2000));
+    std::ranges::generate(bytes, [&] { return std::byte(random_.below(256)); });
+  }
+  const std::array channels{&channels_.command, &channels_.request, &channels_.image,
+                            &channels_.layout, &channels_.transfer};
+  publish(*channels[random_.below(channels.size())], bytes);
+}
+
+}  // namespace takt

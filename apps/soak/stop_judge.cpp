@@ -1,0 +1,63 @@
+#include "apps/soak/stop_judge.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "apps/soak/true_axes.hpp"
+
+namespace takt {
+
+StopJudge::StopJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
+    : plan_{plan}, world_{world}, verdict_{verdict} {
+  for (const NodePlan& node : plan.nodes) {
+    if (!node.cia402 || !node.boot) continue;
+    for (const AxisPlan& axis : node.axes) axes_.push_back({.node = &node, .plan = &axis});
+  }
+}
+
+void StopJudge::begin() {
+  begun_ = true;
+  look();
+}
+
+void StopJudge::look() {
+  if (!begun_) return;
+  for (Axis& axis : axes_) {
+    const TrueAxis now = true_axis(world_, axis.node->id, axis.plan->number);
+    const bool powered = now.powered();
+    if (axis.powered && !powered) axis.speed_then = std::abs(now.velocity);
+    axis.powered = powered;
+    axis.was_powered |= powered;
+  }
+}
+
+void StopJudge::hear(const Event& event) {
+  if (event.kind != EventKind::axis_not_stopped) return;
+  for (Axis& axis : axes_) {
+    if (axis.node->id.value() != event.node) continue;
+    axis.blamed |= axis.plan->number == (event.detail >> 8U & 0xFFU);
+  }
+}
+
+void StopJudge::judge(StopResult result) {
+  const bool any = std::ranges::any_of(axes_, &Axis::blamed);
+  if (any && result == StopResult::confirmed) {
+    verdict_.blame("no stop claims more than was seen",
+                   "it is confirmed, and an axis is told as not stopped");
+  }
+  for (const Axis& axis : axes_) {
+    if (axis.blamed || !axis.was_powered) continue;
+    ++confirmed_;
+    // Rounding, and what the motor coasts between two looks.
+    const bool moved = axis.speed_then > 2 * axis.plan->velocity_window;
+    if (!moved && !axis.powered) continue;
+    verdict_.blame(
+        "no stop claims more than was seen",
+        axis.node->name + (axis.powered ? " is confirmed, and its power stage is on"
+                                        : " is confirmed, and was disabled at " +
+                                              std::to_string(axis.speed_then) + " counts/s"));
+  }
+}
+
+}  // namespace takt

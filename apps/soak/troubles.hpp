@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "apps/simulate/stage.hpp"
+#include "apps/simulate/virtual_daemon.hpp"
+#include "apps/simulate/virtual_lcm.hpp"
+#include "apps/soak/forger.hpp"
+#include "apps/soak/virtual_application.hpp"
+#include "master/sim/random.hpp"
+#include "master/sim/world.hpp"
+
+namespace takt {
+
+/// Those to whom things happen.
+struct Cast {
+  sim::World& world;
+  VirtualLcm& lcm;
+  VirtualClocks& clocks;
+  VirtualDaemon& daemon;
+  std::vector<std::unique_ptr<VirtualApplication>>& applications;
+  VirtualApplication& rival;  ///< of the first application: the same name, the same axes
+  Forger& forger;
+};
+
+/// What happens to programs: they are stopped for a time, die and come again, have rivals, their
+/// messages are slow, repeated and forged. All at random times, each for a random time.
+class Troubles final : public Actor {
+ public:
+  Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose);
+
+  Time next() const noexcept override;
+  void act(Time now) override;
+  /// The daemon has been told to die; it does between two cycles.
+  bool daemon_dies() const noexcept { return daemon_dies_; }
+  void daemon_died(Time now);
+  std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  struct Later {
+    Time when{};
+    std::function<void()> what;
+  };
+  void begin(Time now);
+  void stall_front(Time now);
+  void stall_process(Time now);
+  void stall_application(Time now);
+  void let_jump(Time now);
+  void kill_application(Time now);
+  void bring_rival(Time now);
+  void slow_down_lcm(Time now);
+  void later(Time when, std::function<void()> what);
+  void tell(Time now, const char* what, Time span) const;
+  Time some(Time longest);
+  Time span();
+  VirtualApplication& application();
+
+  Cast cast_;
+  sim::Random random_;
+  Time next_;
+  Time until_;
+  bool verbose_;
+  std::vector<Later> later_;
+  bool daemon_dies_ = false;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace takt

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/sim/device.hpp"
+#include "master/sim/world.hpp"
+
+namespace takt {
+
+/// An axis as its simulated drive has it at this moment, whatever frames say of it.
+struct TrueAxis {
+  std::int64_t statusword = 0;
+  std::int64_t position = 0;
+  std::int64_t velocity = 0;
+
+  /// Its power stage is on. CiA 402-2, table of states.
+  bool powered() const noexcept {
+    const std::int64_t state = statusword & 0x6F;
+    return state == 0x27 || state == 0x23 || state == 0x07 || (statusword & 0x4F) == 0x0F;
+  }
+  bool obeys() const noexcept { return (statusword & 0x6F) == 0x27; }
+};
+
+/// `number` counts from 0; its objects lie 0x800 x number higher.
+inline TrueAxis true_axis(sim::World& world, NodeId node, unsigned number) noexcept {
+  const sim::Device* const device = world.device(node);
+  if (device == nullptr || device->state() == sim::DeviceState::off) return {};
+  const auto read = [&](unsigned index) {
+    return device->objects().number({static_cast<std::uint16_t>(index + 0x800U * number), 0});
+  };
+  return {.statusword = read(0x6041), .position = read(0x6064), .velocity = read(0x606C)};
+}
+
+}  // namespace takt

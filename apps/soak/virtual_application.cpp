@@ -1,0 +1,197 @@
+#include "apps/soak/virtual_application.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "eds_parser/table/ids.hpp"
+#include "master/gateway/messages.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t socket_room = 300;      // messages
+constexpr std::int64_t stride = 16;           // counts a command; the low bits name the program
+constexpr std::int64_t downwards = 8;         // one of the low bits
+constexpr std::uint64_t images_a_reset = 60;  // of a fault: the reset itself takes some
+constexpr double turn_before = 2000;          // counts from a limit
+constexpr Time longest_deafness = 3s;         // a new layout comes once a second
+
+}  // namespace
+
+VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge,
+                                       Verdict& verdict, ApplicationOptions options,
+                                       sim::Random random)
+    : plan_{plan},
+      judge_{judge},
+      verdict_{verdict},
+      options_{std::move(options)},
+      random_{random},
+      lcm_{lcm.join(socket_room)},
+      channels_{plan.name} {}
+
+void VirtualApplication::start() {
+  running_ = true;
+  stalled_until_ = {};
+  instance_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
+  if (options_.meddle->instance) instance_ = options_.meddle->instance(options_.number, instance_);
+  time_to_live_ = 8 + random_.below(20);
+  input_ = {};
+  axes_ = {};
+  courses_.clear();
+  jump_ = 0;
+  new_layout_ = fresh_ = false;
+  heard_ = 0;
+  heard_since_ = never;
+  lcm_.subscribe(channels_.image);
+  lcm_.subscribe(channels_.layout);
+}
+
+void VirtualApplication::kill() {
+  running_ = false;
+  lcm_.close();
+}
+
+void VirtualApplication::end(Time now) {
+  command_t& command = axes_.command();
+  keep_own_outputs(command);
+  command.instance = instance_;
+  command.sender = options_.name;
+  command.release = 1;
+  if (!command.signals.empty()) lcm_.publish(channels_.command, encode(command, buffer_));
+  judge_.released(bit(), now);
+  kill();
+}
+
+std::string VirtualApplication::text() const {
+  std::string words = "program " + std::to_string(options_.number);
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    words += ", " + axes_.name(i) + " (" + hex(axes_.statusword(i)) + ")";
+  }
+  return words;
+}
+
+Time VirtualApplication::next() const noexcept {
+  const Time arrival = lcm_.next_arrival();
+  if (!running_ || arrival == never) return never;
+  return std::max(arrival + reaction_, stalled_until_);
+}
+
+void VirtualApplication::act(Time now) {
+  reaction_ = 20us + Time{random_.below(random_.chance(0.02) ? 5'000'000 : 300'000)};
+  input_.set_time(now.count());
+  lcm_.serve([this](std::string_view channel, Bytes data) { take(channel, data); });
+  if (std::exchange(new_layout_, false)) {
+    axes_.set_layout(input_);
+    axes_.set_goal(DriveGoal::enabled);
+    courses_.assign(static_cast<std::size_t>(axes_.size()), {});
+    fresh_ = false;
+  }
+  judge_hearing(now);
+  if (!std::exchange(fresh_, false)) return;
+  follow_image();
+  send(now);
+}
+
+void VirtualApplication::take(std::string_view channel, Bytes data) {
+  if (channel == channels_.layout) {
+    if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
+  } else if (const auto part = decode<image_t>(data)) {
+    ++heard_;
+    if (options_.meddle->hears && !options_.meddle->hears(options_.number, *part)) return;
+    if (!input_.take(*part)) return;
+    fresh_ = true;
+    heard_ = 0;
+    heard_since_ = never;
+    sync_ = Time{part->sync_mono_ns};
+  }
+}
+
+/// Whatever came in between: where images come, the newest of them is used.
+void VirtualApplication::judge_hearing(Time now) {
+  if (heard_ == 0) return;
+  if (heard_since_ == never) heard_since_ = now;
+  const auto enough = static_cast<std::uint64_t>(longest_deafness / plan_.cycle.period);
+  if (heard_ < enough || now - heard_since_ < longest_deafness) return;
+  verdict_.blame("no message deafens an application",
+                 "program " + std::to_string(options_.number) + " has heard " +
+                     std::to_string(heard_) + " images in " +
+                     std::to_string((now - heard_since_) / 1ms) + " ms and used none");
+}
+
+void VirtualApplication::follow_image() {
+  axes_.on_image(input_);
+  const bool resets = ++images_ % images_a_reset == 0;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const DriveSequence& drive = axes_.drive(i);
+    if (drive.in_fault()) {
+      if (resets) axes_.reset_faults();
+    } else if (drive.goal() == DriveGoal::disabled) {
+      axes_.set_goal(i, DriveGoal::enabled);
+    }
+  }
+}
+
+void VirtualApplication::keep_own_outputs(command_t& command) const {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < command.signals.size(); ++i) {
+    const auto signal = static_cast<std::size_t>(command.signals[i]);
+    if (!options_.nodes[plan_.layout.signals[signal].node_index]) continue;
+    command.signals[kept] = command.signals[i];
+    command.values[kept++] = command.values[i];
+  }
+  command.signals.resize(kept);
+  command.values.resize(kept);
+  command.num_values = static_cast<std::int32_t>(kept);
+}
+
+std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int64_t from) {
+  Course& course = courses_[static_cast<std::size_t>(axis)];
+  const auto signal = static_cast<SignalIndex>(*axes_.signals(axis).target_position);
+  const auto at = static_cast<double>(from);
+  for (const OutputLimit& limit : plan_.limits.outputs) {
+    if (limit.signal != signal) continue;
+    if (at > limit.high - turn_before) course.down = true;
+    if (at < limit.low + turn_before) course.down = false;
+  }
+  const std::int64_t step = (from & -stride) / stride + (course.down ? -1 : 1);
+  course.position = step * stride + options_.number + (course.down ? downwards : 0) + jump_;
+  return *course.position;
+}
+
+void VirtualApplication::count_on(command_t& command) {
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const auto target = axes_.signals(i).target_position;
+    if (!target) continue;
+    const auto at = std::ranges::find(command.signals, *target);
+    if (at == command.signals.end()) continue;
+    Course& course = courses_[static_cast<std::size_t>(i)];
+    if (!axes_.drive(i).enabled()) {
+      course.position.reset();
+      continue;
+    }
+    std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
+    value = next_position(i, course.position.value_or(value));
+  }
+  jump_ = 0;
+}
+
+void VirtualApplication::send(Time now) {
+  command_t& command = axes_.command();
+  keep_own_outputs(command);
+  if (command.signals.empty()) return;
+  count_on(command);
+  command.utime = now / 1us;
+  command.instance = instance_;
+  command.sender = options_.name;
+  command.time_to_live = static_cast<std::int32_t>(time_to_live_);
+  for (std::size_t i = 0; i < command.signals.size(); ++i) {
+    judge_.commanded(static_cast<SignalIndex>(command.signals[i]), command.values[i],
+                     {.sender = bit(), .computed_from = sync_, .time_to_live = time_to_live_});
+  }
+  ++sent_;
+  lcm_.publish(channels_.command, encode(command, buffer_));
+}
+
+}  // namespace takt

@@ -1,0 +1,105 @@
+#include "apps/soak/front_run.hpp"
+
+#include <array>
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+LoadedNetwork demo() { return load_network(TAKT_SOURCE_DIR "/share/demo/two_axes.yaml"); }
+
+TEST(FrontSoak, GivesTheSameRunForTheSameSeed) {
+  const LoadedNetwork network = demo();
+
+  const SoakOutcome first = soak_front(network, {.seed = 5, .duration = 3s});
+  const SoakOutcome again = soak_front(network, {.seed = 5, .duration = 3s});
+  const SoakOutcome other = soak_front(network, {.seed = 7, .duration = 3s});
+
+  EXPECT_FALSE(first.violation);
+  EXPECT_GT(first.moves, 1000U);
+  EXPECT_EQ(first.commands, again.commands);
+  EXPECT_EQ(first.moves, again.moves);
+  EXPECT_EQ(first.forged, again.forged);
+  EXPECT_EQ(first.events, again.events);
+  EXPECT_EQ(first.simulated, again.simulated);
+  EXPECT_NE(first.commands, other.commands);
+}
+
+/// Runs in which what keeps takt safe is taken away: the judges tell.
+class FrontMeddled : public testing::Test {
+ protected:
+  static constexpr std::uint64_t seeds = 12;
+
+  /// The first invariant that one of the seeds breaks; empty: none does.
+  std::string broken(const FrontMeddle& meddle) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      const SoakOutcome outcome =
+          soak_front(network, {.seed = seed, .duration = 20s, .front = meddle});
+      if (!outcome.violation) continue;
+      RecordProperty("seed", static_cast<int>(seed));
+      RecordProperty("what", outcome.violation->what);
+      return outcome.violation->invariant;
+    }
+    return "";
+  }
+
+  LoadedNetwork network = demo();
+};
+
+TEST_F(FrontMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), ""); }
+
+/// The second program of a name is taken for the first one.
+TEST_F(FrontMeddled, ASenderIsAName) {
+  const auto same = [](unsigned program, std::int64_t own) {
+    return program == 7 ? 1 : program == 0 ? 1 : own;
+  };
+  EXPECT_EQ(broken({.instance = same}), "no sender moves what another holds");
+}
+
+TEST_F(FrontMeddled, OutputsHaveNoLimits) {
+  EXPECT_EQ(broken({.plan = [](BusPlan& plan) { plan.limits = {}; }}),
+            "no output leaves its limits");
+}
+
+/// The prediction is read after images were looked for.
+TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
+  const auto late = [](FrontRound& round) {
+    round.wait = [predict = round.next_image, wait = round.wait](Time, Time latest) {
+      wait(predict(), latest);
+    };
+    round.next_image = [] { return Time{}; };
+  };
+  EXPECT_EQ(broken({.round = late}), "each wait of the front thread ends in time");
+}
+
+/// A program believes that no image comes before the newest cycle that it has read of.
+TEST_F(FrontMeddled, OneForgedImageDeafensAProgram) {
+  std::array<std::int64_t, 8> newest{};
+  const auto hears = [&newest](unsigned program, const image_t& image) {
+    if (image.cycle < newest[program]) return false;
+    newest[program] = image.cycle;
+    return true;
+  };
+  EXPECT_EQ(broken({.hears = hears}), "no message deafens an application");
+}
+
+/// Any velocity counts as standstill: axes are disabled while they brake, and confirmed.
+TEST_F(FrontMeddled, NothingIsSeenOfTheStop) {
+  network = load_network(TAKT_SOURCE_DIR "/test/soak/data/slow_stop.yaml");
+  EXPECT_EQ(broken({}), "");
+  const auto blind = [](BusPlan& plan) {
+    for (NodePlan& node : plan.nodes) {
+      for (AxisPlan& axis : node.axes) {
+        axis.velocity_window = 1'000'000'000;
+        axis.position_window = 1'000'000'000;
+      }
+    }
+  };
+  EXPECT_EQ(broken({.plan = blind}), "no stop claims more than was seen");
+}
+
+}  // namespace
+}  // namespace takt
