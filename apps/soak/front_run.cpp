@@ -60,7 +60,7 @@ class Ear final : public sim::BusObserver {
     if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump + ".front");
   }
   void on_wire(const sim::WireFrame& wire) noexcept override {
-    judge_.heard(wire.frame);
+    if (wire.result == sim::WireResult::sent) judge_.heard(wire.frame);
     if (log_) log_->on_wire(wire);
   }
 
