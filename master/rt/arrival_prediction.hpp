@@ -7,7 +7,9 @@
 namespace takt {
 
 /// Learns when the last expected PDO is usually there, so that one drain at that time finds them
-/// all. Times count from SYNC. Bounded by the receive window.
+/// all. A PDO that comes later is waited for, so a single one must not make the images of the next
+/// cycles late: the prediction is a high quantile of the arrivals and not the latest of them. Times
+/// count from SYNC. Bounded by the receive window.
 class ArrivalPrediction {
  public:
   explicit ArrivalPrediction(Time window) noexcept : window_{window}, predicted_{window} {}
@@ -28,7 +30,8 @@ class ArrivalPrediction {
   /// The last one came at `arrival`, after the first drain; where it stayed away nothing is
   /// learned.
   void late(Time arrival) noexcept {
-    predicted_ = std::min(window_, std::max(predicted_, arrival) + margin);
+    const Time excess = std::max(Time{0}, arrival - predicted_) + margin;
+    predicted_ = std::min(window_, predicted_ + std::min(excess, step));
   }
 
   template <class Archive>
@@ -40,6 +43,7 @@ class ArrivalPrediction {
   static constexpr std::uint32_t learning = 16;  ///< cycles that wait for the whole window
   static constexpr std::int64_t slowness = 256;  ///< cycles that a late PDO is remembered
   static constexpr Time margin = std::chrono::microseconds{5};
+  static constexpr Time step = std::chrono::microseconds{20};  ///< at most, for a late PDO
 
   Time window_;
   Time predicted_;

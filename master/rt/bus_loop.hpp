@@ -65,6 +65,7 @@ class BusLoop {
 
  private:
   static constexpr std::size_t batch = 256;              ///< frames taken by one receive
+  static constexpr unsigned most_wakes = 8;              ///< of one cycle, for PDOs that are late
   static constexpr unsigned patience_with_services = 2;  ///< cycles without room for them
   static constexpr std::size_t burst_frames = 6;         ///< handed over at once; queues are short
   static constexpr std::size_t burst_ahead = 3;          ///< still in the queue when more follow
@@ -90,6 +91,7 @@ class BusLoop {
   bool send_sync() noexcept;
   void relieve_services() noexcept;
   void receive() noexcept;
+  void await_rest(Time end) noexcept;
   void drain() noexcept;
   bool begins_cycle(const StampedFrame& stamped) noexcept;
   void note_missed(std::uint64_t missed, Time now) noexcept;

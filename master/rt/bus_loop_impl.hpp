@@ -126,11 +126,21 @@ void BusLoop<P, N>::receive() noexcept {
   }
   drain();
   const bool in_time = pdos_.inputs().complete();
-  if (!in_time) {
-    port_.sleep_until(end);
-    drain();
-  }
+  if (!in_time) await_rest(end);
   learn(in_time);
+}
+
+/// PDOs that are later than predicted are taken as they come. Frames of others wake this thread as
+/// well, so after a few of them the rest is taken at the end.
+template <Port P, class N>
+void BusLoop<P, N>::await_rest(Time end) noexcept {
+  for (unsigned wakes = 0; wakes < most_wakes; ++wakes) {
+    const bool some = port_.wait_frame(end);
+    drain();
+    if (!some || pdos_.inputs().complete() || follower_.arrived()) return;
+  }
+  port_.sleep_until(end);
+  drain();
 }
 
 template <Port P, class N>

@@ -1,5 +1,6 @@
 #include "master/rt/bus_loop.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <memory>
 
@@ -58,9 +59,45 @@ TEST(BusLoop, LearnsALaterArrival) {
   bus.run(100);
   bus.port.answers[1].after = 600us;
   bus.run(1);
-  EXPECT_EQ(bus.port.calls.size(), 7U);  // no outputs, but a second sleep and receive
+  EXPECT_EQ(bus.port.calls.size(), 7U);  // no outputs, but a wait and a second receive
+  bus.run(9);
+  EXPECT_EQ(bus.port.calls.size(), 7U);
   bus.run(1);
   EXPECT_EQ(bus.port.calls.size(), 5U);
+}
+
+TEST(BusLoop, PublishesALatePdoWhenItComes) {
+  Loop bus;
+  bus.run(100);
+  ImageView image;
+  while (bus.newest(image)) {
+  }
+  bus.port.answers[1].after = 900us;
+  bus.run(1);
+  ASSERT_TRUE(bus.newest(image));
+  EXPECT_EQ(image.missing, 0U);
+  EXPECT_EQ(image.publish_time - image.sync_time, 900us);
+
+  bus.port.answers[1].after = 400us;
+  bus.run(1);
+  ASSERT_TRUE(bus.newest(image));
+  EXPECT_LT(image.publish_time - image.sync_time, 430us);  // the next one is not late for it
+}
+
+TEST(BusLoop, IsWokenByFramesOfOthersAFewTimesOnly) {
+  Loop bus;
+  bus.run(100);
+  ImageView image;
+  while (bus.newest(image)) {
+  }
+  bus.port.answers[1].after = 5ms;  // it is missing
+  for (int i = 0; i < 20; ++i) {
+    bus.port.answers.push_back({make_frame(CobId::base(0x701), {5}), 500us + i * 20us});
+  }
+  bus.run(1);
+  EXPECT_EQ(std::ranges::count(bus.port.calls, "wait"), 8);
+  ASSERT_TRUE(bus.newest(image));
+  EXPECT_EQ(image.missing, 1U);
 }
 
 TEST(BusLoop, ForgetsAnOldLateArrival) {

@@ -56,6 +56,30 @@ TEST(ArrivalPrediction, NeverGoesBeyondTheWindow) {
   EXPECT_EQ(prediction.predicted(), 1200us);
 }
 
+ArrivalPrediction learned(Time arrival) {
+  ArrivalPrediction prediction{1200us};
+  for (int i = 0; i < 16; ++i) prediction.in_time(arrival);
+  return prediction;
+}
+
+TEST(ArrivalPrediction, OfOneLatePdoDoesNotMakeTheNextImagesLate) {
+  ArrivalPrediction prediction = learned(400us);
+  prediction.late(1100us);
+  EXPECT_EQ(prediction.predicted(), 425us);
+  prediction.late(426us);
+  EXPECT_EQ(prediction.predicted(), 431us);
+}
+
+TEST(ArrivalPrediction, FollowsArrivalsThatStayLaterOrEarlier) {
+  ArrivalPrediction prediction = learned(400us);
+  int late = 0;
+  for (; prediction.predicted() < 1000us; ++late) prediction.late(1000us);
+  EXPECT_EQ(late, 30);
+  EXPECT_EQ(prediction.predicted(), 1005us);
+  for (int i = 0; i < 2000; ++i) prediction.in_time(400us);
+  EXPECT_LT(prediction.predicted(), 410us);
+}
+
 TEST(WireTime, KnowsTheWorstCaseOfTheLimits) {
   const WireTime fast{1'000'000};
   const Frame eight = make_frame(CobId::base(0x181), {1, 2, 3, 4, 5, 6, 7, 8});
