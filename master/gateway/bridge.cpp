@@ -16,10 +16,9 @@
 namespace takt {
 namespace {
 
-constexpr Time status_period = std::chrono::milliseconds{100};
-constexpr Time pdos_period = std::chrono::milliseconds{500};
-constexpr Time layout_period = std::chrono::seconds{1};
-constexpr Time timing_period = std::chrono::seconds{1};
+// For so long states of the bus wait for an image that they can follow, one behind each.
+constexpr int most_images = 5;
+constexpr Time longest_wait = std::chrono::milliseconds{20};
 constexpr unsigned most_behind = 8;  // images: further ones of a jam go out without typed messages
 
 }  // namespace
@@ -67,6 +66,7 @@ Bridge::Bridge(Master& master, Transport& transport, const Clocks& clocks, Bridg
       outages_{master.plan()},
       emcys_{master.plan().nodes.size()},
       wall_minus_monotonic_{clocks_.wall_offset()},
+      image_wait_{std::min(most_images * master.plan().cycle.period, longest_wait)},
       gap_{master.plan().cycle.period},
       instance_{random_number()} {
   if (options_.typed) typed_.emplace(master.plan(), options_.session);
@@ -107,18 +107,34 @@ bool Bridge::serve() {
   take_messages();
   take_replies();
   take_events();
-  const Time now = clocks_.now();
-  transfers_.on_time(now);
-  if (now >= next_layout_) publish_layout();
-  if (now >= next_status_) publish_status();
-  if (now >= next_pdos_) publish_pdos();
-  if (now >= next_timing_) publish_timing();
-  gap_.sleeps_until(next_message());
+  transfers_.on_time(clocks_.now());
+  publish_states(some);
+  gap_.sleeps_until(first_state().next);
   return some;
 }
 
-Time Bridge::next_message() const noexcept {
-  return std::min({next_status_, next_layout_, next_pdos_, next_timing_});
+Time Bridge::next_message() const noexcept { return first_state().next + image_wait_; }
+
+const Bridge::PeriodicState& Bridge::first_state() const noexcept {
+  return *std::ranges::min_element(states_, {}, &PeriodicState::next);
+}
+
+/// Images come first: a state that goes out just before one would make it late. So one state
+/// follows an image, and the others follow the next images.
+void Bridge::publish_states(bool after_image) {
+  const Time now = clocks_.now();
+  const auto publish = [&](PeriodicState& state) {
+    state.next = now + state.period;
+    (this->*state.publish)(now);
+  };
+  if (after_image) {
+    PeriodicState& first = *std::ranges::min_element(states_, {}, &PeriodicState::next);
+    if (now >= first.next) publish(first);
+    return;
+  }
+  for (PeriodicState& state : states_) {
+    if (now >= state.next + image_wait_) publish(state);
+  }
 }
 
 bool Bridge::publish_images() {
@@ -326,18 +342,14 @@ void Bridge::send(Notice notice) {
   tell_(notice);
 }
 
-void Bridge::publish_layout() {
-  const Time now = clocks_.now();
-  next_layout_ = now + layout_period;
+void Bridge::publish_layout(Time now) {
   for (layout_t& part : layout_messages_) {
     part.utime = wall_microseconds(now);
     publish(channels_.layout, part);
   }
 }
 
-void Bridge::publish_status() {
-  const Time now = clocks_.now();
-  next_status_ = now + status_period;
+void Bridge::publish_status(Time now) {
   GatewayStatus gateway{.image_overruns = master_.image_overruns(),
                         .event_overruns = events_lost(),
                         .commands_taken = commands_.taken(),
@@ -358,9 +370,7 @@ void Bridge::publish_status() {
   publish(channels_.sync, sync);
 }
 
-void Bridge::publish_pdos() {
-  const Time now = clocks_.now();
-  next_pdos_ = now + pdos_period;
+void Bridge::publish_pdos(Time now) {
   for (pdo_status_t& part : pdo_messages(master_.plan(), snapshot_, marks_, cycle_)) {
     part.utime = wall_microseconds(now);
     part.session = options_.session;
@@ -368,9 +378,7 @@ void Bridge::publish_pdos() {
   }
 }
 
-void Bridge::publish_timing() {
-  const Time now = clocks_.now();
-  next_timing_ = now + timing_period;
+void Bridge::publish_timing(Time now) {
   timing_t message = timing_messages_.fill(master_.timing(), sync_to_lcm_, cycle_);
   message.utime = wall_microseconds(now);
   publish(channels_.timing, message);

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -62,7 +64,7 @@ class Bridge {
   Time newest_gap() const noexcept { return gap_.length(); }
   /// Everything that can be done now. True: there was an image.
   bool serve();
-  /// When status_t, layout_t or timing_t are due next.
+  /// When status_t, pdo_status_t, layout_t or timing_t go out at the latest.
   Time next_message() const noexcept;
   /// An event of the bus thread or of the diagnostic socket.
   void tell(const Event& event);
@@ -111,10 +113,19 @@ class Bridge {
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);
   void tell_damaged(const std::string& channel, DecodeFault fault);
-  void publish_layout();
-  void publish_status();
-  void publish_pdos();
-  void publish_timing();
+  /// A message that goes out by the clock.
+  struct PeriodicState {
+    Time period;
+    void (Bridge::*publish)(Time now);
+    Time next{};
+  };
+
+  const PeriodicState& first_state() const noexcept;
+  void publish_states(bool after_image);
+  void publish_layout(Time now);
+  void publish_status(Time now);
+  void publish_pdos(Time now);
+  void publish_timing(Time now);
   void answer(reply_t reply);
   void tell_transfer(transfer_state_t state);
   std::int64_t wall_microseconds(Time monotonic) const noexcept;
@@ -150,10 +161,12 @@ class Bridge {
   std::vector<PdoMark> marks_;  // of the newest image
   EmcyLog emcy_log_;
   Time wall_minus_monotonic_{};
-  Time next_status_{};
-  Time next_layout_{};
-  Time next_pdos_{};
-  Time next_timing_{};
+  std::array<PeriodicState, 4> states_{{{std::chrono::seconds{1}, &Bridge::publish_layout},
+                                        {std::chrono::milliseconds{100}, &Bridge::publish_status},
+                                        {std::chrono::milliseconds{500}, &Bridge::publish_pdos},
+                                        {std::chrono::seconds{1}, &Bridge::publish_timing}}};
+  /// So long a state that is due waits for an image that it can follow.
+  Time image_wait_;
   std::uint64_t cycle_ = 0;  // of the newest image
   Time sync_time_{};         // of the newest image
   Time judged_{};            // of the commands that are staged: when their age was judged first

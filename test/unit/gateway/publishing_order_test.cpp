@@ -50,5 +50,36 @@ TEST(PublishingOrder, NothingOfACycleGoesOutBeforeItsImage) {
   }
 }
 
+/// How many kinds of states went out. One may have several parts.
+int states(const Bridge& bridge, const SentChannels& lcm) {
+  const Channels& names = bridge.channels();
+  int kinds = 0;
+  for (const std::string& name : {names.layout, names.status, names.pdos, names.timing}) {
+    kinds += std::ranges::count(lcm.sent, name) != 0 ? 1 : 0;
+  }
+  return kinds;
+}
+
+TEST(PublishingOrder, AStateFollowsAnImageAndNeverComesJustBeforeOne) {
+  test::Rig rig{test::axes({.nodes = 3, .period = 4ms})};
+  ASSERT_TRUE(rig.boot());
+  SentChannels lcm;
+  const test::RigClocks clocks{rig};
+  Bridge bridge{*rig.master, lcm, clocks, {}, [](const Notice&) {}};
+  bridge.serve();
+
+  int all = 0;
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    lcm.sent.clear();
+    EXPECT_FALSE(bridge.serve());
+    EXPECT_EQ(states(bridge, lcm), 0) << "cycle " << cycle;
+    rig.master->cycle();
+    ASSERT_TRUE(bridge.serve());
+    EXPECT_LE(states(bridge, lcm), 1) << "cycle " << cycle;
+    all += states(bridge, lcm);
+  }
+  EXPECT_NEAR(all, 40 + 8 + 4 + 4, 4);  // in 4 s
+}
+
 }  // namespace
 }  // namespace takt
