@@ -150,6 +150,7 @@ std::optional<Exit> Daemon::start() {
 }
 
 void Daemon::loop() {
+  if (network_.realtime.mode != RtMode::off) prefer_this_thread();
   FrontRound round{.next_image = [this] { return master_->next_publish(); },
                    .serve = [this] { return serve(); },
                    .wait = [this](Time next_image, Time latest) { wait(next_image, latest); }};

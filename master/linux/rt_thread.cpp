@@ -118,6 +118,13 @@ RtReport apply_realtime(const RealtimeOptions& options) {
   return report;
 }
 
+bool prefer_this_thread() noexcept {
+  constexpr int highest = -20;
+  const sched_param ordinary{};
+  return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &ordinary) == 0 &&
+         setpriority(PRIO_PROCESS, 0, highest) == 0;
+}
+
 void prefault_heap(std::size_t bytes) {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);

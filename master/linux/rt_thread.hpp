@@ -32,6 +32,11 @@ std::string to_string(const RtReport& report);
 /// refused.
 RtReport apply_realtime(const RealtimeOptions& options);
 
+/// Lets the calling thread run before ordinary ones: nice -20, for the front thread. Unlike
+/// SCHED_FIFO that leaves some time to everybody else, however much work comes from outside.
+/// Threads that it starts are ordinary ones. False: the machine does not allow it (RLIMIT_NICE).
+bool prefer_this_thread() noexcept;
+
 /// Makes the heap keep what it has (no trimming, no mmap of single blocks) and touches `bytes` of
 /// it, so that what is allocated later brings no page fault. Once, before the threads start.
 void prefault_heap(std::size_t bytes);

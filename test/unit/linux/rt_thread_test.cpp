@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <thread>
 
 namespace takt {
 namespace {
@@ -41,6 +43,22 @@ TEST(RtThread, TryRunsTheBodyWhateverIsMissing) {
 
   EXPECT_TRUE(ran);
   EXPECT_FALSE(thread.report().complete());
+}
+
+int niceness() { return getpriority(PRIO_PROCESS, 0); }
+
+TEST(PreferredThread, ComesBeforeOrdinaryOnesAndMakesOrdinaryThreads) {
+  bool granted = false;
+  int of_thread = 0;
+  int of_its_thread = 0;
+  std::thread{[&] {
+    granted = prefer_this_thread();
+    of_thread = niceness();
+    std::thread{[&] { of_its_thread = niceness(); }}.join();
+  }}.join();
+
+  EXPECT_EQ(of_thread, granted ? -20 : niceness());
+  EXPECT_GE(of_its_thread, 0);
 }
 
 TEST(RtThread, TheReportNamesWhatWasGranted) {
