@@ -9,7 +9,7 @@
 namespace takt {
 
 StopJudge::StopJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
-    : plan_{plan}, world_{world}, verdict_{verdict} {
+    : world_{world}, verdict_{verdict} {
   for (const NodePlan& node : plan.nodes) {
     if (!node.cia402 || !node.boot) continue;
     for (const AxisPlan& axis : node.axes) axes_.push_back({.node = &node, .plan = &axis});

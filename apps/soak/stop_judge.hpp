@@ -36,7 +36,6 @@ class StopJudge {
     bool blamed = false;          ///< the master says that it was not stopped
   };
 
-  const BusPlan& plan_;
   sim::World& world_;
   Verdict& verdict_;
   std::vector<Axis> axes_;
