@@ -40,6 +40,7 @@ class Application:
         import takt
         self.takt, self.bus = takt, lcm.LCM()
         self.layout, self.images, self.told_at, self.pdos = None, 0, 0, {}
+        self.stopped_at = float("inf")  # wall clock of the order to stop
         self.seen = {name: [] for name in INPUTS}
         for channel, taker in (("LAYOUT", self.on_layout), ("IMAGE", self.on_image), ("PDOS", self.on_pdos)):
             self.bus.subscribe("JUDGE_" + channel, taker)
@@ -49,6 +50,8 @@ class Application:
         self.layout = {s.index: layout.first_signal + i for i, s in enumerate(layout.signals)}
 
     def on_pdos(self, _, data):
+        if self.stopped_at != float("inf"):
+            return  # the ordered stop takes the device out of OPERATIONAL
         status = self.takt.pdo_status_t.decode(data)
         self.told_at, self.pdos = status.utime / 1e6, {(pdo.output, pdo.number): pdo for pdo in status.pdos}
 
@@ -71,7 +74,6 @@ class Application:
 
     def run_while(self, process):
         until = time.monotonic() + 180
-        self.stopped_at = float("inf")  # wall clock of the order to stop
         while process.poll() is None:
             self.bus.handle_timeout(50)
             if self.stopped_at == float("inf") and (self.images >= IMAGES + 30 or time.monotonic() > until):
