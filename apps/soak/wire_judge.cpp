@@ -91,7 +91,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const Signal& signal = plan_.layout.signals[index];
   Output& output = this->output(index);
   // Outputs that begin to be sent begin with what the device has (607A from 6064).
-  const bool begins = now - output.when > 5 * plan_.cycle.period;
+  const bool begins = now > output.when + 5 * plan_.cycle.period;
   const bool changed = !begins && value != output.last;
   if (is_target(signal)) {
     limits_.sent(index, value, begins, now);

@@ -49,7 +49,8 @@ std::optional<DuplicateSign> TwinWatch::once(DuplicateSign sign, Time now) noexc
 
 std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
   if (period_ <= Time{}) return std::nullopt;
-  if (now - window_begin_ >= window_periods * period_) {
+  // A damaged checkpoint may hold Time::min(), from which nothing can be subtracted.
+  if (now - std::max(window_begin_, Time{}) >= window_periods * period_) {
     full_windows_ = heartbeats_ > most_heartbeats ? full_windows_ + 1 : 0;
     window_begin_ = now;
     heartbeats_ = 0;
