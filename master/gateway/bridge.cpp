@@ -109,6 +109,7 @@ bool Bridge::serve() {
   take_events();
   transfers_.on_time(clocks_.now());
   publish_states(some);
+  notice_gap();  // this thread may have been stopped since it looked for messages
   gap_.sleeps_until(first_state().next);
   return some;
 }
