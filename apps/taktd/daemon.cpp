@@ -57,7 +57,9 @@ Exit Daemon::run() {
     std::_Exit(static_cast<int>(exit_of_cut_stop()));
   }
   master_->join();
-  bridge_->serve();
+  do {
+    bridge_->serve();
+  } while (bridge_->owes_news());
   judge_stop();
   const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
   reporter_.say(Weight::note, run_summary(*master_, *bridge_, reporter_.told(Weight::error),

@@ -105,16 +105,18 @@ bool Bridge::serve() {
   const bool some = publish_images();
   notice_gap();
   take_messages();
-  take_replies();
+  serve_requests();
   take_events();
-  transfers_.on_time(clocks_.now());
   publish_states(some);
   notice_gap();  // this thread may have been stopped since it looked for messages
   gap_.sleeps_until(first_state().next);
   return some;
 }
 
-Time Bridge::next_message() const noexcept { return first_state().next + image_wait_; }
+Time Bridge::next_message() const noexcept {
+  if (owes_news() || transfers_left_) return Time{};
+  return first_state().next + image_wait_;
+}
 
 const Bridge::PeriodicState& Bridge::first_state() const noexcept {
   return *std::ranges::min_element(states_, {}, &PeriodicState::next);
@@ -248,33 +250,22 @@ void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
         .text = std::move(sentence)});
 }
 
-void Bridge::take_replies() {
-  Reply reply;
-  while (master_.take(reply)) {
-    if (transfers_.finish(reply)) continue;
-    if ((reply.id & FrontGuest::mark) != 0) {
-      if (guest_ != nullptr) guest_->take(reply);
-      continue;
-    }
-    if (auto message = requests_.finish(reply, clocks_.now())) answer(std::move(*message));
-  }
-}
-
-void Bridge::answer(reply_t reply) {
-  reply.utime = wall_microseconds(clocks_.now());
-  publish(channels_.reply, reply);
-}
-
 void Bridge::take_events() {
+  const TimeBudget budget{clock_, front_budget::events};
   Event event;
-  while (master_.take(event)) {
-    remember(event);
-    if (guest_ != nullptr) guest_->hear(event);
-    emcy_log_.take(event, wall_microseconds(event.when));
-    tell(event);
-  }
+  do {
+    events_left_ = master_.take(event);
+    if (events_left_) take_event(event);
+  } while (events_left_ && budget.is_left());
   for (const Notice& notice : outages_.take_due(clocks_.now())) send(notice);
   tell_lost_events();
+}
+
+void Bridge::take_event(const Event& event) {
+  remember(event);
+  if (guest_ != nullptr) guest_->hear(event);
+  emcy_log_.take(event, wall_microseconds(event.when));
+  tell(event);
 }
 
 std::uint64_t Bridge::events_lost() const noexcept {

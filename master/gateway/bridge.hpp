@@ -20,6 +20,7 @@
 #include "master/gateway/pdo_outages.hpp"
 #include "master/gateway/requests.hpp"
 #include "master/gateway/status_messages.hpp"
+#include "master/gateway/time_budget.hpp"
 #include "master/gateway/transfers.hpp"
 #include "master/gateway/transport.hpp"
 #include "master/gateway/typed_channels.hpp"
@@ -64,7 +65,10 @@ class Bridge {
   Time newest_gap() const noexcept { return gap_.length(); }
   /// Everything that can be done now. True: there was an image.
   bool serve();
-  /// When status_t, pdo_status_t, layout_t or timing_t go out at the latest.
+  /// Events or answers of the bus thread are left over for the next round, or may be.
+  bool owes_news() const noexcept { return replies_left_ || events_left_; }
+  /// When serve() has to be called again at the latest: at once where something is left over, else
+  /// when status_t, pdo_status_t, layout_t or timing_t go out.
   Time next_message() const noexcept;
   /// An event of the bus thread or of the diagnostic socket.
   void tell(const Event& event);
@@ -96,12 +100,15 @@ class Bridge {
   /// Why a request is too old to be done; empty: it isn't.
   std::string age_trouble(std::int64_t utime, Time now) const;
   void take_events();
+  void take_event(const Event& event);
   /// By the bus thread, and on the way from there.
   std::uint64_t events_lost() const noexcept;
   void tell_lost_events();
   void add_sender(const Event& event, Notice& notice) const;
   void remember(const Event& event);
-  void take_replies();
+  void take_replies(const TimeBudget& budget);
+  void take_reply(const Reply& reply);
+  void serve_requests();
   void take_messages();
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
@@ -137,6 +144,7 @@ class Bridge {
   Master& master_;
   Transport& transport_;
   const Clocks& clocks_;
+  FrontClock clock_ = [this] { return clocks_.now(); };
   BridgeOptions options_;
   NoticeSink tell_;
   FrontGuest* guest_ = nullptr;
@@ -176,6 +184,9 @@ class Bridge {
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;
+  bool replies_left_ = false;    // when the budget of this round ended
+  bool transfers_left_ = false;  // steps of them
+  bool events_left_ = false;
   std::int64_t instance_;  // of the daemon itself, as a sender of commands
 };
 

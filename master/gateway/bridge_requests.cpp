@@ -5,6 +5,34 @@
 
 namespace takt {
 
+void Bridge::serve_requests() {
+  const TimeBudget budget{clock_, front_budget::requests};
+  take_replies(budget);
+  transfers_left_ = transfers_.on_time(clocks_.now(), budget);
+}
+
+void Bridge::take_replies(const TimeBudget& budget) {
+  Reply reply;
+  do {
+    replies_left_ = master_.take(reply);
+    if (replies_left_) take_reply(reply);
+  } while (replies_left_ && budget.is_left());
+}
+
+void Bridge::take_reply(const Reply& reply) {
+  if (transfers_.finish(reply)) return;
+  if ((reply.id & FrontGuest::mark) != 0) {
+    if (guest_ != nullptr) guest_->take(reply);
+    return;
+  }
+  if (auto message = requests_.finish(reply, clocks_.now())) answer(std::move(*message));
+}
+
+void Bridge::answer(reply_t reply) {
+  reply.utime = wall_microseconds(clocks_.now());
+  publish(channels_.reply, reply);
+}
+
 void Bridge::on_request(Bytes data) {
   const auto request = decode<request_t>(data);
   if (!request) return tell_damaged(channels_.request, request.error());

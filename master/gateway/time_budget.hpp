@@ -11,12 +11,16 @@ using FrontClock = std::function<Time()>;
 
 /// How long one source may keep the front thread in each round. What is left over waits for the
 /// next round, which begins with the images again. A source may exceed its budget by one message.
-/// Requests come from these sources; their answers and events are bounded by their rings.
 namespace front_budget {
 
 inline constexpr Time lcm = std::chrono::microseconds{500};
 inline constexpr Time broker = std::chrono::microseconds{500};
 inline constexpr Time gateway = std::chrono::microseconds{250};
+/// The answers of the bus thread to requests, and the files of transfers. The requests themselves
+/// come from the sources above.
+inline constexpr Time requests = std::chrono::microseconds{250};
+/// Events of the bus thread, which may come by the hundred.
+inline constexpr Time events = std::chrono::microseconds{250};
 
 }  // namespace front_budget
 

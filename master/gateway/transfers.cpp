@@ -15,6 +15,7 @@ namespace {
 /// Ids of these requests have this bit, those of Requests do not.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
+constexpr std::size_t room_step = 64U << 10;  // bytes of a buffer that are made at once
 
 }  // namespace
 
@@ -36,7 +37,7 @@ void Transfers::take(const transfer_t& message, Time now) {
   Job* const job = find(message);
   if (job == nullptr) return begin(message, now);
   job->heard = now;
-  if (message.action == "more" && job->stage == Stage::done) return send_parts(*job, message);
+  if (message.action == "more" && job->stage == Stage::done) return ask_for_parts(*job, message);
   if (message.action == "end" && !job->submitted) return forget(*job);
   if (message.action == "data") fill(*job, message);
   if (message.action == "abort") cancel(*job, "called off");
@@ -66,15 +67,19 @@ void Transfers::begin(const transfer_t& message, Time now) {
           .sender = message.sender,
           .id = message.id,
           .request = *request,
+          .total = static_cast<std::size_t>(message.total),
           .heard = now,
           .told = now};
   job->request.id = transfer_mark | next_id_++;
   job->request.transfer = job->buffer;
-  job->buffer->data.resize(static_cast<std::size_t>(message.total));
+  job->buffer->data.reserve(job->total);
   job->buffer->done.store(0);
   job->buffer->announced.store(0);
   job->buffer->cancel.store(false);
-  if (job->request.kind == RequestKind::sdo_upload || message.total == 0) submit(*job);
+  if (job->request.kind == RequestKind::sdo_upload || message.total == 0) {
+    job->stage = Stage::running;
+    step(*job);
+  }
   sinks_.state(state_of(*job));
 }
 
@@ -113,12 +118,10 @@ void Transfers::fill(Job& job, const transfer_t& message) {
   const std::size_t size = message.data.size();
   if (job.stage != Stage::filling || job.submitted) return;
   if (message.offset != static_cast<std::int64_t>(job.received)) return;
-  if (size > part_bytes || size > job.buffer->data.size() - job.received) return;
-  std::ranges::transform(message.data,
-                         job.buffer->data.begin() + static_cast<std::ptrdiff_t>(job.received),
-                         [](std::uint8_t byte) { return std::byte{byte}; });
+  if (size > part_bytes || size > job.total - job.received) return;
+  for (const std::uint8_t byte : message.data) job.buffer->data.push_back(std::byte{byte});
   job.received += size;
-  if (job.received == job.buffer->data.size()) submit(job);
+  if (job.received == job.total) submit(job);
 }
 
 /// Where the bus thread has no room it is tried again by on_time.
@@ -127,26 +130,28 @@ void Transfers::submit(Job& job) {
   job.stage = Stage::running;
 }
 
-void Transfers::send_parts(Job& job, const transfer_t& message) {
+/// The parts go out by on_time, in place of those that are still owed.
+void Transfers::ask_for_parts(Job& job, const transfer_t& message) {
   const std::size_t total = job.buffer->data.size();
   if (message.offset < 0 || static_cast<std::uint64_t>(message.offset) > total) {
     return sinks_.state(state_of(job));
   }
-  auto offset = static_cast<std::size_t>(message.offset);
   const auto wanted = static_cast<std::size_t>(std::clamp<std::int64_t>(
       message.total, 1, static_cast<std::int64_t>(parts_at_once * part_bytes)));
-  const std::size_t end = std::min(total, offset + wanted);
-  while (offset < end) {
-    transfer_state_t part = state_of(job);
-    const std::size_t size = std::min(part_bytes, end - offset);
-    part.offset = static_cast<std::int64_t>(offset);
-    part.size = static_cast<std::int32_t>(size);
-    for (const std::byte byte : std::span{job.buffer->data}.subspan(offset, size)) {
-      part.data.push_back(std::to_integer<std::uint8_t>(byte));
-    }
-    offset += size;
-    sinks_.state(part);
+  job.part_begin = static_cast<std::size_t>(message.offset);
+  job.part_end = std::min(total, job.part_begin + wanted);
+}
+
+void Transfers::send_part(Job& job) {
+  transfer_state_t part = state_of(job);
+  const std::size_t size = std::min(part_bytes, job.part_end - job.part_begin);
+  part.offset = static_cast<std::int64_t>(job.part_begin);
+  part.size = static_cast<std::int32_t>(size);
+  for (const std::byte byte : std::span{job.buffer->data}.subspan(job.part_begin, size)) {
+    part.data.push_back(std::to_integer<std::uint8_t>(byte));
   }
+  job.part_begin += size;
+  sinks_.state(part);
 }
 
 bool Transfers::finish(const Reply& reply) {
@@ -161,7 +166,7 @@ bool Transfers::finish(const Reply& reply) {
   job->abort_code = reply.abort_code;
   if (job->text.empty() && !good) {
     job->text = reply.fault == SdoFault::too_long
-                    ? "the object is longer than the " + std::to_string(job->buffer->data.size()) +
+                    ? "the object is longer than the " + std::to_string(job->total) +
                           " bytes that were asked for"
                     : fault_text(reply.fault, reply.abort_code);
   }
@@ -186,19 +191,41 @@ void Transfers::forget(Job& job) {
   job.buffer = buffer;
 }
 
-void Transfers::on_time(Time now) {
-  for (Job& job : jobs_) {
-    if (job.stage == Stage::free) continue;
-    if (job.stage == Stage::running && !job.submitted) submit(job);
-    if (now - job.heard > waits::transfer_silence) {
-      cancel(job, "whoever asked for it is gone");
-      if (!job.submitted) forget(job);
-      continue;
-    }
-    if (job.stage != Stage::running || now - job.told < progress_period) continue;
-    job.told = now;
-    sinks_.state(state_of(job));
+bool Transfers::on_time(Time now, const TimeBudget& budget) {
+  for (Job& job : jobs_) watch(job, now);
+  for (std::size_t idle = 0; idle < jobs_.size();) {
+    Job& job = jobs_[turn_];
+    turn_ = (turn_ + 1) % jobs_.size();
+    idle = step(job) ? 0 : idle + 1;
+    if (idle == 0 && !budget.is_left()) return true;
   }
+  return false;
+}
+
+void Transfers::watch(Job& job, Time now) {
+  if (job.stage == Stage::free) return;
+  if (now - job.heard > waits::transfer_silence) {
+    cancel(job, "whoever asked for it is gone");
+    if (!job.submitted) forget(job);
+    return;
+  }
+  if (job.stage != Stage::running || now - job.told < progress_period) return;
+  job.told = now;
+  sinks_.state(state_of(job));
+}
+
+/// Makes room for a file that will be read, hands a request to the bus thread, or sends a part.
+/// False: there is nothing to do now.
+bool Transfers::step(Job& job) {
+  if (job.stage == Stage::done && job.part_begin < job.part_end) {
+    send_part(job);
+    return true;
+  }
+  if (job.stage != Stage::running || job.submitted) return false;
+  std::vector<std::byte>& data = job.buffer->data;
+  data.resize(std::min(job.total, data.size() + room_step));
+  if (data.size() == job.total) submit(job);
+  return data.size() != job.total || job.submitted;
 }
 
 transfer_state_t Transfers::state_of(const Job& job) const {
@@ -210,7 +237,9 @@ transfer_state_t Transfers::state_of(const Job& job) const {
   state.sender = job.sender;
   state.stage = stages[static_cast<std::size_t>(job.stage)];
   const bool has_all = job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
-  state.total = has_all ? static_cast<std::int64_t>(job.buffer->data.size())
+  const std::size_t size =
+      job.stage == Stage::done ? job.buffer->data.size() : job.total;  // of a file that is known
+  state.total = has_all ? static_cast<std::int64_t>(size)
                         : job.buffer->announced.load(std::memory_order_relaxed);
   state.received = static_cast<std::int64_t>(job.received);
   state.done = job.buffer->done.load(std::memory_order_relaxed);

@@ -11,6 +11,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/request.hpp"
 #include "master/gateway/requests.hpp"
+#include "master/gateway/time_budget.hpp"
 
 namespace takt {
 
@@ -36,8 +37,9 @@ class Transfers {
   void take_old(const transfer_t& message, const std::string& why);
   /// False: the reply belongs to somebody else.
   bool finish(const Reply& reply);
-  /// Progress of what runs; the end of what nobody wants any more.
-  void on_time(Time now);
+  /// Tells progress, ends what nobody wants any more, and then does a step of each transfer in turn
+  /// until the budget ends. True: steps are left over, or may be.
+  bool on_time(Time now, const TimeBudget& budget);
 
  private:
   enum class Stage : std::uint8_t { free, filling, running, done, failed };
@@ -48,7 +50,10 @@ class Transfers {
     std::string sender{};
     std::int64_t id = 0;
     Request request;
+    std::size_t total = 0;  // bytes that the sender announced or asked for
     std::size_t received = 0;
+    std::size_t part_begin = 0;  // bytes of the file that the sender waits for
+    std::size_t part_end = 0;
     std::uint32_t abort_code = 0;
     std::string text{};
     Time heard{};  // of the sender
@@ -59,7 +64,10 @@ class Transfers {
   std::expected<Request, std::string> translate(const transfer_t& message) const;
   void begin(const transfer_t& message, Time now);
   void fill(Job& job, const transfer_t& message);
-  void send_parts(Job& job, const transfer_t& message);
+  void ask_for_parts(Job& job, const transfer_t& message);
+  void send_part(Job& job);
+  void watch(Job& job, Time now);
+  bool step(Job& job);
   void submit(Job& job);
   void forget(Job& job);
   void cancel(Job& job, const std::string& why);
@@ -70,6 +78,7 @@ class Transfers {
   RequestsOptions options_;
   Sinks sinks_;
   std::vector<Job> jobs_;
+  std::size_t turn_ = 0;  // the job that has the next step
   std::uint64_t next_id_ = 1;
 };
 

@@ -41,7 +41,10 @@ class TransfersTest : public testing::Test {
     out.offset = offset;
     out.total = bytes;
     transfers.take(out, now);
+    on_time();
   }
+  /// As many steps as there are.
+  void on_time() { EXPECT_FALSE(transfers.on_time(now, TimeBudget{clock, 1s})); }
   void reply(SdoFault fault = SdoFault::none, std::uint32_t abort_code = 0) {
     Reply answer{.id = submitted.back().id};
     answer.fault = fault;
@@ -56,6 +59,7 @@ class TransfersTest : public testing::Test {
   std::vector<transfer_state_t> states;
   bool room = true;
   Time now = 10s;
+  FrontClock clock = [this] { return now; };
   Transfers transfers{
       plan,
       {.session = 42, .observe = false},
@@ -160,12 +164,45 @@ TEST_F(TransfersTest, CallingOffReachesTheBusThread) {
 TEST_F(TransfersTest, ASilentSenderIsForgottenButNotItsBufferTooEarly) {
   begin("upload", 100);
   now += 11s;
-  transfers.on_time(now);
+  on_time();
   EXPECT_TRUE(buffers[0].cancel);
   EXPECT_EQ(buffers[0].data.size(), 100U) << "the bus thread may still write to it";
   reply(SdoFault::cancelled);
-  transfers.on_time(now);
+  on_time();
   EXPECT_TRUE(buffers[0].data.empty());
+}
+
+TEST_F(TransfersTest, ALongFileTakesStepsThatABudgetEnds) {
+  begin("upload", 1 << 20);
+  EXPECT_EQ(last().stage, "running");
+  EXPECT_TRUE(submitted.empty());
+  EXPECT_EQ(buffers[0].data.size(), 1U << 16) << "the message itself made one step";
+
+  int rounds = 0;
+  while (transfers.on_time(now, TimeBudget{clock, 0s}) && rounds < 100) ++rounds;
+
+  EXPECT_EQ(rounds, 15);
+  ASSERT_EQ(submitted.size(), 1U);
+  EXPECT_EQ(buffers[0].data.size(), 1U << 20);
+}
+
+TEST_F(TransfersTest, PartsThatAreAskedForGoOutOneByOneWhereTheBudgetIsShort) {
+  begin("upload", 4096);
+  buffers[0].done = 4096;
+  reply();
+  states.clear();
+  transfer_t ask = message("more");
+  ask.total = 4096;
+  transfers.take(ask, now);
+  EXPECT_TRUE(states.empty());
+
+  for (std::size_t sent = 1; sent <= 4; ++sent) {
+    EXPECT_TRUE(transfers.on_time(now, TimeBudget{clock, 0s}));
+    ASSERT_EQ(states.size(), sent);
+    EXPECT_EQ(last().offset, static_cast<std::int64_t>(1024 * (sent - 1)));
+  }
+  EXPECT_FALSE(transfers.on_time(now, TimeBudget{clock, 0s}));
+  EXPECT_EQ(states.size(), 4U);
 }
 
 TEST_F(TransfersTest, ThereAreAsManyAsBuffers) {
@@ -182,7 +219,7 @@ TEST_F(TransfersTest, WaitsForRoomInTheRing) {
   begin("upload", 100);
   EXPECT_EQ(last().stage, "running");
   room = true;
-  transfers.on_time(now);
+  on_time();
   EXPECT_EQ(submitted.size(), 1U);
 }
 
@@ -192,7 +229,7 @@ TEST_F(TransfersTest, TellsProgressTwiceASecond) {
   for (int i = 0; i < 20; ++i) {
     now += 100ms;
     buffers[0].done = static_cast<std::uint32_t>(i);
-    transfers.on_time(now);
+    on_time();
   }
   EXPECT_EQ(states.size(), 4U);
   EXPECT_EQ(last().done, 19);
