@@ -236,6 +236,7 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
 }
 
 void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
+  ++damaged_count_;
   const Time now = clocks_.now();
   const auto kept_back = damaged_.allow(channel + std::string{text(fault)}, now);
   if (!kept_back) return;

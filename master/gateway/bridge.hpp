@@ -85,6 +85,10 @@ class Bridge {
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
   std::uint64_t commands_refused() const noexcept { return commands_.refused(); }
+  /// By reason, in the order of CommandRefusal.
+  const auto& refusals() const noexcept { return commands_.refusals(); }
+  /// Messages that could not be read.
+  std::uint64_t damaged() const noexcept { return damaged_count_; }
   const Histogram& sync_to_lcm() const noexcept { return sync_to_lcm_; }
   const Channels& channels() const noexcept { return channels_; }
 
@@ -163,6 +167,7 @@ class Bridge {
   NoticeLimit limit_;
   EmcyHistory emcys_;
   std::string stop_text_;  ///< a line for each axis that the ordered stop did not confirm
+  std::uint64_t damaged_count_ = 0;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;

@@ -12,6 +12,9 @@ namespace takt {
 namespace {
 
 constexpr std::size_t longest_sender = 64;
+constexpr std::array<std::string_view, command_refusals> refusal_names{
+    "observing",  "schema",    "session", "sender",    "no_cycle", "future",
+    "bad_signal", "bad_value", "too_old", "not_ready", "held",     "waited"};
 
 std::uint32_t cycles_in(Time span, Time period) noexcept {
   if (period <= Time{0}) return 1;
@@ -43,9 +46,13 @@ Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_o
       leases_{plan.nodes.size(), second_},
       verdicts_(plan.nodes.size()) {}
 
-bool Commands::refuse(const CommandContext& context, const command_t& command, std::uint8_t node,
-                      const std::string& why) {
-  ++refused_;
+std::string_view name(CommandRefusal refusal) noexcept {
+  return refusal_names[std::to_underlying(refusal)];
+}
+
+bool Commands::refuse(const Refused& refused, const std::string& why) {
+  const auto& [context, command, reason, node] = refused;
+  count(reason);
   const std::string sender = shown(command.sender);
   const std::string thing = sender + '/' + std::to_string(node) + '/' + why.substr(0, 24);
   const auto kept_back = told_.allow(thing, context.now);
@@ -66,23 +73,23 @@ bool Commands::refuse(const CommandContext& context, const command_t& command, s
 
 bool Commands::check_message(const command_t& command, const CommandContext& context) {
   if (options_.observe) {
-    return refuse(context, command, 0, "taktd only observes (--observe)");
+    return refuse({context, command, CommandRefusal::observing}, "taktd only observes (--observe)");
   }
   if (command.schema != message_schema) {
-    return refuse(context, command, 0, schema_refusal(command.schema));
+    return refuse({context, command, CommandRefusal::schema}, schema_refusal(command.schema));
   }
   if (command.session != options_.session) {
-    return refuse(context, command, 0,
+    return refuse({context, command, CommandRefusal::session},
                   "another session of taktd (a replayed log, or taktd was started again); take the "
                   "session from the newest image_t");
   }
   if (command.sender.empty() || command.sender.size() > longest_sender ||
       std::ranges::any_of(command.sender, is_control)) {
-    return refuse(context, command, 0,
+    return refuse({context, command, CommandRefusal::sender},
                   "the sender has to give a name of 1 to 64 characters, none a control character");
   }
   if (command.instance == 0) {
-    return refuse(context, command, 0,
+    return refuse({context, command, CommandRefusal::sender},
                   "it has instance 0; a sender chooses a random number other than 0 at its start");
   }
   return true;
@@ -91,13 +98,13 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
 /// Only a command that was computed from an image of this run can be judged.
 bool Commands::check_cycle(const command_t& command, const CommandContext& context) {
   if (command.cycle < 1) {
-    return refuse(context, command, 0,
+    return refuse({context, command, CommandRefusal::no_cycle},
                   "it is computed from cycle " + std::to_string(command.cycle) +
                       ", which is none: a command repeats the cycle of the image that it was "
                       "computed from");
   }
   if (static_cast<std::uint64_t>(command.cycle) <= context.cycle + 1) return true;
-  return refuse(context, command, 0,
+  return refuse({context, command, CommandRefusal::future},
                 "it comes from the future: computed from cycle " + std::to_string(command.cycle) +
                     ", now is cycle " + std::to_string(context.cycle));
 }
@@ -109,12 +116,12 @@ bool Commands::read_items(const command_t& command, const CommandContext& contex
     const auto index = static_cast<std::size_t>(position);
     if (position < 0 || index >= plan_.layout.signals.size() ||
         !plan_.layout.signals[index].output) {
-      return refuse(context, command, 0,
+      return refuse({context, command, CommandRefusal::bad_signal},
                     "signal " + std::to_string(position) + " is not an output of the layout");
     }
     const Signal& signal = plan_.layout.signals[index];
     if (!fits(signal.type, signal.bits, command.values[i])) {
-      return refuse(context, command, signal.node.value(),
+      return refuse({context, command, CommandRefusal::bad_value, signal.node.value()},
                     "the value of " + signal_text(plan_, signal) + ", " +
                         std::to_string(command.values[i]) + ", does not fit its " +
                         std::to_string(signal.bits) + " bits");
@@ -126,7 +133,7 @@ bool Commands::read_items(const command_t& command, const CommandContext& contex
                    .configured = signal.fallback_cycles,
                    .most = second_});
     if (!left.fresh) {
-      return refuse(context, command, signal.node.value(),
+      return refuse({context, command, CommandRefusal::too_old, signal.node.value()},
                     "it is too old: computed from cycle " + std::to_string(command.cycle) +
                         ", now is cycle " + std::to_string(context.cycle));
     }
@@ -150,14 +157,17 @@ bool Commands::check_node(std::size_t node_index, const command_t& command,
   const std::uint8_t node = plan_.nodes[node_index].id.value();
   const NodeStatus& status = context.nodes[node_index];
   if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
-    return refuse(context, command, node, "the node has not booted (yet)");
+    return refuse({context, command, CommandRefusal::not_ready, node},
+                  "the node has not booted (yet)");
   }
   if (status.nmt != NmtState::operational) {
-    return refuse(context, command, node, "the node is not operational");
+    return refuse({context, command, CommandRefusal::not_ready, node},
+                  "the node is not operational");
   }
   const Sender sender{.instance = command.instance, .name = command.sender};
   if (!leases_.take(node_index, sender, context.cycle, lease_cycles(node_index))) {
-    return refuse(context, command, node, owned_text(node_index, command, context));
+    return refuse({context, command, CommandRefusal::held, node},
+                  owned_text(node_index, command, context));
   }
   return true;
 }

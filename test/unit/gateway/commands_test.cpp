@@ -82,6 +82,23 @@ TEST_F(CommandsTest, ValueThatDoesNotFitItsBitsIsRefusedAsAWhole) {
   EXPECT_TRUE(told("does not fit its 16 bits"));
 }
 
+TEST_F(CommandsTest, RefusalsAreCountedByTheirReason) {
+  take(command({0}, {1}));
+  take(command({1}, {65536}));
+  take(command({1}, {1}), 105);
+  take(command({1}, {1}), 105);
+  commands.discard();
+
+  EXPECT_EQ(commands.refused(), 5U);
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::bad_signal)], 1U);
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::bad_value)], 1U);
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::too_old)], 2U);
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::waited)], 1U);
+  EXPECT_EQ(name(CommandRefusal::observing), "observing");
+  EXPECT_EQ(name(CommandRefusal::too_old), "too_old");
+  EXPECT_EQ(name(CommandRefusal::waited), "waited");
+}
+
 TEST_F(CommandsTest, ReplayedLogDoesNotMoveTheMachine) {
   command_t replayed = command({1}, {0x0F});
   replayed.session = 41;
