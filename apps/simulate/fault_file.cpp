@@ -1,9 +1,11 @@
 #include "apps/simulate/fault_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <yaml-cpp/yaml.h>
 
 #include "apps/duration/duration.hpp"
@@ -17,14 +19,18 @@ constexpr std::array<std::string_view, 12> keys{"kind",   "node",   "at",       
                                                 "until",  "time",   "probability", "ppm",
                                                 "cob_id", "object", "abort_code",  "value"};
 constexpr std::array<std::string_view, 2> more_keys{"emcy_code", "data"};
+constexpr Time shortest_step = std::chrono::microseconds{100};
+constexpr Time longest_step = std::chrono::hours{1};
 
 std::vector<std::string_view> kinds() {
   std::vector<std::string_view> all;
   for (unsigned kind = 0;; ++kind) {
     const auto known = sim::name(static_cast<sim::FaultKind>(kind));
-    if (!sim::fault_kind(known)) return all;
+    if (!sim::fault_kind(known)) break;
     all.push_back(known);
   }
+  for (const std::string_view program : program_fault_names()) all.push_back(program);
+  return all;
 }
 
 std::vector<std::byte> little_endian(std::uint64_t value) {
@@ -59,7 +65,8 @@ std::optional<ObjectKey> object_key(std::string_view text) {
 /// Reads one list entry after the other and collects what is wrong.
 class Reader {
  public:
-  Reader(std::string file, const BusPlan& plan) : file_{std::move(file)}, plan_{plan} {}
+  Reader(std::string file, const BusPlan& plan, std::size_t applications)
+      : file_{std::move(file)}, plan_{plan}, applications_{applications} {}
 
   FaultFile take() { return std::move(result_); }
 
@@ -90,6 +97,9 @@ class Reader {
       error(entry.Mark(), "fault-file", "a fault is a map with at least `kind:`");
       return;
     }
+    const YAML::Node kind = entry["kind"];
+    const auto program = program_fault_kind(kind ? kind.as<std::string>("") : "");
+    if (program) return read_program_fault(entry, *program);
     sim::Fault fault;
     bool has_kind = false;
     for (const auto& item : entry) {
@@ -102,9 +112,58 @@ class Reader {
       read_key(fault, key, item.second, item.first.Mark());
     }
     if (!has_kind) error(entry.Mark(), "fault-kind", "`kind` is missing");
-    if (fault.until != never && !until_is_absolute_) fault.until += fault.at;
-    until_is_absolute_ = false;
+    settle_end(fault.at, fault.until);
     result_.faults.push_back(std::move(fault));
+  }
+
+  /// `for` counts from the beginning of the fault.
+  void settle_end(Time at, Time& until) {
+    const bool absolute = std::exchange(until_is_absolute_, false);
+    if (until != never && !absolute) until += at;
+  }
+
+  void read_program_fault(const YAML::Node& entry, ProgramFaultKind kind) {
+    ProgramFault fault{.kind = kind};
+    if (applications_ == 0) {
+      error(entry.Mark(), "fault-kind",
+            "`" + std::string{name(kind)} +
+                "` happens to programs, and there is none: add `--applications 1`");
+    }
+    for (const auto& item : entry) {
+      const auto key = item.first.as<std::string>("");
+      const auto text = item.second.IsScalar() ? item.second.as<std::string>("") : std::string{};
+      const YAML::Mark mark = item.second.Mark();
+      if (key == "kind") continue;
+      if (key == "at") {
+        read_time(fault.at, text, mark);
+      } else if (key == "for" || key == "until") {
+        until_is_absolute_ = key == "until";
+        read_time(fault.until, text, mark);
+      } else if (key == "time") {
+        read_step(fault.time, text, mark);
+      } else if (key == "application" && concerns_application(kind)) {
+        read_application(fault, text, mark);
+      } else {
+        error(item.first.Mark(), "unknown-key",
+              "`" + key + "` says nothing about `" + std::string{name(kind)} + "`");
+      }
+    }
+    settle_end(fault.at, fault.until);
+    result_.programs.push_back(fault);
+  }
+
+  /// Of what is done again and again, and of delays.
+  void read_step(Time& time, const std::string& text, const YAML::Mark& mark) {
+    read_time(time, text, mark);
+    if (time < shortest_step || time > longest_step) refuse(mark, text, "a time of 100us to 1h");
+  }
+
+  void read_application(ProgramFault& fault, const std::string& text, const YAML::Mark& mark) {
+    const auto number = integer(text);
+    if (!number || *number < 1 || (applications_ != 0 && *number > applications_)) {
+      return refuse(mark, text, "an application; they are counted from 1");
+    }
+    fault.application = *number - 1;
   }
 
   void read_key(sim::Fault& fault, const std::string& key, const YAML::Node& value,
@@ -216,14 +275,16 @@ class Reader {
 
   std::string file_;
   const BusPlan& plan_;
+  std::size_t applications_;
   FaultFile result_;
   bool until_is_absolute_ = false;
 };
 
 }  // namespace
 
-FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan) {
-  Reader reader{path.string(), plan};
+FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan,
+                          std::size_t applications) {
+  Reader reader{path.string(), plan, applications};
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {  // yaml-cpp loses memory over it
     reader.error(YAML::Mark::null_mark(), "fault-file", "is a folder");

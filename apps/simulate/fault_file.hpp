@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/simulate/program_faults.hpp"
 #include "eds_parser/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/sim/faults.hpp"
@@ -12,6 +13,7 @@ namespace takt {
 /// A schedule of faults for `takt simulate`. Usable only where `findings` holds no error.
 struct FaultFile {
   sim::Faults faults;
+  ProgramFaults programs;
   Findings findings;
 };
 
@@ -21,7 +23,9 @@ struct FaultFile {
 ///       - {kind: power_off, node: elbow, at: 2s, for: 500ms}
 ///       - {kind: override_value, node: 1, object: 1018:01, value: 0x43}
 ///
-/// Nodes go by name or number. All errors are listed at once.
-FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan);
+/// Nodes go by name or number. All errors are listed at once. What happens to programs is an error
+/// where there are no `applications`.
+FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan,
+                          std::size_t applications = 0);
 
 }  // namespace takt

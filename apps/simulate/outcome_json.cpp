@@ -70,6 +70,29 @@ Json node_json(const NodeOutcome& node) {
           {"rpdo_frames", node.rpdo_frames}};
 }
 
+Json front_json(const FrontOutcome& front) {
+  Json refused = Json::object();
+  for (std::size_t i = 0; i < front.refused.size(); ++i) {
+    refused[std::string{name(static_cast<CommandRefusal>(i))}] = front.refused[i];
+  }
+  Json applications = Json::array();
+  for (const ApplicationOutcome& one : front.applications) {
+    applications.push_back({{"name", one.name},
+                            {"images_used", one.images},
+                            {"commands_sent", one.commands},
+                            {"queue_overflows", one.lost}});
+  }
+  return {{"starts", front.starts},
+          {"images_published", front.images},
+          {"commands_taken", front.commands_taken},
+          {"commands_refused", std::move(refused)},
+          {"damaged_messages", front.damaged},
+          {"gaps", front.gaps},
+          {"queue_overflows", front.lost},
+          {"fallbacks", front.fallbacks},
+          {"applications", std::move(applications)}};
+}
+
 }  // namespace
 
 void print_json(std::ostream& out, const SimulationOutcome& outcome) {
@@ -82,6 +105,7 @@ void print_json(std::ostream& out, const SimulationOutcome& outcome) {
   root["nodes"] = Json::array();
   for (const NodeOutcome& node : outcome.nodes) root["nodes"].push_back(node_json(node));
   root["move"] = {{"built_in_sine", outcome.move}, {"axes_moved", outcome.axes_moved}};
+  if (outcome.front) root["front"] = front_json(*outcome.front);
   root["stopped_in_order"] = outcome.stopped && outcome.stop == StopResult::confirmed;
   root["stop"] = {{"ended", outcome.stopped},
                   {"confirmed", outcome.stop == StopResult::confirmed},

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 #include "apps/simulate/outcome_report.hpp"
 #include "master/core/boot_report.hpp"
@@ -46,6 +47,34 @@ void print_sync(std::ostream& out, const SyncOnWire& sync) {
       us(sync.quantile(1.0 - 1e-12)), sync.gaps);
 }
 
+std::string refusals_text(const FrontOutcome& front) {
+  std::string text;
+  for (std::size_t i = 0; i < front.refused.size(); ++i) {
+    if (front.refused[i] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", front.refused[i],
+                        name(static_cast<CommandRefusal>(i)));
+  }
+  return text.empty() ? text : text + ")";
+}
+
+void print_front(std::ostream& out, const FrontOutcome& front, std::size_t axes_moved) {
+  const auto refused = std::accumulate(front.refused.begin(), front.refused.end(), 0ULL);
+  out << fmt::format("  set-points   {} applications over LCM; {} axes moved\n",
+                     front.applications.size(), axes_moved)
+      << fmt::format("  front thread {} images published, {} commands taken, {} refused{}\n",
+                     front.images, front.commands_taken, refused, refusals_text(front))
+      << fmt::format(
+             "               {} gaps, {} damaged messages, {} found its queue full, {} outputs "
+             "took "
+             "their fallback, {} starts\n",
+             front.gaps, front.damaged, front.lost, front.fallbacks, front.starts);
+  for (const ApplicationOutcome& one : front.applications) {
+    out << fmt::format(
+        "  {:12} {} images used, {} commands sent, {} messages found its queue full\n", one.name,
+        one.images, one.commands, one.lost);
+  }
+}
+
 void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
   const bool confirmed = outcome.stop == StopResult::confirmed;
   const char* const said = !outcome.stopped ? "NOT in its time"
@@ -86,7 +115,9 @@ void print_events(std::ostream& out, const SimulationOutcome& outcome) {
 void print_text(std::ostream& out, const SimulationOutcome& outcome) {
   print_bus(out, outcome);
   print_sync(out, outcome.sync);
-  if (outcome.move) {
+  if (outcome.front) {
+    print_front(out, *outcome.front, outcome.axes_moved);
+  } else if (outcome.move) {
     out << fmt::format("  set-points   built-in sine, no application; {} axes moved\n",
                        outcome.axes_moved);
   } else {

@@ -61,6 +61,8 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   std::int64_t session() const noexcept { return session_; }
   const Master& master() const noexcept { return *master_; }
   const Bridge& bridge() const noexcept { return *bridge_; }
+  /// Messages that found its queue full, of all its processes.
+  std::uint64_t lost() const noexcept { return lcm_.dropped(); }
   Time stalled_until() const noexcept { return stalled_until_; }
 
   Time next() const noexcept override;

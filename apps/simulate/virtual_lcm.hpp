@@ -57,6 +57,8 @@ class VirtualEndpoint final : public Transport {
 /// random delay, in order; a full queue loses the newest message.
 class VirtualLcm {
  public:
+  static constexpr Time usual_delay = std::chrono::microseconds{150};
+
   VirtualLcm(const sim::World& world, sim::Random random) : world_{world}, random_{random} {}
 
   /// `room`: messages of its queue. Lives as long as this.
@@ -73,7 +75,7 @@ class VirtualLcm {
 
   const sim::World& world_;
   sim::Random random_;
-  Time delay_ = std::chrono::microseconds{150};
+  Time delay_ = usual_delay;
   std::vector<std::unique_ptr<VirtualEndpoint>> endpoints_;
   std::uint64_t messages_ = 0;
 };

@@ -2,18 +2,19 @@
 
 #include <array>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <utility>
 
 #include "apps/simulate/candump_log.hpp"
+#include "apps/simulate/forger.hpp"
 #include "apps/simulate/staged_port.hpp"
+#include "apps/simulate/virtual_application.hpp"
 #include "apps/simulate/virtual_daemon.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
 #include "apps/soak/fault_walk.hpp"
-#include "apps/soak/forger.hpp"
 #include "apps/soak/stop_judge.hpp"
 #include "apps/soak/troubles.hpp"
-#include "apps/soak/virtual_application.hpp"
 #include "apps/soak/wire_judge.hpp"
 #include "master/sim/world.hpp"
 
@@ -108,7 +109,9 @@ class Run {
         port_{world_, port_options(plan_, options), stage_,
               [this](std::span<const Frame> frames, Time now) { wire_.sent(frames, now); }},
         daemon_{daemon_plan_, port_, lcm_, front_clocks_, random_.fork(2)},
-        forger_{plan_, lcm_, wire_, random_.fork(3)},
+        forger_{plan_, lcm_,
+                [this](SignalIndex signal, std::int64_t value) { wire_.forged(signal, value); },
+                random_.fork(3)},
         applications_{make_applications()},
         rival_{make_application("axes 0", 7, applications_.front()->nodes())},
         troubles_{{world_, lcm_, clocks_, daemon_, applications_, *rival_, forger_},
@@ -151,12 +154,26 @@ class Run {
  private:
   std::unique_ptr<VirtualApplication> make_application(std::string name, unsigned number,
                                                        std::vector<bool> nodes) {
-    return std::make_unique<VirtualApplication>(plan_, lcm_, wire_, verdict_,
-                                                ApplicationOptions{.name = std::move(name),
-                                                                   .number = number,
-                                                                   .nodes = std::move(nodes),
-                                                                   .meddle = &options_.front},
+    ApplicationOptions options{
+        .name = std::move(name), .number = number, .nodes = std::move(nodes)};
+    options.commanded = [this, number](const command_t& command, Time computed_from) {
+      judge_command(command, {.sender = SenderBit{1} << number, .computed_from = computed_from});
+    };
+    options.released = [this, number](Time now) { wire_.released(SenderBit{1} << number, now); };
+    options.deaf = [this](const std::string& what) {
+      verdict_.blame("no message deafens an application", what);
+    };
+    const FrontMeddle& meddle = options_.front;
+    if (meddle.instance) options.instance = std::bind_front(meddle.instance, number);
+    if (meddle.hears) options.hears = std::bind_front(meddle.hears, number);
+    return std::make_unique<VirtualApplication>(plan_, lcm_, std::move(options),
                                                 random_.fork(100 + number));
+  }
+  void judge_command(const command_t& command, SentCommand sent) {
+    sent.time_to_live = static_cast<std::uint32_t>(command.time_to_live);
+    for (std::size_t i = 0; i < command.signals.size(); ++i) {
+      wire_.commanded(static_cast<SignalIndex>(command.signals[i]), command.values[i], sent);
+    }
   }
   std::vector<std::unique_ptr<VirtualApplication>> make_applications() {
     std::vector<std::unique_ptr<VirtualApplication>> all;
@@ -211,7 +228,8 @@ class Run {
   void settle() {
     const Time limit = world_.now() + time_to_recover;
     const auto leads = [&](const auto& application) {
-      return world_.now() - wire_.last_move(application->bit()) < 100ms || !has_axes(*application);
+      return world_.now() - wire_.last_move(SenderBit{1} << application->number()) < 100ms ||
+             !has_axes(*application);
     };
     const Time since = world_.now() + 12s;  // the longest trouble is over
     while (verdict_.good() && world_.now() < since) cycle();

@@ -9,7 +9,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time mean_pause = 400ms;
-constexpr Time usual_delay = 150us;  // of LCM
 
 }  // namespace
 
@@ -38,26 +37,10 @@ VirtualApplication& Troubles::application() {
   return *cast_.applications[random_.below(static_cast<std::uint32_t>(cast_.applications.size()))];
 }
 
-void Troubles::later(Time when, std::function<void()> what) {
-  later_.push_back({.when = when, .what = std::move(what)});
-}
-
-Time Troubles::next() const noexcept {
-  Time first = next_;
-  for (const Later& one : later_) first = std::min(first, one.when);
-  return first;
-}
+Time Troubles::next() const noexcept { return std::min(next_, agenda_.next()); }
 
 void Troubles::act(Time now) {
-  for (std::size_t i = 0; i < later_.size();) {
-    if (later_[i].when > now) {
-      ++i;
-      continue;
-    }
-    const auto what = std::move(later_[i].what);
-    later_.erase(later_.begin() + static_cast<std::ptrdiff_t>(i));
-    what();
-  }
+  agenda_.act(now);
   if (next_ > now) return;
   begin(now);
   next_ = now + some(2 * mean_pause);
@@ -112,12 +95,12 @@ void Troubles::stall_process(Time now) {
   cast_.world.add({.kind = sim::FaultKind::stall_master, .at = now, .until = now + stall});
   cast_.daemon.stall(now + stall + some(300us));
   if (random_.chance(0.3))
-    later(now + stall / 2, [this, at = now + stall / 2] { kill_application(at); });
+    agenda_.add(now + stall / 2, [this, at = now + stall / 2] { kill_application(at); });
 }
 
 void Troubles::daemon_died(Time now) {
   daemon_dies_ = false;
-  later(now + 20ms + span(), [this] { cast_.daemon.start(); });
+  agenda_.add(now + 20ms + span(), [this] { cast_.daemon.start(); });
 }
 
 void Troubles::stall_application(Time now) {
@@ -144,7 +127,7 @@ void Troubles::kill_application(Time now) {
   } else {
     one.kill();
   }
-  later(now + away, [&one] { one.start(); });
+  agenda_.add(now + away, [&one] { one.start(); });
 }
 
 void Troubles::bring_rival(Time now) {
@@ -152,14 +135,14 @@ void Troubles::bring_rival(Time now) {
   const Time stay = span();
   tell(now, "a second program of the same name comes", stay);
   cast_.rival.start();
-  later(now + stay, [this] { cast_.rival.kill(); });
+  agenda_.add(now + stay, [this] { cast_.rival.kill(); });
 }
 
 void Troubles::slow_down_lcm(Time now) {
   const Time lasts = span();
   tell(now, "messages are slow", lasts);
   cast_.lcm.set_delay(1ms + some(300ms));
-  later(now + lasts, [this] { cast_.lcm.set_delay(usual_delay); });
+  agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
 }
 
 void Troubles::tell(Time now, const char* what, Time span) const {

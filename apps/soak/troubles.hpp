@@ -1,14 +1,14 @@
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "apps/simulate/agenda.hpp"
+#include "apps/simulate/forger.hpp"
 #include "apps/simulate/stage.hpp"
+#include "apps/simulate/virtual_application.hpp"
 #include "apps/simulate/virtual_daemon.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
-#include "apps/soak/forger.hpp"
-#include "apps/soak/virtual_application.hpp"
 #include "master/sim/random.hpp"
 #include "master/sim/world.hpp"
 
@@ -39,10 +39,6 @@ class Troubles final : public Actor {
   std::uint64_t count() const noexcept { return count_; }
 
  private:
-  struct Later {
-    Time when{};
-    std::function<void()> what;
-  };
   void begin(Time now);
   void stall_front(Time now);
   void stall_process(Time now);
@@ -51,7 +47,6 @@ class Troubles final : public Actor {
   void kill_application(Time now);
   void bring_rival(Time now);
   void slow_down_lcm(Time now);
-  void later(Time when, std::function<void()> what);
   void tell(Time now, const char* what, Time span) const;
   Time some(Time longest);
   Time span();
@@ -62,7 +57,7 @@ class Troubles final : public Actor {
   Time next_;
   Time until_;
   bool verbose_;
-  std::vector<Later> later_;
+  Agenda agenda_;
   bool daemon_dies_ = false;
   std::uint64_t count_ = 0;
 };

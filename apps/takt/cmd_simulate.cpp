@@ -31,9 +31,10 @@ int run(Arguments& arguments) {
   if (tell(network.findings)) return 2;
   SimulationOptions& options = arguments.simulation;
   if (!arguments.faults.empty()) {
-    FaultFile file = read_fault_file(arguments.faults, network.plan);
+    FaultFile file = read_fault_file(arguments.faults, network.plan, options.applications);
     if (tell(file.findings)) return 2;
     options.faults = std::move(file.faults);
+    options.programs = std::move(file.programs);
   }
   options.duration = *parse_duration(arguments.run_for);
   options.wake_jitter = *parse_duration(arguments.jitter);
@@ -69,8 +70,13 @@ void add_simulate(CLI::App& app, int& exit_code) {
   add_number(*command, "--seed", arguments->simulation.seed, "same seed, same run")
       ->capture_default_str();
   command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
-  command->add_flag("--move", arguments->simulation.move,
-                    "built-in sine set-points for all CiA 402 axes, in place of an application");
+  auto* move = command->add_flag(
+      "--move", arguments->simulation.move,
+      "built-in sine set-points for all CiA 402 axes, in place of an application");
+  add_number(*command, "--applications", arguments->simulation.applications,
+             "so many programs move the axes over LCM, with the whole taktd in virtual time")
+      ->check(CLI::Range(std::size_t{1}, most_applications))
+      ->excludes(move);
   command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
       ->check(check_duration)
       ->capture_default_str();
@@ -85,8 +91,12 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "no_bootup, self_start, no_start, preop_only, no_heartbeat, no_guarding, stuck_toggle, "
       "mute_pdo,\n"
       "device_error (emcy_code), lss_silent, lss_no_store, reset, bus_off, stall_master,\n"
-      "interface_down. share/doc/faults.md has a line of each.\n\n"
+      "interface_down. With --applications also stall_front, kill_master, slow_messages (time),\n"
+      "stall_application, slow_application (time), kill_application, end_application,\n"
+      "second_sender (all five: application), replay, forge_command, forge_image and\n"
+      "damage_messages (time). share/doc/faults.md has a line of each.\n\n"
       "Example:\n  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
+      "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
   command->callback([arguments, &exit_code] {
     try {

@@ -15,9 +15,9 @@ using namespace std::chrono_literals;
 
 class FaultFileTest : public testing::Test {
  protected:
-  FaultFile read(const std::string& text) {
+  FaultFile read(const std::string& text, std::size_t applications = 0) {
     plan_.nodes.push_back({.name = "elbow", .id = 2_node});
-    return read_fault_file(folder_.write("faults.yaml", text), plan_);
+    return read_fault_file(folder_.write("faults.yaml", text), plan_, applications);
   }
 
   const test::Folder folder_;
@@ -71,6 +71,42 @@ TEST_F(FaultFileTest, ListsAllErrorsWithTheirLines) {
   EXPECT_EQ(file.findings[6].pos.line, 5u);
 }
 
+TEST_F(FaultFileTest, ReadsWhatHappensToPrograms) {
+  const FaultFile file = read(
+      "faults:\n"
+      "  - {kind: kill_application, application: 2, at: 2s, for: 500ms}\n"
+      "  - {kind: replay, at: 3s, until: 4s, time: 50ms}\n"
+      "  - {at: 1s, kind: stall_front}\n"
+      "  - {kind: power_off, at: 1s, for: 1s}\n",
+      2);
+
+  for (const Finding& finding : file.findings) ADD_FAILURE() << to_string(finding);
+  ASSERT_EQ(file.programs.size(), 3u);
+  EXPECT_EQ(file.programs[0].kind, ProgramFaultKind::kill_application);
+  EXPECT_EQ(file.programs[0].application, 1u);
+  EXPECT_EQ(file.programs[0].until, 2500ms);
+  EXPECT_EQ(file.programs[1].time, 50ms);
+  EXPECT_EQ(file.programs[1].until, 4s);
+  EXPECT_EQ(file.programs[2].at, 1s);
+  EXPECT_EQ(file.programs[2].until, never);
+  ASSERT_EQ(file.faults.size(), 1u);
+  EXPECT_EQ(file.faults[0].until, 2s);
+}
+
+TEST_F(FaultFileTest, RefusesWhatCanNotHappenToPrograms) {
+  for (const char* text : {"kind: kill_application, application: 0", "kind: replay, time: 0us",
+                           "kind: kill_application, application: 3", "kind: replay, time: 2h",
+                           "kind: stall_front, application: 1", "kind: stall_front, node: elbow",
+                           "kind: stall_front, at: soon", "kind: kill_aplication"}) {
+    const FaultFile file = read("faults:\n  - {" + std::string{text} + "}\n", 2);
+    ASSERT_EQ(file.findings.size(), 1u) << text;
+    EXPECT_EQ(file.findings[0].pos.line, 2u);
+  }
+  const FaultFile alone = read("faults:\n  - {kind: stall_front, at: 1s}\n");
+  ASSERT_EQ(alone.findings.size(), 1u);
+  EXPECT_TRUE(alone.findings[0].message.contains("--applications")) << alone.findings[0].message;
+}
+
 /// The YAML block of a text file.
 std::string yaml_block(const std::string& path) {
   std::ifstream in{path};
@@ -88,7 +124,7 @@ std::string yaml_block(const std::string& path) {
 
 TEST_F(FaultFileTest, ReadsEveryLineOfItsDescriptionWhichHasEveryKind) {
   const std::string block = yaml_block(TAKT_SOURCE_DIR "/share/doc/faults.md");
-  const FaultFile file = read(block);
+  const FaultFile file = read(block, 2);
 
   for (const Finding& finding : file.findings) ADD_FAILURE() << to_string(finding);
   std::set<std::string_view> told;
@@ -101,7 +137,13 @@ TEST_F(FaultFileTest, ReadsEveryLineOfItsDescriptionWhichHasEveryKind) {
   }
   EXPECT_EQ(kinds, 31u);
   EXPECT_EQ(told.size(), kinds);
-  EXPECT_EQ(file.faults.size(), static_cast<std::size_t>(std::ranges::count(block, '{')))
+  std::set<std::string_view> programs;
+  for (const ProgramFault& fault : file.programs) programs.insert(name(fault.kind));
+  for (const std::string_view kind : program_fault_names()) {
+    EXPECT_TRUE(programs.contains(kind)) << kind << " is not described";
+  }
+  EXPECT_EQ(file.faults.size() + file.programs.size(),
+            static_cast<std::size_t>(std::ranges::count(block, '{')))
       << "one on each line";
 }
 

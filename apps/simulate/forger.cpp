@@ -1,4 +1,4 @@
-#include "apps/soak/forger.hpp"
+#include "apps/simulate/forger.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,8 +19,12 @@ constexpr std::int64_t far_ahead = 50'000;  // cycles: nobody is silent for so l
 
 }  // namespace
 
-Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge, sim::Random random)
-    : plan_{plan}, judge_{judge}, random_{random}, lcm_{lcm.join(1000)}, channels_{plan.name} {
+Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random random)
+    : plan_{plan},
+      forged_{std::move(forged)},
+      random_{random},
+      lcm_{lcm.join(1000)},
+      channels_{plan.name} {
   lcm_.subscribe(channels_.command);
   lcm_.subscribe(channels_.image);
 }
@@ -71,7 +75,6 @@ void Forger::replay(Time now) {
   }
 }
 
-/// The newest command with another position, which nobody obeys for one of several reasons.
 void Forger::forge_command() {
   if (heard_.empty()) return;
   auto command = decode<command_t>(heard_.back().command);
@@ -94,7 +97,7 @@ void Forger::forge_command() {
     const auto signal = static_cast<SignalIndex>(command->signals[i]);
     if (plan_.layout.signals[signal].object.index != 0x607A) continue;
     command->values[i] = (command->values[i] & ~low_bits) | nobody;  // within every limit
-    judge_.forged(signal, command->values[i]);
+    forged_(signal, command->values[i]);
   }
   publish(channels_.command, encode(*command, buffer_));
 }
@@ -107,7 +110,6 @@ void Forger::forge_image() {
   publish(channels_.image, encode(*image, buffer_));
 }
 
-/// Bytes of any length, or a command that is cut off, on any channel.
 void Forger::send_rubbish() {
   std::vector<std::byte> bytes;
   if (!heard_.empty() && random_.chance(0.5)) {

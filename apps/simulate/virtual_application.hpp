@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,9 +9,6 @@
 #include "apps/axis/image_input.hpp"
 #include "apps/simulate/stage.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
-#include "apps/soak/front_meddle.hpp"
-#include "apps/soak/verdict.hpp"
-#include "apps/soak/wire_judge.hpp"
 #include "master/gateway/bridge.hpp"
 #include "master/sim/random.hpp"
 
@@ -20,7 +18,17 @@ struct ApplicationOptions {
   std::string name;         ///< as its commands say it
   unsigned number = 0;      ///< 0..7, of this program
   std::vector<bool> nodes;  ///< that it commands, in the order of BusPlan::nodes
-  const FrontMeddle* meddle = nullptr;
+
+  /// Hears each command when it is sent, and the SYNC of the image that it was computed from.
+  std::function<void(const command_t& command, Time computed_from)> commanded{};
+  /// It gives up its outputs.
+  std::function<void(Time now)> released{};
+  /// It has heard images for a long time, and could use none.
+  std::function<void(const std::string& what)> deaf{};
+  /// For tests: the instance that it gives itself, `own` being its random one.
+  std::function<std::int64_t(std::int64_t own)> instance{};
+  /// For tests: false where it does not look at this image.
+  std::function<bool(const image_t& image)> hears{};
 };
 
 /// A program that moves axes, made of the axis library: the newest image in, one command out. It
@@ -28,8 +36,8 @@ struct ApplicationOptions {
 /// tells who has sent it and when.
 class VirtualApplication final : public Actor {
  public:
-  VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge, Verdict& verdict,
-                     ApplicationOptions options, sim::Random random);
+  VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, ApplicationOptions options,
+                     sim::Random random);
 
   /// A new process.
   void start();
@@ -40,10 +48,17 @@ class VirtualApplication final : public Actor {
   void jump(std::int64_t counts) noexcept { jump_ = counts; }
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
   bool runs() const noexcept { return running_; }
-  SenderBit bit() const noexcept { return 1U << options_.number; }
+  const std::string& name() const noexcept { return options_.name; }
+  unsigned number() const noexcept { return options_.number; }
   const std::vector<bool>& nodes() const noexcept { return options_.nodes; }
   bool commands(std::size_t node_index) const { return options_.nodes[node_index]; }
-  std::uint64_t sent() const noexcept { return sent_; }
+  /// From now on it needs so long for each image.
+  void slow_down(Time reaction) noexcept { slowness_ = reaction; }
+  /// Axes that it leads at this moment.
+  std::size_t leads() const noexcept;
+  std::uint64_t images() const noexcept { return images_; }  ///< that it has used
+  std::uint64_t sent() const noexcept { return sent_; }      ///< commands
+  std::uint64_t dropped() const noexcept { return lcm_.dropped(); }
 
   /// Which one it is, and how its axes are.
   std::string text() const;
@@ -61,8 +76,6 @@ class VirtualApplication final : public Actor {
   void judge_hearing(Time now);
 
   const BusPlan& plan_;
-  WireJudge& judge_;
-  Verdict& verdict_;
   ApplicationOptions options_;
   sim::Random random_;
   VirtualEndpoint& lcm_;
@@ -70,6 +83,7 @@ class VirtualApplication final : public Actor {
   bool running_ = false;
   Time stalled_until_{};
   Time reaction_{};
+  Time slowness_{};
   std::int64_t instance_ = 0;
   std::uint32_t time_to_live_ = 20;
   ImageInput input_;

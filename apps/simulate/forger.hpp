@@ -1,11 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "apps/simulate/stage.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
-#include "apps/soak/wire_judge.hpp"
 #include "master/gateway/bridge.hpp"
 #include "master/sim/random.hpp"
 
@@ -16,11 +17,20 @@ namespace takt {
 /// never be, and bytes without sense.
 class Forger final : public Actor {
  public:
-  Forger(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge, sim::Random random);
+  /// `forged` hears each position that nobody may ever see on the wire.
+  using Forged = std::function<void(SignalIndex signal, std::int64_t value)>;
 
+  Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random random);
+
+  /// Any of what follows.
   void act_up(Time now);
   /// A replay: some of what was heard comes again, from `cycle 0` or as it was.
   void replay(Time now);
+  /// The newest command with another position, which nobody obeys for one of several reasons.
+  void forge_command();
+  void forge_image();
+  /// Bytes of any length, or a command that is cut off, on any channel.
+  void send_rubbish();
   std::uint64_t sent() const noexcept { return sent_; }
 
   Time next() const noexcept override { return lcm_.next_arrival(); }
@@ -31,13 +41,10 @@ class Forger final : public Actor {
     Time when{};
     std::vector<std::byte> command;
   };
-  void forge_command();
-  void forge_image();
-  void send_rubbish();
   void publish(const std::string& channel, std::span<const std::byte> data);
 
   const BusPlan& plan_;
-  WireJudge& judge_;
+  Forged forged_;
   sim::Random random_;
   VirtualEndpoint& lcm_;
   Channels channels_;

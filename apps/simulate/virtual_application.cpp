@@ -1,4 +1,4 @@
-#include "apps/soak/virtual_application.hpp"
+#include "apps/simulate/virtual_application.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,12 +20,9 @@ constexpr Time longest_deafness = 3s;         // a new layout comes once a secon
 
 }  // namespace
 
-VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, WireJudge& judge,
-                                       Verdict& verdict, ApplicationOptions options,
-                                       sim::Random random)
+VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm,
+                                       ApplicationOptions options, sim::Random random)
     : plan_{plan},
-      judge_{judge},
-      verdict_{verdict},
       options_{std::move(options)},
       random_{random},
       lcm_{lcm.join(socket_room)},
@@ -35,7 +32,7 @@ void VirtualApplication::start() {
   running_ = true;
   stalled_until_ = {};
   instance_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
-  if (options_.meddle->instance) instance_ = options_.meddle->instance(options_.number, instance_);
+  if (options_.instance) instance_ = options_.instance(instance_);
   time_to_live_ = 8 + random_.below(20);
   input_ = {};
   axes_ = {};
@@ -60,7 +57,7 @@ void VirtualApplication::end(Time now) {
   command.sender = options_.name;
   command.release = 1;
   if (!command.signals.empty()) lcm_.publish(channels_.command, encode(command, buffer_));
-  judge_.released(bit(), now);
+  if (options_.released) options_.released(now);
   kill();
 }
 
@@ -72,6 +69,12 @@ std::string VirtualApplication::text() const {
   return words;
 }
 
+std::size_t VirtualApplication::leads() const noexcept {
+  if (!running_) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(
+      courses_, [](const Course& course) { return course.position.has_value(); }));
+}
+
 Time VirtualApplication::next() const noexcept {
   const Time arrival = lcm_.next_arrival();
   if (!running_ || arrival == never) return never;
@@ -79,7 +82,7 @@ Time VirtualApplication::next() const noexcept {
 }
 
 void VirtualApplication::act(Time now) {
-  reaction_ = 20us + Time{random_.below(random_.chance(0.02) ? 5'000'000 : 300'000)};
+  reaction_ = slowness_ + 20us + Time{random_.below(random_.chance(0.02) ? 5'000'000 : 300'000)};
   input_.set_time(now.count());
   lcm_.serve([this](std::string_view channel, Bytes data) { take(channel, data); });
   if (std::exchange(new_layout_, false)) {
@@ -99,7 +102,7 @@ void VirtualApplication::take(std::string_view channel, Bytes data) {
     if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
   } else if (const auto part = decode<image_t>(data)) {
     ++heard_;
-    if (options_.meddle->hears && !options_.meddle->hears(options_.number, *part)) return;
+    if (options_.hears && !options_.hears(*part)) return;
     if (!input_.take(*part)) return;
     fresh_ = true;
     heard_ = 0;
@@ -113,11 +116,10 @@ void VirtualApplication::judge_hearing(Time now) {
   if (heard_ == 0) return;
   if (heard_since_ == never) heard_since_ = now;
   const auto enough = static_cast<std::uint64_t>(longest_deafness / plan_.cycle.period);
-  if (heard_ < enough || now - heard_since_ < longest_deafness) return;
-  verdict_.blame("no message deafens an application",
-                 "program " + std::to_string(options_.number) + " has heard " +
-                     std::to_string(heard_) + " images in " +
-                     std::to_string((now - heard_since_) / 1ms) + " ms and used none");
+  if (!options_.deaf || heard_ < enough || now - heard_since_ < longest_deafness) return;
+  options_.deaf("program " + std::to_string(options_.number) + " has heard " +
+                std::to_string(heard_) + " images in " +
+                std::to_string((now - heard_since_) / 1ms) + " ms and used none");
 }
 
 void VirtualApplication::follow_image() {
@@ -186,10 +188,7 @@ void VirtualApplication::send(Time now) {
   command.instance = instance_;
   command.sender = options_.name;
   command.time_to_live = static_cast<std::int32_t>(time_to_live_);
-  for (std::size_t i = 0; i < command.signals.size(); ++i) {
-    judge_.commanded(static_cast<SignalIndex>(command.signals[i]), command.values[i],
-                     {.sender = bit(), .computed_from = sync_, .time_to_live = time_to_live_});
-  }
+  if (options_.commanded) options_.commanded(command, sync_);
   ++sent_;
   lcm_.publish(channels_.command, encode(command, buffer_));
 }

@@ -1,0 +1,42 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// What is to be done at later times.
+class Agenda {
+ public:
+  void add(Time when, std::function<void()> what) { items_.push_back({when, std::move(what)}); }
+  /// The earliest time; `never`: nothing is left to do.
+  Time next() const noexcept {
+    Time first = never;
+    for (const Item& item : items_) first = std::min(first, item.when);
+    return first;
+  }
+  /// Does what is due, which may add more.
+  void act(Time now) {
+    for (std::size_t i = 0; i < items_.size();) {
+      if (items_[i].when > now) {
+        ++i;
+        continue;
+      }
+      const auto what = std::move(items_[i].what);
+      items_.erase(items_.begin() + static_cast<std::ptrdiff_t>(i));
+      what();
+    }
+  }
+
+ private:
+  struct Item {
+    Time when{};
+    std::function<void()> what;
+  };
+  std::vector<Item> items_;
+};
+
+}  // namespace takt

@@ -1,0 +1,53 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "apps/simulate/agenda.hpp"
+#include "apps/simulate/forger.hpp"
+#include "apps/simulate/program_faults.hpp"
+#include "apps/simulate/stage.hpp"
+#include "apps/simulate/virtual_application.hpp"
+#include "apps/simulate/virtual_daemon.hpp"
+#include "apps/simulate/virtual_lcm.hpp"
+#include "master/sim/faults.hpp"
+
+namespace takt {
+
+using VirtualApplications = std::vector<std::unique_ptr<VirtualApplication>>;
+
+/// Lets the faults of a fault file happen to the programs of a run.
+class ProgramTroubles final : public Actor {
+ public:
+  /// Those to whom things happen. Each application has a rival of its name.
+  struct Cast {
+    VirtualLcm& lcm;
+    VirtualDaemon& daemon;
+    VirtualApplications& applications;
+    VirtualApplications& rivals;
+    Forger& forger;
+  };
+
+  /// Of the faults of the bus, `stall_master` concerns the front thread too.
+  ProgramTroubles(Cast cast, const ProgramFaults& faults, const sim::Faults& bus);
+
+  Time next() const noexcept override { return agenda_.next(); }
+  void act(Time now) override { agenda_.act(now); }
+  /// The daemon shall be killed, between two cycles.
+  bool daemon_dies() const noexcept { return daemon_dies_; }
+  void daemon_died(Time now);
+
+ private:
+  void begin(const ProgramFault& fault);
+  void end(const ProgramFault& fault);
+  void repeat(const ProgramFault& fault, Time now);
+  void each(const ProgramFault& fault, VirtualApplications& programs,
+            const std::function<void(VirtualApplication& one)>& act) const;
+
+  Cast cast_;
+  Agenda agenda_;
+  bool daemon_dies_ = false;
+  Time restart_ = never;  // of the daemon
+};
+
+}  // namespace takt
