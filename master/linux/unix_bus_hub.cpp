@@ -174,10 +174,12 @@ bool UnixBusHub::Impl::accept_client() {
   return true;
 }
 
+/// A client that ends without having read everything resets its connection: what it has sent can be
+/// read after that error.
 void UnixBusHub::Impl::forward_from(Client& sender) {
   const int got = in_.receive(sender.socket.get(), batch_frames);
   if (got < 0) {
-    sender.gone = errno != EAGAIN && errno != EINTR;
+    sender.gone = errno != EAGAIN && errno != EINTR && errno != ECONNRESET;
     return;
   }
   const std::int64_t now = monotonic_now().count();
@@ -194,6 +196,7 @@ void UnixBusHub::Impl::forward_from(Client& sender) {
   }
 }
 
+/// A receiver that has ended stays until all that it has sent was read.
 void UnixBusHub::Impl::deliver(Client& receiver, bool own, std::size_t count) {
   if (count == 0) return;
   for (std::size_t i = 0; i < count; ++i) {
@@ -201,8 +204,6 @@ void UnixBusHub::Impl::deliver(Client& receiver, bool own, std::size_t count) {
     out_.record(i).lost = receiver.lost;
   }
   const int sent = out_.send(receiver.socket.get(), 0, count);
-  const bool full = errno == EAGAIN || errno == ENOBUFS;
-  if (sent < 0 && !full) receiver.gone = true;
   receiver.lost += static_cast<std::uint32_t>(count - static_cast<std::size_t>(std::max(sent, 0)));
 }
 

@@ -256,6 +256,22 @@ TEST_F(UnixBus, WhatTheHostHasTakenArrivesAlthoughItEnds) {
   }
 }
 
+/// A tool that sends one command and ends reads nothing of what the others say meanwhile.
+TEST_F(UnixBus, WhatAMemberHasSentArrivesAlthoughItEndsWithoutReading) {
+  UnixBusPort resident = port();
+  for (int run = 0; run < 200; ++run) {
+    auto guest = std::make_unique<UnixBusPort>(port());
+    make_acquainted(resident, *guest);
+    ASSERT_EQ(resident.send({&sync_frame, 1}).sent, 1U);
+    ASSERT_TRUE(guest->wait_frame(guest->now() + limit));
+
+    ASSERT_EQ(guest->send({&sync_frame, 1}).sent, 1U);
+    guest.reset();
+
+    ASSERT_EQ(receive_all(resident, 1).size(), 1U) << "in run " << run;
+  }
+}
+
 TEST_F(UnixBus, AGuestHostsOnlyWhereNobodyElseDoes) {
   const auto guest = [this] {
     return UnixBusPort::open({.path = path_, .member = BusMember::guest});
