@@ -19,6 +19,7 @@
 #include "eds_parser/network_file/domain_files.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/network_file/shared_lines.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
 namespace takt {
@@ -89,7 +90,7 @@ class Loader {
       out_.recording.folder = (path_.parent_path() / spec.recording.folder).string();
     }
     out_.bus_named = spec.bus.name.given || spec.bus.interface.given;
-    sort_findings();
+    sort_findings(spec);
     return std::move(out_);
   }
 
@@ -274,7 +275,7 @@ class Loader {
   }
 
   /// Device files first, then the network file by position; what many nodes share is told once.
-  void sort_findings() {
+  void sort_findings(const NetworkSpec& spec) {
     const std::string own = path_.string();
     std::ranges::stable_sort(out_.findings, {}, [&](const Finding& finding) {
       return std::tuple{finding.file == own, finding.file == own ? finding.pos : SourcePos{}};
@@ -284,6 +285,9 @@ class Loader {
     std::erase_if(out_.findings, [&](const Finding& finding) {
       return !seen.emplace(finding.file, finding.pos, finding.message).second;
     });
+    std::vector<std::string> names;
+    for (const NodeSpec& node : spec.nodes) names.push_back(node.name);
+    join_shared_lines(out_.findings, own, names);
   }
 
   /// Where `sync_period` itself is wrong, what follows from its value says nothing.

@@ -143,6 +143,31 @@ TEST_F(Careful, ATpdoAndAnRpdoOfTwoDevicesRemainALink) {
       AllOf(HasSubstr("[linked]"), Not(HasSubstr("error"))));
 }
 
+// shared lines
+
+TEST_F(Careful, AMistakeUnderAnAnchorIsOneErrorForAllNodesThatMergeIt) {
+  const std::string told = told_of(
+      "bus: {name: lift}\nmaster: {sync_period: 10000}\n.axis: &axis\n  " + std::string{drive} +
+      "\n  sdo: [{index: 0x6060, value: 300}]\n  tpdo: {1: {mapping: [0x6041, 0x9999]}}\n"
+      "nodes:\n  a: {<<: *axis, node_id: 1}\n  b: {<<: *axis, node_id: 2}\n"
+      "  c: {<<: *axis, node_id: 3}\n");
+
+  std::size_t errors = 0;
+  for (std::size_t at = told.find(" error: "); at != told.npos;
+       at = told.find(" error: ", at + 1)) {
+    ++errors;
+  }
+  EXPECT_EQ(errors, 2u) << told;
+  EXPECT_THAT(told, AllOf(HasSubstr("net.yaml:5:"), HasSubstr("net.yaml:6:"),
+                          HasSubstr("; the same for `b`, `c`, which share this line")));
+}
+
+TEST_F(Careful, TwoMistakesOfOneNodeInOneLineStayTwo) {
+  const std::string told =
+      of_drive("sdo: [{index: 0x6060, value: 300}, {index: 0x6060, value: 301}]");
+  EXPECT_THAT(told, AllOf(HasSubstr("not 300"), HasSubstr("not 301")));
+}
+
 // messages
 
 TEST_F(Careful, ANumberThatDoesNotFitIsToldTheRangeAndTheBits) {
