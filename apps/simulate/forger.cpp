@@ -16,6 +16,7 @@ constexpr Time as_good_as_new = 2s;    // a command that is younger may still be
 constexpr std::int64_t low_bits = 15;  // of a position: who has sent it
 constexpr std::int64_t nobody = 6;
 constexpr std::int64_t far_ahead = 50'000;  // cycles: nobody is silent for so long
+constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycles
 
 }  // namespace
 
@@ -80,12 +81,10 @@ void Forger::forge_command() {
   auto command = decode<command_t>(heard_.back().command);
   if (!command) return;
   const std::array<std::int64_t, 6> wrong_cycles{
-      0,
-      -1,
-      command->cycle + far_ahead + random_.below(100'000),
-      std::int64_t{1} << 62,
-      std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
-      command->cycle - 100'000};
+      0, -1,
+      // The newest command may be a forged one, of the last cycle that a number can hold.
+      std::min(command->cycle, never_reached) + far_ahead + random_.below(100'000), never_reached,
+      std::int64_t{0x7FFF'FFFF'FFFF'FFFF}, command->cycle - 100'000};
   const bool other_session = random_.chance(0.2);
   if (other_session) {
     command->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
@@ -105,8 +104,7 @@ void Forger::forge_command() {
 void Forger::forge_image() {
   auto image = decode<image_t>(image_);
   if (!image) return;
-  image->cycle =
-      random_.chance(0.5) ? std::int64_t{1} << 62 : image->cycle + random_.below(1'000'000);
+  image->cycle = random_.chance(0.5) ? never_reached : image->cycle + random_.below(1'000'000);
   publish(channels_.image, encode(*image, buffer_));
 }
 
