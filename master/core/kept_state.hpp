@@ -31,12 +31,12 @@ class KeptState {
   template <std::unsigned_integral T>
   void position(T& value, std::size_t end) noexcept {
     one(value);
-    if (value >= end) value = 0;
+    if (value >= end) put(value, T{0});
   }
   /// A span of time that something is divided by, or that is added in each cycle.
   void period(Time& value) noexcept {
     one(value);
-    value = std::clamp(value, Time{1}, longest_period);
+    put(value, std::clamp(value, Time{1}, longest_period));
   }
 
  private:
@@ -48,38 +48,43 @@ class KeptState {
     return static_cast<Words&>(*this).next(value);
   }
 
-  void one(bool& value) noexcept { value = word(value ? 1 : 0) != 0; }
+  /// Only a reader changes the machine that it walks through.
+  template <class T>
+  static void put(T& value, T read) noexcept {
+    if constexpr (Words::restores) value = read;
+  }
+
+  void one(bool& value) noexcept { put(value, word(value ? 1 : 0) != 0); }
   void one(std::int64_t& value) noexcept {
-    value = static_cast<std::int64_t>(word(static_cast<std::uint64_t>(value)));
+    put(value, static_cast<std::int64_t>(word(static_cast<std::uint64_t>(value))));
   }
   void one(int& value) noexcept {
     std::int64_t wide = value;
     one(wide);
-    value = static_cast<int>(std::clamp(wide, -largest, largest));
+    put(value, static_cast<int>(std::clamp(wide, -largest, largest)));
   }
   template <std::unsigned_integral T>
   void one(T& value) noexcept {
-    value = static_cast<T>(word(value));
+    put(value, static_cast<T>(word(value)));
   }
   template <class E>
     requires std::is_enum_v<E>
   void one(E& value) noexcept {
-    value = static_cast<E>(word(static_cast<std::uint64_t>(value)));
+    put(value, static_cast<E>(word(static_cast<std::uint64_t>(value))));
   }
   void one(char& value) noexcept {
-    value = static_cast<char>(word(static_cast<unsigned char>(value)));
+    put(value, static_cast<char>(word(static_cast<unsigned char>(value))));
   }
   void one(Time& value) noexcept {
     std::int64_t count = value.count();
     one(count);
-    value = Time{count};
-    if (value != never && value != Time::min()) {
-      value = Time{std::clamp(count, -longest, longest)};
-    }
+    // Everything but `never` can be subtracted from any time, whatever a damaged checkpoint holds.
+    put(value, count == never.count() ? never : Time{std::clamp(count, -longest, longest)});
   }
+  /// An infinite value is a limit that does not exist.
   void one(double& value) noexcept {
-    value = std::bit_cast<double>(word(std::bit_cast<std::uint64_t>(value)));
-    if (!std::isfinite(value)) value = 0;
+    const auto read = std::bit_cast<double>(word(std::bit_cast<std::uint64_t>(value)));
+    put(value, std::isnan(read) ? 0.0 : read);
   }
   void one(ObjectKey& value) noexcept { (*this)(value.index, value.sub); }
   template <class T>
@@ -88,7 +93,7 @@ class KeptState {
     one(there);
     T content = value.value_or(T{});
     one(content);
-    value = there ? std::optional{content} : std::nullopt;
+    put(value, there ? std::optional{content} : std::nullopt);
   }
   template <class T, std::size_t N>
   void one(std::array<T, N>& values) noexcept {
@@ -103,7 +108,7 @@ class KeptState {
     for (std::size_t i = 0; i < N; ++i) {
       bool value = values[i];
       one(value);
-      values[i] = value;
+      if constexpr (Words::restores) values[i] = value;
     }
   }
   template <class T>
@@ -116,6 +121,8 @@ class KeptState {
 /// Counts the words that a machine's state takes.
 class StateSize : public KeptState<StateSize> {
  public:
+  static constexpr bool restores = false;
+
   std::uint64_t next(std::uint64_t value) noexcept {
     ++count_;
     return value;
@@ -129,6 +136,8 @@ class StateSize : public KeptState<StateSize> {
 /// Writes them where there is room for so many.
 class StateWriter : public KeptState<StateWriter> {
  public:
+  static constexpr bool restores = false;
+
   explicit StateWriter(std::uint64_t* to) noexcept : to_{to} {}
   std::uint64_t next(std::uint64_t value) noexcept { return *to_++ = value; }
 
@@ -139,6 +148,8 @@ class StateWriter : public KeptState<StateWriter> {
 /// Puts them in place. Any words are safe; of too few the rest is as it was.
 class StateReader : public KeptState<StateReader> {
  public:
+  static constexpr bool restores = true;
+
   explicit StateReader(std::span<const std::uint64_t> words) noexcept : words_{words} {}
   std::uint64_t next(std::uint64_t value) noexcept {
     if (words_.empty()) return value;

@@ -10,7 +10,6 @@ namespace {
 constexpr std::uint32_t window_periods = 8;
 constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add one
 constexpr std::uint32_t most_surplus = 2;      // answers
-constexpr Time tell_again = std::chrono::seconds{10};
 
 enum class Request : std::uint8_t { other, transfer, block };
 
@@ -42,15 +41,14 @@ void TwinWatch::restart() noexcept {
 
 std::optional<DuplicateSign> TwinWatch::once(DuplicateSign sign, Time now) noexcept {
   restart();
-  if (told_ != Time::min() && now - told_ < tell_again) return std::nullopt;
+  if (now - told_ < tell_again) return std::nullopt;
   told_ = now;
   return sign;
 }
 
 std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
   if (period_ <= Time{}) return std::nullopt;
-  // A damaged checkpoint may hold Time::min(), from which nothing can be subtracted.
-  if (now - std::max(window_begin_, Time{}) >= window_periods * period_) {
+  if (now - window_begin_ >= window_periods * period_) {
     full_windows_ = heartbeats_ > most_heartbeats ? full_windows_ + 1 : 0;
     window_begin_ = now;
     heartbeats_ = 0;

@@ -32,6 +32,8 @@ class TwinWatch {
   }
 
  private:
+  static constexpr Time tell_again = std::chrono::seconds{10};
+
   std::optional<DuplicateSign> once(DuplicateSign sign, Time now) noexcept;
 
   Time period_;
@@ -43,7 +45,7 @@ class TwinWatch {
   std::uint32_t answered_ = 0;          // and answered
   bool block_ = false;                  // the newest transfer: its answers are counted otherwise
   std::array<ObjectKey, 2> objects_{};  // of the newest two requests: twins answer those
-  Time told_ = Time::min();
+  Time told_ = -tell_again;             // so long ago that it may be told at once
 };
 
 }  // namespace takt

@@ -77,6 +77,26 @@ TEST(Replay, TakesTheSameDecisionsThroughFaultsCommandsAndRequests) {
   EXPECT_EQ(seen(EventKind::stopped), 1);
 }
 
+TEST(Recording, LeavesTheLimitsOfEachAxisAsTheyAre) {
+  RecordedRun run{"two_axes.yaml"};
+  const ImageLayout& layout = run.network.plan.layout;
+  std::int64_t position = 0;
+  run.each_cycle = [&] {
+    Exchange& exchange = *run.exchange;
+    for (std::size_t i = 0; i < layout.outputs(); ++i) {
+      const std::uint16_t object = layout.signals[layout.inputs + i].object.index;
+      if (object == 0x6060) exchange.set_points.set(i, 8, 50);
+      if (object == 0x607A) exchange.set_points.set(i, static_cast<std::uint64_t>(position), 50);
+    }
+    exchange.set_points.publish(run.world.now());
+  };
+  run.run_until(1s);
+  for (; run.world.now() < 3s; run.cycle()) ++position;  // a count a cycle, from a sudden start
+
+  EXPECT_EQ(std::ranges::count(run.events, EventKind::limit_exceeded, &Event::kind), 0)
+      << "there is no limit of acceleration";
+}
+
 TEST(Replay, OfARunningMasterEndsWhereTheTapeWasTaken) {
   const Folder folder;
   RecordedRun run{"two_axes.yaml"};
