@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eds_parser/node_objects.hpp"
 #include "eds_parser/object_units.hpp"
 #include "eds_parser/profile_of.hpp"
 
@@ -79,6 +80,55 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
                      "where they are to go on");
 }
 
+constexpr std::uint16_t axis_step = 0x800;
+constexpr unsigned most_axes = 8;
+constexpr std::int64_t quick_stop_command = 3;  // 0x6007, CiA 402-2
+
+/// 0x6007 of each axis that does not make a quick stop when NMT stop ends the exchange of PDOs.
+std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
+  std::vector<ObjectKey> objects;
+  for (unsigned axis = 0; axis < most_axes; ++axis) {
+    const auto offset = static_cast<std::uint16_t>(axis * axis_step);
+    const ObjectKey option{static_cast<std::uint16_t>(0x6007 + offset), 0};
+    const ObjectKey controlword{static_cast<std::uint16_t>(0x6040 + offset), 0};
+    if (node.dictionary->find(controlword) == nullptr) continue;
+    if (configured_object(node, option) != quick_stop_command) objects.push_back(option);
+  }
+  return objects;
+}
+
+bool is_stopped_with(const NodeSpec& node, const NodeSpec& lost) {
+  if (&node == &lost) return true;
+  return *lost.on_loss == LossReaction::stop_group && lost.group.given && node.group.given &&
+         *node.group == *lost.group;
+}
+
+/// `on_loss: stop_node` and `stop_group` send NMT stop at once. What a moving drive does then is
+/// its own affair.
+void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> nodes,
+                            NetworkReport& report) {
+  std::string names;
+  std::string missing;
+  for (const NodePdos& node : nodes) {
+    if (!is_cia402(node.node) || !is_stopped_with(*node.node.spec, lost)) continue;
+    const std::vector<ObjectKey> axes = axes_without_quick_stop(node.node);
+    if (axes.empty()) continue;
+    names += (names.empty() ? "`" : ", `") + node.node.spec->name + "`";
+    for (const ObjectKey object : axes) {
+      if (node.node.dictionary->find(object) == nullptr)
+        missing = " (`" + node.node.spec->name + "` has none)";
+    }
+  }
+  if (names.empty()) return;
+  report.warning(lost.on_loss.pos, "on-loss",
+                 "when node `" + lost.name + "` is lost, NMT stop goes to " + names +
+                     " at once, without a quick stop of the master: a drive that moves reacts by "
+                     "its 0x6007" +
+                     missing +
+                     ", which is not known to be 3 (quick stop). Write `sdo: [{index: 0x6007, "
+                     "value: 3}]`, or `on_loss: quick_stop`");
+}
+
 }  // namespace
 
 bool is_cia402(const NodeSource& node) {
@@ -91,6 +141,12 @@ void ask_about_drives(std::span<const NodePdos> nodes, NetworkReport& report) {
     if (is_cia402(node.node)) ask_for_mode(node, report);
   }
   ask_for_loss(nodes, report);
+  for (const NodePdos& node : nodes) {
+    const LossReaction reaction = *node.node.spec->on_loss;
+    if (reaction == LossReaction::stop_node || reaction == LossReaction::stop_group) {
+      ask_for_stopped_drives(*node.node.spec, nodes, report);
+    }
+  }
 }
 
 }  // namespace takt

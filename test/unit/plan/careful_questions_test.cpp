@@ -82,6 +82,27 @@ TEST_F(Careful, SeveralDrivesWithoutADecisionOnTheLossOfOneAreAWarning) {
   EXPECT_THAT(of_drive("mandatory: true"), Not(HasSubstr("[on-loss]"))) << "one drive alone";
 }
 
+TEST_F(Careful, NmtStopOfADriveThatMakesNoQuickStopByItselfIsAWarning) {
+  const auto two = [&](const std::string& of_a, const std::string& of_b) {
+    return told_of(std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} +
+                   drive + ", node_id: 1, group: z, " + of_a + "}\n  b: {" + drive +
+                   ", node_id: 2, group: z, " + of_b + "}\n");
+  };
+  const std::string stops = "sdo: [{index: 0x6007, value: 3}]";
+  EXPECT_THAT(two("on_loss: stop_group", "on_loss: report"),
+              AllOf(HasSubstr("when node `a` is lost, NMT stop goes to `a`, `b` at once"),
+                    HasSubstr("Write `sdo: [{index: 0x6007, value: 3}]`, or `on_loss: quick_stop`"),
+                    HasSubstr("[on-loss]")));
+  EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report"),
+              HasSubstr("NMT stop goes to `b` at once"));
+  EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report, " + stops),
+              Not(HasSubstr("[on-loss]")));
+  EXPECT_THAT(two("on_loss: stop_node, " + stops, "on_loss: report"), Not(HasSubstr("[on-loss]")));
+  EXPECT_THAT(two("on_loss: stop_node", "on_loss: report"),
+              HasSubstr("NMT stop goes to `a` at once"));
+  EXPECT_THAT(two("on_loss: quick_stop", "on_loss: report"), Not(HasSubstr("[on-loss]")));
+}
+
 // times of event-driven PDOs
 
 TEST_F(Careful, ATpdoMayBeLateByItsInhibitTime) {

@@ -105,8 +105,8 @@ struct Compiled {
   std::vector<DeviceTable> devices;
   Findings findings;
 
-  /// `line:column severity [rule]` of all findings of the network file but notes, and but the
-  /// questions about drives, which have tests of their own.
+  /// `line:column severity [rule]` of the errors and warnings of the network file. Questions about
+  /// drives (`mode`, `on-loss`) are left out: careful_questions_test.cpp has their tests.
   std::vector<std::string> complaints() const {
     std::vector<std::string> out;
     for (const Finding& f : findings) {
