@@ -117,8 +117,9 @@ enum class EventKind : std::uint8_t {
   foreign_nmt,       ///< bytes: the command
   duplicate_cob_id,  ///< value: COB-ID seen from somebody else
   // the ordered stop
-  axis_not_stopped,  ///< it is not confirmed; detail: AxisVerdict, axis << 8, 1 << 16: the velocity
-                     ///< is of 0x6064; value: velocity (raw; moving, enabled), ns (silent, lost)
+  axis_not_stopped,  ///< An axis is not confirmed. detail: AxisVerdict, axis << 8, 1 << 16 by
+                     ///< differences of 0x6064; value: ns without an answer (silent, lost), else
+                     ///< the raw velocity
   still_armed,  ///< the device did not take the write that disarms it; detail: index << 8 | sub
   // the master
   stopping,

@@ -151,13 +151,16 @@ std::vector<std::string> written_in_the_stop(const LoadedNetwork& network,
   return written;
 }
 
-/// One drive that has life guarding; `node` and `master` are more keys.
+constexpr const char* with_sync = "sync_period: 4000";
+constexpr const char* without_sync = "cycle: 4000";
+
+/// One drive that has life guarding, below a master without a heartbeat; `node` has more keys.
 LoadedNetwork guarded(const test::Folder& folder, const std::string& node,
-                      const std::string& master = "heartbeat_producer: 0") {
+                      const std::string& period = with_sync) {
   return load_network(folder.write("net.yaml",
                                    "bus: {name: lift, bitrate_kbit: 1000}\n"
-                                   "master: {sync_period: 4000, " +
-                                       master +
+                                   "master: {heartbeat_producer: 0, " +
+                                       period +
                                        "}\n"
                                        "nodes:\n"
                                        "  y:\n"
@@ -167,11 +170,20 @@ LoadedNetwork guarded(const test::Folder& folder, const std::string& node,
                                        node));
 }
 
-TEST(OrderedStopOfABus, DisarmsLifeGuardingWithBothOfItsObjects) {
+constexpr const char* life_guarding =
+    "    heartbeat_producer: 0\n    guard_time: 100\n    life_time_factor: 3\n";
+
+TEST(OrderedStopOfABus, DisarmsLifeGuardingAloneWithBothOfItsObjects) {
   const test::Folder folder;
-  const auto network =
-      guarded(folder, "    heartbeat_producer: 0\n    guard_time: 100\n    life_time_factor: 3\n");
+  const auto network = guarded(folder, life_guarding, without_sync);
+  EXPECT_FALSE(network.plan.cycle.sync);
   EXPECT_EQ(written_in_the_stop(network, folder),
+            (std::vector<std::string>{"601#2B0C100000000000", "601#2F0D100000000000"}));
+}
+
+TEST(OrderedStopOfABus, DisarmsLifeGuardingAndThePeriodOfSync) {
+  const test::Folder folder;
+  EXPECT_EQ(written_in_the_stop(guarded(folder, life_guarding), folder),
             (std::vector<std::string>{"601#2B0C100000000000", "601#2F0D100000000000",
                                       "601#2306100000000000"}));
 }
@@ -185,10 +197,7 @@ TEST(OrderedStopOfABus, DisarmsThePeriodOfSyncAlone) {
 
 TEST(OrderedStopOfABus, DisarmsNothingOfANodeThatIsKeptAlive) {
   const test::Folder folder;
-  const auto network =
-      guarded(folder,
-              "    heartbeat_producer: 0\n    guard_time: 100\n    life_time_factor: 3\n"
-              "    reset: keep_alive\n");
+  const auto network = guarded(folder, std::string{life_guarding} + "    reset: keep_alive\n");
   const auto outcome = simulate(network, {.duration = 4300ms, .after = silence});
   EXPECT_NE(outcome.emcy_after, 0U) << "it is to miss its master";
 }
