@@ -77,24 +77,30 @@ TEST(Replay, TakesTheSameDecisionsThroughFaultsCommandsAndRequests) {
   EXPECT_EQ(seen(EventKind::stopped), 1);
 }
 
-TEST(Recording, LeavesTheLimitsOfEachAxisAsTheyAre) {
+TEST(Recording, LeavesTheLimitsOfAnEnabledAxisAsTheyAre) {
   RecordedRun run{"two_axes.yaml"};
   const ImageLayout& layout = run.network.plan.layout;
-  std::int64_t position = 0;
+  std::uint64_t controlword = 6;
+  std::uint64_t position = 0;
   run.each_cycle = [&] {
     Exchange& exchange = *run.exchange;
     for (std::size_t i = 0; i < layout.outputs(); ++i) {
       const std::uint16_t object = layout.signals[layout.inputs + i].object.index;
       if (object == 0x6060) exchange.set_points.set(i, 8, 50);
-      if (object == 0x607A) exchange.set_points.set(i, static_cast<std::uint64_t>(position), 50);
+      if (object == 0x6040) exchange.set_points.set(i, controlword, 50);
+      if (object == 0x607A) exchange.set_points.set(i, position, 50);
     }
     exchange.set_points.publish(run.world.now());
   };
   run.run_until(1s);
-  for (; run.world.now() < 3s; run.cycle()) ++position;  // a count a cycle, from a sudden start
+  for (const std::uint64_t step : {6, 7, 15}) {
+    controlword = step;
+    run.run_until(run.world.now() + 200ms);
+  }
+  for (const Time end = run.world.now() + 2s; run.world.now() < end; run.cycle()) position += 20;
 
   EXPECT_EQ(std::ranges::count(run.events, EventKind::limit_exceeded, &Event::kind), 0)
-      << "there is no limit of acceleration";
+      << "`acceleration` is not limited";
 }
 
 TEST(Replay, OfARunningMasterEndsWhereTheTapeWasTaken) {
