@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint16_t axis_objects = 0x800;  // CiA 402: distance of two axes of a device
 constexpr std::int64_t profile_position = 1;   // 6060
+constexpr double rounded_digits = 1e-4;        // of a `modulo` as people write it, 6.2832
 
 }  // namespace
 
@@ -70,6 +71,7 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   step(limits.step);
   torque(limits.torque);
   describe_position_rows(limits);
+  ask_for_turn(limits.modulo);
   for (LimitLine& line : plan_.limits.lines) {
     if (line.node_index == node_index_ && line.axis == axis_) {
       propose_limit(line, node_, plan_, table_);
@@ -256,13 +258,38 @@ void AxisLimits::jerk(const Sourced<double>& limit) {
   line(LimitKind::jerk, LimitSource::file).high = *limit;
 }
 
-/// Length of the range in which a position turns over: of the file, else 607B as `sdo:` writes it.
-double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
-  if (modulo.given) return table_.raw_size(signal, *modulo);
-  const auto low = written_object(node_, object(0x607B, 1));
-  const auto high = written_object(node_, object(0x607B, 2));
+/// Position range limit, CiA 402-2. 0: there is none.
+double AxisLimits::turn(ObjectReader read) const {
+  const auto low = read(node_, object(0x607B, 1));
+  const auto high = read(node_, object(0x607B, 2));
   if (!low || !high || *low >= *high) return 0.0;
   return static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
+}
+
+/// Length of the range in which a position turns over: of the file, else 607B as `sdo:` writes it.
+double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
+  return modulo.given ? table_.raw_size(signal, *modulo) : turn(written_object);
+}
+
+/// An axis that doesn't turn over where its limits do goes back a whole turn in one cycle.
+void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
+  if (!modulo.given || positions_.empty()) return;
+  const double length = modulus(modulo, positions_[0]);
+  const double of_drive = turn(configured_object);
+  if (std::abs(of_drive - length) <= 1.0 + length * rounded_digits) return;
+  const ObjectKey key = object(0x607B);
+  std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
+                     " counts of " + table_.signal(positions_[0]).name + ", ";
+  text += of_drive > 0 ? "and " + to_string(key) + " (position range limit) turns over after " +
+                             std::to_string(std::llround(of_drive))
+                       : "and nothing sets " + to_string(key) + " (position range limit)";
+  text += ": a drive that doesn't turn over there goes back a whole turn at once";
+  if (node_.dictionary->find({key.index, 2}) == nullptr) {
+    return report_.note(modulo.pos, "limits", text + "; its device file has no such object");
+  }
+  report_.warning(modulo.pos, "limits",
+                  text + ". Write " + to_string(ObjectKey{key.index, 1}) + " and " +
+                      to_string(ObjectKey{key.index, 2}) + " under `sdo:`");
 }
 
 /// What a position set-point is held against.

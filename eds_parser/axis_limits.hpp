@@ -47,7 +47,10 @@ class AxisLimits {
 
   void magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos);
   void describe_position_rows(const AxisLimitsSpec& limits);
+  using ObjectReader = std::optional<std::int64_t> (*)(const NodeSource& node, ObjectKey object);
+  double turn(ObjectReader read) const;
   double modulus(const Sourced<double>& modulo, SignalIndex signal) const;
+  void ask_for_turn(const Sourced<double>& modulo);
 
   /// False: the signal counts without a unit, which is reported.
   bool has_unit(SignalIndex signal, std::string_view kind, SourcePos pos);

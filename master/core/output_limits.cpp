@@ -110,15 +110,17 @@ double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexce
   return static_cast<double>(top >> spare);
 }
 
-/// The shorter way where positions turn over.
+/// The shorter way where positions turn over. Two positions of one turn are less than a turn apart:
+/// whole turns beyond that are a way that the axis would go.
 double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
   const OutputLimit& limit = limits_[place];
   const double way = to - from;
   const double modulus = limit.modulus > 0 ? limit.modulus
                          : limit.wraps     ? std::ldexp(1.0, signal_of(place).bits)
                                            : 0.0;
-  if (modulus == 0.0 || std::abs(way) <= modulus / 2) return way;
-  return std::remainder(way, modulus);
+  const double length = std::abs(way);
+  if (length <= modulus / 2 || length >= modulus) return way;
+  return way - std::copysign(modulus, way);
 }
 
 std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {

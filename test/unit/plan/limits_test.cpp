@@ -23,12 +23,13 @@ constexpr std::string_view units =
 
 /// A drive at 2 ms whose RPDO2 carries `mapped`, with these lines more.
 Compiled drive(const std::string& limits, const std::string& mapped = "{index: 0x607A}",
-               std::string_view its_units = units) {
+               std::string_view its_units = units, const std::string& eds = tiny_eds()) {
   return compile(
       "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
       "    tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6064}]}}\n"
       "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, " +
-      mapped + "]}}\n" + std::string{its_units} + limits);
+          mapped + "]}}\n" + std::string{its_units} + limits,
+      eds);
 }
 
 const OutputLimit& only(const Compiled& net) {
@@ -190,6 +191,29 @@ TEST(Limits, AreProposedWhereThereAreNone) {
   EXPECT_THAT(text_of(net), AllOf(HasSubstr("proposal: `position: ...` (the travel of the machine"),
                                   HasSubstr("proposal: `step: 0.004` (velocity in one cycle)")));
   EXPECT_THAT(text_of(drive("")), HasSubstr("proposal: `velocity: 10` (6081:00)"));
+}
+
+TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
+  const std::string range_limit =
+      record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
+      entry("607Bsub1", "min", 4, "rw", "0") + entry("607Bsub2", "max", 4, "rw", "0");
+  const auto rotary = [&](const std::string& written, const std::string& objects) {
+    std::string text;
+    for (const Finding& f : drive("    limits: {modulo: 3.6, step: 0.01}\n" + written,
+                                  "{index: 0x607A}", units, tiny_eds() + objects)
+                                .findings) {
+      if (f.rule == "limits") text += std::string{name(f.severity)} + ": " + f.message + "\n";
+    }
+    return text;
+  };
+  EXPECT_THAT(rotary("", range_limit),
+              AllOf(HasSubstr("warning: `modulo` of node `arm` is 3600 counts of"),
+                    HasSubstr("nothing sets 607B:00 (position range limit)"),
+                    HasSubstr("Write 607B:01 and 607B:02 under `sdo:`")));
+  EXPECT_THAT(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 9999}]\n", range_limit),
+              HasSubstr("and 607B:00 (position range limit) turns over after 10000"));
+  EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3599}]\n", range_limit), "");
+  EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("has no such object")));
 }
 
 std::string limit_objects(const std::string& unsigned32 = "7") {

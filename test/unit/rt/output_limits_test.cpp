@@ -172,6 +172,20 @@ TEST(OutputLimits, TakeTheShorterWayAroundTheRangeOfARotaryAxis) {
   EXPECT_EQ(axes.position(), 4);
 }
 
+TEST(OutputLimits, DoNotTakeWholeTurnsOfARotaryAxisForNoWay) {
+  LimitedAxes axes{1, {.step = 10, .modulus = 3600}};
+  axes.feedback(0, 5);
+  axes.cycle();
+  axes.cycle_with(0, 8);
+  for (const std::int64_t turns : {1, -1, 2, 200}) {
+    axes.cycle_with(0, 8 + turns * 3600);
+    EXPECT_EQ(axes.position(), 8) << turns << " turns";
+    axes.cycle_with(0, 8);
+    axes.cycle_with(0, 8);
+  }
+  EXPECT_EQ(axes.refusals(), 4U);
+}
+
 TEST(OutputLimits, JudgeWhatTheWireWouldCarry) {
   LimitedAxes axes{1, {.low = -100, .high = 100}};
   axes.write(0, enable_operation);
