@@ -17,6 +17,9 @@ constexpr std::uint16_t target_position = 0x607A;
 constexpr Time longest_gap = 50ms;  // cycles without a command that may count for one way
 constexpr double fewest_cycles = 3;
 constexpr double cycles_behind = 4;  // the master's knowledge of the true position
+// A babbling node may send a position a hundred times in a cycle, or none may come for a long time.
+constexpr Time::rep cycles_remembered = 6;
+constexpr std::size_t fewest_remembered = 8;
 
 std::int64_t sign_extended(std::uint64_t value, unsigned bits) noexcept {
   const unsigned spare = bits == 0 || bits > 64 ? 0U : 64U - bits;
@@ -48,21 +51,26 @@ bool LimitJudge::near_axis(const Place& place, const Signal& signal, std::int64_
     return std::abs(static_cast<double>(value - position));
   };
   double way = way_from(axis.position);
-  for (const std::int64_t position : place.actual) way = std::min(way, way_from(position));
+  for (const Seen& seen : place.actual) way = std::min(way, way_from(seen.position));
   const double period = std::chrono::duration<double>(plan_.cycle.period).count();
   const double moved = std::abs(static_cast<double>(axis.velocity)) * period * cycles_behind;
   return way <= allowed(place, cycles_behind) + moved;
 }
 
 void LimitJudge::heard(const Frame& frame) {
+  const Time now = world_.now();
+  const Time oldest = now - cycles_remembered * plan_.cycle.period;
   for (const PdoRow& row : plan_.pdos.tpdos) {
     if (row.cob_id != frame.id || row.multiplexed()) continue;
     for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
       const PdoField& field = plan_.pdos.fields[i];
       for (Place& place : places_) {
         if (place.limit == nullptr || place.limit->feedback != field.signal) continue;
-        std::ranges::rotate(place.actual, place.actual.end() - 1);
-        place.actual[0] = sign_extended(bits_of(frame, field.bit_offset, field.bits), field.bits);
+        place.actual.push_back(
+            {now, sign_extended(bits_of(frame, field.bit_offset, field.bits), field.bits)});
+        while (place.actual.size() > fewest_remembered && place.actual.front().when < oldest) {
+          place.actual.pop_front();
+        }
       }
     }
   }
@@ -70,8 +78,8 @@ void LimitJudge::heard(const Frame& frame) {
 
 bool LimitJudge::is_actual(SignalIndex signal, std::uint64_t bits) const noexcept {
   const Place& place = places_[signal - plan_.layout.inputs];
-  return std::ranges::find(place.actual, sign_extended(bits, plan_.layout.signals[signal].bits)) !=
-         place.actual.end();
+  const std::int64_t position = sign_extended(bits, plan_.layout.signals[signal].bits);
+  return std::ranges::find(place.actual, position, &Seen::position) != place.actual.end();
 }
 
 void LimitJudge::judge_range(const Place& place, const Signal& signal, std::int64_t value,

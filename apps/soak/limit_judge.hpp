@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "apps/soak/verdict.hpp"
@@ -29,11 +29,15 @@ class LimitJudge {
   std::uint64_t judged() const noexcept { return judged_; }
 
  private:
+  struct Seen {
+    Time when{};
+    std::int64_t position = 0;
+  };
   struct Place {
     const OutputLimit* limit = nullptr;
     std::int64_t value = 0;
-    Time when{};                           ///< `value` was new
-    std::array<std::int64_t, 8> actual{};  ///< newest positions on the wire
+    Time when{};              ///< `value` was new
+    std::deque<Seen> actual;  ///< newest positions on the wire; the newest is the last
   };
 
   double allowed(const Place& place, double cycles) const noexcept;
