@@ -108,9 +108,10 @@ std::optional<Exit> Daemon::claim_bus() {
 /// Before the first frame is sent.
 std::optional<Exit> Daemon::look_for_master() {
   if (options_.observe) return std::nullopt;
-  OtherMaster other{network_.plan, bus_name_, session_};
+  using enum OtherMaster::StatusCounts;
+  OtherMaster other{network_.plan, bus_name_, session_, secured_ ? as_warning : as_refusal};
   listen(other);
-  if (other.warning()) reporter_.say(Weight::warning, *other.warning());
+  for (const std::string& warning : other.warnings()) reporter_.say(Weight::warning, warning);
   if (other.refusal()) {
     reporter_.say(Weight::error, *other.refusal());
     return Exit::bus_trouble;

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <fmt/format.h>
+#include <string_view>
 #include <utility>
+
+#include "master/gateway/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -13,11 +17,20 @@ using namespace std::chrono_literals;
 constexpr Time shortest_listening = 150ms;
 constexpr Time longest_listening = 1500ms;
 constexpr Time status_is_alive = 5s;
+constexpr std::size_t longest_name = 64;  // bytes of a foreign name that a sentence shows
 
 }  // namespace
 
-OtherMaster::OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session)
-    : plan_{plan}, bus_{std::move(bus)}, session_{session} {}
+OtherMaster::OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session,
+                         StatusCounts status)
+    : plan_{plan}, bus_{std::move(bus)}, session_{session}, status_{status} {}
+
+std::vector<std::string> OtherMaster::warnings() const {
+  std::vector<std::string> all;
+  if (sync_warning_) all.push_back(*sync_warning_);
+  if (status_warning_) all.push_back(*status_warning_);
+  return all;
+}
 
 Time OtherMaster::listening_time() const noexcept {
   const Time heartbeat = plan_.master_heartbeat;
@@ -34,8 +47,8 @@ void OtherMaster::on_frame(const Frame& frame) {
         "`node_id` under `master:`",
         bus_, id);
   }
-  if (!warning_ && plan_.cycle.makes_sync() && frame.id == plan_.cycle.sync_cob_id) {
-    warning_ =
+  if (!sync_warning_ && plan_.cycle.makes_sync() && frame.id == plan_.cycle.sync_cob_id) {
+    sync_warning_ =
         fmt::format("{}: somebody else makes SYNC (COB-ID 0x{:X}) on the bus", bus_, frame.id.id());
   }
 }
@@ -45,10 +58,18 @@ void OtherMaster::on_status(const status_t& status, Time realtime) {
   const bool alive = sent > realtime - status_is_alive && sent < realtime + status_is_alive;
   const bool master = status.session != session_ && status.frames_sent > 0;
   if (refusal_ || !alive || !master || status.bus != plan_.name) return;
-  refusal_ = fmt::format(
-      "bus '{}' has a master on LCM already: a taktd on {}, session {}; end it, or give one of the "
-      "two buses another name: `bus: {{name: ...}}`",
-      plan_.name, status.interface, status.session);
+  const std::string what =
+      fmt::format("bus '{}' has a master on LCM already: a taktd on {}, session {}", plan_.name,
+                  printable_text(status.interface.substr(0, longest_name)), status.session);
+  constexpr std::string_view mend = "or give one of the two buses another name: `bus: {name: ...}`";
+  if (status_ == StatusCounts::as_refusal) {
+    refusal_ = fmt::format("{}; end it, {}", what, mend);
+  } else {
+    status_warning_ = fmt::format(
+        "{}, says a message without proof, so this one starts all the same; end the other one if "
+        "it is there, {}",
+        what, mend);
+  }
 }
 
 }  // namespace takt

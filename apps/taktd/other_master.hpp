@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <takt/status_t.hpp>
+#include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/time.hpp"
@@ -15,8 +16,13 @@ namespace takt {
 /// in, sentences out.
 class OtherMaster {
  public:
+  /// What a BUS_STATUS of another session does. It carries no proof of who sent it: where the bus
+  /// has keys, it only warns, or everybody on LCM could keep this master from starting.
+  enum class StatusCounts : std::uint8_t { as_refusal, as_warning };
+
   /// `bus` is what sentences call the bus; `session` is our own.
-  OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session);
+  OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session,
+              StatusCounts status = StatusCounts::as_refusal);
 
   /// How long frames have to be listened to: one and a half times the producer time of the master's
   /// heartbeat, which the other master is taken to have too, within 150 ms .. 1.5 s.
@@ -29,15 +35,18 @@ class OtherMaster {
 
   /// Why we may not be the master.
   const std::optional<std::string>& refusal() const noexcept { return refusal_; }
-  /// Somebody makes SYNC, and so shall we.
-  const std::optional<std::string>& warning() const noexcept { return warning_; }
+  /// What speaks for another master and doesn't prove it: somebody else makes SYNC, or a status
+  /// that counts as a warning. One sentence for each of them.
+  std::vector<std::string> warnings() const;
 
  private:
   const BusPlan& plan_;
   std::string bus_;
   std::int64_t session_;
+  StatusCounts status_;
   std::optional<std::string> refusal_;
-  std::optional<std::string> warning_;
+  std::optional<std::string> sync_warning_;
+  std::optional<std::string> status_warning_;
 };
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #include <array>
 #include <csignal>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 #include "master/linux/clock.hpp"
@@ -11,6 +12,7 @@ namespace takt::test {
 namespace {
 
 using namespace std::chrono_literals;
+namespace fs = std::filesystem;
 
 /// A bus that no other test has. What a daemon listens for before its start comes in time almost
 /// always; where the machine was too busy for that, the daemon is started once more.
@@ -67,6 +69,27 @@ TEST_F(SecondDaemon, OfTheSameBusNameOnLcmIsRefused) {
   EXPECT_NE(second.output.find("bus 'demo' has a master on LCM already: a taktd on sim"),
             std::string::npos)
       << second.output;
+}
+
+/// Everybody on LCM can write a BUS_STATUS.
+TEST_F(SecondDaemon, WithKeysIsOnlyWarnedByAStatusOfTheSameBusName) {
+  DaemonProcess first{slow_network(folder_.path())};
+  ASSERT_TRUE(first.hear([&] { return first.all_ready(); }));
+  const std::string keys = (folder_ / "bus.keys").string();
+  ASSERT_EQ(run({TAKT, "keys", "new", keys, "--name", "plant"}, folder_.path()).exit_code, 0);
+  const fs::path keyed = slow_network(
+      folder_.path(), [&](std::string& text) { text += "\nlcm: {keys: " + keys + "}\n"; });
+
+  Ended second;  // 4: its time is over before its nodes are ready
+  const auto is_warned = [&] { return second.output.contains("says a message without proof"); };
+  while (second.exit_code != 3 && !is_warned() && before(patience_)) {
+    second =
+        run({TAKTD, keyed.string(), "--bus", "sim", "--lcm-url", first.lcm_url(), "--for", "100ms"},
+            folder_.path());
+  }
+
+  EXPECT_NE(second.exit_code, 3) << second.output;
+  EXPECT_TRUE(is_warned()) << second.output;
 }
 
 TEST_F(SecondDaemon, IsRefusedWhereAMasterOfAnotherKindHasAHeartbeat) {

@@ -8,7 +8,9 @@ namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 constexpr Time now = 1'700'000'000s;
 
@@ -62,8 +64,7 @@ TEST_F(OtherMasterTest, IsOnlyWarnedOfWhereSomebodyElseMakesSync) {
   other.on_frame(make_frame(CobId::base(0x080), {}));
 
   EXPECT_FALSE(other.refusal());
-  ASSERT_TRUE(other.warning());
-  EXPECT_THAT(*other.warning(), HasSubstr("somebody else makes SYNC (COB-ID 0x80)"));
+  EXPECT_THAT(other.warnings(), ElementsAre(HasSubstr("somebody else makes SYNC (COB-ID 0x80)")));
 }
 
 TEST_F(OtherMasterTest, MayMakeTheSyncThatThisOneFollows) {
@@ -71,7 +72,7 @@ TEST_F(OtherMasterTest, MayMakeTheSyncThatThisOneFollows) {
 
   other.on_frame(make_frame(CobId::base(0x080), {}));
 
-  EXPECT_FALSE(other.warning());
+  EXPECT_THAT(other.warnings(), IsEmpty());
 }
 
 TEST_F(OtherMasterTest, IsKnownByItsStatusOnLcm) {
@@ -95,6 +96,31 @@ TEST_F(OtherMasterTest, IsNoOldStatusNoObserverNoOtherBusAndNotThisOne) {
   for (const status_t& status : {replayed, observes, pump, own}) other.on_status(status, now);
 
   EXPECT_FALSE(other.refusal());
+}
+
+TEST_F(OtherMasterTest, IsOnlyWarnedOfByAStatusWhereTheBusHasKeys) {
+  OtherMaster keyed{plan, "can0", 8, OtherMaster::StatusCounts::as_warning};
+
+  keyed.on_frame(make_frame(CobId::base(0x080), {}));
+  for (int i = 0; i < 3; ++i) keyed.on_status(status_of_another(), now);
+
+  EXPECT_FALSE(keyed.refusal());
+  EXPECT_THAT(
+      keyed.warnings(),
+      ElementsAre(HasSubstr("makes SYNC"), HasSubstr("a taktd on can1, session 7, says a "
+                                                     "message without proof, so this one starts")));
+}
+
+TEST_F(OtherMasterTest, ShowsAForeignInterfaceWithoutControlCharactersAndCutToSize) {
+  status_t status = status_of_another();
+  status.interface = "\x1b[2Jcan\n" + std::string(1000, 'x');
+
+  other.on_status(status, now);
+
+  ASSERT_TRUE(other.refusal());
+  EXPECT_THAT(*other.refusal(), HasSubstr("a taktd on ?[2Jcan?xxx"));
+  EXPECT_EQ(other.refusal()->find('\x1b'), std::string::npos);
+  EXPECT_LT(other.refusal()->size(), 300U);
 }
 
 TEST_F(OtherMasterTest, IsListenedForLongerThanItsHeartbeatTakesAndNotForEver) {
