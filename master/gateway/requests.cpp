@@ -9,6 +9,7 @@
 #include "master/core/lss_command.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/notice.hpp"
+#include "master/gateway/printable_text.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {
@@ -110,9 +111,9 @@ reply_t Requests::reply_to(const request_t& message) const {
   return reply;
 }
 
-reply_t Requests::refusal(const request_t& message, std::string why) const {
+reply_t Requests::refusal(const request_t& message, const std::string& why) const {
   reply_t reply = reply_to(message);
-  reply.text = std::move(why);
+  reply.text = printable_text(why);
   return reply;
 }
 
@@ -161,7 +162,7 @@ std::optional<reply_t> Requests::take_again(const Known& known, const request_t&
 
 std::optional<reply_t> Requests::take(const request_t& message, Time now) {
   forget(now);
-  if (auto why = oversize(message)) return refusal(message, std::move(*why));
+  if (auto why = oversize(message)) return refusal(message, *why);
   const auto known = std::ranges::find_if(
       known_, [&](const Known& one) { return same_asker(one.message, message); });
   if (known != known_.end()) return take_again(*known, message);

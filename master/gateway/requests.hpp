@@ -63,7 +63,7 @@ class Requests {
   void forget(Time now);
   std::optional<reply_t> take_again(const Known& known, const request_t& message) const;
   reply_t reply_to(const request_t& message) const;
-  reply_t refusal(const request_t& message, std::string why) const;
+  reply_t refusal(const request_t& message, const std::string& why) const;
 
   const BusPlan& plan_;
   RequestsOptions options_;

@@ -94,6 +94,20 @@ TEST_F(RequestsTest, AnotherRequestOfAUsedIdIsRefusedAndTaken10sLater) {
   EXPECT_EQ(submitted[1].object, (ObjectKey{0x1000, 0x01}));
 }
 
+TEST_F(RequestsTest, TheNameOfAnUnknownServiceIsAnsweredWithoutControlCharacters) {
+  request_t unknown = upload(7);
+  unknown.service = "x\x1b[2J";
+  request_t too_long = upload(8);
+  too_long.service = "\x1b]0;y\x07\n" + std::string(100, 'z');
+
+  const auto first = requests.take(unknown, now);
+  const auto second = requests.take(too_long, now);
+
+  ASSERT_TRUE(first && second);
+  EXPECT_TRUE(first->text.starts_with("service 'x?[2J' is not known")) << first->text;
+  EXPECT_TRUE(second->text.starts_with("service '?]0;y??zzz")) << second->text;
+}
+
 TEST_F(RequestsTest, RefusedOneMayBeSentAgain) {
   room = false;
   EXPECT_TRUE(requests.take(upload(7), now));
