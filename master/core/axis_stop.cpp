@@ -41,8 +41,24 @@ void Standstill::take(Time now, const AxisSample& sample) noexcept {
   rest(now, within);
 }
 
-void AxisStop::begin(Time now, bool reachable) noexcept {
-  state_ = reachable ? AxisState::unseen : AxisState::exempt;
+namespace {
+
+AxisState first_state(AxisPrior prior) noexcept {
+  switch (prior) {
+    case AxisPrior::untouched:
+      return AxisState::exempt;
+    case AxisPrior::heard:
+      return AxisState::asked;
+    case AxisPrior::exposed:
+      return AxisState::unseen;
+  }
+  return AxisState::unseen;
+}
+
+}  // namespace
+
+void AxisStop::begin(Time now, AxisPrior prior) noexcept {
+  state_ = first_state(prior);
   entered_ = answered_ = now;
 }
 
@@ -51,6 +67,7 @@ void AxisStop::begin(Time now, bool reachable) noexcept {
 ///   state     seen                                     next
 ///   unseen    it is enabled                            braking
 ///   unseen    it is disabled                           exempt
+///   asked     as unseen
 ///   braking   enabled, certainly at standstill         standing
 ///   braking   disabled                                 settling
 ///   standing  disabled                                 stopped
@@ -64,6 +81,7 @@ AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
   const bool enabled = seen == Seen::powered || seen == Seen::standing;
   switch (state) {
     case unseen:
+    case asked:
       return enabled ? braking : exempt;
     case braking:
       if (!enabled) return seen == Seen::off_rest ? stopped : settling;
@@ -103,7 +121,7 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   standstill_.take(now, sample);
   if (sample.statusword) powered_ = !disabled(*sample.statusword);
   disabled_seen_ = disabled_seen_ || (sample.statusword && !powered_);
-  if (state_ == AxisState::unseen && !sample.statusword) return;
+  if (!seen() && !sample.statusword) return;
   // Velocities that come without a statusword say nothing of whether it is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
   if (needs_word && !sample.statusword && !standstill_.certain()) return;
@@ -127,6 +145,7 @@ bool AxisStop::settled() const noexcept {
     case AxisState::cut:
       return disabled_seen_;
     case AxisState::unseen:
+    case AxisState::asked:
     case AxisState::braking:
     case AxisState::standing:
     case AxisState::settling:
@@ -136,7 +155,7 @@ bool AxisStop::settled() const noexcept {
 }
 
 std::int64_t AxisStop::controlword() const noexcept {
-  const bool brakes = state_ == AxisState::unseen || state_ == AxisState::braking;
+  const bool brakes = !seen() || state_ == AxisState::braking;
   return brakes ? quick_stop_word : disable_voltage_word;
 }
 

@@ -9,13 +9,21 @@ namespace takt {
 /// What the ordered stop knows of one axis.
 enum class AxisState : std::uint8_t {
   unseen,    ///< its statusword was not seen since the stop began
-  exempt,    ///< it was disabled when the stop began, or its node never was ready
+  asked,     ///< the same, but it need not answer: its node was neither ready nor OPERATIONAL
+  exempt,    ///< it was disabled when the stop began, or its node was never heard
   braking,   ///< it is told to stop quickly, and was not seen at standstill
   standing,  ///< it was seen at standstill and is told to disable
   settling,  ///< it disabled itself before its standstill was certain
   stopped,   ///< it was seen at standstill and disabled
   cut,       ///< the time was over: it was told to disable although it was not at standstill
   dropped,   ///< it was disabled and moved on
+};
+
+/// What is known of an axis when the stop begins.
+enum class AxisPrior : std::uint8_t {
+  untouched,  ///< the stop does not reach it, or its node was never heard
+  heard,      ///< its node was heard, but was neither ready nor OPERATIONAL
+  exposed,    ///< its node was ready, or OPERATIONAL without this master: it may be enabled
 };
 
 /// What the front side tells of one axis after the stop.
@@ -83,17 +91,23 @@ class AxisStop {
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
   explicit AxisStop(const AxisPlan& plan) noexcept : standstill_{plan} {}
 
-  /// `reachable`: its node was ready at some time, so that the axis may have been enabled.
-  void begin(Time now, bool reachable) noexcept;
+  void begin(Time now, AxisPrior prior) noexcept;
   void step(Time now, const AxisSample& sample) noexcept;
   /// The time for standing still is over.
   void cut() noexcept;
+  /// The device says that it has no such statusword.
+  void absent() noexcept {
+    if (state_ == AxisState::asked) state_ = AxisState::exempt;
+  }
 
   AxisState state() const noexcept { return state_; }
+  /// Its statusword was seen since the stop began.
+  bool seen() const noexcept { return state_ != AxisState::unseen && state_ != AxisState::asked; }
   /// Nothing more can become of it.
   bool settled() const noexcept;
   bool confirmed() const noexcept {
-    return state_ == AxisState::stopped || state_ == AxisState::exempt;
+    return state_ == AxisState::stopped || state_ == AxisState::exempt ||
+           state_ == AxisState::asked;
   }
   std::int64_t controlword() const noexcept;
   Time silence(Time now) const noexcept { return now - answered_; }

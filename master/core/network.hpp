@@ -108,6 +108,8 @@ class Network {
   void every_axis_at_rest() noexcept { axes_at_rest_ = 0; }
   /// An ordered stop begins: the command that waits for its axes is answered and never leaves.
   void drop_awaiting() noexcept;
+  /// An ordered stop begins: nodes that never were ready are not booted any more.
+  void give_up_boots(Time now) noexcept;
   /// The master itself, as NMT has commanded it.
   NmtState own_state() const noexcept { return own_state_; }
   /// All frames of the stop have been handed out.

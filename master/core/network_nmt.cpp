@@ -133,6 +133,13 @@ void Network::drop_awaiting() noexcept {
   axes_at_rest_.reset();
 }
 
+void Network::give_up_boots(Time now) noexcept {
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    sessions_[i].give_up_boot();
+    touched(i, now);
+  }
+}
+
 /// False: no room, too soon, or axes have to be stopped first.
 bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noexcept {
   if (message.node == plan_.master_id.value()) {

@@ -195,6 +195,13 @@ void NodeSession::await_command() noexcept {
   status_.boot = BootState::lost;
 }
 
+void NodeSession::give_up_boot() noexcept {
+  if (status_.boot_count != 0 || managed_ == Managed::no) return;
+  const bool booted = booting();
+  await_command();
+  if (booted) status_.boot = BootState::failed;
+}
+
 void NodeSession::halt() noexcept {
   await_command();
   if (managed_ == Managed::yes && !stopping_) own_command_ = NmtCommand::stop;

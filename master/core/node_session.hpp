@@ -86,6 +86,10 @@ class NodeSession {
   /// The same without the command: it went to all nodes.
   void await_command() noexcept;
 
+  /// An ordered stop has begun: a node that never was ready is not booted any more, so that its
+  /// axes can be asked.
+  void give_up_boot() noexcept;
+
   /// NMT stop to a node that is operational, until resume() starts it again.
   void pause() noexcept;
   void resume() noexcept;

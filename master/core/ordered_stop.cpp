@@ -45,6 +45,16 @@ AxisPlan plan_of(const NodePlan& node, std::uint8_t number) {
   return found == node.axes.end() ? AxisPlan{.number = number} : *found;
 }
 
+/// An axis of a node whose boot has failed may be enabled, too: another master has enabled it, or
+/// the one before. CiA 302-2: B is no answer at all, L is found OPERATIONAL.
+AxisPrior prior_of(const NodeStatus& node) noexcept {
+  if (node.boot_count != 0 || node.boot == BootState::ready) return AxisPrior::exposed;
+  const bool operational = node.nmt == NmtState::operational || node.boot_letter == 'L';
+  if (operational) return AxisPrior::exposed;
+  const bool answered = node.boot_letter != 0 && node.boot_letter != 'B';
+  return node.nmt != NmtState::unknown || answered ? AxisPrior::heard : AxisPrior::untouched;
+}
+
 }  // namespace
 
 std::vector<StopAxis> OrderedStop::axes_of(const BusPlan& plan) {
@@ -77,9 +87,8 @@ void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes,
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     stops_[i] = AxisStop{plans_[i]};
     answers_[i] = {};
-    const NodeStatus& node = nodes[axes_[i].node_index];
-    const bool was_ready = node.boot_count != 0 || node.boot == BootState::ready;
-    stops_[i].begin(now, reaches(i) && was_ready);
+    const AxisPrior prior = prior_of(nodes[axes_[i].node_index]);
+    stops_[i].begin(now, reaches(i) ? prior : AxisPrior::untouched);
   }
 }
 
@@ -89,7 +98,7 @@ void OrderedStop::begin_idle(Time now) noexcept {
   enter(StopStage::fallback);
   for (AxisStop& stop : stops_) {
     stop = AxisStop{};
-    stop.begin(now, false);
+    stop.begin(now, AxisPrior::untouched);
   }
 }
 
@@ -219,7 +228,7 @@ std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noe
   const AxisState state = stops_[axis].state();
   switch (stage_) {
     case StopStage::fallback:  // which may be to disable; but an axis that moves is not disabled
-      if (state == AxisState::unseen || state == AxisState::exempt) return std::nullopt;
+      if (!stops_[axis].seen() || state == AxisState::exempt) return std::nullopt;
       return stops_[axis].controlword();
     case StopStage::quick_stop:
       return stops_[axis].controlword();

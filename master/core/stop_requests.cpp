@@ -4,10 +4,13 @@
 #include <array>
 #include <utility>
 
+#include "master/wire/sdo_abort.hpp"
+
 namespace takt {
 namespace {
 
 constexpr Time poll_pause = std::chrono::milliseconds{10};
+constexpr Time write_pause = std::chrono::milliseconds{100};  // between them the axis is observed
 constexpr std::uint16_t axis_step = 0x800;
 
 bool keeps_alive(const NodePlan& node) {
@@ -105,8 +108,8 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
   if (polls_[axis].waiting || now < polls_[axis].due || state.settled()) return false;
   const auto word = stop.controlword(axis);
   const bool by_sdo = !of.controlword || !exchanging;
-  const bool known = state.state() != AxisState::unseen;
-  if (by_sdo && known && word && *word != polls_[axis].written) {
+  const bool may_write = state.seen() && now >= polls_[axis].write_again;
+  if (by_sdo && may_write && word && *word != polls_[axis].written) {
     polls_[axis].writing = *word;
     ask(axis, Word::control, *word);
     return true;
@@ -166,21 +169,32 @@ bool StopRequests::take(const Reply& reply, Time now, OrderedStop& stop) noexcep
   const std::size_t axis = reply.id >> 8U & 0xFFFF;
   polls_[axis].waiting = false;
   polls_[axis].due = now + poll_pause;
-  take_value(axis, static_cast<Word>(reply.id & 0xFF), reply, stop);
+  const auto word = static_cast<Word>(reply.id & 0xFF);
+  if (reply.fault != SdoFault::none) {
+    polls_[axis].write_again = now + write_pause;
+    take_fault(axis, word, reply, stop);
+  } else {
+    take_value(axis, word, reply, stop);
+  }
   return true;
+}
+
+void StopRequests::take_fault(std::size_t axis, Word word, const Reply& reply,
+                              OrderedStop& stop) noexcept {
+  if (reply.fault != SdoFault::aborted_by_device) return;
+  if (word == Word::velocity) polls_[axis].no_velocity = true;
+  const bool missing = reply.abort_code == abort_code::no_object;
+  if (word == Word::status && missing) stop.take_absence(axis);
 }
 
 void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
                               OrderedStop& stop) noexcept {
   Poll& poll = polls_[axis];
   if (word == Word::control) {
-    if (reply.fault == SdoFault::none) poll.written = poll.writing;
+    poll.written = poll.writing;
     return;
   }
-  if (reply.fault == SdoFault::aborted_by_device && word == Word::velocity) {
-    poll.no_velocity = true;
-  }
-  if (reply.fault != SdoFault::none || reply.size == 0 || reply.size > 4) return;
+  if (reply.size == 0 || reply.size > 4) return;
   std::uint32_t raw = 0;
   for (std::size_t i = 0; i < reply.size; ++i) {
     raw |= std::to_integer<std::uint32_t>(reply.data[i]) << (8 * i);

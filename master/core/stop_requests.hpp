@@ -46,6 +46,7 @@ class StopRequests {
     std::int64_t writing = -1;  // controlword that is under way by SDO
     std::int64_t written = -1;  // controlword that the device has taken by SDO
     Time due{};
+    Time write_again{};  // not before, after the device has refused a controlword
   };
   /// One write that disarms; without object: NMT enter pre-operational, before the writes.
   struct Job {
@@ -63,6 +64,7 @@ class StopRequests {
   void ask(std::size_t axis, Word word, std::int64_t value = 0) noexcept;
   const Request* next_job(std::span<const NodeStatus> nodes) noexcept;
   void take_value(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
+  void take_fault(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
 
   const BusPlan& plan_;
   std::vector<StopAxis> axes_;

@@ -56,6 +56,7 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
     stop_.begin_idle(now);
   } else {
     stop_.begin(now, network_.nodes());
+    if constexpr (requires { network_.give_up_boots(now); }) network_.give_up_boots(now);
   }
   halt_.call_off();
   if constexpr (requires { network_.drop_awaiting(); }) network_.drop_awaiting();

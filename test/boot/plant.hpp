@@ -64,13 +64,23 @@ class Plant {
     if (!begun_) loop_->start();
     begun_ = true;
     const Time until = world.now() + span;
-    while (world.now() < until) {
+    while (world.now() < until && !loop_->done()) {
       loop_->cycle();
       ImageView image;
       exchange_->images.take_newest(image);
       for (Event event; exchange_->events.pop(event);) events.push_back(event);
       for (Reply reply; exchange_->replies.pop(reply);) replies.push_back(reply);
     }
+  }
+
+  /// Asks for the ordered stop and runs to its end.
+  StopResult stop() {
+    loop_->request_stop();
+    for (int i = 0; i < 10'000 && !loop_->done(); ++i) run(plan().cycle.period);
+    EXPECT_TRUE(loop_->done());
+    StatusSnapshot snapshot;
+    exchange_->status.read(snapshot);
+    return snapshot.bus.stop_result;
   }
 
   /// An NMT command of an application.
