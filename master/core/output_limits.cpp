@@ -216,6 +216,14 @@ std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
   return breach(LimitKind::acceleration, found / apart * scale, bend * scale);
 }
 
+bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexcept {
+  const Slot& slot = slots_[place];
+  const bool measured = limits_[place].step != OutputLimit::none ||
+                        slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
+  return measured && !slot.known && limits_[place].feedback &&
+         !inputs_.fresh(*limits_[place].feedback) && !in_profile(place, mode);
+}
+
 std::optional<LimitBreach> OutputLimits::judge(std::size_t place, std::int64_t raw,
                                                std::int64_t mode, Obeying obeying,
                                                std::uint64_t cycle) const noexcept {

@@ -47,6 +47,9 @@ class OutputLimits {
   /// It has a limit to be held against.
   bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
 
+  /// Nothing was sent so far, and the device hasn't sent its actual position yet: no way can be
+  /// measured. `mode`: of the axis, as it is commanded.
+  bool lacks_start(std::size_t place, std::int64_t mode) const noexcept;
   /// None: `raw` may be sent. `mode`: of the axis, as it is commanded.
   std::optional<LimitBreach> judge(std::size_t place, std::int64_t raw, std::int64_t mode,
                                    Obeying obeying, std::uint64_t cycle) const noexcept;

@@ -96,7 +96,12 @@ void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_poi
   if (limit.mode) {
     mode = new_mode ? set_points[output_of(*limit.mode)].value : image_.values[*limit.mode];
   }
-  if (!new_value && !outputs_[output_of(limit.signal)].known) return;
+  Output& output = outputs_[output_of(limit.signal)];
+  if (!new_value && !output.known) return;
+  if (new_value && limits_.lacks_start(place, mode)) {
+    output.generation = set_points[output_of(limit.signal)].generation;
+    return;
+  }
   if (judge(place, value, mode, moment) && new_value) limits_.forgive(place, moment.cycle);
 }
 
@@ -133,7 +138,7 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
     return judge(place, image_.values[limit.signal], value, moment) && !limits_.holds(node_index);
   }
   const std::int64_t mode = limit.mode ? image_.values[*limit.mode] : 0;
-  if (!judge(place, value, mode, moment)) return false;
+  if (limits_.lacks_start(place, mode) || !judge(place, value, mode, moment)) return false;
   limits_.forgive(place, moment.cycle);
   if (limits_.holds(node_index)) return false;
   limits_.admit(place, value, moment.cycle);

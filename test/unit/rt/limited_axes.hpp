@@ -65,6 +65,12 @@ class LimitedAxes {
   }
   /// The node exchanges PDOs anew; nothing was told in its boot.
   void open(unsigned axis) { pdos_.outputs().open(axis, points_); }
+  /// It has booted once more and has not sent a TPDO since.
+  void boot(unsigned axis) {
+    pdos_.inputs().set_reception(axis, Reception::off);
+    pdos_.inputs().set_reception(axis, Reception::full);
+    open(axis);
+  }
   void learn(unsigned axis, std::span<const LimitReading> readings) {
     pdos_.outputs().learn(axis, readings, next_moment());
   }

@@ -122,6 +122,22 @@ TEST(OutputLimits, HoldTheFirstCommandAgainstTheActualPosition) {
   EXPECT_EQ(axes.position(), 1008);
 }
 
+TEST(OutputLimits, LetTheFirstCommandWaitForTheActualPosition) {
+  LimitedAxes axes{1, stepping};
+  axes.cycle_with(0, 3);
+  axes.boot(0);
+  axes.cycle_with(0, 1500);
+  axes.write(1, 1500);
+  axes.cycle();
+  EXPECT_EQ(axes.position(), 3) << "nothing goes out";
+  axes.feedback(0, 1000);
+  axes.cycle();
+  EXPECT_EQ(axes.position(), 1000);
+  axes.cycle_with(0, 1008);
+  EXPECT_EQ(axes.position(), 1008);
+  EXPECT_EQ(axes.refusals(), 0U);
+}
+
 TEST(OutputLimits, LetADisabledAxisFollowItsActualPosition) {
   LimitedAxes axes{1, stepping};
   axes.cycle_with(0, 5);
