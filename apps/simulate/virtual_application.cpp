@@ -40,7 +40,6 @@ void VirtualApplication::start() {
   jump_ = 0;
   new_layout_ = fresh_ = false;
   heard_ = 0;
-  heard_since_ = never;
   lcm_.subscribe(channels_.image);
   lcm_.subscribe(channels_.layout);
 }
@@ -84,6 +83,7 @@ Time VirtualApplication::next() const noexcept {
 void VirtualApplication::act(Time now) {
   reaction_ = slowness_ + 20us + Time{random_.below(random_.chance(0.02) ? 5'000'000 : 300'000)};
   input_.set_time(now.count());
+  hears_ = false;
   lcm_.serve([this](std::string_view channel, Bytes data) { take(channel, data); });
   if (std::exchange(new_layout_, false)) {
     axes_.set_layout(input_);
@@ -101,24 +101,24 @@ void VirtualApplication::take(std::string_view channel, Bytes data) {
   if (channel == channels_.layout) {
     if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
   } else if (const auto part = decode<image_t>(data)) {
-    ++heard_;
+    hears_ = true;
     if (options_.hears && !options_.hears(*part)) return;
     if (!input_.take(*part)) return;
     fresh_ = true;
-    heard_ = 0;
-    heard_since_ = never;
     sync_ = Time{part->sync_mono_ns};
   }
 }
 
-/// Whatever came in between: where images come, the newest of them is used.
+/// Whatever came in between: where images come, the newest of them is used. Those that waited
+/// while the program was stalled count once.
 void VirtualApplication::judge_hearing(Time now) {
-  if (heard_ == 0) return;
-  if (heard_since_ == never) heard_since_ = now;
+  if (fresh_) heard_ = 0;
+  if (fresh_ || !hears_) return;
+  if (heard_++ == 0) heard_since_ = now;
   const auto enough = static_cast<std::uint64_t>(longest_deafness / plan_.cycle.period);
   if (!options_.deaf || heard_ < enough || now - heard_since_ < longest_deafness) return;
   options_.deaf("program " + std::to_string(options_.number) + " has heard " +
-                std::to_string(heard_) + " images in " +
+                std::to_string(heard_) + " times images in " +
                 std::to_string((now - heard_since_) / 1ms) + " ms and used none");
 }
 

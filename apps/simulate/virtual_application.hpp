@@ -98,8 +98,9 @@ class VirtualApplication final : public Actor {
   std::vector<Course> courses_;  // of each axis
   std::int64_t jump_ = 0;
   std::uint64_t images_ = 0;  // used
-  std::uint64_t heard_ = 0;   // images since the last one that it could use
-  Time heard_since_ = never;
+  bool hears_ = false;        // an image came in this round
+  std::uint64_t heard_ = 0;   // rounds with images since the last one that it could use
+  Time heard_since_{};
   std::uint64_t sent_ = 0;
   std::vector<std::byte> buffer_;
 };

@@ -26,6 +26,7 @@ using namespace std::chrono_literals;
 constexpr Time calm = 2s;  // all boot, all axes move
 constexpr Time time_to_recover = 60s;
 constexpr Time longest_pause = 21ms;  // of pause_before_image, and a step
+constexpr Time usual_jitter = 320us;  // of the master's SYNC
 constexpr std::size_t most_applications = 3;
 constexpr std::array<Time, 3> latenesses{0us, 60us, 300us};
 
@@ -194,6 +195,7 @@ class Run {
       last_published_ = {};
     }
     if (daemon_.runs()) {
+      wire_.begin_cycle(world_.now());
       daemon_.cycle();
     } else {
       port_.sleep_until(world_.now() + 1ms);
@@ -203,7 +205,7 @@ class Run {
   /// The front thread has an image in its hands not much later than it was there, unless it was
   /// stalled. Where images have stayed away it looks more and more rarely, and finds the next ones
   /// late; see pause_before_image. While no node exchanges PDOs images are there before the time
-  /// that is predicted for them.
+  /// that is predicted for them, and so is the first one after the phase of SYNC has changed.
   void judge_wait(const ImageView& image, Time now) {
     ++images_;
     cycle_ = image.cycle;
@@ -212,16 +214,26 @@ class Run {
     const Time away = before == Time{} ? never : image.publish_time - before;
     const bool was_away = away > plan_.cycle.period * 3 / 2;
     const Time rare = was_away ? std::min(longest_pause, away / 8 + plan_.cycle.period) : Time{};
-    // Nobody expects one that comes early: the SYNC of somebody else has another phase now.
+    const bool was_shifted = std::exchange(sync_.shifted, has_shifted(image.sync_time));
     const bool early = image.publish_time - before < plan_.cycle.period * 3 / 4;
     const Time usual = std::max(image.publish_time, before + plan_.cycle.period);
-    const Time expected = early ? before + 2 * plan_.cycle.period : usual;
+    const Time unforeseen = before + 2 * plan_.cycle.period;
+    const Time regular = early ? unforeseen : usual;
+    const Time expected = sync_.shifted || was_shifted ? std::max(regular, unforeseen) : regular;
     const Time in_time = expected + plan_.cycle.receive_window + 300us + rare;
     excused_until_ = std::max(excused_until_, in_time);
     if (daemon_.stalled_until() > image.publish_time || now <= excused_until_) return;
     verdict_.blame("each wait of the front thread ends in time",
                    "image " + std::to_string(image.cycle) + " lay there for " +
                        std::to_string((now - image.publish_time) / 1us) + " us");
+  }
+
+  /// This SYNC isn't whole periods after the one before: that came late out of a stall, or somebody
+  /// else produces it.
+  bool has_shifted(Time sync) noexcept {
+    const Time period = plan_.cycle.period;
+    const Time off = (sync - std::exchange(sync_.newest, sync)) % period;
+    return std::min(off, period - off) > usual_jitter;
   }
 
   /// Nothing happens any more: each application moves its axes again.
@@ -302,6 +314,10 @@ class Run {
   std::uint64_t cycle_ = 0;
   std::uint64_t images_ = 0;
   std::uint64_t events_ = 0;
+  struct {
+    Time newest{};
+    bool shifted = false;  ///< the newest against the one before
+  } sync_;
   Time last_published_{};
   Time excused_until_{};
 };

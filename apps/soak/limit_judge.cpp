@@ -16,10 +16,8 @@ using namespace std::chrono_literals;
 constexpr std::uint16_t target_position = 0x607A;
 constexpr Time longest_gap = 50ms;  // cycles without a command that may count for one way
 constexpr double fewest_cycles = 3;
-constexpr double cycles_behind = 4;  // the master's knowledge of the true position
-// A babbling node may send a position a hundred times in a cycle, or none may come for a long time.
-constexpr Time::rep cycles_remembered = 6;
-constexpr std::size_t fewest_remembered = 8;
+constexpr double cycles_behind = 4;           // the master's knowledge of the true position
+constexpr std::size_t fewest_remembered = 8;  // positions, where none come for a long time
 
 std::int64_t sign_extended(std::uint64_t value, unsigned bits) noexcept {
   const unsigned spare = bits == 0 || bits > 64 ? 0U : 64U - bits;
@@ -57,9 +55,19 @@ bool LimitJudge::near_axis(const Place& place, const Signal& signal, std::int64_
   return way <= allowed(place, cycles_behind) + moved;
 }
 
+void LimitJudge::begin_cycle(Time now) {
+  std::ranges::rotate(cycles_, cycles_.begin() + 1);
+  cycles_.back() = now;
+  // A babbling node may have sent a hundred of them in a cycle, which all waited while the master
+  // was stopped.
+  for (Place& place : places_) {
+    while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
+      place.actual.pop_front();
+    }
+  }
+}
+
 void LimitJudge::heard(const Frame& frame) {
-  const Time now = world_.now();
-  const Time oldest = now - cycles_remembered * plan_.cycle.period;
   for (const PdoRow& row : plan_.pdos.tpdos) {
     if (row.cob_id != frame.id || row.multiplexed()) continue;
     for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
@@ -67,10 +75,8 @@ void LimitJudge::heard(const Frame& frame) {
       for (Place& place : places_) {
         if (place.limit == nullptr || place.limit->feedback != field.signal) continue;
         place.actual.push_back(
-            {now, sign_extended(bits_of(frame, field.bit_offset, field.bits), field.bits)});
-        while (place.actual.size() > fewest_remembered && place.actual.front().when < oldest) {
-          place.actual.pop_front();
-        }
+            {world_.now(),
+             sign_extended(bits_of(frame, field.bit_offset, field.bits), field.bits)});
       }
     }
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <vector>
@@ -19,6 +20,8 @@ class LimitJudge {
  public:
   LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
+  /// The master takes what its interface has kept since the cycle before.
+  void begin_cycle(Time now);
   /// A set-point of so many bits is handed to the interface. `begins`: none was for some cycles.
   void sent(SignalIndex signal, std::uint64_t bits, bool begins, Time now);
   /// A position of this device is on the wire: somebody may have forged it, the master can't know.
@@ -37,7 +40,7 @@ class LimitJudge {
     const OutputLimit* limit = nullptr;
     std::int64_t value = 0;
     Time when{};              ///< `value` was new
-    std::deque<Seen> actual;  ///< newest positions on the wire; the newest is the last
+    std::deque<Seen> actual;  ///< positions on the wire since cycles_[0]; the newest is the last
   };
 
   double allowed(const Place& place, double cycles) const noexcept;
@@ -48,7 +51,8 @@ class LimitJudge {
   const BusPlan& plan_;
   sim::World& world_;
   Verdict& verdict_;
-  std::vector<Place> places_;  // by output
+  std::vector<Place> places_;     // by output
+  std::array<Time, 6> cycles_{};  // begins of the newest; the oldest is the first
   std::uint64_t judged_ = 0;
 };
 

@@ -36,6 +36,8 @@ class WireJudge {
   void released(SenderBit sender, Time now);
   /// The outputs belong to nobody: the daemon is another one.
   void forget_holders();
+  /// The master begins a cycle.
+  void begin_cycle(Time now) { limits_.begin_cycle(now); }
   /// Anything on the wire.
   void heard(const Frame& frame) { limits_.heard(frame); }
   /// What the master hands to the interface.

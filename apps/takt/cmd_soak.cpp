@@ -57,7 +57,8 @@ void tell(const Arguments& arguments, const SoakReport& report) {
               << " s): violated: " << violation.invariant << ": " << violation.what;
   }
   std::cout << "\n  again: takt soak " << arguments.network << " --seeds " << outcome.seed
-            << " --for " << arguments.run_for << " --verbose" << std::endl;
+            << " --part " << arguments.part << " --for " << arguments.run_for << " --verbose"
+            << std::endl;
 }
 
 void add(Sum& sum, const SoakReport& report) {
