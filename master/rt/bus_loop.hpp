@@ -94,6 +94,7 @@ class BusLoop {
   void await_rest(Time end) noexcept;
   void drain() noexcept;
   bool begins_cycle(const StampedFrame& stamped) noexcept;
+  void record_skipped(std::uint64_t missed) noexcept;
   void note_missed(std::uint64_t missed, Time now) noexcept;
   bool outputs_rest() const noexcept;
   void learn(bool in_time) noexcept;

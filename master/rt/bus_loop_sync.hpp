@@ -16,6 +16,7 @@ void BusLoop<P, N>::wait_for_beat() noexcept {
   for (unsigned stalls = 0; stalls < patience_with_stalls; ++stalls) {
     const std::uint64_t missed = clock_.skip_missed(now);
     if (missed == 0) break;
+    record_skipped(missed);
     note_missed(missed, now);
     port_.sleep_precisely_until(clock_.deadline());
     now = port_.now();
@@ -25,6 +26,12 @@ void BusLoop<P, N>::wait_for_beat() noexcept {
   exchange_.timing.sync_lateness.record(late);
   if (late > clock_.period() / 10) ++status_.cycles_late;
   look_at_wire();
+}
+
+/// The beat that was due comes whole periods late: after those that were left out.
+template <Port P, class N>
+void BusLoop<P, N>::record_skipped(std::uint64_t missed) noexcept {
+  exchange_.timing.sync_lateness.record(static_cast<std::int64_t>(missed) * clock_.period());
 }
 
 template <Port P, class N>
@@ -80,7 +87,10 @@ void BusLoop<P, N>::wait_for_sync() noexcept {
     // After a stall the deadline may lie before us, and a SYNC may come before it.
     sync_sent_ = std::min(clock_.deadline(), now);
   }
-  if (missed != 0) note_missed(missed, port_.now());
+  if (missed != 0) {
+    if (was_locked) record_skipped(missed);
+    note_missed(missed, port_.now());
+  }
   react_to_sync();
   look_at_wire();
 }

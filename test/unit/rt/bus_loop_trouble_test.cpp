@@ -54,6 +54,20 @@ TEST(BusLoop, AfterAStallOf50MsSendsNoBurst) {
   EXPECT_EQ(std::ranges::count(events, EventKind::pdo_missing), 0);
 }
 
+TEST(BusLoop, CountsASyncThatWasLeftOutAsLateByThePeriodsThatItMissed) {
+  Loop bus;
+  bus.run(10);
+  EXPECT_LT(bus.exchange->timing.sync_lateness.snapshot().maximum(), 1us);
+
+  bus.port.stall = 1100us;  // more than half a period: this SYNC is not sent
+  bus.run(1);
+  EXPECT_GE(bus.exchange->timing.sync_lateness.snapshot().maximum(), 2ms);
+
+  bus.port.stall = 50ms;
+  bus.run(1);
+  EXPECT_GE(bus.exchange->timing.sync_lateness.snapshot().maximum(), 50ms);
+}
+
 TEST(BusLoop, ExcusesTheNodesForTheTimeOfItsOwnAbsence) {
   Loop bus;
   bus.run(10);

@@ -310,6 +310,7 @@ TEST_F(FollowingLoop, TakesTheNewestOfSyncsThatWaitedForIt) {
   ASSERT_TRUE(loop.newest(image));
   EXPECT_EQ(image.sync_time, first + 8 * 2ms);
   EXPECT_EQ(loop.status().cycles_missed, 5u);
+  EXPECT_GE(loop.exchange->timing.sync_lateness.snapshot().maximum(), 5 * 2ms);
 }
 
 }  // namespace
