@@ -232,8 +232,8 @@ void Daemon::watch_lateness() {
            std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
 }
 
-/// A mandatory node that never was there keeps the bus from running. One that was ready and goes is
-/// booted again by its plan, and the others go on.
+/// A mandatory node that never was there keeps the bus from running, once it was asked by SDO too.
+/// One that was ready and goes is booted again by its plan, and the others go on.
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
   recorder_.on_fault(notice);
@@ -242,7 +242,8 @@ void Daemon::on_notice(const Notice& notice) {
     unconfirmed_ += (unconfirmed_.empty() ? ": " : "; ") + notice.text;
   }
   if (notice.kind == name(EventKind::boot_done)) once_ready_.set(notice.node);
-  if (notice.kind != name(EventKind::boot_failed) || once_ready_[notice.node]) return;
+  const bool failed = notice.kind == name(EventKind::boot_failed) && !notice.asks_on;
+  if (!failed || once_ready_[notice.node]) return;
   for (const NodePlan& node : network_.plan.nodes) {
     if (node.id.value() == notice.node && node.mandatory) {
       stop(Exit::node_missing, "node " + std::to_string(notice.node) + " (" + node.name +

@@ -88,7 +88,9 @@ Notice to_notice(const BusPlan& plan, const Event& event) {
           .node = event.node,
           .kind = std::string{name(event.kind)},
           .weight = all_clear ? Weight::note : weight_of(event.kind),
-          .text = describe(plan, event)};
+          .text = describe(plan, event),
+          .asks_on = event.kind == EventKind::boot_failed &&
+                     event.failure.action == BootAction::await_alive};
 }
 
 std::string_view node_name(const BusPlan& plan, std::uint8_t node) noexcept {

@@ -23,6 +23,8 @@ struct Notice {
   std::string kind;       ///< "boot_failed"
   Weight weight = Weight::note;
   std::string text;
+  /// boot_failed: the next try of this boot asks the node in another way, so it isn't missing yet.
+  bool asks_on = false;
 };
 
 using NoticeSink = std::function<void(const Notice&)>;

@@ -20,6 +20,24 @@ TEST(EndOfTaktd, WithoutAMandatoryNodeIs4AfterTheTimeOfFor) {
             std::string::npos);
 }
 
+/// A node that is kept alive may run without a heartbeat: its silence alone says nothing.
+TEST(EndOfTaktd, WithoutAMandatoryNodeThatIsKeptAliveComesWhenItWasAskedBySdo) {
+  const Folder folder;
+  const auto network = slow_network(folder.path(), [](std::string& text) {
+    const std::string mandatory = "  mandatory: true\n";
+    text.insert(text.find(mandatory), "  reset: keep_alive\n");
+  });
+  DaemonProcess daemon{network, {"--bus", empty_bus(folder)}};
+
+  EXPECT_EQ(daemon.wait(), 4);
+
+  const std::string log = daemon.log();
+  const std::size_t silent = log.find("it is asked by SDO with the next try");
+  ASSERT_NE(silent, std::string::npos) << log;
+  EXPECT_NE(log.find("boot begins", silent), std::string::npos) << "no next try: " << log;
+  EXPECT_NE(log.find("is mandatory and did not boot"), std::string::npos) << log;
+}
+
 TEST(EndOfTaktd, OnASignalWhileAMandatoryNodeIsWaitedForIsGood) {
   const Folder folder;
   DaemonProcess daemon{slow_network(folder.path()), {"--bus", empty_bus(folder)}};
