@@ -69,11 +69,11 @@ void DeviceValues::missing(ObjectKey key) {
   if (values_.erase(key) != 0) note(to_string(key) + " stands in the EDS; the device has none");
 }
 
-bool DeviceValues::takes(std::uint16_t index, std::int64_t value) const {
+bool DeviceValues::takes(ObjectKey key, std::int64_t value) const {
   return std::ranges::any_of(supervision_, [&](const DeviceObject& object) {
     const bool fits =
         value >= object.low_limit.value_or(value) && value <= object.high_limit.value_or(value);
-    return object.key.index == index && fits;
+    return object.key == key && fits;
   });
 }
 

@@ -23,8 +23,8 @@ class DeviceValues {
   /// 16 bits, signed: the option codes of CiA 402.
   std::optional<int> option(std::uint16_t index) const;
   bool has(std::uint16_t index) const;
-  /// Some object of the index can be written, and `value` is within its limits. By the EDS.
-  bool takes(std::uint16_t index, std::int64_t value) const;
+  /// The object can be written, and `value` is within its limits. By the EDS.
+  bool takes(ObjectKey key, std::int64_t value) const;
   const std::map<ObjectKey, std::uint64_t>& all() const noexcept { return values_; }
 
   /// The device has answered. Where it holds another value than was expected, that is noted.

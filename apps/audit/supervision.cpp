@@ -1,6 +1,10 @@
 #include "apps/audit/supervision.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+#include <string>
 
 namespace takt {
 namespace {
@@ -111,35 +115,96 @@ std::int64_t consumer_entry(const BusPlan& plan) {
   return (std::int64_t{plan.master_id.value()} << 16) | (missed_heartbeats * ms);
 }
 
-/// No entry of 0x1016 is left for the master: each watches another node.
-bool watches_only_others(const BusPlan& plan, const DeviceValues& values) {
-  const std::uint64_t entries = std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127);
-  for (std::uint8_t sub = 1; sub <= entries; ++sub) {
-    const std::uint64_t entry = values.get({0x1016, sub}).value_or(0);
-    const std::uint64_t node = (entry >> 16) & 0xFF;
-    const bool other = node != 0 && node <= 127 && node != plan.master_id.value();
-    if (!other || (entry & 0xFFFF) == 0) return false;
+/// What an entry of 0x1016 is to the master.
+enum class Entry : std::uint8_t { of_master, watches_nobody, of_another };
+
+Entry entry_of(const BusPlan& plan, const DeviceValues& values, std::uint8_t sub) {
+  const std::uint64_t entry = values.get({0x1016, sub}).value_or(0);
+  const std::uint64_t node = (entry >> 16) & 0xFF;
+  if (node == plan.master_id.value()) return Entry::of_master;
+  const bool watches = node != 0 && node <= 127 && (entry & 0xFFFF) != 0;
+  return watches ? Entry::of_another : Entry::watches_nobody;
+}
+
+std::uint8_t entries_of(const DeviceValues& values) {
+  const auto count = std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127);
+  return static_cast<std::uint8_t>(count);
+}
+
+/// The entry that the boot chooses: the master's, else the first that watches nobody.
+std::optional<std::uint8_t> chosen_entry(const BusPlan& plan, const DeviceValues& values) {
+  std::optional<std::uint8_t> unused;
+  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
+    const Entry entry = entry_of(plan, values, sub);
+    if (entry == Entry::of_master) return sub;
+    if (entry == Entry::watches_nobody && !unused) unused = sub;
   }
-  return entries != 0;
+  return unused;
+}
+
+/// An entry that watches nobody, and takes what the one that the boot chooses does not.
+std::optional<std::uint8_t> wide_entry(const BusPlan& plan, const DeviceValues& values) {
+  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
+    const bool unused = entry_of(plan, values, sub) == Entry::watches_nobody;
+    if (unused && values.takes({0x1016, sub}, consumer_entry(plan))) return sub;
+  }
+  return std::nullopt;
+}
+
+/// With `heartbeat_consumer: true`, the default, the boot writes it.
+bool boot_writes_consumer(const NodePlan& node) {
+  return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
+    return step.object.index == 0x1016 && step.object.sub != 0;
+  });
+}
+
+std::string explicit_entry(const BusPlan& plan, std::uint8_t sub) {
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(),
+                "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # it watches the master",
+                unsigned{sub}, static_cast<unsigned>(consumer_entry(plan)));
+  return line.data();
+}
+
+void watch_guarding(const DeviceValues& values, SupervisionRemedy& remedy) {
+  if (values.takes({0x100C, 0}, guard_ms) && values.takes({0x100D, 0}, life_time_factor)) {
+    remedy.node.emplace_back("heartbeat_producer: 0");
+    remedy.node.emplace_back("guard_time: 100   # ms");
+    remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
+  } else {
+    remedy.node.clear();
+  }
+}
+
+/// False: no entry of 0x1016 can watch the master.
+bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
+                     SupervisionRemedy& remedy) {
+  const auto chosen = chosen_entry(plan, values);
+  const bool by_default = chosen && values.takes({0x1016, *chosen}, consumer_entry(plan));
+  const auto wide = by_default ? std::nullopt : wide_entry(plan, values);
+  if (!by_default && !wide) return false;
+  const bool silent = plan.master_heartbeat == Time{};
+  if (silent) remedy.master = "master: {heartbeat_producer: 100}   # ms";
+  if (wide) {
+    remedy.why = "its " + to_string(ObjectKey{0x1016, *chosen}) +
+                 " can't be written, or by the limits of its EDS does not hold the master's node "
+                 "id and a time, but another entry does: name that one, or correct the EDS";
+    remedy.node.push_back(explicit_entry(plan, *wide));
+  } else if (!silent && node.boot && !boot_writes_consumer(node)) {  // the file says false
+    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
+  }
+  return true;
 }
 
 }  // namespace
 
 SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
                                      const DeviceValues& values) {
+  const NodePlan& node = plan.nodes[node_index];
   SupervisionRemedy remedy;
-  const bool boots = plan.nodes[node_index].boot;
-  if (!boots) remedy.node.emplace_back("boot: true   # takt configures it");
-  const bool full = watches_only_others(plan, values);
-  if (!full && values.takes(0x1016, consumer_entry(plan))) {
-    if (plan.master_heartbeat == Time{}) {
-      remedy.master = "master: {heartbeat_producer: 100}   # ms";
-    } else if (boots) {  // it is the default: the network file says false
-      remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
-    }
-    return remedy;
-  }
-  if (full) {
+  if (!node.boot) remedy.node.emplace_back("boot: true   # takt configures it");
+  if (watch_heartbeat(plan, node, values, remedy)) return remedy;
+  if (entries_of(values) != 0 && !chosen_entry(plan, values)) {
     remedy.why =
         "each entry of its 1016 watches another node: it can't watch the master's heartbeat";
   } else if (values.has(0x1016)) {
@@ -147,13 +212,7 @@ SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index
         "its 1016 can't be written, or by the limits of its EDS does not hold the master's node id "
         "and a time: it can't watch the master's heartbeat";
   }
-  if (values.takes(0x100C, guard_ms) && values.takes(0x100D, life_time_factor)) {
-    remedy.node.emplace_back("heartbeat_producer: 0");
-    remedy.node.emplace_back("guard_time: 100   # ms");
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
-  } else {
-    remedy.node.clear();
-  }
+  watch_guarding(values, remedy);
   return remedy;
 }
 

@@ -107,6 +107,33 @@ TEST(Audit, NamesWhatWorksWhereTheHeartbeatConsumerHoldsNoNodeId) {
   EXPECT_NE(guards, none) << "life guarding where the device has it, else nothing";
 }
 
+/// The boot chooses 1016:01, and warns that it can't be written.
+TEST(Audit, NamesAnotherEntryWhereOnlyTheFirstOneHoldsNoNodeId) {
+  auto network = two_nodes({}, {});
+  DeviceTable& device = network.devices[0];
+  for (DeviceObject& object : device.objects) {
+    if (object.key == ObjectKey{0x1016, 1}) object.high_limit = 0xFFFF;
+  }
+  std::erase_if(network.plan.nodes[0].boot_plan.steps,
+                [](const BootStep& step) { return step.object == ObjectKey{0x1016, 1}; });
+
+  const NodeAudit drive = audit_of(network).nodes[0];
+
+  EXPECT_EQ(drive.remedy,
+            std::vector<std::string>{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]   # it "
+                                     "watches the master"});
+  EXPECT_NE(text_of(audit_of(network)).find("its 1016:01 can't be written, or by the limits"),
+            std::string::npos);
+}
+
+TEST(Audit, NamesAnEntryThatWorks) {
+  const auto network = two_nodes({"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]"}, {});
+
+  EXPECT_EQ(network.findings.size(), two_nodes({}, {}).findings.size());
+  EXPECT_NE(text_of(audit_of(network)).find("the master's heartbeat stays away (1016:02)"),
+            std::string::npos);
+}
+
 TEST(Audit, NamesEachOutputThatStays) {
   const auto network = two_nodes({}, {"sdo: [{index: 0x6206, sub_index: 2, value: 0x0F}, {index: "
                                       "0x6443, sub_index: 1, value: 0}]"});
