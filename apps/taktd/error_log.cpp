@@ -73,8 +73,13 @@ void ErrorLog::say(Weight weight, const std::string& sentence) {
     log_->warn("stderr took too little: {} lines are lost here", lost);
   }
   log_->log(level_of(weight), "{}", sentence);
-  if (writer_.has_thread() || std::exchange(without_thread_told_, true)) return;
-  log_->warn("no thread can be created for stderr; its lines wait, and it is tried again");
+  if (writer_.has_thread()) return;
+  if (!std::exchange(without_thread_told_, true)) {
+    log_->warn(
+        "no thread can be created for stderr; it is tried again. Until then lines are "
+        "written as fast as stderr takes them, and the others wait");
+  }
+  writer_.write_through(Time{0});
 }
 
 }  // namespace takt

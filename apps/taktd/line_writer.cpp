@@ -37,6 +37,26 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
   return done;
 }
 
+enum class Takes : std::uint8_t { more, nothing_now, nothing_ever };
+
+/// Writes what the file takes until `end`, never more at once than a pipe that is ready takes
+/// whole. `done` counts it.
+Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) noexcept {
+  constexpr std::size_t at_once = 512;
+  while (done < text.size()) {
+    const Time left = std::max(end - monotonic_now(), Time{0});
+    const auto ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
+    pollfd room{.fd = fd, .events = POLLOUT, .revents = 0};
+    if (::poll(&room, 1, static_cast<int>(ms)) <= 0) return Takes::nothing_now;
+    const std::string_view next = text.substr(done, at_once);
+    const ssize_t written = ::write(fd, next.data(), next.size());
+    if (written > 0) done += static_cast<std::size_t>(written);
+    if (written > 0 || (written < 0 && errno == EINTR)) continue;
+    return written < 0 && errno == EAGAIN ? Takes::nothing_now : Takes::nothing_ever;
+  }
+  return Takes::more;
+}
+
 /// Takes the last `bytes` of a file back, where nobody has appended since.
 bool take_back(int fd, std::size_t bytes) noexcept {
   struct stat file{};
@@ -163,7 +183,24 @@ bool LineWriter::flush(Time limit) {
     ensure_thread();
     lock.lock();
   }
-  return has_thread_ ? state_->changed.wait_for(lock, limit, through) : through();
+  if (has_thread_) return state_->changed.wait_for(lock, limit, through);
+  lock.unlock();
+  return write_through(limit);
+}
+
+bool LineWriter::write_through(Time limit) {
+  if (has_thread_) return true;
+  const std::lock_guard lock{state_->mutex};  // nobody else has it: there is no thread
+  std::string& waiting = state_->waiting;
+  if (waiting.empty()) return true;
+  if (std::exchange(state_->cut, false)) waiting.insert(0, 1, '\n');
+  std::size_t done = 0;
+  const Takes takes = write_until(state_->file.get(), waiting, monotonic_now() + limit, done);
+  waiting.erase(0, done);
+  if (takes == Takes::nothing_ever) {
+    state_->lost += lines_in(std::exchange(waiting, {}));
+  }
+  return waiting.empty();
 }
 
 }  // namespace takt

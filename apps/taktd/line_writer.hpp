@@ -33,11 +33,14 @@ class LineWriter {
   void add(std::string_view line);
   /// The number of lines that were lost since the last call.
   std::uint64_t take_lost();
-  /// False: what was added is not all through after `limit`.
+  /// False: what was added is not all through after `limit`. Without a thread the caller writes.
   bool flush(Time limit);
+  /// Where no thread could be created, the caller writes what the file takes within `limit`. False:
+  /// something still waits. With a thread, it does nothing and is true.
+  bool write_through(Time limit);
 
-  /// False: no thread could be created so far. Lines wait, and it is tried again with each line
-  /// that comes a second or more after the last try.
+  /// False: no thread could be created so far. It is tried again with each line that comes a second
+  /// or more after the last try; meanwhile lines wait, or the caller writes them.
   bool has_thread() const noexcept { return has_thread_; }
 
  private:

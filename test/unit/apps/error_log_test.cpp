@@ -87,5 +87,30 @@ TEST(ErrorLog, TellsOnceThatItHasNoThreadWhenItHasOne) {
   EXPECT_EQ(text.find("no thread can be created", told + 1), std::string::npos) << text;
 }
 
+TEST(ErrorLog, SaysItsSentencesWhereNoThreadCanEverBeCreated) {
+  Pipe pipe = make_pipe();
+  ErrorLog log{std::move(pipe.writer), [](const std::function<void()>&) { return false; }};
+
+  log.say(Weight::error, "the bus thread can't be created");
+
+  const std::string text = read_until(pipe.reader, "the others wait\n");
+  EXPECT_THAT(text, HasSubstr(" error  the bus thread can't be created\n"));
+  EXPECT_THAT(text, HasSubstr("no thread can be created for stderr"));
+}
+
+/// The test itself is the proof that nobody waits.
+TEST(ErrorLog, WithoutAThreadWaitsForNobodyEither) {
+  Pipe pipe = make_pipe();
+  ErrorLog log{std::move(pipe.writer), [](const std::function<void()>&) { return false; }};
+  const std::string sentence(1000, 'x');
+
+  for (int i = 0; i < 3000; ++i) log.say(Weight::note, sentence);
+
+  EXPECT_FALSE(log.flush(1ms));
+  read_until(pipe.reader, "x\n");
+  log.say(Weight::note, "the end");
+  EXPECT_FALSE(log.flush(0ms)) << "a pipe holds less than what waits";
+}
+
 }  // namespace
 }  // namespace takt
