@@ -223,12 +223,17 @@ std::expected<UnixBusHub, BusError> UnixBusHub::join(const std::string& path) {
   };
   const auto address = unix_address(path);
   if (!address) return refuse_with("a path of 1 to 107 bytes is needed", ENAMETOOLONG);
-  FileDescriptor lock{::open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
+  const std::string lock_path = path + ".lock";
+  constexpr int flags = O_RDWR | O_CREAT | O_CLOEXEC;
+  FileDescriptor lock{::open(lock_path.c_str(), flags | O_EXCL, 0666)};
+  const bool is_new = static_cast<bool>(lock);
+  if (!lock && errno == EEXIST) lock.reset(::open(lock_path.c_str(), flags, 0666));
   if (!lock) return refuse_with("cannot create the lock file beside it", errno);
   FileDescriptor stop{eventfd(0, EFD_CLOEXEC)};
   if (!stop) return refuse_with("eventfd", errno);
   auto impl = std::make_unique<Impl>(std::move(lock), std::move(stop), *address);
   if (const auto hosts = impl->try_to_host(); !hosts) {
+    if (is_new) unlink(lock_path.c_str());
     return refuse(refusal(path, hosts.error()), hosts.error());
   }
   if (const auto started = impl->start(); !started) {

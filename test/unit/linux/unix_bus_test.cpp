@@ -99,6 +99,7 @@ TEST_F(UnixBus, LeavesAFileAloneThatIsNoSocket) {
   std::string content;
   std::getline(std::ifstream{path_}, content);
   EXPECT_EQ(content, "the only copy");
+  EXPECT_FALSE(std::filesystem::exists(path_ + ".lock")) << "a file of a bus that there is not";
 }
 
 TEST_F(UnixBus, TakesThePlaceOfASocketThatItsHostHasLeft) {
