@@ -18,10 +18,17 @@ namespace {
 constexpr Time find_limit = std::chrono::milliseconds{2500};
 constexpr Time settle = std::chrono::milliseconds{250};  // another bus would be heard within this
 
+/// A daemon speaks on the channels of its bus. Who names a bus on the channel of another one is
+/// none, and makes nobody choose.
+bool has_status(std::string_view bus, const BusView& view) {
+  return view.status() &&
+         bus_of_channel(channel_name(view.status()->bus, "STATUS"), "STATUS") == bus;
+}
+
 std::string names_of(const BusViews& views) {
   std::string names;
   for (const auto& [bus, view] : views.buses()) {
-    if (!view.status()) continue;
+    if (!has_status(bus, view)) continue;
     names += (names.empty() ? "" : ", ") + view.status()->bus;
   }
   return names;
@@ -47,7 +54,7 @@ std::int64_t new_request_id() { return realtime_now().count(); }
 std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
   std::vector<const BusView*> buses;
   for (const auto& [bus, view] : views.buses()) {
-    if (!view.status()) continue;
+    if (!has_status(bus, view)) continue;
     if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) {
       buses.push_back(&view);
     }
@@ -59,7 +66,11 @@ std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses) {
   const auto found = std::ranges::find_if(buses, &BusView::two_daemons);
   if (found == buses.end()) return std::nullopt;
   return LiveError{
-      "two daemons run a bus named '" + (*found)->status()->bus + "'; stop one of them", 3};
+      "two daemons run a bus named '" + (*found)->status()->bus +
+          "' on this LCM, and --bus-name can't choose between them; stop one of them, or give each "
+          "an LCM URL of its own (`lcm: {url: ...}`) and choose with --lcm-url. Where the real one "
+          "has `authenticate: images`, --check-images hears only that",
+      3};
 }
 
 LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {

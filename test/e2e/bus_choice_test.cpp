@@ -53,7 +53,22 @@ TEST_F(BusChoice, TwoDaemonsOfOneBusAreTrouble) {
     EXPECT_EQ(ended.exit_code, 3) << verb[0];
     EXPECT_NE(ended.output.find("two daemons run a bus named 'demo'"), std::string::npos)
         << verb[0] << ": " << ended.output;
+    EXPECT_NE(ended.output.find("choose with --lcm-url"), std::string::npos) << ended.output;
   }
+}
+
+TEST_F(BusChoice, WhoNamesThisBusOnTheChannelOfAnotherOneIsNoDaemonOfIt) {
+  status_t forged = *daemon_.bus().status();
+  forged.session += 1;
+  std::vector<std::byte> buffer;
+  const Bytes message = encode(forged, buffer);
+  Process tool{
+      {TAKT, "sdo", "read", "1", "1000", "--bus-name", "demo", "--lcm-url", daemon_.lcm_url()},
+      folder_ / "tool"};
+
+  const auto exit_code = tool.wait([&] { daemon_.publish("OTHER_STATUS", message); });
+
+  EXPECT_EQ(exit_code, 0) << tool.output();
 }
 
 }  // namespace
