@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "eds_parser/suggest.hpp"
 
 namespace takt {
 namespace {
-
-/// `, did you mean 'plan'?`, or nothing.
-std::string guess(std::string_view word, const std::vector<std::string>& names) {
-  const std::vector<std::string_view> candidates{names.begin(), names.end()};
-  const std::string_view best = nearest(word, candidates);
-  return best.empty() ? "" : ", did you mean '" + std::string{best} + "'?";
-}
 
 std::vector<std::string> commands_of(const CLI::App& app) {
   std::vector<std::string> names;
@@ -46,6 +40,24 @@ std::string unknown_option(const std::string& path, const CLI::App& app, const s
 }
 
 }  // namespace
+
+std::string guess(const std::string& word, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> candidates{names.begin(), names.end()};
+  const std::string_view best = nearest(word, candidates);
+  return best.empty() ? "" : ", did you mean '" + std::string{best} + "'?";
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  const std::string described = "{" + list + "}";
+  const auto check = [words = std::move(words), list = std::move(list)](const std::string& word) {
+    if (std::ranges::find(words, word) != words.end()) return std::string{};
+    const std::string guessed = guess(word, words);
+    return "'" + word + "' is none of " + list + guessed;
+  };
+  return CLI::Validator{check, described};
+}
 
 std::string unknown_word(const CLI::App& app, int argc, const char* const* argv) {
   const CLI::App* at = &app;

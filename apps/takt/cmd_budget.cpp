@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/duration/duration.hpp"
+#include "apps/known_words/known_words.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "eds_parser/budget/left_out.hpp"
@@ -79,9 +80,17 @@ std::string values_of(std::string_view key) {
          ", or `off`; of PDO 1 to 512";
 }
 
+std::string guess_of_key(const std::string& key) {
+  const std::string best = guess(key, {"period", "bitrate", "services", "counter"});
+  if (!best.empty() || key.find('.') == key.npos) return best;
+  const std::string last = key.substr(key.rfind('.') + 1);
+  return guess(last, {"start", "inhibit", "cob_id"});
+}
+
 int wrong_change(const std::string& text) {
-  const std::string values = values_of(std::string_view{text}.substr(0, text.find('=')));
-  return complain("--what-if " + text +
+  const std::string key = text.substr(0, text.find('='));
+  const std::string values = values_of(key);
+  return complain("--what-if " + text + (values.empty() ? guess_of_key(key) : std::string{}) +
                       (values.empty() ? ": not as period=1ms, bitrate=500, services=2, counter=60, "
                                         "arm.tpdo2=10 (transmission), arm.tpdo2=off, "
                                         "arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "apps/known_words/known_words.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/lss_selection.hpp"
 #include "apps/takt/whole_number.hpp"
@@ -374,7 +375,7 @@ void add_settings(CLI::App& lss, int& exit_code) {
   auto* state_verb = add_verb(lss, "switch", "state of all devices", Takes::nothing, state);
   state_verb->add_option("STATE", state->state, "config or waiting")
       ->required()
-      ->check(CLI::IsMember({"config", "waiting"}));
+      ->check(one_of({"config", "waiting"}));
   run_as(state_verb, state, switch_state, exit_code);
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/known_words/known_words.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
 #include "eds_parser/table/boot_plan.hpp"
@@ -72,7 +73,7 @@ void add_nmt(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<NmtOptions>();
   verb->add_option("COMMAND", options->command, "start, stop, preop, reset, reset-comm")
       ->required()
-      ->check(CLI::IsMember({"start", "stop", "preop", "reset", "reset-comm"}));
+      ->check(one_of({"start", "stop", "preop", "reset", "reset-comm"}));
   verb->add_option("NODE", options->node, "node id (the master's own, too), name, or all")
       ->required();
   verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")

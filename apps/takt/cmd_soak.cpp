@@ -8,6 +8,7 @@
 #include <map>
 
 #include "apps/duration/duration.hpp"
+#include "apps/known_words/known_words.hpp"
 #include "apps/soak/soak_jobs.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/whole_number.hpp"
@@ -140,7 +141,7 @@ void add_soak(CLI::App& app, int& exit_code) {
   command
       ->add_option("--part", arguments->part,
                    "of each seed: the walk on the bus, that of the front thread, or both")
-      ->check(CLI::IsMember{{"bus", "front", "both"}})
+      ->check(one_of({"bus", "front", "both"}))
       ->capture_default_str();
   command->add_option("--hours", arguments->hours, "as many seeds as make so many hours of bus")
       ->check(CLI::PositiveNumber);

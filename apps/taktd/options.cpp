@@ -29,7 +29,8 @@ Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the termi
 axes to rest, nodes to pre-operational, SYNC off. A second one stops at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
-3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken.)";
+3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,
+6 the ordered stop was not confirmed.)";
 
 const std::map<std::string, RtMode> rt_modes{
     {"enforce", RtMode::enforce}, {"try", RtMode::attempt}, {"off", RtMode::off}};
@@ -48,9 +49,10 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   app.add_option("NET.yaml", options.network_file, "network file")->required();
   app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
   app.add_option("--rt", rt, "enforce: no start without real time; try: say what is missing; off")
-      ->check(CLI::IsMember({"enforce", "try", "off"}))
+      ->check(one_of({"enforce", "try", "off"}))
       ->type_name("MODE");
-  app.add_option("--lcm-url", options.lcm_url, "instead of LCM_DEFAULT_URL and the file's")
+  app.add_option("--lcm-url", options.lcm_url,
+                 "instead of LCM_DEFAULT_URL and of the file's `lcm: url` and `broker`")
       ->type_name("URL");
   app.add_option("--for", run_for, "ordered stop after this time: 10s, 500ms, 2min")
       ->type_name("TIME");

@@ -70,15 +70,21 @@ class NetworkReader {
   }
 
   void read_top_level(const YamlPair& pair) {
-    if (pair.value->kind == YamlNode::Kind::map &&
-        (pair.value->find("node_id") != nullptr || pair.value->find("dcf") != nullptr)) {
-      add(pair);
-      return;
-    }
+    if (is_node(pair)) return add(pair);
     slipped_ = slipped_ || nearest(pair.key, section_names) == "nodes";
     report_.error(pair.key_pos, "unknown-key",
                   "unknown section `" + pair.key + "` (a node would have a `node_id`)" +
                       did_you_mean(pair.key, section_names));
+  }
+
+  /// The master has a `node_id` too: what is called almost as it, and has no device file, is no
+  /// node.
+  bool is_node(const YamlPair& pair) const {
+    if (pair.value->kind != YamlNode::Kind::map) return false;
+    if (pair.value->find("dcf") != nullptr) return true;
+    if (pair.value->find("node_id") == nullptr) return false;
+    return nearest(pair.key, section_names) != "master" ||
+           with_defaults(*pair.value, root_.find("defaults")).find("dcf") != nullptr;
   }
 
   void read_nodes(const YamlNode& nodes) {

@@ -67,6 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, OneCause,
     testing::Values(
         Mistake{"nodes:", "nodse:", "unknown section `nodse`"},
+        Mistake{"master:", "mastr:", "did you mean `master`"},
         Mistake{"    dcf:", "    dfc:", "did you mean `dcf`"},
         Mistake{"    dcf:", "    dcff:", "did you mean `dcf`"},
         Mistake{"node_id: 5", "nodeid: 5", "did you mean `node_id`"},
