@@ -18,4 +18,9 @@ std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network) {
   return plan.interface.empty() ? "sim" : plan.interface;
 }
 
+std::filesystem::path key_file(const DaemonOptions& options, const LoadedNetwork& network) {
+  if (network.lcm.keys.empty()) return {};
+  return std::filesystem::path{options.network_file}.parent_path() / network.lcm.keys;
+}
+
 }  // namespace takt

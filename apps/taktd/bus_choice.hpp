@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 
 #include "apps/taktd/options.hpp"
@@ -12,5 +13,8 @@ bool lacks_bus(const DaemonOptions& options, const LoadedNetwork& network);
 /// The bus to run on: of the command line, else of the network file; "sim": a simulated one. A bus
 /// to which the file gives no name is named after it.
 std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network);
+
+/// The file with the keys of LCM, relative to the network file; empty: there are no keys.
+std::filesystem::path key_file(const DaemonOptions& options, const LoadedNetwork& network);
 
 }  // namespace takt

@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -76,9 +75,9 @@ std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
 
 /// With keys, all that commands the bus has to come in envelopes.
 std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
-  if (network_.lcm.keys.empty()) return std::nullopt;
-  const auto folder = std::filesystem::path{options_.network_file}.parent_path();
-  auto keys = WatchedKeyFile::open(folder / network_.lcm.keys);
+  const auto file = key_file(options_, network_);
+  if (file.empty()) return std::nullopt;
+  auto keys = WatchedKeyFile::open(file);
   if (!keys) {
     reporter_.say(Weight::error, keys.error());
     return Exit::wrong_use;

@@ -11,6 +11,8 @@
 #include "apps/taktd/summary.hpp"
 #include "eds_parser/budget/budget.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/gateway/key_file.hpp"
+#include "master/gateway/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -25,6 +27,15 @@ bool fits_the_bus(const LoadedNetwork& network, const std::string& file) {
   return false;
 }
 
+/// The start would be refused with a key file that is missing, or that others can read.
+bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
+  const auto file = key_file(options, network);
+  if (file.empty()) return true;
+  const auto keys = load_keys(file);
+  if (!keys) std::fprintf(stderr, "taktd: %s\n", printable_text(keys.error()).c_str());
+  return keys.has_value();
+}
+
 int run(const DaemonOptions& options) {
   LoadedNetwork network = load_network(options.network_file);
   for (const Finding& finding : network.findings) {
@@ -33,6 +44,7 @@ int run(const DaemonOptions& options) {
   if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
   if (options.check) {
     choose_bus(options, network);
+    if (!has_good_keys(options, network)) return static_cast<int>(Exit::wrong_use);
     if (std::fputs(plan_summary(network).c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
       std::fprintf(stderr, "taktd: can't write to stdout: %s\n", std::strerror(errno));
       return static_cast<int>(Exit::refused);

@@ -45,7 +45,11 @@ def main(binaries):
         keys.chmod(0o640)
         refused = subprocess.run([f"{binaries}/taktd", network, "--bus", "sim"], capture_output=True, text=True, timeout=LIMIT)
         assert refused.returncode == 2 and f"chmod 600 {keys}" in refused.stderr, refused
+        checked = subprocess.run([f"{binaries}/taktd", network, "--check"], capture_output=True, text=True, timeout=LIMIT)
+        assert checked.returncode == 2 and f"chmod 600 {keys}" in checked.stderr, checked
         keys.chmod(0o600)
+        checked = subprocess.run([f"{binaries}/taktd", network, "--check"], capture_output=True, text=True, timeout=LIMIT)
+        assert checked.returncode == 0, checked
 
         with log.open("w") as out:
             daemon = subprocess.Popen([f"{binaries}/taktd", network, "--bus", "sim"], stdout=out, stderr=out)
