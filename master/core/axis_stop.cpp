@@ -49,6 +49,8 @@ AxisState first_state(AxisPrior prior) noexcept {
       return AxisState::exempt;
     case AxisPrior::heard:
       return AxisState::asked;
+    case AxisPrior::disabled:
+      return AxisState::rested;
     case AxisPrior::exposed:
       return AxisState::unseen;
   }
@@ -67,7 +69,7 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
 ///   state     seen                                     next
 ///   unseen    it is enabled                            braking
 ///   unseen    it is disabled                           exempt
-///   asked     as unseen
+///   asked, rested: as unseen
 ///   braking   enabled, certainly at standstill         standing
 ///   braking   disabled                                 settling
 ///   standing  disabled                                 stopped
@@ -82,6 +84,7 @@ AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
   switch (state) {
     case unseen:
     case asked:
+    case rested:
       return enabled ? braking : exempt;
     case braking:
       if (!enabled) return seen == Seen::off_rest ? stopped : settling;
@@ -138,6 +141,7 @@ void AxisStop::cut() noexcept {
 
 bool AxisStop::settled() const noexcept {
   switch (state_) {
+    case AxisState::rested:
     case AxisState::exempt:
     case AxisState::stopped:
     case AxisState::dropped:

@@ -10,6 +10,7 @@ namespace takt {
 enum class AxisState : std::uint8_t {
   unseen,    ///< its statusword was not seen since the stop began
   asked,     ///< the same, but it need not answer: its node was neither ready nor OPERATIONAL
+  rested,    ///< the same, but it was disabled before, and nothing could enable it since
   exempt,    ///< it was disabled when the stop began, or its node was never heard
   braking,   ///< it is told to stop quickly, and was not seen at standstill
   standing,  ///< it was seen at standstill and is told to disable
@@ -23,6 +24,7 @@ enum class AxisState : std::uint8_t {
 enum class AxisPrior : std::uint8_t {
   untouched,  ///< the stop does not reach it, or its node was never heard
   heard,      ///< its node was heard, but was neither ready nor OPERATIONAL
+  disabled,   ///< its node was ready; it was seen disabled, and nothing could enable it since
   exposed,    ///< its node was ready, or OPERATIONAL without this master: it may be enabled
 };
 
@@ -102,12 +104,14 @@ class AxisStop {
 
   AxisState state() const noexcept { return state_; }
   /// Its statusword was seen since the stop began.
-  bool seen() const noexcept { return state_ != AxisState::unseen && state_ != AxisState::asked; }
-  /// Nothing more can become of it.
+  bool seen() const noexcept {
+    return state_ != AxisState::unseen && state_ != AxisState::asked && state_ != AxisState::rested;
+  }
+  /// Nothing more is to be waited for.
   bool settled() const noexcept;
   bool confirmed() const noexcept {
     return state_ == AxisState::stopped || state_ == AxisState::exempt ||
-           state_ == AxisState::asked;
+           state_ == AxisState::asked || state_ == AxisState::rested;
   }
   std::int64_t controlword() const noexcept;
   Time silence(Time now) const noexcept { return now - answered_; }

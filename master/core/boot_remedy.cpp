@@ -307,6 +307,7 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::no_such_pdo:
     case SdoFault::not_exchanging:
     case SdoFault::lss_failed:
+    case SdoFault::axes_not_stopped:
     case SdoFault::lss_refused:
     case SdoFault::wrong_length:
       break;

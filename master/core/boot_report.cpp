@@ -146,6 +146,7 @@ std::string meaning_text(const BootFailure& failure) {
     case SdoFault::no_such_pdo:
     case SdoFault::not_exchanging:
     case SdoFault::lss_failed:
+    case SdoFault::axes_not_stopped:
     case SdoFault::lss_refused:
     case SdoFault::wrong_length:
       return {};

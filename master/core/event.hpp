@@ -24,6 +24,7 @@ enum class SdoFault : std::uint8_t {
   lss_failed,         ///< LSS requests: the last LssResult of the reply says why
   lss_refused,        ///< LSS requests: nonsense, or a service that a running master does not offer
   wrong_length,       ///< PDO requests: the RPDO is mapped with another number of bytes
+  axes_not_stopped,   ///< NMT requests: obeyed, but some axis was not seen at standstill before
 };
 
 /// The one record of a failed boot: all that is needed to explain it. boot_report turns it into
@@ -120,7 +121,8 @@ enum class EventKind : std::uint8_t {
   axis_not_stopped,  ///< An axis is not confirmed. detail: AxisVerdict, axis << 8, 1 << 16 by
                      ///< differences of 0x6064; value: ns without an answer (silent, lost), else
                      ///< the raw velocity
-  still_armed,  ///< the device did not take the write that disarms it; detail: index << 8 | sub
+  still_armed,  ///< the device did not take the write that disarms it; detail: index << 8 | sub,
+                ///< value: abort code, 0: not confirmed, negative: ns that it gave no answer
   // the master
   stopping,
   stopped,

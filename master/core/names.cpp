@@ -162,6 +162,8 @@ std::string_view name(SdoFault fault) noexcept {
       return "cancelled";
     case SdoFault::no_such_node:
       return "no such node";
+    case SdoFault::axes_not_stopped:
+      return "axes not stopped";
     case SdoFault::refused:
       return "refused";
     case SdoFault::no_such_pdo:

@@ -31,6 +31,12 @@ enum class NmtStop : std::uint8_t {
   after_axes,  ///< when axes_at_rest() says that the axes which it reaches were stopped
 };
 
+/// How the axes are for which an NMT command has waited.
+enum class AxesAtRest : std::uint8_t {
+  confirmed,    ///< each was seen at standstill and disabled, or was disabled before
+  unconfirmed,  ///< some was not: the command leaves, and its answer says so
+};
+
 struct NetworkOptions {
   bool observe = false;  ///< listen only: nothing is ever sent
   NmtStop nmt_stop = NmtStop::immediate;
@@ -100,12 +106,19 @@ class Network {
   /// NMT part of the ordered stop: pending requests are answered, nodes get their last command.
   /// With reset communication those of `keep_alive` go to pre-operational all the same.
   void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
-  /// NMT stop, or enter pre-operational, of this node (0: of all) waits for axes_at_rest().
+  /// NMT stop, or enter pre-operational, of this node (0: of all, or NMT stop of the master, which
+  /// ends SYNC) waits for axes_at_rest().
   std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
   /// The axes of the command that waits were stopped, or their time is over: it may leave.
-  void axes_at_rest() noexcept { axes_at_rest_ = awaits_axes_; }
+  void axes_at_rest(AxesAtRest how) noexcept {
+    axes_at_rest_ = awaits_axes_;
+    rest_ = how;
+  }
   /// Every axis was stopped, for the rest of an ordered stop: no command waits any more.
-  void every_axis_at_rest() noexcept { axes_at_rest_ = 0; }
+  void every_axis_at_rest(AxesAtRest how) noexcept {
+    axes_at_rest_ = 0;
+    rest_ = how;
+  }
   /// An ordered stop begins: the command that waits for its axes is answered and never leaves.
   void drop_awaiting() noexcept;
   /// An ordered stop begins: nodes that never were ready are not booted any more.
@@ -133,6 +146,7 @@ class Network {
   void send_heartbeat(Time now, Outbox& out) noexcept;
   void send_commands(Time now, Outbox& out) noexcept;
   bool send_command(const NmtMessage& message, Time now, Outbox& out) noexcept;
+  std::optional<std::uint8_t> axes_reached(const NmtMessage& message) const noexcept;
   bool waits_for_axes(const NmtMessage& message) const noexcept;
   void command_master(NmtCommand command) noexcept;
   void send_own_commands(Time now, Outbox& out) noexcept;
@@ -156,6 +170,7 @@ class Network {
   NmtStop nmt_stop_;
   std::optional<std::uint8_t> awaits_axes_;   // node of the command that waits for its axes
   std::optional<std::uint8_t> axes_at_rest_;  // the same; it may leave
+  AxesAtRest rest_ = AxesAtRest::confirmed;   // of axes_at_rest_
   bool stopping_ = false;
   bool stops_drives_ = false;  // some node's loss does
   EventQueue events_;

@@ -112,14 +112,23 @@ void Network::command_master(NmtCommand command) noexcept {
   }
 }
 
-/// It would take the PDOs from axes that may be enabled. A reset is not held up: it is also the
-/// remedy for a device that does not stop.
-bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
-  if (nmt_stop_ == NmtStop::immediate || !ends_exchange(message.command)) return false;
-  if (axes_at_rest_ == 0 || axes_at_rest_ == message.node) return false;
-  return std::ranges::any_of(plan_.nodes, [&](const NodePlan& node) {
-    return node.cia402 && (message.node == 0 || message.node == node.id.value());
+/// Node whose axes this command takes the PDOs, or the SYNC, from; 0: all, none: no axes. A reset
+/// is not held up: it is also the remedy for a device that does not stop.
+std::optional<std::uint8_t> Network::axes_reached(const NmtMessage& message) const noexcept {
+  if (nmt_stop_ == NmtStop::immediate || !ends_exchange(message.command)) return std::nullopt;
+  const bool own = message.node == plan_.master_id.value();
+  if (own && message.command != NmtCommand::stop) return std::nullopt;
+  const std::uint8_t reached = own ? std::uint8_t{0} : message.node;
+  const bool any = std::ranges::any_of(plan_.nodes, [&](const NodePlan& node) {
+    return node.cia402 && (reached == 0 || reached == node.id.value());
   });
+  return any ? std::optional{reached} : std::nullopt;
+}
+
+/// The axes may be enabled: they are stopped first.
+bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
+  const auto reached = axes_reached(message);
+  return reached && axes_at_rest_ != 0 && axes_at_rest_ != *reached;
 }
 
 void Network::drop_awaiting() noexcept {
@@ -142,20 +151,22 @@ void Network::give_up_boots(Time now) noexcept {
 
 /// False: no room, too soon, or axes have to be stopped first.
 bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noexcept {
-  if (message.node == plan_.master_id.value()) {
-    command_master(message.command);
-    return true;
-  }
+  const auto reached = axes_reached(message);
   if (waits_for_axes(message)) {
-    if (!awaits_axes_) awaits_axes_ = message.node;
+    if (!awaits_axes_) awaits_axes_ = reached;
     return false;
   }
-  if (!nmt_gate_.open(now) || !out.push(encode(message))) return false;
-  nmt_gate_.sent(now);
-  if (ends_exchange(message.command) && awaits_axes_ == message.node) {
+  const bool own = message.node == plan_.master_id.value();
+  if (!own && (!nmt_gate_.open(now) || !out.push(encode(message)))) return false;
+  if (reached && awaits_axes_ == reached) {
     awaits_axes_.reset();
     axes_at_rest_.reset();
   }
+  if (own) {
+    command_master(message.command);
+    return true;
+  }
+  nmt_gate_.sent(now);
   if (message.node == 0) command_master(message.command);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     if (message.node != 0 && index_[message.node] != i) continue;
@@ -187,9 +198,11 @@ void Network::send_own_commands(Time now, Outbox& out) noexcept {
 
 void Network::send_commands(Time now, Outbox& out) noexcept {
   while (command_ != nullptr || (command_ = requests_.next(0)) != nullptr) {
-    const Request& request = command_->request;
-    if (!send_command({request.command, request.node}, now, out)) return;
-    requests_.answer(*command_, SdoFault::none);
+    const NmtMessage message{command_->request.command, command_->request.node};
+    const bool stopped_axes = axes_reached(message).has_value() && axes_at_rest_.has_value();
+    if (!send_command(message, now, out)) return;
+    const bool doubtful = stopped_axes && rest_ == AxesAtRest::unconfirmed;
+    requests_.answer(*command_, doubtful ? SdoFault::axes_not_stopped : SdoFault::none);
     command_ = nullptr;
   }
 }

@@ -47,9 +47,12 @@ AxisPlan plan_of(const NodePlan& node, std::uint8_t number) {
 
 /// An axis of a node whose boot has failed may be enabled, too: another master has enabled it, or
 /// the one before. CiA 302-2: B is no answer at all, L is found OPERATIONAL.
-AxisPrior prior_of(const NodeStatus& node) noexcept {
-  if (node.boot_count != 0 || node.boot == BootState::ready) return AxisPrior::exposed;
-  const bool operational = node.nmt == NmtState::operational || node.boot_letter == 'L';
+AxisPrior prior_of(const NodeStatus& node, const AxisMemory& memory) noexcept {
+  if (node.boot_count != 0 || node.boot == BootState::ready) {
+    return memory.disabled() ? AxisPrior::disabled : AxisPrior::exposed;
+  }
+  const bool operational =
+      node.nmt == NmtState::operational || node.boot_letter == 'L' || memory.operational();
   if (operational) return AxisPrior::exposed;
   const bool answered = node.boot_letter != 0 && node.boot_letter != 'B';
   return node.nmt != NmtState::unknown || answered ? AxisPrior::heard : AxisPrior::untouched;
@@ -79,15 +82,16 @@ OrderedStop::OrderedStop(const BusPlan& plan)
   }
 }
 
-void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes,
-                        std::uint8_t node_index) noexcept {
+void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes, std::uint8_t node_index,
+                        std::span<const AxisMemory> memory) noexcept {
   begun_ = now;
   node_index_ = node_index;
   enter(StopStage::fallback);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     stops_[i] = AxisStop{plans_[i]};
     answers_[i] = {};
-    const AxisPrior prior = prior_of(nodes[axes_[i].node_index]);
+    const AxisPrior prior =
+        prior_of(nodes[axes_[i].node_index], i < memory.size() ? memory[i] : AxisMemory{});
     stops_[i].begin(now, reaches(i) ? prior : AxisPrior::untouched);
   }
 }
@@ -135,8 +139,9 @@ bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
 }
 
 bool OrderedStop::nothing_to_stop() const noexcept {
-  return std::ranges::all_of(
-      stops_, [](const AxisStop& stop) { return stop.state() == AxisState::exempt; });
+  return std::ranges::all_of(stops_, [](const AxisStop& stop) {
+    return stop.state() == AxisState::exempt || stop.state() == AxisState::rested;
+  });
 }
 
 bool OrderedStop::all_confirmed() const noexcept {

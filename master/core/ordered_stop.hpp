@@ -8,6 +8,7 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/waits.hpp"
+#include "master/core/axis_memory.hpp"
 #include "master/core/axis_stop.hpp"
 #include "master/core/node_status.hpp"
 
@@ -67,9 +68,10 @@ class OrderedStop {
 
   static constexpr std::uint8_t every_node = 0xFF;
 
-  /// From `running` or `done` on. `node_index`: only the axes of this node are stopped.
-  void begin(Time now, std::span<const NodeStatus> nodes,
-             std::uint8_t node_index = every_node) noexcept;
+  /// From `running` or `done` on. `node_index`: only the axes of this node are stopped. `memory`:
+  /// of each axis; empty: nothing is remembered.
+  void begin(Time now, std::span<const NodeStatus> nodes, std::uint8_t node_index = every_node,
+             std::span<const AxisMemory> memory = {}) noexcept;
   /// Nothing was asked for: a master that only listens stops nobody.
   void begin_idle(Time now) noexcept;
   /// What an SDO has read of an axis; used in the next step.
@@ -91,7 +93,7 @@ class OrderedStop {
   }
   /// The node whose axes are stopped, or every_node.
   std::uint8_t target() const noexcept { return node_index_; }
-  /// Every axis that is to be stopped was disabled when the stop began.
+  /// Every axis that is to be stopped was disabled when the stop began, or before.
   bool nothing_to_stop() const noexcept;
   /// The axes are at rest, or their time is over.
   bool axes_done() const noexcept { return stage_ > StopStage::disable; }

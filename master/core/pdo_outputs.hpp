@@ -63,6 +63,8 @@ class PdoOutputs {
   void fall_back() noexcept;
   /// The end of fall_back(): each output keeps its fallback until its next command.
   void hear_again() noexcept { stopping_ = false; }
+  /// It has a value worth sending.
+  bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
   /// It was commanded, and its fallback is in force.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
   /// Ordered stop, or the loss of a node: this value from now on; commands are refused.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Time poll_pause = std::chrono::milliseconds{10};
 constexpr Time write_pause = std::chrono::milliseconds{100};  // between them the axis is observed
-constexpr std::uint16_t axis_step = 0x800;
+constexpr Time default_sdo_timeout = std::chrono::seconds{1};
 
 bool keeps_alive(const NodePlan& node) {
   return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
@@ -60,13 +60,17 @@ void StopRequests::add_jobs(const BusPlan& plan, std::uint8_t node_index) {
       return job.node_index == node_index && job.object == step.object;
     };
     if (!arms(plan, step) || std::ranges::any_of(jobs_, same)) continue;
+    const auto place = static_cast<std::uint16_t>(&step - node.boot_plan.steps.data());
     if (jobs_.size() == first) {
-      jobs_.push_back({.node = node.id.value(), .node_index = node_index});
+      jobs_.push_back({.node = node.id.value(), .node_index = node_index, .step = place});
     }
+    const Time own = node.sdo_timeout > Time{} ? node.sdo_timeout : default_sdo_timeout;
     jobs_.push_back({.node = node.id.value(),
                      .node_index = node_index,
                      .object = step.object,
-                     .bytes = static_cast<std::uint8_t>(step.value.size())});
+                     .bytes = static_cast<std::uint8_t>(step.value.size()),
+                     .step = place,
+                     .timeout = node.sdo.timeout_of(step.object, own)});
   }
 }
 
@@ -87,6 +91,7 @@ void StopRequests::ask(std::size_t axis, Word word, std::int64_t value) noexcept
   request_.node = plan_.nodes[of.node_index].id.value();
   request_.object = {static_cast<std::uint16_t>(bases[kind] + of.number * axis_step), 0};
   request_.size = writes ? 2 : 0;
+  request_.timeout = Time{};
   request_.data[0] = static_cast<std::byte>(value & 0xFF);
   request_.data[1] = static_cast<std::byte>(value >> 8 & 0xFF);
 }
@@ -118,13 +123,21 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
   return read_next(axis, !exchanging || !of.statusword, moves_unseen);
 }
 
+/// Its boot has come as far as to the step that arms it, also where it failed later. A node that is
+/// lost is not there.
+bool StopRequests::armed(const Job& job, const NodeStatus& node) noexcept {
+  if (node.boot == BootState::ready) return true;
+  const bool answered = node.boot_letter != 'B' || node.nmt != NmtState::unknown;
+  return node.boot == BootState::failed && answered && job.step <= node.boot_step;
+}
+
 /// The writes of a device follow each other; after one that it does not take no more are tried.
 const Request* StopRequests::next_job(std::span<const NodeStatus> nodes) noexcept {
   for (; next_job_ < jobs_.size(); ++next_job_, ++answered_) {
     const Job& job = jobs_[next_job_];
-    const bool there = nodes[job.node_index].boot == BootState::ready;
-    if (job.object == ObjectKey{} && !there) failed_[job.node_index] = 1;
-    if (failed_[job.node_index] != 0) continue;
+    const bool is_armed = armed(job, nodes[job.node_index]);
+    if (job.object == ObjectKey{} && !is_armed) failed_[job.node_index] = 1;
+    if (!is_armed || failed_[job.node_index] != 0) continue;
     const bool nmt = job.object == ObjectKey{};
     request_.id = mark | of_job | next_job_;
     request_.kind = nmt ? RequestKind::nmt : RequestKind::sdo_download;
@@ -132,6 +145,7 @@ const Request* StopRequests::next_job(std::span<const NodeStatus> nodes) noexcep
     request_.node = job.node;
     request_.object = job.object;
     request_.size = job.bytes;
+    request_.timeout = job.timeout;
     std::ranges::fill(std::span{request_.data}.first(job.bytes), std::byte{0});
     return &request_;
   }
@@ -164,6 +178,9 @@ bool StopRequests::take(const Reply& reply, Time now, OrderedStop& stop) noexcep
     const Job& job = jobs_[reply.id & 0xFFFF];
     if (reply.fault == SdoFault::none) return true;
     refused_ = job;
+    refusal_ = 0;
+    if (reply.fault == SdoFault::aborted_by_device) refusal_ = std::int64_t{reply.abort_code};
+    if (reply.fault == SdoFault::timeout) refusal_ = -job.timeout.count();
     return std::exchange(failed_[job.node_index], std::uint8_t{1}) != 0;
   }
   const std::size_t axis = reply.id >> 8U & 0xFFFF;
@@ -185,6 +202,14 @@ void StopRequests::take_fault(std::size_t axis, Word word, const Reply& reply,
   if (word == Word::velocity) polls_[axis].no_velocity = true;
   const bool missing = reply.abort_code == abort_code::no_object;
   if (word == Word::status && missing) stop.take_absence(axis);
+}
+
+std::optional<StopRequests::AxisWord> StopRequests::statusword_of(const Reply& reply) noexcept {
+  const bool word = (reply.id & of_job) == 0 && static_cast<Word>(reply.id & 0xFF) == Word::status;
+  if (!word || reply.fault != SdoFault::none || reply.size != 2) return std::nullopt;
+  return AxisWord{.axis = reply.id >> 8U & 0xFFFF,
+                  .value = std::to_integer<std::int64_t>(reply.data[0]) |
+                           std::to_integer<std::int64_t>(reply.data[1]) << 8};
 }
 
 void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,19 @@ class StopRequests {
   /// Of the newest take() that gave false.
   std::uint8_t refusing_node() const noexcept { return refused_.node; }
   ObjectKey refused_object() const noexcept { return refused_.object; }
+  /// Value of EventKind::still_armed.
+  std::int64_t refusal() const noexcept { return refusal_; }
+
+  /// A statusword that such an answer brings.
+  struct AxisWord {
+    std::size_t axis = 0;
+    std::int64_t value = 0;
+  };
+  static std::optional<AxisWord> statusword_of(const Reply& reply) noexcept;
+  /// Index of 0x6040 of this axis.
+  static constexpr std::uint16_t controlword_of(const StopAxis& axis) noexcept {
+    return static_cast<std::uint16_t>(0x6040 + axis.number * axis_step);
+  }
 
   /// Everything that can be disarmed by SDO is.
   bool disarmed() const noexcept { return answered_ == jobs_.size(); }
@@ -54,14 +68,18 @@ class StopRequests {
     std::uint8_t node_index = 0;
     ObjectKey object{};
     std::uint8_t bytes = 0;
+    std::uint16_t step = 0;  ///< of the boot, that arms it
+    Time timeout{};
   };
   static constexpr std::uint64_t mark = 1ULL << 60;
   static constexpr std::uint64_t of_job = 1ULL << 59;
+  static constexpr std::uint16_t axis_step = 0x800;  // between two axes of one device
 
   void add_jobs(const BusPlan& plan, std::uint8_t node_index);
   bool due_of_axis(std::size_t axis, Time now, const OrderedStop& stop, bool exchanging) noexcept;
   bool read_next(std::size_t axis, bool needs_word, bool needs_motion) noexcept;
   void ask(std::size_t axis, Word word, std::int64_t value = 0) noexcept;
+  static bool armed(const Job& job, const NodeStatus& node) noexcept;
   const Request* next_job(std::span<const NodeStatus> nodes) noexcept;
   void take_value(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
   void take_fault(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
@@ -76,6 +94,7 @@ class StopRequests {
   std::size_t turn_ = 0;      // axis that is asked next
   std::size_t asked_ = 0;     // axis, or job, that request_ is of
   Job refused_;
+  std::int64_t refusal_ = 0;
   Request request_;
 };
 

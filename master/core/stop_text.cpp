@@ -89,10 +89,11 @@ std::string named_axis_stop_text(const BusPlan& plan, const Event& event) {
 std::string still_armed_text(const Event& event) {
   const ObjectKey object{static_cast<std::uint16_t>(event.detail >> 8U),
                          static_cast<std::uint8_t>(event.detail)};
-  const std::string why =
-      event.value == 0
-          ? "gave no answer"
-          : "refused it (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+  std::string why = "did not confirm it";
+  if (event.value < 0) why = "gave no answer within " + time_text(Time{-event.value});
+  if (event.value > 0) {
+    why = "refused it (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+  }
   return "the write that disarms " + to_string(object) + " failed, the device " + why +
          ": it may report that its master is gone";
 }

@@ -86,6 +86,7 @@ AsciiError error_of(const Reply& reply) {
     case SdoFault::cancelled:
     case SdoFault::refused:
     case SdoFault::not_exchanging:
+    case SdoFault::axes_not_stopped:
       return AsciiError::internal_state;
     case SdoFault::lss_refused:
     case SdoFault::wrong_length:

@@ -294,6 +294,7 @@ void Bridge::add_sender(const Event& event, Notice& notice) const {
 void Bridge::tell(const Event& event) {
   if (event.kind == EventKind::stopping) stop_text_.clear();  // axes of an NMT stop before it
   if (event.kind == EventKind::axis_not_stopped) {
+    if (std::exchange(stop_told_, event.when) != event.when) stop_text_.clear();
     stop_text_ += (stop_text_.empty() ? "" : "\n") + named_axis_stop_text(master_.plan(), event);
   }
   if (event.kind == EventKind::stopped) {

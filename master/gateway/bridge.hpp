@@ -166,7 +166,8 @@ class Bridge {
   PdoOutages outages_;
   NoticeLimit limit_;
   EmcyHistory emcys_;
-  std::string stop_text_;  ///< a line for each axis that the ordered stop did not confirm
+  std::string stop_text_;  ///< a line for each axis that the newest stop did not confirm
+  Time stop_told_{};       ///< when that stop ended
   std::uint64_t damaged_count_ = 0;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;

@@ -25,7 +25,10 @@ void Bridge::take_reply(const Reply& reply) {
     if (guest_ != nullptr) guest_->take(reply);
     return;
   }
-  if (auto message = requests_.finish(reply, clocks_.now())) answer(std::move(*message));
+  if (reply.fault == SdoFault::axes_not_stopped) take_events();  // they say which
+  if (auto message = requests_.finish(reply, clocks_.now(), stop_text_)) {
+    answer(std::move(*message));
+  }
 }
 
 void Bridge::answer(reply_t reply) {

@@ -73,6 +73,9 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
       return "the master only observes and sends nothing";
     case SdoFault::cancelled:
       return "the node was reset or the master stops";
+    case SdoFault::axes_not_stopped:
+      return "the command was obeyed, but not every axis was seen at standstill and disabled "
+             "before";
     case SdoFault::no_such_pdo:
       return "the network file has no such PDO of this node, or not one that can be asked for: "
              "takt "
@@ -283,7 +286,7 @@ std::expected<Request, std::string> Requests::translate_sdo(const request_t& mes
   return request;
 }
 
-std::optional<reply_t> Requests::finish(const Reply& reply, Time now) {
+std::optional<reply_t> Requests::finish(const Reply& reply, Time now, const std::string& axes) {
   const auto found = pending_.find(reply.id);
   if (found == pending_.end()) return std::nullopt;
   Known& known = *found->second.known;
@@ -292,6 +295,7 @@ std::optional<reply_t> Requests::finish(const Reply& reply, Time now) {
   message.abort_code = reply.abort_code;
   message.text = reply.fault == SdoFault::lss_failed ? lss_fault_text(reply)
                                                      : fault_text(reply.fault, reply.abort_code);
+  if (reply.fault == SdoFault::axes_not_stopped && !axes.empty()) message.text += ":\n" + axes;
   const RequestKind kind = found->second.kind;
   if (kind != RequestKind::sdo_download && kind != RequestKind::nmt) {
     message.size = reply.size;

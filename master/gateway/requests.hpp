@@ -39,7 +39,8 @@ class Requests {
   /// An answer that can be given at once; none: it comes later.
   std::optional<reply_t> take(const request_t& message, Time now);
   /// The answer to whoever asked; none: nobody did.
-  std::optional<reply_t> finish(const Reply& reply, Time now);
+  /// `axes`: a line for each axis that the newest stop did not confirm.
+  std::optional<reply_t> finish(const Reply& reply, Time now, const std::string& axes = {});
 
   std::size_t pending() const noexcept { return pending_.size(); }
 

@@ -120,6 +120,8 @@ class BusLoop {
   void give_replies() noexcept;
   void stop_drives_after_loss() noexcept;
   void send_outputs() noexcept;
+  void remember_axes() noexcept;
+  void remember_word(const Request& request) noexcept;
   void step_stop() noexcept;
   void begin_stop(Time now) noexcept;
   StopView stop_view() const noexcept;
@@ -163,6 +165,7 @@ class BusLoop {
   TimeProducer time_;
   OrderedStop stop_;
   OrderedStop halt_;  ///< the same before NMT ends the PDO exchange; in NMT Stopped it lasts on
+  std::vector<AxisMemory> memory_;  ///< of the axes of stop_
   StopRequests stop_requests_;
   FallbackWriter fallbacks_;
   PortWatch port_watch_;

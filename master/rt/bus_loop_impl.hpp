@@ -17,6 +17,7 @@ BusLoop<P, N>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       time_{plan.time},
       stop_{plan},
       halt_{plan},
+      memory_(stop_.axes().size()),
       stop_requests_{plan},
       fallbacks_{plan},
       port_watch_{events_},

@@ -201,6 +201,7 @@ void BusLoop<P, N>::write_fallbacks() noexcept {
   while (fallbacks_.waits()) {
     const bool there = exchanging_[fallbacks_.node_index()];
     if (there && !network_.submit(fallbacks_.request(), port_.now())) return;
+    if (there) remember_word(fallbacks_.request());
     fallbacks_.submitted();
   }
 }
@@ -208,6 +209,7 @@ void BusLoop<P, N>::write_fallbacks() noexcept {
 template <Port P, class N>
 bool BusLoop<P, N>::submit(const Request& request) noexcept {
   const Time now = port_.now();
+  remember_word(request);
   if (!PdoRequests::takes(request.kind)) return network_.submit(request, now);
   return stop_.stage() == StopStage::running && pdo_requests_.submit(request, now);
 }
@@ -215,13 +217,14 @@ bool BusLoop<P, N>::submit(const Request& request) noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::take_answer_of_stop() noexcept {
   const Time now = port_.now();
+  if (const auto word = StopRequests::statusword_of(reply_)) memory_[word->axis].see(word->value);
   if (stop_requests_.take(reply_, now, active_stop())) return;
   const ObjectKey object = stop_requests_.refused_object();
   events_.push({.when = now,
                 .kind = EventKind::still_armed,
                 .node = stop_requests_.refusing_node(),
                 .detail = std::uint32_t{object.index} << 8U | object.sub,
-                .value = reply_.abort_code});
+                .value = stop_requests_.refusal()});
 }
 
 template <Port P, class N>

@@ -5,6 +5,10 @@
 
 namespace takt {
 
+inline AxesAtRest rest_of(const OrderedStop& stop) noexcept {
+  return stop.result() == StopResult::unconfirmed ? AxesAtRest::unconfirmed : AxesAtRest::confirmed;
+}
+
 /// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
 template <Port P, class N>
 void BusLoop<P, N>::stop_drives_after_loss() noexcept {
@@ -55,7 +59,7 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
   if (options_.observe) {
     stop_.begin_idle(now);
   } else {
-    stop_.begin(now, network_.nodes());
+    stop_.begin(now, network_.nodes(), OrderedStop::every_node, memory_);
     if constexpr (requires { network_.give_up_boots(now); }) network_.give_up_boots(now);
   }
   halt_.call_off();
@@ -66,10 +70,46 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
   pdo_requests_.cancel_all();
 }
 
+/// What the next stop may rely on.
+template <Port P, class N>
+void BusLoop<P, N>::remember_axes() noexcept {
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const StopAxis& axis = stop_.axes()[i];
+    const WorkingImage& image = pdos_.image();
+    std::optional<std::int64_t> statusword;
+    const bool heard = axis.statusword && exchanging_[axis.node_index];
+    if (heard && !image.is_stale(*axis.statusword)) statusword = image.values[*axis.statusword];
+    std::optional<std::int64_t> controlword;
+    if (axis.controlword && pdos_.outputs().known(*axis.controlword)) {
+      controlword = image.values[*axis.controlword];
+    }
+    memory_[i].look(statusword, controlword);
+    const NodeStatus& node = network_.nodes()[axis.node_index];
+    const bool found = node.boot_count == 0 && node.boot != BootState::ready;
+    if (found && node.nmt == NmtState::operational) memory_[i].note_operational();
+  }
+}
+
+/// A request that may bring a controlword to an axis. What an RPDO on request brings isn't
+/// looked at: it counts as enabling.
+template <Port P, class N>
+void BusLoop<P, N>::remember_word(const Request& request) noexcept {
+  const bool writes = request.kind == RequestKind::sdo_download;
+  if (!writes && request.kind != RequestKind::pdo_exchange) return;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const StopAxis& axis = stop_.axes()[i];
+    if (plan_.nodes[axis.node_index].id.value() != request.node) continue;
+    if (writes && request.object != ObjectKey{StopRequests::controlword_of(axis), 0}) continue;
+    const bool known = writes && request.transfer == nullptr && request.size != 0;
+    memory_[i].write(known ? std::to_integer<std::int64_t>(request.data[0]) : 0x0F);
+  }
+}
+
 /// Begins and follows the ordered stop.
 template <Port P, class N>
 void BusLoop<P, N>::step_stop() noexcept {
   const Time now = port_.now();
+  remember_axes();
   follow_own_state();
   if (stop_.stage() == StopStage::running) {
     if (!asked_to_stop()) return;
@@ -79,8 +119,8 @@ void BusLoop<P, N>::step_stop() noexcept {
   const bool decided = stop_.axes_done();
   stop_.step(now, stop_view());
   force_axes(stop_);
-  if constexpr (requires { network_.every_axis_at_rest(); }) {
-    if (stop_.axes_done()) network_.every_axis_at_rest();
+  if constexpr (requires { network_.every_axis_at_rest(rest_of(stop_)); }) {
+    if (stop_.axes_done()) network_.every_axis_at_rest(rest_of(stop_));
   }
   if (!decided && stop_.axes_done()) tell_unconfirmed(stop_, now);
   if (before != StopStage::nmt && stop_.stage() == StopStage::nmt) {
@@ -130,6 +170,7 @@ void BusLoop<P, N>::ask_for_stop() noexcept {
   const Time now = port_.now();
   while (const Request* request = stop_requests_.next(now, stop, exchanging_, network_.nodes())) {
     if (!network_.submit(*request, now)) return;
+    remember_word(*request);
     stop_requests_.submitted();
   }
 }
@@ -167,12 +208,12 @@ void BusLoop<P, N>::step_halt(Time now) noexcept {
     force_axes(halt_);
     if (halt_.axes_done()) tell_unconfirmed(halt_, now);
   }
-  if (halt_.axes_done() || halt_.nothing_to_stop()) network_.axes_at_rest();
+  if (halt_.axes_done() || halt_.nothing_to_stop()) network_.axes_at_rest(rest_of(halt_));
 }
 
 template <Port P, class N>
 void BusLoop<P, N>::begin_halt(Time now, std::uint8_t node_index) noexcept {
-  halt_.begin(now, network_.nodes(), node_index);
+  halt_.begin(now, network_.nodes(), node_index, memory_);
   stop_requests_.begin();
   if (node_index != OrderedStop::every_node) return;
   pdos_.outputs().fall_back();

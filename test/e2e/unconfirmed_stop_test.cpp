@@ -23,6 +23,9 @@ TEST(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
   DaemonProcess daemon{network, {"--bus", bus}};
   const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                     folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();  // they are enabled
   devices.signal(SIGKILL);  // whether the drives move is not known any more
   ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
 
@@ -34,6 +37,44 @@ TEST(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
             std::string::npos)
       << daemon.log();
   EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 2U);
+}
+
+TEST(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path());
+  DaemonProcess daemon{network, {"--bus", bus}};
+  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  devices.signal(SIGKILL);
+  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+
+  daemon.signal(SIGTERM);
+
+  EXPECT_EQ(daemon.wait(), 0) << daemon.log();
+  EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 0U);
+}
+
+/// The daemon's own id: the answer comes when the axes were stopped.
+TEST(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
+  const Folder folder;
+  const std::string bus = "unix:" + (folder / "bus").string();
+  const auto network = slow_network(folder.path());
+  DaemonProcess daemon{network, {"--bus", bus}};
+  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                     folder / "move"};
+  ASSERT_TRUE(move.says("sine of")) << move.output();
+  devices.signal(SIGKILL);
+  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+
+  const Ended stop =
+      run({TAKT, "nmt", "stop", "127", "--lcm-url", daemon.lcm_url()}, folder.path());
+
+  EXPECT_EQ(stop.exit_code, 1) << stop.output;
+  EXPECT_NE(stop.output.find("shoulder: the drive is lost, no answer for "), std::string::npos)
+      << stop.output;
 }
 
 /// A ramp of minutes, and a second for the stop.

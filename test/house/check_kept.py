@@ -21,7 +21,8 @@ NOT_KEPT = {
     "LssRunner": {IDLE: "master_ state_", ANEW: "commands_ results_ count_ results_count_ timeout_"},
     "LssService": {PLAN: "plan_", SHARED: "requests_ events_", IDLE: "searched_ request_ stopping_"},
     "Network": {PLAN: "plan_ observe_ nmt_stop_ stops_drives_ index_ emcy_ids_ answers_ dictionary_", SHARED: "events_",
-                IDLE: "stopping_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_"},
+                IDLE: "stopping_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
+                      "rest_"},
     "NetworkStart": {PLAN: "plan_"},
     "NmtGate": {PLAN: "inhibit_"},
     "NodeGuard": {PLAN: "plan_"},

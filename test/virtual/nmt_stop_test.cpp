@@ -42,6 +42,12 @@ class NmtStopOfAxes : public testing::Test {
     }
     return std::nullopt;
   }
+  StopResult stop_in_order() {
+    rig.master->request_stop();
+    for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
+    EXPECT_TRUE(rig.master->finished());
+    return rig.status().stop_result;
+  }
   Rig rig{test::axes()};
 };
 
@@ -124,10 +130,109 @@ TEST_F(NmtStopOfAxes, GivesWayToTheOrderedStop) {
   EXPECT_FALSE(nmt_at(0x02, 1));
 }
 
+TEST_F(NmtStopOfAxes, NeedsNoOtherConfirmationInTheOrderedStop) {
+  for (const std::uint8_t node : {std::uint8_t{1}, std::uint8_t{2}}) {
+    order(NmtCommand::stop, node);
+    rig.run(200);
+    ASSERT_TRUE(nmt_at(0x02, node));
+  }
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
+}
+
+TEST_F(NmtStopOfAxes, OfAnAxisThatWasNotConfirmedIsNoneInTheOrderedStop) {
+  rig.world->power(2_node, false);
+  order(NmtCommand::stop, 2);
+  rig.run(900);
+  ASSERT_EQ(rig.count(EventKind::axis_not_stopped), 1);
+  EXPECT_EQ(stop_in_order(), StopResult::unconfirmed);
+}
+
+TEST_F(NmtStopOfAxes, OfTheMasterIsAnsweredWhenItsAxesAreStopped) {
+  order(NmtCommand::stop, 127);
+  rig.run(5);
+  Reply reply;
+  EXPECT_FALSE(rig.master->take(reply));
+  rig.run(200);
+  ASSERT_TRUE(rig.master->take(reply));
+  EXPECT_EQ(reply.fault, SdoFault::none);
+}
+
+TEST_F(NmtStopOfAxes, SaysWhereAnAxisWasNotConfirmed) {
+  rig.world->power(2_node, false);
+  for (const std::uint8_t node :
+       {std::uint8_t{127}, std::uint8_t{127}, std::uint8_t{2}, std::uint8_t{0}}) {
+    order(NmtCommand::stop, node);
+    rig.run(900);
+    Reply reply;
+    ASSERT_TRUE(rig.master->take(reply)) << int{node};
+    EXPECT_EQ(reply.fault, SdoFault::axes_not_stopped) << int{node};
+  }
+  EXPECT_TRUE(nmt_at(0x02, 2)) << "it is sent all the same";
+}
+
+TEST_F(NmtStopOfAxes, OfTheMasterLeavesAtOnceWhereTheAxesAreDisabled) {
+  rig.command_all(0x0000, 1);
+  rig.run(3);
+  order(NmtCommand::stop, 127);
+  rig.run(3);
+  Reply reply;
+  ASSERT_TRUE(rig.master->take(reply));
+  EXPECT_EQ(reply.fault, SdoFault::none);
+}
+
 TEST_F(NmtStopOfAxes, ResetsAreNotHeldUp) {
   order(NmtCommand::reset_node, 1);
   rig.run(2);
   EXPECT_TRUE(nmt_at(0x81, 1));
+}
+
+/// The same drives, which nobody has enabled.
+class OrderedStopOfDisabledAxes : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(rig.boot());
+    rig.run(10);
+  }
+  StopResult stop_in_order() {
+    rig.master->request_stop();
+    for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
+    EXPECT_TRUE(rig.master->finished());
+    return rig.status().stop_result;
+  }
+  Rig rig{test::axes()};
+};
+
+TEST_F(OrderedStopOfDisabledAxes, IsConfirmedAfterNmtStopOfTheirNode) {
+  ASSERT_TRUE(rig.master->submit(
+      {.id = 1, .kind = RequestKind::nmt, .node = 1, .command = NmtCommand::stop}));
+  rig.run(100);
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
+}
+
+TEST_F(OrderedStopOfDisabledAxes, IsConfirmedAfterTheirNodeHasLostItsPower) {
+  rig.world->power(2_node, false);
+  rig.run(300);
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+}
+
+TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasCommandedAndIsSilent) {
+  rig.world->power(2_node, false);
+  rig.command_all(0x000F, 1);
+  rig.run(300);
+  EXPECT_EQ(stop_in_order(), StopResult::unconfirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 1);
+}
+
+TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasEnabledBySdoAndIsSilent) {
+  Request enable{
+      .id = 1, .kind = RequestKind::sdo_download, .node = 2, .object = {0x6040, 0}, .size = 2};
+  enable.data[0] = std::byte{0x0F};
+  rig.world->power(2_node, false);
+  ASSERT_TRUE(rig.master->submit(enable));
+  rig.run(300);
+  EXPECT_EQ(stop_in_order(), StopResult::unconfirmed);
 }
 
 }  // namespace

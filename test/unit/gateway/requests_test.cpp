@@ -193,6 +193,23 @@ TEST_F(RequestsTest, NmtGoesToTheMasterItself) {
   EXPECT_EQ(submitted[0].node, 127);
 }
 
+TEST_F(RequestsTest, NmtStopNamesTheAxesThatWereNotConfirmed) {
+  request_t message = upload(1);
+  message.service = "nmt";
+  message.node_id = 127;
+  message.nmt_command = 2;
+  EXPECT_FALSE(requests.take(message, now));
+
+  const auto answer = requests.finish({.id = submitted[0].id, .fault = SdoFault::axes_not_stopped},
+                                      now, "z was disabled at 75 mm/s");
+
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->good, 0);
+  EXPECT_EQ(answer->text,
+            "the command was obeyed, but not every axis was seen at standstill and disabled "
+            "before:\nz was disabled at 75 mm/s");
+}
+
 TEST_F(RequestsTest, FullRingIsAnAnswerToo) {
   room = false;
 
