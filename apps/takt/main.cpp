@@ -35,7 +35,8 @@ int run(int argc, char** argv) {
       "  takt simulate lift.yaml        try it in virtual time\n"
       "  takt status                    ask the running daemon\n"
       "Each command has a --help of its own. Exit codes: 0 good, 1 the answer is no, 2 wrong use\n"
-      "or network file, 3 bus trouble, 4 a mandatory node is missing, 5 real-time limit broken.");
+      "or network file, 3 bus trouble, 4 a mandatory node is missing, 5 real-time limit broken,\n"
+      "6 the ordered stop was not confirmed.");
   int exit_code = 0;
   takt::add_audit(app, exit_code);
   takt::add_dump(app, exit_code);
