@@ -80,8 +80,8 @@ TEST(Replay, TakesTheSameDecisionsThroughFaultsCommandsAndRequests) {
 TEST(Recording, LeavesTheLimitsOfAnEnabledAxisAsTheyAre) {
   RecordedRun run{"two_axes.yaml"};
   const ImageLayout& layout = run.network.plan.layout;
-  std::uint64_t controlword = 6;
-  std::uint64_t position = 0;
+  std::int64_t controlword = 6;
+  std::int64_t position = 0;
   run.each_cycle = [&] {
     Exchange& exchange = *run.exchange;
     for (std::size_t i = 0; i < layout.outputs(); ++i) {
@@ -93,7 +93,7 @@ TEST(Recording, LeavesTheLimitsOfAnEnabledAxisAsTheyAre) {
     exchange.set_points.publish(run.world.now());
   };
   run.run_until(1s);
-  for (const std::uint64_t step : {6, 7, 15}) {
+  for (const std::int64_t step : {6, 7, 15}) {
     controlword = step;
     run.run_until(run.world.now() + 200ms);
   }
