@@ -267,8 +267,13 @@ double AxisLimits::turn(ObjectReader read) const {
 }
 
 /// Length of the range in which a position turns over: of the file, else 607B as `sdo:` writes it.
+/// A length of the file that is rounded means that of the drive: a turn that is too short would
+/// make a whole way of each turn-over.
 double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
-  return modulo.given ? table_.raw_size(signal, *modulo) : turn(written_object);
+  if (!modulo.given) return turn(written_object);
+  const double length = table_.raw_size(signal, *modulo);
+  const double of_drive = turn(configured_object);
+  return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
 }
 
 /// An axis that doesn't turn over where its limits do goes back a whole turn in one cycle.
@@ -276,7 +281,7 @@ void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   if (!modulo.given || positions_.empty()) return;
   const double length = modulus(modulo, positions_[0]);
   const double of_drive = turn(configured_object);
-  if (std::abs(of_drive - length) <= 1.0 + length * rounded_digits) return;
+  if (of_drive == length) return;
   const ObjectKey key = object(0x607B);
   std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
                      " counts of " + table_.signal(positions_[0]).name + ", ";

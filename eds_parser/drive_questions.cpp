@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -103,30 +104,45 @@ bool is_stopped_with(const NodeSpec& node, const NodeSpec& lost) {
          *node.group == *lost.group;
 }
 
+/// What a network file says so that these objects are 3.
+std::string written_as_quick_stop(const std::set<std::uint16_t>& objects) {
+  std::string entries;
+  for (const std::uint16_t index : objects) {
+    entries += (entries.empty() ? "" : ", ") + std::string{"{index: "} + hex(index) + ", value: 3}";
+  }
+  return entries.empty() ? "" : "`sdo: [" + entries + "]`, or ";
+}
+
 /// `on_loss: stop_node` and `stop_group` send NMT stop at once. What a moving drive does then is
 /// its own affair.
 void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> nodes,
                             NetworkReport& report) {
   std::string names;
   std::string missing;
+  std::set<std::uint16_t> writable;
   for (const NodePdos& node : nodes) {
     if (!is_cia402(node.node) || !is_stopped_with(*node.node.spec, lost)) continue;
+    const std::string name = "`" + node.node.spec->name + "`";
+    bool lacks = false;
     const std::vector<ObjectKey> axes = axes_without_quick_stop(node.node);
-    if (axes.empty()) continue;
-    names += (names.empty() ? "`" : ", `") + node.node.spec->name + "`";
     for (const ObjectKey object : axes) {
-      if (node.node.dictionary->find(object) == nullptr)
-        missing = " (`" + node.node.spec->name + "` has none)";
+      if (node.node.dictionary->find(object) == nullptr) {
+        lacks = true;
+      } else {
+        writable.insert(object.index);
+      }
     }
+    if (!axes.empty()) names += (names.empty() ? "" : ", ") + name;
+    if (lacks) missing += (missing.empty() ? "" : ", ") + name;
   }
   if (names.empty()) return;
+  if (!missing.empty()) missing = " (not in the device file of " + missing + ")";
   report.warning(lost.on_loss.pos, "on-loss",
                  "when node `" + lost.name + "` is lost, NMT stop goes to " + names +
                      " at once, without a quick stop of the master: a drive that moves reacts by "
                      "its 0x6007" +
-                     missing +
-                     ", which is not known to be 3 (quick stop). Write `sdo: [{index: 0x6007, "
-                     "value: 3}]`, or `on_loss: quick_stop`");
+                     missing + ", which is not known to be 3 (quick stop). Write " +
+                     written_as_quick_stop(writable) + "`on_loss: quick_stop`");
 }
 
 }  // namespace

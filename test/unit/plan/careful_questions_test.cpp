@@ -93,6 +93,7 @@ TEST_F(Careful, NmtStopOfADriveThatMakesNoQuickStopByItselfIsAWarning) {
               AllOf(HasSubstr("when node `a` is lost, NMT stop goes to `a`, `b` at once"),
                     HasSubstr("Write `sdo: [{index: 0x6007, value: 3}]`, or `on_loss: quick_stop`"),
                     HasSubstr("[on-loss]")));
+  EXPECT_THAT(two("on_loss: stop_group", "on_loss: report"), Not(HasSubstr("device file of")));
   EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report"),
               HasSubstr("NMT stop goes to `b` at once"));
   EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report, " + stops),

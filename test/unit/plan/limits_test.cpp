@@ -213,7 +213,18 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
   EXPECT_THAT(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 9999}]\n", range_limit),
               HasSubstr("and 607B:00 (position range limit) turns over after 10000"));
   EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3599}]\n", range_limit), "");
+  EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3600}]\n", range_limit), "")
+      << "a rounded number";
   EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("has no such object")));
+}
+
+TEST(Limits, OfARoundedTurnCountTheTurnOfTheDrive) {
+  const std::string range_limit =
+      record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
+      entry("607Bsub1", "min", 4, "rw", "0") + entry("607Bsub2", "max", 4, "rw", "35999");
+  const Compiled net = drive("    limits: {modulo: 35.999, step: 0.01}\n", "{index: 0x607A}", units,
+                             tiny_eds() + range_limit);
+  EXPECT_EQ(only(net).modulus, 36'000.0) << "35999 would make a way of 35999 no turn-over";
 }
 
 std::string limit_objects(const std::string& unsigned32 = "7") {
