@@ -52,7 +52,7 @@ AxisPrior prior_of(const NodeStatus& node, const AxisMemory& memory) noexcept {
     return memory.disabled() ? AxisPrior::disabled : AxisPrior::exposed;
   }
   const bool operational =
-      node.nmt == NmtState::operational || node.boot_letter == 'L' || memory.operational();
+      OrderedStop::says_operational(node) || node.boot_letter == 'L' || memory.operational();
   if (operational) return AxisPrior::exposed;
   const bool answered = node.boot_letter != 0 && node.boot_letter != 'B';
   return node.nmt != NmtState::unknown || answered ? AxisPrior::heard : AxisPrior::untouched;

@@ -68,6 +68,11 @@ class OrderedStop {
 
   static constexpr std::uint8_t every_node = 0xFF;
 
+  /// The node itself says that it is OPERATIONAL: that it obeys a broadcast is only assumed.
+  static bool says_operational(const NodeStatus& node) noexcept {
+    return node.nmt == NmtState::operational && node.last_heartbeat != Time{};
+  }
+
   /// From `running` or `done` on. `node_index`: only the axes of this node are stopped. `memory`:
   /// of each axis; empty: nothing is remembered.
   void begin(Time now, std::span<const NodeStatus> nodes, std::uint8_t node_index = every_node,

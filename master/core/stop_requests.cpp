@@ -188,7 +188,7 @@ bool StopRequests::take(const Reply& reply, Time now, OrderedStop& stop) noexcep
   polls_[axis].due = now + poll_pause;
   const auto word = static_cast<Word>(reply.id & 0xFF);
   if (reply.fault != SdoFault::none) {
-    polls_[axis].write_again = now + write_pause;
+    if (word == Word::control) polls_[axis].write_again = now + write_pause;
     take_fault(axis, word, reply, stop);
   } else {
     take_value(axis, word, reply, stop);

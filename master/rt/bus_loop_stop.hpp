@@ -86,7 +86,7 @@ void BusLoop<P, N>::remember_axes() noexcept {
     memory_[i].look(statusword, controlword);
     const NodeStatus& node = network_.nodes()[axis.node_index];
     const bool found = node.boot_count == 0 && node.boot != BootState::ready;
-    if (found && node.nmt == NmtState::operational) memory_[i].note_operational();
+    if (found && OrderedStop::says_operational(node)) memory_[i].note_operational();
   }
 }
 

@@ -95,6 +95,23 @@ TEST_F(FoundEnabled, IsNotConfirmedWhereItTakesNoControlword) {
       << plant.text_of(EventKind::axis_not_stopped);
 }
 
+TEST_F(FoundEnabled, IsDisabledThoughItSaysNothingOfItsMotion) {
+  move();
+  plant.run(5s);
+  for (const std::uint16_t index : {std::uint16_t{0x606C}, std::uint16_t{0x6064}}) {
+    sim::Fault refuses = of_drive(refuse_object);
+    refuses.object = ObjectKey{index, 0};
+    refuses.abort_code = 0x0602'0000;
+    plant.world.add(refuses);
+  }
+  plant.wire.frames.clear();
+
+  EXPECT_EQ(plant.stop(), StopResult::unconfirmed);
+
+  const Frame disable_voltage = make_frame(CobId::base(0x606), {0x2B, 0x40, 0x60, 0, 0, 0, 0, 0});
+  EXPECT_GE(std::ranges::count(plant.wire.frames, disable_voltage), 1);
+}
+
 TEST_F(FoundEnabled, IsNotConfirmedWhereItDoesNotAnswer) {
   move();
   plant.run(5s);
@@ -110,6 +127,25 @@ TEST_F(FoundEnabled, IsConfirmedWhereItIsDisabledAlready) {
   EXPECT_TRUE(std::ranges::none_of(plant.wire.frames, [](const Frame& frame) {
     return frame.id == CobId::base(0x606) && frame.data[1] == 0x40 && frame.data[2] == 0x60;
   })) << "it is only asked";
+}
+
+/// A drive that isn't there does not become OPERATIONAL by a broadcast.
+TEST(AbsentDrive, NeedsNoConfirmationAfterABroadcastStart) {
+  Plant plant{network_of("bus: {name: plant}\nmaster: {sync_period: 10000}\nnodes:\n"
+                         "  lift: {node_id: 6, dcf: ../../../share/eds/takt_drive402.eds, "
+                         "profile: cia402, heartbeat_producer: 100}\n"
+                         "  valve: {node_id: 5, dcf: valve.eds}\n"),
+              {of_drive(power_off)}};
+  plant.run(20s);
+  plant.nmt(NmtCommand::start, 0);
+  plant.run(1s);
+  ASSERT_EQ(plant.node(1).boot_count, 0U);
+  ASSERT_TRUE(std::ranges::any_of(plant.events, [](const Event& event) {
+    return event.kind == EventKind::node_state && event.node == 6 && event.value == 5;
+  })) << "the master assumes so much";
+
+  EXPECT_EQ(plant.stop(), StopResult::confirmed);
+  EXPECT_EQ(plant.count(EventKind::axis_not_stopped), 0);
 }
 
 /// It is told PRE-OPERATIONAL first; its boot fails because it has another vendor id.
