@@ -120,6 +120,7 @@ class Run {
     while (daemon_.runs() && !daemon_.finished() && world_.now() < limit) cycle();
     const bool stopped = daemon_.runs() && daemon_.finished();
     port_.sleep_until(world_.now() + std::max(last_words, plan_.cycle.period));
+    if (daemon_.runs()) daemon_.hear_the_end();
     return stopped;
   }
 

@@ -55,6 +55,13 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   /// The front thread does nothing before `until`.
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
 
+  /// The front thread hears what the bus thread has told until its end.
+  void hear_the_end() {
+    do {
+      bridge_->serve();
+    } while (bridge_->owes_news());
+  }
+
   bool runs() const noexcept { return bridge_ != nullptr; }
   bool finished() const noexcept { return master_->finished(); }
   void request_stop() { master_->request_stop(); }

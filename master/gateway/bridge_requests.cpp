@@ -25,7 +25,11 @@ void Bridge::take_reply(const Reply& reply) {
     if (guest_ != nullptr) guest_->take(reply);
     return;
   }
-  if (reply.fault == SdoFault::axes_not_stopped) take_events();  // they say which
+  if (reply.fault == SdoFault::axes_not_stopped) {
+    do {
+      take_events();  // they say which, and came before the reply
+    } while (events_left_);
+  }
   if (auto message = requests_.finish(reply, clocks_.now(), stop_text_)) {
     answer(std::move(*message));
   }

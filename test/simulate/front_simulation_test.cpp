@@ -247,6 +247,16 @@ TEST_F(FrontSimulation, AStopThatAnAxisDoesNotAnswerIsNotConfirmed) {
   EXPECT_TRUE(outcome.unconfirmed[0].starts_with("shoulder")) << outcome.unconfirmed[0];
 }
 
+TEST_F(FrontSimulation, AStopWhileTheFrontThreadIsStalledNamesTheAxisAllTheSame) {
+  run({{.kind = stall_front, .at = 3960ms}}, 4s,
+      {{.kind = sim::FaultKind::loss, .node = 1_node, .at = 3950ms, .probability = 1.0}});
+
+  EXPECT_NE(outcome.stop, StopResult::confirmed);
+  ASSERT_EQ(outcome.unconfirmed.size(), 1U);
+  EXPECT_TRUE(outcome.unconfirmed[0].starts_with("shoulder")) << outcome.unconfirmed[0];
+  EXPECT_FALSE(outcome.mandatory_failed);
+}
+
 TEST_F(FrontSimulation, ASecondProgramOfTheSameNameMovesNothing) {
   run({{.kind = second_sender, .application = 0, .at = 3s, .until = 6s}});
 
