@@ -1,11 +1,12 @@
 #include "apps/taktd/error_log.hpp"
 
-#include <fcntl.h>
 #include <spdlog/details/null_mutex.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/base_sink.h>
 #include <unistd.h>
 #include <utility>
+
+#include "apps/taktd/open_again.hpp"
 
 namespace takt {
 namespace {
@@ -52,9 +53,7 @@ class ErrorLog::Sink final : public spdlog::sinks::base_sink<spdlog::details::nu
   Colours colours_;
 };
 
-FileDescriptor ErrorLog::stderr_again() {
-  return FileDescriptor{::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)};
-}
+FileDescriptor ErrorLog::stderr_again() { return open_again(STDERR_FILENO); }
 
 ErrorLog::ErrorLog(FileDescriptor file, LineWriter::StartThread start)
     : ErrorLog{::isatty(file.get()) != 0 ? Colours::ansi : Colours::none, std::move(file),

@@ -23,7 +23,14 @@ std::uint64_t lines_in(std::string_view text) {
   return static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
 }
 
-/// How much of `text` the file has taken, however long that takes.
+/// A terminal that nobody reads can be ready for poll() and yet take nothing. Without this pause
+/// its writer would spin.
+void pause(Time longest) noexcept {
+  const Time time = std::min<Time>(longest, std::chrono::milliseconds{10});
+  ::poll(nullptr, 0, static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(time).count()));
+}
+
+/// Returns how many bytes of `text` the file has taken, however long that takes.
 std::size_t write_all(int fd, std::string_view text) noexcept {
   std::size_t done = 0;
   while (done < text.size()) {
@@ -32,6 +39,7 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
     if (written > 0 || (written < 0 && errno == EINTR)) continue;
     if (written == 0 || errno != EAGAIN) break;
     pollfd room{.fd = fd, .events = POLLOUT, .revents = 0};
+    if (::poll(&room, 1, 0) > 0) pause(Time::max());
     ::poll(&room, 1, -1);
   }
   return done;
@@ -39,8 +47,8 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
 
 enum class Takes : std::uint8_t { more, nothing_now, nothing_ever };
 
-/// Writes what the file takes until `end`, never more at once than a pipe that is ready takes
-/// whole. `done` counts it.
+/// Writes what the file takes until `end` and counts it in `done`. No write is longer than what a
+/// pipe that is ready takes whole, for a file that could not be opened as non-blocking.
 Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) noexcept {
   constexpr std::size_t at_once = 512;
   while (done < text.size()) {
@@ -52,12 +60,15 @@ Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) no
     const ssize_t written = ::write(fd, next.data(), next.size());
     if (written > 0) done += static_cast<std::size_t>(written);
     if (written > 0 || (written < 0 && errno == EINTR)) continue;
-    return written < 0 && errno == EAGAIN ? Takes::nothing_now : Takes::nothing_ever;
+    if (written == 0 || errno != EAGAIN) return Takes::nothing_ever;
+    const Time rest = end - monotonic_now();
+    if (rest <= Time{0}) return Takes::nothing_now;
+    pause(rest);
   }
   return Takes::more;
 }
 
-/// Takes the last `bytes` of a file back, where nobody has appended since.
+/// Removes the last `bytes` of a file, where nobody has appended since.
 bool take_back(int fd, std::size_t bytes) noexcept {
   struct stat file{};
   const auto end = ::lseek(fd, 0, SEEK_CUR);
@@ -65,7 +76,7 @@ bool take_back(int fd, std::size_t bytes) noexcept {
   return last && ::ftruncate(fd, end - static_cast<off_t>(bytes)) == 0;
 }
 
-/// A line of an earlier run was cut and is still there.
+/// Whether the last line of the file was cut by an earlier run.
 bool ends_within_a_line(const std::string& path) noexcept {
   const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   struct stat status{};
@@ -77,11 +88,11 @@ bool ends_within_a_line(const std::string& path) noexcept {
 }  // namespace
 
 struct LineWriter::State {
-  FileDescriptor file;  // the thread's
-  bool cut = false;     // the thread's: the file ends within a line
-  std::mutex mutex;     // of all below
+  FileDescriptor file;  // only the thread uses it, or the caller where there is no thread
+  bool cut = false;     // as `file`; the file ends within a line
+  std::mutex mutex;     // protects all members below
   std::condition_variable changed;
-  std::string waiting;  // whole lines
+  std::string waiting;  // only whole lines
   std::uint64_t lost = 0;
   bool writing = false;
   bool ends = false;
@@ -90,7 +101,7 @@ struct LineWriter::State {
   std::uint64_t write(std::string_view lines);
 };
 
-/// The number of lines that could not be written.
+/// Returns the number of lines that could not be written.
 std::uint64_t LineWriter::State::write(std::string_view lines) {
   if (cut && write_all(file.get(), "\n") == 1) cut = false;
   if (cut) return lines_in(lines);
@@ -147,7 +158,8 @@ LineWriter::~LineWriter() {
   state_->changed.notify_all();
 }
 
-/// With the first line, so that the thread inherits the signal mask that the caller has by then.
+/// It is called with the first line, so that the thread inherits the signal mask that the caller
+/// has by then.
 void LineWriter::ensure_thread() {
   if (has_thread_) return;
   const Time now = monotonic_now();
@@ -190,7 +202,7 @@ bool LineWriter::flush(Time limit) {
 
 bool LineWriter::write_through(Time limit) {
   if (has_thread_) return true;
-  const std::lock_guard lock{state_->mutex};  // nobody else has it: there is no thread
+  const std::lock_guard lock{state_->mutex};  // nobody else can hold it, because there is no thread
   std::string& waiting = state_->waiting;
   if (waiting.empty()) return true;
   if (std::exchange(state_->cut, false)) waiting.insert(0, 1, '\n');

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "apps/taktd/open_again.hpp"
 
 namespace takt {
 namespace {
@@ -110,6 +113,70 @@ TEST(ErrorLog, WithoutAThreadWaitsForNobodyEither) {
   read_until(pipe.reader, "x\n");
   log.say(Weight::note, "the end");
   EXPECT_FALSE(log.flush(0ms)) << "a pipe holds less than what waits";
+}
+
+/// A terminal that nobody reads. Its slave side is opened as a shell opens it for its programs.
+struct Terminal {
+  FileDescriptor master{::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  FileDescriptor slave = open_slave(master.get());
+
+  static FileDescriptor open_slave(int master) {
+    EXPECT_EQ(::grantpt(master), 0);
+    EXPECT_EQ(::unlockpt(master), 0);
+    return FileDescriptor{::open(::ptsname(master), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  }
+};
+
+/// The test hangs where a write to the terminal blocks.
+TEST(ErrorLog, WithoutAThreadWaitsForNoTerminalThatNobodyReads) {
+  const Terminal terminal;
+  ErrorLog log{open_again(terminal.slave.get()),
+               [](const std::function<void()>&) { return false; }};
+
+  for (std::size_t i = 0; i < 20'000; ++i) log.say(Weight::note, std::string(i % 300, 'x'));
+
+  EXPECT_FALSE(log.flush(20ms)) << "nobody has read anything";
+  EXPECT_THAT(read_until(terminal.master, " xx\r\n"), HasSubstr("no thread can be created"));
+}
+
+TEST(OpenAgain, LeavesTheTerminalOfTheShellBlocking) {
+  const Terminal terminal;
+
+  const FileDescriptor again = open_again(terminal.slave.get());
+
+  EXPECT_NE(::fcntl(again.get(), F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_EQ(::fcntl(terminal.slave.get(), F_GETFL) & O_NONBLOCK, 0);
+}
+
+TEST(OpenAgain, NeverOpensTheMasterSideOfAnotherTerminal) {
+  const Terminal terminal;
+
+  const FileDescriptor again = open_again(terminal.master.get());
+
+  EXPECT_EQ(::write(again.get(), "input\n", 6), 6);
+  EXPECT_EQ(read_until(terminal.slave, "\n"), "input\n");
+}
+
+TEST(OpenAgain, KeepsThePositionThatIsSharedWithTheShell) {
+  const FileDescriptor file{::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)};
+  EXPECT_EQ(::write(file.get(), "shell ", 6), 6);
+
+  EXPECT_EQ(::write(open_again(file.get()).get(), "taktd", 5), 5);
+
+  std::array<char, 11> text{};
+  EXPECT_EQ(::pread(file.get(), text.data(), text.size(), 0), 11);
+  EXPECT_EQ(std::string(text.data(), text.size()), "shell taktd");
+}
+
+TEST(OpenAgain, WritesToThePipeOfTheOldDescriptor) {
+  const Pipe pipe = make_pipe();
+
+  const FileDescriptor again = open_again(pipe.writer.get());
+
+  EXPECT_NE(::fcntl(again.get(), F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_EQ(::fcntl(pipe.writer.get(), F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_EQ(::write(again.get(), "a\n", 2), 2);
+  EXPECT_EQ(read_until(pipe.reader, "\n"), "a\n");
 }
 
 }  // namespace
