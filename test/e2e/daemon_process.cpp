@@ -1,11 +1,13 @@
 #include "test/e2e/daemon_process.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <thread>
 
 #include "master/core/node_status.hpp"
+#include "master/gateway/messages.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/tcpq_broker.hpp"
 #include "master/linux/clock.hpp"
@@ -43,9 +45,15 @@ std::optional<int> DaemonProcess::wait() {
 }
 
 void DaemonProcess::take() {
-  lcm_->serve([this](std::string_view channel,
-                     std::span<const std::byte> data) { views_.take(channel, data); },
-              monotonic_now() + std::chrono::milliseconds{20});
+  lcm_->serve(
+      [this](std::string_view channel, std::span<const std::byte> data) {
+        views_.take(channel, data);
+        if (!channel.ends_with("_IMAGE")) return;
+        if (const auto image = decode<image_t>(data); image && image->part == 0) {
+          images_.push_back({image->cycle, Time{image->sync_mono_ns}});
+        }
+      },
+      monotonic_now() + std::chrono::milliseconds{20});
 }
 
 bool DaemonProcess::hear(const std::function<bool()>& done) {
@@ -117,6 +125,11 @@ command_t DaemonProcess::command_for(
 void DaemonProcess::command(const command_t& command) {
   std::vector<std::byte> buffer;
   publish(channel_name(bus().status()->bus, "COMMAND"), encode(command, buffer));
+}
+
+std::size_t DaemonProcess::images_between(Time since, std::int64_t cycle) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      images_, [&](const ImageTime& image) { return image.sync >= since && image.cycle < cycle; }));
 }
 
 std::size_t DaemonProcess::events(const std::string& kind, const std::string& part) {

@@ -8,6 +8,7 @@
 
 #include "master/gateway/bus_view.hpp"
 #include "master/gateway/lcm_client.hpp"
+#include "master/linux/clock.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
 
@@ -45,6 +46,8 @@ class DaemonProcess {
   std::size_t signal_at(const std::string& node, const std::string& name, bool output);
   std::int64_t value(const std::string& node, const std::string& name);
 
+  /// Images heard so far that are younger than `since` and older than this cycle.
+  std::size_t images_between(Time since, std::int64_t cycle) const;
   /// Events heard so far of a kind whose text holds `part`.
   std::size_t events(const std::string& kind, const std::string& part = {});
   /// Events of a kind that its --events file holds: those before the first message was heard too.
@@ -57,6 +60,11 @@ class DaemonProcess {
   const std::string& lcm_url() const noexcept { return url_; }
 
  private:
+  /// SYNC of an image.
+  struct ImageTime {
+    std::int64_t cycle;
+    Time sync;
+  };
   void take();
 
   Folder folder_;
@@ -64,6 +72,7 @@ class DaemonProcess {
   std::optional<Process> process_;
   std::optional<LcmClient> lcm_;
   BusViews views_;
+  std::vector<ImageTime> images_;
 };
 
 /// The demo network with a slower SYNC, for machines under load. `edit` may change its text.

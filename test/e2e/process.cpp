@@ -44,6 +44,12 @@ Process::~Process() {
   }
 }
 
+bool Process::stop() const {
+  signal(SIGSTOP);
+  siginfo_t seen{};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &seen, WSTOPPED) == 0;
+}
+
 std::optional<int> Process::wait(const std::function<void()>& meanwhile) {
   const auto until = Clock::now() + patience;
   int status = 0;

@@ -19,6 +19,8 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  /// Stops it, and returns when none of its threads runs any more. False: it has ended.
+  bool stop() const;
   /// Exit code within a generous time, `meanwhile` again and again; none: it still runs, or a
   /// signal ended it.
   std::optional<int> wait(const std::function<void()>& meanwhile = {});
