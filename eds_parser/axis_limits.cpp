@@ -9,6 +9,7 @@
 #include "eds_parser/limit_proposals.hpp"
 #include "eds_parser/node_objects.hpp"
 #include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/tpdo_of.hpp"
 
 namespace takt {
 namespace {
@@ -72,6 +73,7 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   torque(limits.torque);
   describe_position_rows(limits);
   ask_for_turn(limits.modulo);
+  warn_of_late_start(limits);
   for (LimitLine& line : plan_.limits.lines) {
     if (line.node_index == node_index_ && line.axis == axis_) {
       propose_limit(line, node_, plan_, table_);
@@ -310,6 +312,25 @@ void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
     row.mode = output(0x6060);
     row.mode_display = input(0x6061);
     row.profile = !row.mode && configured_object(node_, object(0x6060)) == profile_position;
+  }
+}
+
+/// The first set-point whose way is limited waits until the device has sent its actual position.
+void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
+  const std::optional<SignalIndex> feedback = input(0x6064);
+  if (positions_.empty() || !feedback) return;
+  const PdoRow* const tpdo = tpdo_of(plan_.pdos, *feedback);
+  if (tpdo == nullptr || !comes_by_event_alone(*tpdo)) return;
+  for (const auto* limit : {&limits.step, &limits.velocity, &limits.acceleration}) {
+    if (!limit->given) continue;
+    const std::string name = "TPDO" + std::to_string(tpdo->number);
+    return report_.warning(
+        limit->pos, "limits",
+        "limits of " + owner() + " hold its set-points back until " + to_string(object(0x6064)) +
+            " has come once, and " + name + " brings it only by event (transmission " +
+            std::to_string(tpdo->transmission) + " without `event_timer`): an axis that stands " +
+            "still may never send it. Give " + name +
+            " an `event_timer`, or make it synchronous (`transmission: 1`)");
   }
 }
 

@@ -51,6 +51,7 @@ class AxisLimits {
   double turn(ObjectReader read) const;
   double modulus(const Sourced<double>& modulo, SignalIndex signal) const;
   void ask_for_turn(const Sourced<double>& modulo);
+  void warn_of_late_start(const AxisLimitsSpec& limits);
 
   /// False: the signal counts without a unit, which is reported.
   bool has_unit(SignalIndex signal, std::string_view kind, SourcePos pos);

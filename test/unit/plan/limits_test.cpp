@@ -218,6 +218,34 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
   EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("has no such object")));
 }
 
+/// A limited axis whose actual position comes in TPDO2 of this kind.
+std::string start_of(const std::string& tpdo, const std::string& limits) {
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    tpdo: {2: {enabled: true, cob_id: auto, " +
+      tpdo +
+      "}}\n"
+      "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, {index: "
+      "0x607A}]}}\n" +
+      std::string{units} + "    limits: {" + limits + "}\n");
+  return net.said("limits");
+}
+
+TEST(Limits, ThatWaitForAPositionThatComesByEventAloneHaveAWarning) {
+  for (const char* const limits : {"step: 0.01", "velocity: 2.0", "acceleration: 20"}) {
+    EXPECT_THAT(start_of("transmission: 255", limits),
+                AllOf(HasSubstr("limits of node `arm` hold its set-points back until 6064:00 has "
+                                "come once"),
+                      HasSubstr("TPDO2 brings it only by event (transmission 255 without "
+                                "`event_timer`)"),
+                      HasSubstr("Give TPDO2 an `event_timer`, or make it synchronous")));
+  }
+  EXPECT_THAT(start_of("transmission: 254", "step: 0.01"), HasSubstr("(transmission 254 without"));
+  EXPECT_EQ(start_of("transmission: 255, event_timer: 100", "step: 0.01"), "");
+  EXPECT_EQ(start_of("transmission: 1", "step: 0.01"), "");
+  EXPECT_EQ(start_of("transmission: 255", "position: [-1, 1]"), "") << "a range needs no start";
+}
+
 TEST(Limits, OfARoundedTurnCountTheTurnOfTheDrive) {
   const std::string range_limit =
       record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
