@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "apps/move/mode_hint.hpp"
 #include "apps/move/paced_motion.hpp"
 #include "apps/move/sine.hpp"
 #include "apps/move/synchronised_move.hpp"
@@ -143,12 +144,10 @@ bool MoveRun::enable() {
     progress_.say(fmt::format("{}: not enabled, {}", axes_.name(i), name(axes_.drive(i).state())));
   }
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-    if (axes_.signals(i).mode_display || axes_.signals(i).mode) continue;
-    progress_.say(axes_.name(i) +
-                  ": its mode of operation is not known: map 0x6060 into an RPDO, "
-                  "or 0x6061 into a TPDO where `sdo:` writes 0x6060");
+    const std::string hint =
+        mode_hint(axes_.signals(i), group_.input(), DriveMode::cyclic_position);
+    if (!hint.empty()) progress_.say(axes_.name(i) + ": " + hint);
   }
-  if (axes_.all_enabled()) progress_.say("not all axes show mode 8, cyclic synchronous position");
   return false;
 }
 
