@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
+#include "test/unit/gateway/restless_port.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {
@@ -113,29 +114,9 @@ TEST(FrontBudget, ManyAnswersAtOnceDoNotHoldUpTheNextImage) {
   EXPECT_FALSE(bridge.owes_news());
 }
 
-/// The port of a controller whose state changes in each cycle: an event a cycle.
-class RestlessPort {
- public:
-  explicit RestlessPort(sim::SimPort& port) : port_{port} {}
-  Time now() noexcept { return port_.now(); }
-  void sleep_until(Time until) noexcept { port_.sleep_until(until); }
-  void sleep_precisely_until(Time until) noexcept { port_.sleep_precisely_until(until); }
-  bool wait_frame(Time until) noexcept { return port_.wait_frame(until); }
-  std::size_t receive(std::span<StampedFrame> in) noexcept { return port_.receive(in); }
-  SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
-  PortNews news() const noexcept {
-    PortNews news = port_.news();
-    news.error_passive = port_.now() / 4ms % 2 != 0;
-    return news;
-  }
-
- private:
-  sim::SimPort& port_;
-};
-
 TEST(FrontBudget, AStormOfEventsIsTakenInPiecesAndNoneIsLost) {
   test::Rig rig{test::axes({.period = 4ms})};
-  RestlessPort port{*rig.port};
+  test::RestlessPort port{*rig.port};
   rig.use(port);
   WorkClocks clocks{rig};
   SlowTransport lcm{clocks};

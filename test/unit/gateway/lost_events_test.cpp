@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
+#include "test/unit/gateway/restless_port.hpp"
 #include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"
 
@@ -9,26 +10,6 @@ namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// The port of a controller whose state changes in each cycle: an event a cycle.
-class RestlessPort {
- public:
-  explicit RestlessPort(sim::SimPort& port) : port_{port} {}
-  Time now() noexcept { return port_.now(); }
-  void sleep_until(Time until) noexcept { port_.sleep_until(until); }
-  void sleep_precisely_until(Time until) noexcept { port_.sleep_precisely_until(until); }
-  bool wait_frame(Time until) noexcept { return port_.wait_frame(until); }
-  std::size_t receive(std::span<StampedFrame> in) noexcept { return port_.receive(in); }
-  SendResult send(std::span<const Frame> out) noexcept { return port_.send(out); }
-  PortNews news() const noexcept {
-    PortNews news = port_.news();
-    news.error_passive = port_.now() / 4ms % 2 != 0;
-    return news;
-  }
-
- private:
-  sim::SimPort& port_;
-};
 
 class NobodyHears final : public Transport {
  public:
@@ -42,7 +23,7 @@ class NobodyHears final : public Transport {
 
 TEST(LostEvents, AreToldOnceWithTheirNumber) {
   test::Rig rig{test::axes({.period = 4ms})};
-  RestlessPort port{*rig.port};
+  test::RestlessPort port{*rig.port};
   rig.use(port);
   NobodyHears lcm;
   std::vector<std::string> texts;
