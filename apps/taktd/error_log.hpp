@@ -11,11 +11,12 @@ class logger;
 
 namespace takt {
 
-/// Sentences for people, on stderr, with the time of day. Nobody waits for a stderr that takes
-/// nothing: lines that are lost are counted, and told before the next line that gets through.
+/// Writes sentences for people to stderr, with the time of day. No caller waits for a stderr that
+/// takes nothing. Lines that are lost are counted, and the next line that gets through says how
+/// many there were.
 class ErrorLog {
  public:
-  /// `file`: instead of stderr.
+  /// Writes to `file` instead of stderr.
   explicit ErrorLog(FileDescriptor file = stderr_again(),
                     LineWriter::StartThread start = LineWriter::start_detached);
   ~ErrorLog();
@@ -23,7 +24,7 @@ class ErrorLog {
   ErrorLog& operator=(const ErrorLog&) = delete;
 
   void say(Weight weight, const std::string& sentence);
-  /// False: stderr hasn't taken all after `limit`.
+  /// Returns false where stderr hasn't taken everything after `limit`.
   bool flush(Time limit) { return writer_.flush(limit); }
 
  private:

@@ -11,9 +11,9 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_named = 8;  // nodes in one message
+constexpr std::size_t most_named = 8;  // at most so many nodes are named in one message
 
-/// A message without what tells one node from another.
+/// A message from which the name and the number of its node have been removed.
 struct Outline {
   std::string text;
   std::string node;  ///< the first one that the message names
@@ -21,7 +21,8 @@ struct Outline {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// The length of the node's name between the backticks at the begin of `text`; 0: there is none.
+/// Returns the length of the node name in backticks with which `text` begins, or 0 if it begins
+/// with anything else.
 std::size_t quoted_node(std::string_view text, const std::set<std::string_view>& names) {
   if (!text.starts_with('`')) return 0;
   const std::size_t end = text.find('`', 1);
@@ -48,7 +49,7 @@ Outline outline(std::string_view message, const std::set<std::string_view>& name
 }
 
 struct Shared {
-  std::size_t first = 0;  ///< finding that stays
+  std::size_t first = 0;  ///< index of the finding that stays
   std::vector<std::string> others;
 };
 
@@ -70,7 +71,8 @@ void join_shared_lines(Findings& findings, std::string_view file,
   const std::set<std::string_view> names{nodes.begin(), nodes.end()};
   using Key = std::tuple<SourcePos, Severity, std::string_view, std::string, std::size_t>;
   std::map<Key, Shared> all;
-  // One node may have several findings that read the same here: the nth of each belong together.
+  // One node may have several findings that read the same here. The nth finding of each node
+  // belongs to the nth findings of the others.
   std::map<std::tuple<SourcePos, std::string, std::string>, std::size_t> count;
   std::vector<bool> joined(findings.size());
   for (std::size_t i = 0; i < findings.size(); ++i) {
