@@ -4,38 +4,55 @@
 
 namespace takt {
 
-/// What the master remembers of one axis between ordered stops: whether its newest statusword said
-/// that it is disabled, and nothing was commanded since that could enable it. Bus thread only.
+/// Remembers of one axis, between ordered stops, whether it is disabled: its newest statusword said
+/// so, and no command since then could enable it. In doubt an axis is not disabled. Bus thread
+/// only.
 class AxisMemory {
  public:
   /// A statusword this soon after an enabling word may be older than the answer to it.
   static constexpr std::uint8_t settling_cycles = 3;
+  /// A drive may take this long to act on an enabling word that a service has brought, for example
+  /// while it charges its intermediate circuit.
+  static constexpr std::uint8_t standing_cycles = 100;
 
-  /// Once a cycle. `statusword`: as received by PDO, none: it isn't fresh. `controlword`: as it is
-  /// commanded by PDO, none: nothing is.
+  /// Is called once a cycle. `statusword` was received by PDO; it is empty unless it is fresh.
+  /// `controlword` is what PDOs command; it is empty where they command nothing.
   void look(std::optional<std::int64_t> statusword,
             std::optional<std::int64_t> controlword) noexcept;
-  /// Read by SDO.
+  /// This statusword was read by SDO.
   void see(std::int64_t statusword) noexcept;
-  /// Written by SDO, or by an RPDO on request.
+  /// A service (an SDO download, or an RPDO on request) is asked to bring this controlword.
   void write(std::int64_t controlword) noexcept;
-  /// Its node says that it is OPERATIONAL although this master has not booted it.
+  /// Such a service is not answered yet, as far as is known.
+  bool awaits_answer() const noexcept { return word_ == ServiceWord::under_way; }
+  /// Every service that can bring a controlword is answered.
+  void note_answer() noexcept;
+  /// A stop that commands the axis itself has seen it at standstill and then disabled.
+  void confirm() noexcept;
+  /// The node says that it is OPERATIONAL although this master has not booted it.
   void note_operational() noexcept { operational_ = true; }
 
-  /// It was seen disabled, and nothing could enable it since.
+  /// The axis was seen disabled, and nothing could enable it since.
   bool disabled() const noexcept { return disabled_; }
   bool operational() const noexcept { return operational_; }
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(disabled_, written_, operational_, quiet_);
+    state(disabled_, word_, operational_, quiet_);
   }
 
  private:
+  /// What services have brought to the controlword.
+  enum class ServiceWord : std::uint8_t {
+    harmless,   ///< No service has brought an enabling word, or the drive was seen to ignore it.
+    under_way,  ///< An enabling word was asked for; it may reach the drive at any time.
+    standing,   ///< The service is answered. The word may still stand in the drive.
+  };
+
   bool disabled_ = false;
-  bool written_ = false;  ///< the newest word by SDO could enable it
+  ServiceWord word_ = ServiceWord::harmless;
   bool operational_ = false;
-  std::uint8_t quiet_ = 0;  ///< cycles without an enabling word, up to settling_cycles
+  std::uint8_t quiet_ = 0;  ///< Cycles without an enabling word, at most standing_cycles.
 };
 
 }  // namespace takt

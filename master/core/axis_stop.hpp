@@ -113,6 +113,8 @@ class AxisStop {
     return state_ == AxisState::stopped || state_ == AxisState::exempt ||
            state_ == AxisState::asked || state_ == AxisState::rested;
   }
+  /// It was seen at standstill and disabled, and its newest statusword still says disabled.
+  bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
   std::int64_t controlword() const noexcept;
   Time silence(Time now) const noexcept { return now - answered_; }
   /// While it was disabled, or now.

@@ -65,6 +65,10 @@ class Network {
   /// False: queue full, the caller answers. Every accepted request is answered exactly once.
   bool submit(const Request& request, Time now) noexcept;
   bool take(Reply& reply) noexcept;
+  /// An SDO download to this object of the node is not answered yet.
+  bool writes(std::uint8_t node, ObjectKey object) const noexcept {
+    return requests_.has_download(node, object);
+  }
   /// Answers the requests of this id of which nothing was sent so far.
   void withdraw(std::uint64_t id) noexcept;
   bool take(Event& event) noexcept;

@@ -178,6 +178,13 @@ bool PdoRequests::take(Reply& reply) noexcept {
   return true;
 }
 
+bool PdoRequests::reaches(std::uint8_t node) const noexcept {
+  return std::ranges::any_of(slots_, [&](const Slot& slot) {
+    const bool open = slot.state == Slot::State::to_send || slot.state == Slot::State::sent;
+    return open && plan_.pdos.tpdos[slot.tpdo].node.value() == node;
+  });
+}
+
 void PdoRequests::cancel_all() noexcept {
   for (Slot& slot : slots_) {
     if (slot.state == Slot::State::to_send || slot.state == Slot::State::sent) {

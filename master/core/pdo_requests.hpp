@@ -39,6 +39,8 @@ class PdoRequests {
   bool take(Reply& reply) noexcept;
   /// No request is under way, and no answer is late.
   bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
+  /// A request to this node is not answered yet. It may be an exchange that brings it an RPDO.
+  bool reaches(std::uint8_t node) const noexcept;
   void cancel_all() noexcept;
   /// Frames of this RPDO that requests have sent; `row` of PdoTable::rpdos.
   std::uint32_t sent(std::size_t row) const noexcept { return sent_[row]; }

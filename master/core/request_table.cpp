@@ -32,6 +32,15 @@ bool RequestTable::has_waiting(std::uint8_t lane) const noexcept {
   return waiting_ != 0 && oldest(RequestSlot::State::waiting, lane) != nullptr;
 }
 
+bool RequestTable::has_download(std::uint8_t node, ObjectKey object) const noexcept {
+  return std::ranges::any_of(slots_, [&](const RequestSlot& slot) {
+    const bool open =
+        slot.state == RequestSlot::State::waiting || slot.state == RequestSlot::State::active;
+    return open && slot.request.kind == RequestKind::sdo_download && slot.request.node == node &&
+           slot.request.object == object;
+  });
+}
+
 RequestSlot* RequestTable::next(std::uint8_t lane) noexcept {
   if (waiting_ == 0) return nullptr;
   const RequestSlot* found = oldest(RequestSlot::State::waiting, lane);

@@ -40,6 +40,8 @@ class RequestTable {
   /// Makes the oldest waiting request of a lane the active one. Null: nobody waits.
   RequestSlot* next(std::uint8_t lane) noexcept;
   bool has_waiting(std::uint8_t lane) const noexcept;
+  /// An SDO download to this object of the node is not answered yet.
+  bool has_download(std::uint8_t node, ObjectKey object) const noexcept;
   void answer(RequestSlot& slot, SdoFault fault, std::uint32_t abort_code = 0,
               std::size_t size = 0) noexcept;
   /// Answers all that wait or are active.

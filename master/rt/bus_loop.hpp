@@ -120,6 +120,7 @@ class BusLoop {
   void give_replies() noexcept;
   void stop_drives_after_loss() noexcept;
   void send_outputs() noexcept;
+  bool word_under_way(const StopAxis& axis) const noexcept;
   void remember_axes() noexcept;
   void remember_word(const Request& request) noexcept;
   void step_stop() noexcept;

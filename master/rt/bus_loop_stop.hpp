@@ -70,6 +70,18 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
   pdo_requests_.cancel_all();
 }
 
+/// A request that may bring a controlword to this axis is not answered yet.
+template <Port P, class N>
+bool BusLoop<P, N>::word_under_way(const StopAxis& axis) const noexcept {
+  const std::uint8_t node = plan_.nodes[axis.node_index].id.value();
+  if (pdo_requests_.reaches(node)) return true;
+  const ObjectKey controlword{StopRequests::controlword_of(axis), 0};
+  if constexpr (requires { network_.writes(node, controlword); }) {
+    return network_.writes(node, controlword);
+  }
+  return false;
+}
+
 /// What the next stop may rely on.
 template <Port P, class N>
 void BusLoop<P, N>::remember_axes() noexcept {
@@ -83,6 +95,7 @@ void BusLoop<P, N>::remember_axes() noexcept {
     if (axis.controlword && pdos_.outputs().known(*axis.controlword)) {
       controlword = image.values[*axis.controlword];
     }
+    if (memory_[i].awaits_answer() && !word_under_way(axis)) memory_[i].note_answer();
     memory_[i].look(statusword, controlword);
     const NodeStatus& node = network_.nodes()[axis.node_index];
     const bool found = node.boot_count == 0 && node.boot != BootState::ready;
@@ -206,6 +219,9 @@ void BusLoop<P, N>::step_halt(Time now) noexcept {
   if (!halt_.axes_done()) {
     halt_.step(now, stop_view());
     force_axes(halt_);
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+      if (halt_.axis(i).rests()) memory_[i].confirm();
+    }
     if (halt_.axes_done()) tell_unconfirmed(halt_, now);
   }
   if (halt_.axes_done() || halt_.nothing_to_stop()) network_.axes_at_rest(rest_of(halt_));

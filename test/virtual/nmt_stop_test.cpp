@@ -225,14 +225,47 @@ TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasCommandedAndIsSilen
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 1);
 }
 
-TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasEnabledBySdoAndIsSilent) {
-  Request enable{
+Request enabling_word() {
+  Request request{
       .id = 1, .kind = RequestKind::sdo_download, .node = 2, .object = {0x6040, 0}, .size = 2};
-  enable.data[0] = std::byte{0x0F};
+  request.data[0] = std::byte{0x0F};
+  return request;
+}
+
+TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasEnabledBySdoAndIsSilent) {
   rig.world->power(2_node, false);
-  ASSERT_TRUE(rig.master->submit(enable));
+  ASSERT_TRUE(rig.master->submit(enabling_word()));
   rig.run(300);
   EXPECT_EQ(stop_in_order(), StopResult::unconfirmed);
+}
+
+TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereTheyWereDisabledLongAfterAnEnablingWordBySdo) {
+  ASSERT_TRUE(rig.master->submit(enabling_word()));
+  rig.run(50);
+  for (int i = 0; i < 200; ++i) {
+    rig.command_all(0x0000, 1);
+    rig.run(1);
+  }
+  rig.world->power(2_node, false);
+  rig.run(300);
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
+}
+
+/// The drive is enabled by SDO, then by PDO, and is not seen for long between the NMT stop and the
+/// ordered stop: what the first has seen has to count.
+TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereAnNmtStopHasSeenThemDisabled) {
+  rig.command_all(0x000F, 1);
+  rig.run(5);
+  ASSERT_TRUE(rig.master->submit(enabling_word()));
+  rig.run(10);
+  ASSERT_TRUE(rig.master->submit(
+      {.id = 2, .kind = RequestKind::nmt, .node = 2, .command = NmtCommand::stop}));
+  rig.run(200);
+  rig.command(0, 0x0000, 1);
+  rig.run(10);
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
 }
 
 }  // namespace

@@ -60,15 +60,64 @@ TEST(AxisMemory, RemembersAnAxisThatWasDisabledAgain) {
   EXPECT_TRUE(axis.disabled());
 }
 
-TEST(AxisMemory, CountsControlwordsBySdo) {
+TEST(AxisMemory, WaitsForTheAnswerToAnEnablingWordOfAService) {
   AxisMemory axis;
   look(axis, switch_on_disabled, std::nullopt);
   axis.write(enable_operation);
-  look(axis, switch_on_disabled, std::nullopt);
-  EXPECT_FALSE(axis.disabled()) << "it may act at any time";
+  look(axis, switch_on_disabled, std::nullopt, 1000);
+  EXPECT_FALSE(axis.disabled()) << "the word may reach the drive at any time";
   axis.write(0x0000);
-  look(axis, switch_on_disabled, std::nullopt);
+  look(axis, switch_on_disabled, std::nullopt, 1000);
+  EXPECT_FALSE(axis.disabled()) << "nor has the other word reached it";
+  axis.confirm();
+  EXPECT_FALSE(axis.disabled());
+}
+
+TEST(AxisMemory, TrustsAnAxisAgainThatIgnoresAnEnablingWordForLong) {
+  AxisMemory axis;
+  axis.write(enable_operation);
+  axis.note_answer();
+  look(axis, switch_on_disabled, std::nullopt, 99);
+  EXPECT_FALSE(axis.disabled()) << "the drive may be slow";
+  look(axis, switch_on_disabled, std::nullopt, 1);
   EXPECT_TRUE(axis.disabled());
+  look(axis, std::nullopt, std::nullopt);
+  EXPECT_TRUE(axis.disabled()) << "it is silent since";
+}
+
+TEST(AxisMemory, DoesNotTrustReadyToSwitchOnWhileAnEnablingWordMayStand) {
+  AxisMemory axis;
+  axis.write(enable_operation);
+  axis.note_answer();
+  look(axis, ready_to_switch_on, std::nullopt, 1000);
+  EXPECT_FALSE(axis.disabled()) << "the word may act as soon as the drive is free to";
+  look(axis, switch_on_disabled, std::nullopt, 1);
+  look(axis, ready_to_switch_on, shutdown, 1);
+  EXPECT_TRUE(axis.disabled()) << "the word has had no effect in between";
+}
+
+TEST(AxisMemory, IsConfirmedByAStop) {
+  AxisMemory axis;
+  axis.write(enable_operation);
+  axis.note_answer();
+  look(axis, std::nullopt, 0x0000, 2);
+  axis.confirm();
+  EXPECT_FALSE(axis.disabled()) << "the enabling word is too young";
+  look(axis, std::nullopt, 0x0000, 1);
+  axis.confirm();
+  EXPECT_TRUE(axis.disabled());
+}
+
+TEST(AxisMemory, IsConfirmedByAStopOnlyUntilTheNextEnablingWord) {
+  AxisMemory axis;
+  axis.write(enable_operation);
+  axis.note_answer();
+  look(axis, switch_on_disabled, 0x0000);
+  axis.confirm();
+  axis.write(enable_operation);
+  axis.note_answer();
+  look(axis, std::nullopt, 0x0000, 1000);
+  EXPECT_FALSE(axis.disabled());
 }
 
 TEST(AxisMemory, TakesStatuswordsBySdo) {
