@@ -82,10 +82,10 @@ daemon=
 moved=$(cat "$tmp/move") stopped=$(cat "$tmp/taktd")
 if [ "$moved" -eq 0 ] && [ "$stopped" -eq 0 ]; then
   say "Good: the axes followed (takt-move 0), the daemon stopped in order (taktd 0)."
-  echo "Next: takt plan $network, takt top beside a running taktd, README.md."
+  echo "Next: takt plan $network, takt top beside a running taktd, share/doc/tutorial.md."
   exit 0
 fi
-say "NOT good: takt-move ended with $moved, taktd with $stopped (exit codes: README.md)."
+say "NOT good: takt-move ended with $moved, taktd with $stopped (exit codes: share/doc/command_line.md)."
 stood_still=$(sed -n 's/.*: \([0-9][0-9]*\) cycles missed: .*/\1/p' "$tmp/log" | sort -n | tail -n 1)
 if [ "${stood_still:-0}" -ge 100 ]; then
   echo "This machine stood still for $stood_still cycles in a row: too long for any motion. Try again when it has less to do."

@@ -4,7 +4,7 @@
 namespace takt {
 
 /// Each verb of the tool adds itself to the command line and, when chosen, runs and sets the exit
-/// code (see README, "Exit codes").
+/// code (share/doc/command_line.md).
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
 void add_audit(CLI::App& app, int& exit_code);

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// One JSON document: device, all objects, PDOs, findings (README, "takt eds show"). Written object
+/// One JSON document: device, all objects, PDOs, findings (`takt eds show --json`). Written object
 /// by object, so that a large dictionary does not need much memory.
 void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Findings& findings);
 

@@ -1,4 +1,4 @@
-# cmake --install: programs, libraries, headers, data, package files for CMake and pkg-config, files for systemd.
+# cmake --install: programs, libraries, headers, data, documents, package files for CMake and pkg-config, files for systemd.
 # (The LCM types and their bindings are installed by share/lcm.)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -12,6 +12,10 @@ install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PA
 install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
+
+# The pages link only to each other. COMPONENT: they can be installed without a build.
+install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc FILES_MATCHING PATTERN *.md)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 
 # systemd reads lib/systemd below /usr and below /usr/local.
 install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)

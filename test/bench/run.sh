@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds and runs the benchmarks and prints the README's performance table in Markdown.
+# Builds and runs the benchmarks and prints the table of share/doc/performance.md in Markdown.
 #   sh test/bench/run.sh [BUILD_FOLDER]
 # Installs the packages that are missing.
 set -eu

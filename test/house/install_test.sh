@@ -15,7 +15,7 @@ prefix=$tmp/prefix
 cmake --install "$build" --prefix "$prefix" >/dev/null
 
 for file in bin/takt bin/taktd bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
-  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml; do
+  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml share/doc/takt/index.md; do
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }
 done
 eds=$(find "$prefix/share/takt/eds" -name '*drive*.eds' | head -n 1)

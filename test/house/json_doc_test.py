@@ -21,7 +21,7 @@ def keys_of(value):
 
 def main():
     takt = pathlib.Path(sys.argv[1]) / "takt"
-    told = set(re.findall(r"`([a-z_0-9]+)`", (ROOT / "share/doc/json.md").read_text()))
+    documented = set(re.findall(r"`([a-z_0-9]+)`", (ROOT / "share/doc/json.md").read_text()))
     networks = sorted((ROOT / "share/demo").glob("*.yaml"))
     commands = [[verb, network] for verb in ("plan", "budget", "import") for network in networks]
     commands += [["plan", network, "--diff-devices"] for network in networks]
@@ -31,10 +31,10 @@ def main():
     for command in commands:
         done = subprocess.run([takt, *command, "--json"], capture_output=True, text=True, timeout=60)
         for key in keys_of(json.loads(done.stdout)):
-            if key not in told:
+            if key not in documented:
                 missing.setdefault(key, command[0])
     for key, verb in missing.items():
-        print(f"share/doc/json.md does not tell of `{key}` of takt {verb} --json")
+        print(f"share/doc/json.md does not describe the key `{key}` of takt {verb} --json")
     return 1 if missing else 0
 
 

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""readme_outputs_test.py BIN [--update]: what README.md shows of files and of commands is what they are.
+"""readme_outputs_test.py BIN [--update]: README.md and the pages of share/doc show what files contain and what commands print.
 
-A block of README.md that begins with `$ takt simulate` (or another of COMMANDS) and names files of the tree has lines of
-that command's stdout; one that begins with `# share/...` has lines of that file. A line of three points stands for any
-number of lines. --update writes the numbers of today into README.md, where nothing but numbers changed.
+A block that begins with `$ takt simulate` (or another of COMMANDS) and names only files of the tree must repeat lines of
+the stdout of that command. A block that begins with `# share/...` must repeat lines of that file. A line of three points
+matches any number of lines. --update corrects the blocks in which nothing but numbers has changed.
+
+Each relative link must lead to a file that exists, and to a heading where it has an anchor. The index must name every
+page.
 """
 import pathlib
 import re
@@ -12,9 +15,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 README = ROOT / "README.md"
+PAGES = ROOT / "share/doc"
+NOT_CHECKED = {"CHANGELOG.md"}  # it describes former versions
 COMMANDS = ("simulate", "audit", "plan", "budget")
 BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r" *\d+(\.\d+)?")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
 
 
 def parts_of(lines):
@@ -81,8 +88,14 @@ def join(title, shown, parts):
     return "\n".join(lines) + "\n"
 
 
-def main(binaries, update):
-    tools, text = pathlib.Path(binaries).resolve(), README.read_text()
+def documents():
+    return [README, *sorted(page for page in PAGES.glob("*.md") if page.name not in NOT_CHECKED)]
+
+
+def check_outputs(document, tools, update):
+    """Titles of the blocks that were compared, and the number of those that differ."""
+    text = document.read_text()
+    name = document.relative_to(ROOT)
     judged, failed = [], 0
     for block in BLOCK.findall(text):
         title, *shown = block.rstrip("\n").split("\n")
@@ -98,15 +111,56 @@ def main(binaries, update):
             found, missing = compare(shown, real, equal_but_numbers)
             if found is not None:
                 text = text.replace(block, join(title, shown, found))
-        print(("FAIL  " if found is None else "ok    ") + title)
+        print(("FAIL  " if found is None else "ok    ") + f"{name}: {title}")
         if found is None:
             failed += 1
-            print("      README.md has, but it is not so:\n      " + "\n      ".join(missing))
+            print(f"      {name} shows these lines, but they do not appear there:\n      " + "\n      ".join(missing))
     if update:
-        README.write_text(text)
+        document.write_text(text)
+    return judged, failed
+
+
+def anchors(document):
+    """Of the headings of a page, as web viewers of Markdown make them."""
+    prose = BLOCK.sub("", document.read_text())
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in HEADING.findall(prose)}
+
+
+def broken_links(document):
+    for link in LINK.findall(BLOCK.sub("", document.read_text())):
+        if re.match(r"\w+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        target = (document.parent / path).resolve() if path else document
+        if not target.exists():
+            yield f"{document.relative_to(ROOT)}: {link} leads to no file"
+        elif anchor and anchor not in anchors(target):
+            yield f"{document.relative_to(ROOT)}: {link} leads to no heading"
+
+
+def complaints():
+    """What is wrong with links and index."""
+    for document in documents():
+        yield from broken_links(document)
+    index = (PAGES / "index.md").read_text()
+    for page in PAGES.glob("*.md"):
+        if page.name != "index.md" and f"({page.name})" not in index:
+            yield f"share/doc/index.md does not name {page.name}"
+
+
+def main(binaries, update):
+    tools = pathlib.Path(binaries).resolve()
+    judged, failed = [], 0
+    for document in documents():
+        titles, differing = check_outputs(document, tools, update)
+        judged += titles
+        failed += differing
     families = [title for title in judged if title.startswith("$ takt simulate share/demo/")]
     if len(families) < 5 or not any(title.startswith("# share/") for title in judged):
         print(f"FAIL  too few blocks: {judged}")
+        failed += 1
+    for complaint in complaints():
+        print("FAIL  " + complaint)
         failed += 1
     return 1 if failed else 0
 
