@@ -6,7 +6,7 @@ the stdout of that command. A block that begins with `# share/...` must repeat l
 matches any number of lines. --update corrects the blocks in which nothing but numbers has changed.
 
 Each relative link must lead to a file that exists, and to a heading where it has an anchor. The index must name every
-page.
+page. README.md must not be longer than LONGEST_README lines.
 """
 import pathlib
 import re
@@ -17,6 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 README = ROOT / "README.md"
 PAGES = ROOT / "share/doc"
 NOT_CHECKED = {"CHANGELOG.md"}  # it describes former versions
+LONGEST_README = 250
 COMMANDS = ("simulate", "audit", "plan", "budget")
 BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r" *\d+(\.\d+)?")
@@ -139,13 +140,16 @@ def broken_links(document):
 
 
 def complaints():
-    """What is wrong with links and index."""
+    """What is wrong with links, index and length."""
     for document in documents():
         yield from broken_links(document)
     index = (PAGES / "index.md").read_text()
     for page in PAGES.glob("*.md"):
         if page.name != "index.md" and f"({page.name})" not in index:
             yield f"share/doc/index.md does not name {page.name}"
+    lines = len(README.read_text().splitlines())
+    if lines > LONGEST_README:
+        yield f"README.md has {lines} lines, at most {LONGEST_README} are allowed"
 
 
 def main(binaries, update):
