@@ -32,7 +32,7 @@ print("numbers are right")
 END
 
 # guest WAY: the numbers in a guest.
-guest() { "$with_vcan" -m uml -t 300 -x "$1" /usr/bin/python3 "$folder/numbers.py" >"$folder/said" 2>&1; }
+guest() { "$with_vcan" -m uml -t 1500 -x "$1" /usr/bin/python3 "$folder/numbers.py" >"$folder/said" 2>&1; }
 
 # expect WORDS WHAT: the last guest has said so.
 expect() {
@@ -57,7 +57,7 @@ chmod 755 "$folder/kernel"
 export WITH_VCAN_KERNEL=$folder/kernel
 guest plain; expect put_fp_registers "with -x plain it panics on a host with 11 kB of registers"
 guest whole; expect "numbers are right" "with -x whole it calculates there"
-WITH_VCAN_REGISTERS=whole "$with_vcan" -m uml -t 300 echo "chosen by the variable" >"$folder/said" 2>&1
+WITH_VCAN_REGISTERS=whole "$with_vcan" -m uml -t 1500 echo "chosen by the variable" >"$folder/said" 2>&1
 expect "chosen by the variable" "WITH_VCAN_REGISTERS=whole is the same"
 WITH_VCAN_LIBRARIES=$folder/none guest whole; expect "build the target whole_registers" "without the library it says what to build"
 guest some; expect "is auto, whole or plain" "a wrong way is refused"
