@@ -102,10 +102,12 @@ enum class EventKind : std::uint8_t {
   command_refused,  ///< value: signal, detail: RefusedBecause
   fallback_begun,   ///< value: signal whose command outlived its time to live
   fallback_ended,   ///< value: signal
-  outputs_held,     ///< value: RPDO number that lacks a commanded, safe or seeded value
-  limit_exceeded,   ///< a command isn't sent, its node's outputs take their fallback; value: as
-                    ///< commanded, raw; detail: signal << 8 | LimitKind; bytes: what was measured
-                    ///< and its limit, each a float in SI
+  outputs_held,    ///< value: RPDO number that lacks a commanded, safe or seeded value; detail: the
+                   ///< signal of the actual position that a limited set-point waits for, plus 1; 0:
+                   ///< it waits for none
+  limit_exceeded,  ///< a command isn't sent, its node's outputs take their fallback; value: as
+                   ///< commanded, raw; detail: signal << 8 | LimitKind; bytes: what was measured
+                   ///< and its limit, each a float in SI
   // the bus
   bus_error_passive,
   bus_error_active,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "eds_parser/table/tpdo_of.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/core/bus_event_text.hpp"
 #include "master/core/firmware_text.hpp"
@@ -39,6 +40,26 @@ std::string_view reason(std::uint32_t detail) noexcept {
       return "the master only observes";
   }
   return "of an unknown reason";
+}
+
+/// Where an actual position comes from, and what makes it come soon.
+std::string first_time_text(const BusPlan& plan, SignalIndex signal) {
+  const PdoRow* const pdo = tpdo_of(plan.pdos, signal);
+  if (pdo == nullptr) return {};
+  const std::string tpdo = "TPDO" + std::to_string(pdo->number);
+  if (!comes_by_event_alone(*pdo)) return "; check whether the device sends " + tpdo;
+  return "; the device sends " + tpdo +
+         " only by event: give it an `event_timer`, or make it synchronous (`transmission: 1`)";
+}
+
+std::string held_line(const BusPlan& plan, const Event& event) {
+  const std::string rpdo = "RPDO" + std::to_string(event.value) + " is held back until ";
+  if (event.detail == 0) return rpdo + "each of its signals has a commanded, safe or seeded value";
+  const auto awaited = static_cast<SignalIndex>(event.detail - 1);
+  return rpdo + signal_name(plan, awaited) +
+         " has come from the device for the first time: a position with `limits:` is measured from "
+         "there" +
+         first_time_text(plan, awaited);
 }
 
 std::string_view emcy_meaning(const BusPlan& plan, std::uint8_t node, std::uint16_t code) {
@@ -174,8 +195,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return "TPDO" + std::to_string(event.value) + " has " + std::to_string(event.detail) +
              " bytes, which is not what its mapping says";
     case EventKind::outputs_held:
-      return "RPDO" + std::to_string(event.value) +
-             " is held back until each of its signals has a commanded, safe or seeded value";
+      return held_line(plan, event);
     default:
       return std::string{name(event.kind)};
   }

@@ -128,7 +128,7 @@ void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment m
   }
   if (!lacking || begun_[pdo.node_index] == 0 || row.held_told) return;
   if (++row.partial < partial_limit) return;
-  tell(EventKind::outputs_held, position, pdo.number, moment);
+  tell(EventKind::outputs_held, position, pdo.number, moment, awaited_start(pdo));
   row.held_told = true;
 }
 

@@ -88,6 +88,8 @@ class PdoOutputs {
 
  private:
   static constexpr std::uint64_t no_end = ~0ULL;
+  std::uint32_t awaited_start(const PdoRow& pdo) const noexcept;
+
   static constexpr std::uint8_t partial_limit = 10;  ///< cycles until `outputs_held` is told
 
   struct Output {

@@ -145,6 +145,20 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   return true;
 }
 
+/// The input that holds a set-point of this RPDO back until it comes for the first time, plus 1; 0:
+/// there is none. See OutputLimits::lacks_start().
+std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {
+  for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
+    const SignalIndex signal = fields_[pdo.first_field + i].signal;
+    const std::uint16_t place = limits_.place_of(signal);
+    if (place == OutputLimits::no_place || outputs_[output_of(signal)].known) continue;
+    const OutputLimit& limit = limits_.limit(place);
+    const std::int64_t mode = limit.mode ? image_.values[*limit.mode] : 0;
+    if (limit.signal == signal && limits_.lacks_start(place, mode)) return *limit.feedback + 1U;
+  }
+  return 0;
+}
+
 void PdoOutputs::note_limited(std::size_t position, std::uint64_t cycle) noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   for (std::uint16_t i = 0; i < pdo.field_count; ++i) {

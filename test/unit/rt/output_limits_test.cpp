@@ -1,12 +1,17 @@
 // Commands against the limits of their outputs, as they are packed.
 #include <cstring>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "master/core/boot_report.hpp"
 #include "test/unit/rt/limited_axes.hpp"
 
 namespace takt::test {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 float float_at(const Event& event, std::size_t place) {
   float value = 0;
@@ -136,6 +141,27 @@ TEST(OutputLimits, LetTheFirstCommandWaitForTheActualPosition) {
   axes.cycle_with(0, 1008);
   EXPECT_EQ(axes.position(), 1008);
   EXPECT_EQ(axes.refusals(), 0U);
+}
+
+TEST(OutputLimits, TellWhichActualPositionTheFirstCommandWaitsFor) {
+  const auto text_with = [](std::uint8_t transmission) {
+    LimitedAxes axes{1, stepping};
+    axes.boot(0);
+    for (int i = 0; i < 12; ++i) axes.cycle_with(0, 1500);
+    for (const Event& event : axes.told()) {
+      if (event.kind != EventKind::outputs_held) continue;
+      BusPlan plan = axes.plan();
+      plan.pdos.tpdos[0].transmission = transmission;
+      return describe(plan, event);
+    }
+    return std::string{"nothing"};
+  };
+  EXPECT_THAT(text_with(255),
+              AllOf(HasSubstr("RPDO1 is held back until "),
+                    HasSubstr("(6064:00) has come from the device for the first time"),
+                    HasSubstr("TPDO1 only by event: give it an `event_timer`, or make it "
+                              "synchronous (`transmission: 1`)")));
+  EXPECT_THAT(text_with(1), HasSubstr("check whether the device sends TPDO1"));
 }
 
 TEST(OutputLimits, LetADisabledAxisFollowItsActualPosition) {
