@@ -15,10 +15,22 @@ std::string nmt_bytes_text(const Event& event) {
 
 std::string missed_line(const Event& event) {
   const std::string count = event.value == 1 ? "1 cycle" : std::to_string(event.value) + " cycles";
-  if (event.detail == static_cast<std::uint32_t>(MissedBecause::wire_blocked)) {
-    return count +
-           " without SYNC: the one before was not on the wire yet (bus-off, nobody acknowledges, "
-           "or too much traffic)";
+  switch (static_cast<MissedBecause>(event.detail)) {
+    case MissedBecause::wire_blocked:
+      return count +
+             " without SYNC: the one before was not on the wire yet, because the controller is "
+             "bus-off or nobody acknowledges";
+    case MissedBecause::sent_late:
+      return count +
+             " without SYNC: the bus thread was late in the cycle before, and its SYNC was not on "
+             "the wire yet";
+    case MissedBecause::not_seen:
+      return count +
+             " without SYNC: the one before was not seen on the wire yet, although the controller "
+             "reports no error; there was too much traffic, or this machine was too busy to send "
+             "it or to see it";
+    case MissedBecause::late:
+      break;
   }
   return count + " missed: the bus thread was late; skipped, not caught up";
 }

@@ -13,7 +13,9 @@ enum class SendTrouble : std::uint32_t {
 /// Why periods went by without SYNC: Event::detail of `cycles_missed`.
 enum class MissedBecause : std::uint32_t {
   late,          ///< the bus thread did not run in time
-  wire_blocked,  ///< the SYNC before was not on the wire yet, or the controller is bus-off
+  wire_blocked,  ///< the controller is bus-off, or nobody acknowledges the SYNC before
+  sent_late,     ///< the bus thread was late with the SYNC before, which was not on the wire yet
+  not_seen,      ///< the SYNC before was not seen on the wire, and the controller reports no error
 };
 
 }  // namespace takt

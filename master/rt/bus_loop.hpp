@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/core/bus_trouble.hpp"
 #include "master/core/fallback_writer.hpp"
 #include "master/core/kept_state.hpp"
 #include "master/core/network.hpp"
@@ -88,8 +89,10 @@ class BusLoop {
   void react_to_sync() noexcept;
   void begin_beat() noexcept;
   void look_at_wire() noexcept;
+  void note_held() noexcept;
   bool send_sync() noexcept;
   void relieve_services() noexcept;
+  Time end_of_window() const noexcept;
   void receive() noexcept;
   void await_rest(Time end) noexcept;
   void drain() noexcept;
@@ -197,9 +200,11 @@ class BusLoop {
   Time stream_end_{};       ///< of the newest that was asked for, at the latest
   unsigned starved_ = 0;    ///< cycles in which service frames found no room
   std::uint64_t held_ = 0;  ///< cycles since it was open
-  Time sync_sent_{};        ///< of this cycle
-  Time last_sync_{};        ///< of the cycle before
-  Time sync_time_{};        ///< the same, by its echo where there is one
+  MissedBecause held_because_ = MissedBecause::not_seen;
+  bool late_cycle_ = false;  ///< this thread was late in the newest cycle, before its publication
+  Time sync_sent_{};         ///< of this cycle
+  Time last_sync_{};         ///< of the cycle before
+  Time sync_time_{};         ///< the same, by its echo where there is one
   Time last_status_{};
   Time published_{};             ///< kept where checkpoints are
   std::size_t state_words_ = 0;  ///< of a checkpoint

@@ -18,7 +18,7 @@ void BusLoop<P, N>::keep(Archive& state) noexcept {
   state(pdos_, network_, pdo_requests_, time_, port_watch_, clock_, counter_, hold_, gate_);
   state(follower_, prediction_, exchanging_, quick_stopped_, hearing_, gate_open_, followed_);
   state(sync_lost_, wire_free_, asked_, starved_, held_, sync_sent_, last_sync_, sync_time_);
-  state(status_.beats, memory_);
+  state(held_because_, late_cycle_, status_.beats, memory_);
 }
 
 /// In the slack, where there is time for it; now and then.

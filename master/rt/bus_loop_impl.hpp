@@ -105,19 +105,37 @@ void BusLoop<P, N>::look_at_wire() noexcept {
   if (gate_.doubtful(port_.news())) drain();
   gate_open_ = gate_.open(port_.news(), sync_sent_);
   if (!gate_open_) {
+    note_held();
     ++held_;
     ++status_.cycles_missed;
   } else if (held_ != 0) {
     tell(EventKind::cycles_missed, sync_sent_, static_cast<std::int64_t>(held_),
-         static_cast<std::uint32_t>(MissedBecause::wire_blocked));
+         static_cast<std::uint32_t>(held_because_));
     held_ = 0;
   }
 }
 
+/// A late cycle explains only the cycle that follows it. An error of the controller, which may be
+/// reported some cycles later, explains all of them.
+template <Port P, class N>
+void BusLoop<P, N>::note_held() noexcept {
+  const PortNews news = port_.news();
+  if (held_ != 0 && held_because_ == MissedBecause::wire_blocked) return;
+  held_because_ = MissedBecause::not_seen;
+  if (held_ == 0 && late_cycle_) held_because_ = MissedBecause::sent_late;
+  if (news.bus_off || news.error_passive) held_because_ = MissedBecause::wire_blocked;
+}
+
+/// The time at which the image of this cycle is published, whatever is missing in it.
+template <Port P, class N>
+Time BusLoop<P, N>::end_of_window() const noexcept {
+  return std::min(sync_sent_ + plan_.cycle.receive_window,
+                  clock_.deadline() + plan_.cycle.output_deadline);
+}
+
 template <Port P, class N>
 void BusLoop<P, N>::receive() noexcept {
-  const Time end = std::min(sync_sent_ + plan_.cycle.receive_window,
-                            clock_.deadline() + plan_.cycle.output_deadline);
+  const Time end = end_of_window();
   // While no node exchanges PDOs (all still boot) the whole slack belongs to the services.
   if (plan_.cycle.sync && hearing_) {
     // Event-driven PDOs alone teach no arrival; half of the window leaves room for services.
@@ -190,6 +208,8 @@ void BusLoop<P, N>::publish() noexcept {
   if (echoed) exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
   const Time now = port_.now();
   if constexpr (keeps_state<P, N>) published_ = now;
+  const Time late = std::max(sync_sent_ - clock_.deadline(), now - end_of_window());
+  late_cycle_ = late > clock_.period() / 4;
   const std::uint32_t missing = pdos_.inputs().close(now);
   status_.images_incomplete += missing != 0;
   const ImageStamp stamp{.cycle = clock_.cycle(),

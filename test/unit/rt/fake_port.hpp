@@ -50,7 +50,7 @@ class FakePort {
     return count;
   }
   SendResult send(std::span<const Frame> out) noexcept {
-    note("send", now_);
+    note("send", now_ + std::exchange(send_stall, Time{}));
     const std::size_t taken = std::min(out.size(), room);
     for (const Frame& frame : out.first(taken)) {
       sent.push_back({frame, now_});
@@ -79,6 +79,7 @@ class FakePort {
   Time stall{};          ///< the next precise sleep comes back so much late
   Time second_stall{};   ///< and the one after it
   Time receive_stall{};  ///< the next receive() takes so long
+  Time send_stall{};     ///< the next send() hands its frames over so much later
   std::size_t room = 1000;
   int error = 0;
 
