@@ -12,10 +12,11 @@
 namespace takt {
 namespace {
 
-/// Ids of these requests have this bit, those of Requests do not.
+/// The ids of requests made here have this bit set; the ids of Requests do not.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
-constexpr std::size_t room_step = 64U << 10;  // bytes of a buffer that are made at once
+/// So many bytes are added to the buffer of an upload in one step, before the request is submitted.
+constexpr std::size_t room_step = 64U << 10;
 
 }  // namespace
 
@@ -113,7 +114,8 @@ std::expected<Request, std::string> Transfers::translate(const transfer_t& messa
   return request;
 }
 
-/// Parts are taken in order; whoever sends another one is told where to go on.
+/// Takes parts only in order. The state that is sent after each part says where the sender has to
+/// go on.
 void Transfers::fill(Job& job, const transfer_t& message) {
   const std::size_t size = message.data.size();
   if (job.stage != Stage::filling || job.submitted) return;
@@ -124,13 +126,13 @@ void Transfers::fill(Job& job, const transfer_t& message) {
   if (job.received == job.total) submit(job);
 }
 
-/// Where the bus thread has no room it is tried again by on_time.
+/// Where the bus thread has no room, on_time() tries again.
 void Transfers::submit(Job& job) {
   job.submitted = sinks_.submit(job.request);
   job.stage = Stage::running;
 }
 
-/// The parts go out by on_time, in place of those that are still owed.
+/// on_time() sends these parts. They replace the parts that an earlier message asked for.
 void Transfers::ask_for_parts(Job& job, const transfer_t& message) {
   const std::size_t total = job.buffer->data.size();
   if (message.offset < 0 || static_cast<std::uint64_t>(message.offset) > total) {
@@ -215,7 +217,7 @@ void Transfers::watch(Job& job, Time now) {
 }
 
 /// Makes room for a file that will be read, hands a request to the bus thread, or sends a part.
-/// False: there is nothing to do now.
+/// Returns false where there is nothing to do now.
 bool Transfers::step(Job& job) {
   if (job.stage == Stage::done && job.part_begin < job.part_end) {
     send_part(job);
@@ -237,8 +239,9 @@ transfer_state_t Transfers::state_of(const Job& job) const {
   state.sender = job.sender;
   state.stage = stages[static_cast<std::size_t>(job.stage)];
   const bool has_all = job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
-  const std::size_t size =
-      job.stage == Stage::done ? job.buffer->data.size() : job.total;  // of a file that is known
+  const std::size_t size = job.stage == Stage::done
+                               ? job.buffer->data.size()
+                               : job.total;  // its length is known once it is done
   state.total = has_all ? static_cast<std::int64_t>(size)
                         : job.buffer->announced.load(std::memory_order_relaxed);
   state.received = static_cast<std::int64_t>(job.received);

@@ -15,8 +15,9 @@
 
 namespace takt {
 
-/// Files to and from domains: transfer_t in parts -> one long Request -> transfer_state_t. The
-/// buffers belong to the bus thread only while a request is under way. Front thread.
+/// Moves files to and from domains: collects a transfer_t in parts, makes one long Request of it
+/// and reports its progress by transfer_state_t. A buffer belongs to the bus thread only while its
+/// request is under way. Front thread only.
 class Transfers {
  public:
   static constexpr std::size_t part_bytes = 1024;       ///< in one message
@@ -24,21 +25,21 @@ class Transfers {
   static constexpr std::size_t parts_at_once = 16;      ///< answers to one "more"
 
   struct Sinks {
-    std::function<bool(const Request&)> submit;          ///< to the bus thread; false: no room
-    std::function<void(const transfer_state_t&)> state;  ///< to whoever asked
+    std::function<bool(const Request&)> submit;  ///< to the bus thread; false if it has no room
+    std::function<void(const transfer_state_t&)> state;  ///< sends it to the program that asked
   };
-  /// `buffers` outlive every request.
+  /// `buffers` have to outlive every request.
   Transfers(const BusPlan& plan, RequestsOptions options, std::span<SdoTransfer> buffers,
             Sinks sinks);
 
   void take(const transfer_t& message, Time now);
-  /// It has waited for too long: nothing is done, and its sender is told why, or how far its file
-  /// is.
+  /// Answers a message that has waited for too long: nothing is done, and the answer says why, or
+  /// how far the file is.
   void take_old(const transfer_t& message, const std::string& why);
-  /// False: the reply belongs to somebody else.
+  /// Returns false where the reply belongs to a request of somebody else.
   bool finish(const Reply& reply);
-  /// Tells progress, ends what nobody wants any more, and then does a step of each transfer in turn
-  /// until the budget ends. True: steps are left over, or may be.
+  /// Reports progress, ends transfers whose sender is gone, and then does one step of each transfer
+  /// in turn until the budget ends. Returns true where steps may be left over.
   bool on_time(Time now, const TimeBudget& budget);
 
  private:
@@ -56,8 +57,8 @@ class Transfers {
     std::size_t part_end = 0;
     std::uint32_t abort_code = 0;
     std::string text{};
-    Time heard{};  // of the sender
-    Time told{};
+    Time heard{};  // time of the last message of the sender
+    Time told{};   // time of the last report of progress
   };
 
   Job* find(const transfer_t& message);
@@ -78,7 +79,7 @@ class Transfers {
   RequestsOptions options_;
   Sinks sinks_;
   std::vector<Job> jobs_;
-  std::size_t turn_ = 0;  // the job that has the next step
+  std::size_t turn_ = 0;  // index of the job that has the next step
   std::uint64_t next_id_ = 1;
 };
 
