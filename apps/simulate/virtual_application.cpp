@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t socket_room = 300;      // messages
 constexpr std::int64_t stride = 16;           // counts a command; the low bits name the program
 constexpr std::int64_t downwards = 8;         // one of the low bits
+constexpr std::int64_t most_push = 100;       // per mille of the rated torque
+constexpr std::int64_t push_velocity = 4;     // counts per second for each unit of push
 constexpr std::uint64_t images_a_reset = 60;  // of a fault: the reset itself takes some
 constexpr double turn_before = 2000;          // counts from a limit
 constexpr Time longest_deafness = 3s;         // a new layout comes once a second
@@ -109,8 +111,8 @@ void VirtualApplication::take(std::string_view channel, Bytes data) {
   }
 }
 
-/// Whatever came in between: where images come, the newest of them is used. Those that waited
-/// while the program was stalled count once.
+/// A program that hears images has to use the newest of them, whatever comes in between. Images
+/// that waited while the program was stalled count once.
 void VirtualApplication::judge_hearing(Time now) {
   if (fresh_) heard_ = 0;
   if (fresh_ || !hears_) return;
@@ -158,8 +160,31 @@ std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int
     if (at < limit.low + turn_before) course.down = false;
   }
   const std::int64_t step = (from & -stride) / stride + (course.down ? -1 : 1);
-  course.position = step * stride + options_.number + (course.down ? downwards : 0) + jump_;
+  const std::int64_t jump = has_push(axis) ? 0 : jump_;
+  course.position = step * stride + options_.number + (course.down ? downwards : 0) + jump;
   return *course.position;
+}
+
+bool VirtualApplication::has_push(AxisControl::Index axis) const {
+  const AxisSignals& signals = axes_.signals(axis);
+  return signals.target_velocity || signals.target_torque;
+}
+
+/// Target velocity and target torque, where the drive has them.
+void VirtualApplication::push(AxisControl::Index axis, command_t& command) {
+  Course& course = courses_[static_cast<std::size_t>(axis)];
+  if (course.push >= most_push) course.weaker = true;
+  if (course.push <= -most_push) course.weaker = false;
+  course.push += course.weaker ? -1 : 1;
+  course.apart += jump_;
+  const auto put = [&](AxisSignals::Position signal, std::int64_t value) {
+    if (!signal) return;
+    const auto at = std::ranges::find(command.signals, static_cast<std::int32_t>(*signal));
+    if (at == command.signals.end()) return;
+    command.values[static_cast<std::size_t>(at - command.signals.begin())] = value;
+  };
+  put(axes_.signals(axis).target_velocity, course.push * push_velocity + course.apart);
+  put(axes_.signals(axis).target_torque, course.push + course.apart);
 }
 
 void VirtualApplication::count_on(command_t& command) {
@@ -170,11 +195,12 @@ void VirtualApplication::count_on(command_t& command) {
     if (at == command.signals.end()) continue;
     Course& course = courses_[static_cast<std::size_t>(i)];
     if (!axes_.drive(i).enabled()) {
-      course.position.reset();
+      course = {.position = {}, .down = course.down};
       continue;
     }
     std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
     value = next_position(i, course.position.value_or(value));
+    push(i, command);
   }
   jump_ = 0;
 }

@@ -31,9 +31,10 @@ struct ApplicationOptions {
   std::function<bool(const image_t& image)> hears{};
 };
 
-/// A program that moves axes, made of the axis library: the newest image in, one command out. It
-/// counts its positions up, and down again where a limit is near, so that each value on the wire
-/// tells who has sent it and when.
+/// A program that moves axes, made of the axis library: it takes the newest image and sends one
+/// command. It counts its positions up, and down again where a limit is near, so that each value on
+/// the wire shows who has sent it and when. Where a drive has target velocities and torques too,
+/// they rise and fall slowly.
 class VirtualApplication final : public Actor {
  public:
   VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, ApplicationOptions options,
@@ -44,7 +45,8 @@ class VirtualApplication final : public Actor {
   void kill();
   /// Ends in order: gives up its outputs first.
   void end(Time now);
-  /// Its next positions lie so many counts away from where they should.
+  /// The set-points of its next command lie this many counts away from where they should be: target
+  /// velocities and torques of the drives that have them, positions of the others.
   void jump(std::int64_t counts) noexcept { jump_ = counts; }
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
   bool runs() const noexcept { return running_; }
@@ -73,6 +75,8 @@ class VirtualApplication final : public Actor {
   void keep_own_outputs(command_t& command) const;
   void count_on(command_t& command);
   std::int64_t next_position(AxisControl::Index axis, std::int64_t from);
+  void push(AxisControl::Index axis, command_t& command);
+  bool has_push(AxisControl::Index axis) const;
   void judge_hearing(Time now);
 
   const BusPlan& plan_;
@@ -94,12 +98,16 @@ class VirtualApplication final : public Actor {
   struct Course {
     std::optional<std::int64_t> position;  // as it was commanded last; none: not enabled
     bool down = false;
+    std::int64_t push = 0;   // of target torques; target velocities are a multiple
+    bool weaker = false;     // `push` falls
+    std::int64_t apart = 0;  // counts by which target velocity and torque have jumped
   };
   std::vector<Course> courses_;  // of each axis
-  std::int64_t jump_ = 0;
-  std::uint64_t images_ = 0;  // used
-  bool hears_ = false;        // an image came in this round
-  std::uint64_t heard_ = 0;   // rounds with images since the last one that it could use
+  std::int64_t jump_ = 0;        // of the next command
+  std::uint64_t jumps_ = 0;      // so far
+  std::uint64_t images_ = 0;     // used
+  bool hears_ = false;           // an image came in this round
+  std::uint64_t heard_ = 0;      // rounds with images since the last one that it could use
   Time heard_since_{};
   std::uint64_t sent_ = 0;
   std::vector<std::byte> buffer_;

@@ -190,7 +190,7 @@ class Run {
     verdict_.at(cycle_, world_.now());
     if (daemon_.runs() && troubles_.daemon_dies()) {
       daemon_.kill();
-      wire_.forget_holders();
+      wire_.begin_anew();
       troubles_.daemon_died(world_.now());
       last_published_ = {};
     }

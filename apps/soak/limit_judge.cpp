@@ -1,66 +1,92 @@
 #include "apps/soak/limit_judge.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "apps/soak/image_judge.hpp"
 #include "apps/soak/true_axes.hpp"
+#include "eds_parser/table/limit_names.hpp"
 
 namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint16_t target_position = 0x607A;
-constexpr Time longest_gap = 50ms;  // cycles without a command that may count for one way
-constexpr double fewest_cycles = 3;
-constexpr double cycles_behind = 4;           // the master's knowledge of the true position
-constexpr std::size_t fewest_remembered = 8;  // positions, where none come for a long time
+constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes of a device, CiA 402
+constexpr std::uint16_t actual_position = 0x6064;
+constexpr Time longest_gap = 50ms;
+constexpr double fewest_cycles = 3;           // of longest_gap
+constexpr double clear_part = 0.2;            // of a cycle, by which a wake-up may be late
+constexpr double cycles_behind = 4;           // of the master's knowledge of the actual position
+constexpr unsigned cycles_of_doubt = 8;       // of its knowledge of the state of an axis
+constexpr std::size_t fewest_remembered = 8;  // positions, where they come rarely
+constexpr std::int64_t profile_position = 1;  // 6060, 6061
+constexpr double real_rounding = 0x1p-20;     // of a value of type REAL
 
-std::int64_t sign_extended(std::uint64_t value, unsigned bits) noexcept {
-  const unsigned spare = bits == 0 || bits > 64 ? 0U : 64U - bits;
-  return static_cast<std::int64_t>(value << spare) >> spare;
+double number(const Signal& signal, std::uint64_t bits) noexcept {
+  if (signal.type == DataType::real32) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
+  }
+  if (signal.type == DataType::real64) return std::bit_cast<double>(bits);
+  const unsigned spare = signal.bits == 0 || signal.bits > 64 ? 0U : 64U - signal.bits;
+  const std::uint64_t top = bits << spare;
+  if (!is_signed(signal.type)) return static_cast<double>(top >> spare);
+  return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
 }
 
-unsigned axis_of(const Signal& signal) noexcept {
-  return (signal.object.index - target_position) / 0x800U;
+/// The fallback and the safe value need no command, and they know no limit of a way.
+bool is_own_value(const Signal& signal, double value) noexcept {
+  const auto is = [&](std::int64_t own) {
+    return value == number(signal, static_cast<std::uint64_t>(own));
+  };
+  return (signal.fallback == Fallback::value && is(signal.fallback_value)) ||
+         (signal.safe_value && is(*signal.safe_value));
 }
 
 }  // namespace
 
 LimitJudge::LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
-    : plan_{plan}, world_{world}, verdict_{verdict}, places_(plan.layout.outputs()) {
+    : plan_{plan},
+      world_{world},
+      verdict_{verdict},
+      most_cycles_{std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period))},
+      places_(plan.layout.outputs()) {
   for (const OutputLimit& limit : plan.limits.outputs) {
-    const Signal& signal = plan.layout.signals[limit.signal];
-    if ((signal.object.index & ~0x3800U) != (target_position & ~0x3800U)) continue;
-    places_[limit.signal - plan.layout.inputs].limit = &limit;
+    Place& place = places_[limit.signal - plan.layout.inputs];
+    place.limit = &limit;
+    const Signal& target = signal_of(place);
+    for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
+      const Signal& other = plan.layout.signals[i];
+      const bool same_axis =
+          other.node_index == target.node_index &&
+          other.object.index / axis_objects == target.object.index / axis_objects;
+      if (same_axis && other.object.index % axis_objects == 0x40) {
+        place.controlword = static_cast<SignalIndex>(i);
+      }
+    }
   }
 }
 
-double LimitJudge::allowed(const Place& place, double cycles) const noexcept {
-  return std::ceil(std::min(place.limit->step, place.limit->rate) * cycles);
-}
-
-bool LimitJudge::near_axis(const Place& place, const Signal& signal, std::int64_t value) {
-  const TrueAxis axis = true_axis(world_, signal.node, axis_of(signal));
-  const auto way_from = [&](std::int64_t position) {
-    return std::abs(static_cast<double>(value - position));
-  };
-  double way = way_from(axis.position);
-  for (const Seen& seen : place.actual) way = std::min(way, way_from(seen.position));
-  const double period = std::chrono::duration<double>(plan_.cycle.period).count();
-  const double moved = std::abs(static_cast<double>(axis.velocity)) * period * cycles_behind;
-  return way <= allowed(place, cycles_behind) + moved;
+void LimitJudge::begin_anew() {
+  for (Place& place : places_) {
+    place.value.reset();
+    place.last_way.reset();
+    place.enables = false;
+    place.doubt = cycles_of_doubt;
+  }
 }
 
 void LimitJudge::begin_cycle(Time now) {
   std::ranges::rotate(cycles_, cycles_.begin() + 1);
   cycles_.back() = now;
-  // A babbling node may have sent a hundred of them in a cycle, which all waited while the master
-  // was stopped.
   for (Place& place : places_) {
+    if (place.doubt != 0) --place.doubt;
+    // A babbling node may have sent a hundred positions in a cycle. All of them waited while the
+    // master was stopped.
     while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
       place.actual.pop_front();
     }
@@ -72,59 +98,184 @@ void LimitJudge::heard(const Frame& frame) {
     if (row.cob_id != frame.id || row.multiplexed()) continue;
     for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
       const PdoField& field = plan_.pdos.fields[i];
-      for (Place& place : places_) {
-        if (place.limit == nullptr || place.limit->feedback != field.signal) continue;
-        place.actual.push_back(
-            {world_.now(),
-             sign_extended(bits_of(frame, field.bit_offset, field.bits), field.bits)});
-      }
+      note_input(field.signal, bits_of(frame, field.bit_offset, field.bits));
     }
+  }
+}
+
+void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
+  const double value = number(plan_.layout.signals[signal], bits);
+  for (Place& place : places_) {
+    if (place.limit == nullptr) continue;
+    if (place.limit->feedback == signal) place.actual.push_back({world_.now(), value});
+    if (place.limit->mode_display == signal && !place.limit->mode) {
+      place.mode = static_cast<std::int8_t>(bits);
+    }
+    if (place.limit->statusword != signal) continue;
+    place.enabled = (bits & 0x6F) == 0x27;
+    if (!place.enabled) place.doubt = cycles_of_doubt;
+  }
+}
+
+/// Controlwords and modes say how the targets of their axis are meant.
+void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
+  for (Place& place : places_) {
+    if (place.limit == nullptr) continue;
+    if (place.limit->mode == signal) place.mode = static_cast<std::int8_t>(bits);
+    if (place.controlword != signal) continue;
+    place.enables = (bits & 0x0F) == 0x0F;
+    if (!place.enables) place.doubt = cycles_of_doubt;
   }
 }
 
 bool LimitJudge::is_actual(SignalIndex signal, std::uint64_t bits) const noexcept {
   const Place& place = places_[signal - plan_.layout.inputs];
-  const std::int64_t position = sign_extended(bits, plan_.layout.signals[signal].bits);
+  const double position = number(plan_.layout.signals[signal], bits);
   return std::ranges::find(place.actual, position, &Seen::position) != place.actual.end();
 }
 
-void LimitJudge::judge_range(const Place& place, const Signal& signal, std::int64_t value,
-                             bool near) {
-  const auto number = static_cast<double>(value);
-  const auto before = static_cast<double>(place.value);
-  const double low = std::min(place.limit->low, before);
-  const double high = std::max(place.limit->high, before);
-  if (near || (number >= low && number <= high)) return;
-  blame(signal, value, "is outside the range");
+/// The drive certainly follows set-points, and the master certainly knows it.
+bool LimitJudge::follows(const Place& place) const noexcept {
+  return place.doubt == 0 && place.enabled && (place.enables || !place.controlword);
+}
+
+bool LimitJudge::in_profile(const Place& place) const noexcept {
+  const bool known = place.limit->mode || place.limit->mode_display;
+  return known ? place.mode == profile_position : place.limit->profile;
+}
+
+/// The shorter way where positions turn over. Whole turns count in full.
+double LimitJudge::length(const Place& place, double from, double to) const noexcept {
+  const double wrap = place.limit->wraps ? std::ldexp(1.0, signal_of(place).bits) : 0.0;
+  const double turn = place.limit->modulus > 0 ? place.limit->modulus : wrap;
+  const double way = to - from;
+  if (std::abs(way) >= turn || 2 * std::abs(way) <= turn) return way;
+  return way > 0 ? way - turn : way + turn;
+}
+
+LimitJudge::Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcept {
+  const double cycles = static_cast<double>((now - place.when).count()) /
+                        static_cast<double>(plan_.cycle.period.count());
+  const bool clear = std::abs(cycles - std::round(cycles)) <= clear_part;
+  const double counted = clear ? std::round(cycles) : std::ceil(cycles);
+  return {.length = length(place, *place.value, value),
+          .cycles = static_cast<unsigned>(std::clamp(counted, 1.0, most_cycles_))};
+}
+
+/// How far from its actual position an axis at rest may be sent.
+double LimitJudge::reach(const Place& place, double cycles) const noexcept {
+  const double rate = std::min(place.limit->step, place.limit->rate);
+  if (rate != OutputLimit::none) return std::ceil(rate * cycles);
+  return std::ceil(place.limit->bend * most_cycles_ * most_cycles_);
+}
+
+bool LimitJudge::near_axis(const Place& place, double value) {
+  const Signal& feedback = plan_.layout.signals[*place.limit->feedback];
+  const TrueAxis axis =
+      true_axis(world_, feedback.node,
+                static_cast<unsigned>(feedback.object.index - actual_position) / axis_objects);
+  double way = std::abs(length(place, static_cast<double>(axis.position), value));
+  for (const Seen& seen : place.actual) {
+    way = std::min(way, std::abs(length(place, seen.position, value)));
+  }
+  const double period = std::chrono::duration<double>(plan_.cycle.period).count();
+  const double moved = std::abs(static_cast<double>(axis.velocity)) * period * cycles_behind;
+  return way <= reach(place, cycles_behind) + moved;
+}
+
+/// From outside the range an output may come back, but it may not go further.
+void LimitJudge::judge_range(const Place& place, double value) {
+  double low = std::min(place.limit->low, place.value.value_or(OutputLimit::none));
+  double high = std::max(place.limit->high, place.value.value_or(-OutputLimit::none));
+  if (!follows(place)) {
+    for (const Seen& seen : place.actual) {
+      low = std::min(low, seen.position);
+      high = std::max(high, seen.position);
+    }
+  }
+  if (value >= low && value <= high) return;
+  blame(place, value, place.limit->range, "it is outside the range");
+}
+
+void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
+  const double counts = std::abs(way.length);
+  const auto judge = [&](double rate, LimitKind kind) {
+    const double rounding = is_real(signal_of(place).type) ? real_rounding * std::abs(value) : 0.0;
+    const double most = std::ceil(rate * way.cycles) + rounding;
+    if (counts <= most || !std::isfinite(rate)) return;
+    blame(place, value, kind,
+          "it is " + std::to_string(std::llround(counts)) + " counts away from the one before, " +
+              std::to_string(std::llround(most)) + " are allowed");
+  };
+  judge(place.limit->step, LimitKind::step);
+  judge(place.limit->rate, place.limit->rate_of);
+}
+
+/// Each of three values is rounded to a count, which may feign an acceleration. A way of several
+/// cycles may have begun in any of them, where the same value was commanded again before.
+bool LimitJudge::too_sharp(const Place& place, const Way& way) const noexcept {
+  const double bend = place.limit->bend;
+  const auto sharp = [&](unsigned cycles, double before, unsigned gap) {
+    const double found = std::abs(way.length / cycles - before);
+    return found > bend * (cycles + gap) / 2 + 1.0 / cycles + 1.0 / gap + 1e-6;
+  };
+  for (unsigned cycles = 1; cycles <= way.cycles; ++cycles) {
+    if (way.cycles > 1 && !sharp(cycles, 0, 1)) return false;
+    for (unsigned gap = 1; gap <= place.last_way->cycles; ++gap) {
+      if (!sharp(cycles, place.last_way->length / gap, gap)) return false;
+    }
+  }
+  return true;
+}
+
+void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
+  const bool real = is_real(signal_of(place).type);
+  if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
+  if (!too_sharp(place, way)) return;
+  blame(place, value, LimitKind::acceleration,
+        "it is " + std::to_string(std::llround(way.length)) + " counts away in " +
+            std::to_string(way.cycles) + " cycles, after " +
+            std::to_string(std::llround(place.last_way->length)) + " in " +
+            std::to_string(place.last_way->cycles));
 }
 
 void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time now) {
+  note_order(index, bits);
   Place& place = places_[index - plan_.layout.inputs];
   if (place.limit == nullptr) return;
-  const Signal& signal = plan_.layout.signals[index];
-  const std::int64_t value = sign_extended(bits, signal.bits);
+  const double value = number(plan_.layout.signals[index], bits);
+  if (begins) {
+    place.enables = false;
+    place.doubt = cycles_of_doubt;
+  }
+  // The fallback may have been in force in a cycle whose frame found no room.
+  const bool left_out = now - std::exchange(place.seen, now) > plan_.cycle.period * 3 / 2;
+  if (left_out) place.doubt = std::max(place.doubt, 2U);
   if (!begins && value == place.value) return;
-  const double cycles = std::round(static_cast<double>((now - place.when).count()) /
-                                   static_cast<double>(plan_.cycle.period.count()));
-  const double most =
-      std::max(fewest_cycles, static_cast<double>(longest_gap / plan_.cycle.period));
-  const double way = std::abs(static_cast<double>(value - place.value));
-  const double reach = allowed(place, std::clamp(cycles, 1.0, most));
-  const bool near = near_axis(place, signal, value);
-  judge_range(place, signal, value, near);
+  ++judged_;
+  const bool own = is_own_value(signal_of(place), value);
+  if (own) place.doubt = cycles_of_doubt;
+  if (!own) judge_range(place, value);
+  const bool free = own || in_profile(place) ||
+                    (!follows(place) && place.limit->feedback && near_axis(place, value));
+  std::optional<Way> way;
+  if (place.value) way = way_to(place, value, now);
+  if (way && !free) judge_way(place, value, *way);
+  if (way && !free && follows(place)) judge_bend(place, value, *way);
+  if (!place.value && !free && place.limit->feedback) {
+    blame(place, value, LimitKind::step, "it is the first one, and far from the actual position");
+  }
+  place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;
   place.when = now;
-  ++judged_;
-  if (near || way <= reach) return;
-  blame(signal, value,
-        "is " + std::to_string(static_cast<long long>(way)) + " counts away from the one before, " +
-            std::to_string(static_cast<long long>(reach)) + " are allowed");
 }
 
-void LimitJudge::blame(const Signal& signal, std::int64_t value, const std::string& what) {
-  verdict_.blame("no output leaves its limits", plan_.nodes[signal.node_index].name + "." +
-                                                    signal.name + " = " + std::to_string(value) +
-                                                    " " + what);
+void LimitJudge::blame(const Place& place, double value, LimitKind kind, const std::string& what) {
+  const Signal& signal = signal_of(place);
+  verdict_.blame("no output leaves its limits",
+                 plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
+                     std::to_string(std::llround(value)) + " breaks the limit of " +
+                     std::string{name(kind)} + ": " + what);
 }
 
 }  // namespace takt

@@ -58,7 +58,10 @@ void WireJudge::released(SenderBit sender, Time now) {
   }
 }
 
-void WireJudge::forget_holders() { std::ranges::fill(holders_, Holder{}); }
+void WireJudge::begin_anew() {
+  std::ranges::fill(holders_, Holder{});
+  limits_.begin_anew();
+}
 
 Time WireJudge::last_move(SenderBit sender) const noexcept {
   return moved_[static_cast<std::size_t>(std::countr_zero(sender))];
@@ -93,9 +96,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   // Outputs that begin to be sent begin with what the device has (607A from 6064).
   const bool begins = now > output.when + 5 * plan_.cycle.period;
   const bool changed = !begins && value != output.last;
-  if (is_target(signal)) {
-    limits_.sent(index, value, begins, now);
-  }
+  limits_.sent(index, value, begins, now);
   output.last = value;
   output.when = now;
   const auto found = output.known.find(value);

@@ -34,8 +34,8 @@ class WireJudge {
   void forged(SignalIndex signal, std::int64_t value);
   /// This sender has given up its outputs.
   void released(SenderBit sender, Time now);
-  /// The outputs belong to nobody: the daemon is another one.
-  void forget_holders();
+  /// The daemon is a new process: the outputs belong to nobody, and nothing was sent so far.
+  void begin_anew();
   /// The master begins a cycle.
   void begin_cycle(Time now) { limits_.begin_cycle(now); }
   /// Anything on the wire.

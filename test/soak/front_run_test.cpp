@@ -3,6 +3,7 @@
 #include <array>
 #include <gtest/gtest.h>
 #include <memory>
+#include <string>
 
 namespace takt {
 namespace {
@@ -31,7 +32,7 @@ TEST(FrontSoak, GivesTheSameRunForTheSameSeed) {
 /// Runs in which what keeps takt safe is taken away: the judges tell.
 class FrontMeddled : public testing::Test {
  protected:
-  static constexpr std::uint64_t seeds = 12;
+  std::uint64_t seeds = 12;
 
   /// The first invariant that one of the seeds breaks; empty: none does.
   std::string broken(const FrontMeddle& meddle) {
@@ -41,12 +42,14 @@ class FrontMeddled : public testing::Test {
       if (!outcome.violation) continue;
       RecordProperty("seed", static_cast<int>(seed));
       RecordProperty("what", outcome.violation->what);
+      what = outcome.violation->what;
       return outcome.violation->invariant;
     }
     return "";
   }
 
   LoadedNetwork network = demo();
+  std::string what;
 };
 
 TEST_F(FrontMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), ""); }
@@ -62,6 +65,54 @@ TEST_F(FrontMeddled, ASenderIsAName) {
 TEST_F(FrontMeddled, OutputsHaveNoLimits) {
   EXPECT_EQ(broken({.plan = [](BusPlan& plan) { plan.limits = {}; }}),
             "no output leaves its limits");
+}
+
+/// Each axis of the network has one kind of limit; the master does not check it.
+class LimitMeddled : public FrontMeddled {
+ protected:
+  LimitMeddled() {
+    network = load_network(TAKT_SOURCE_DIR "/test/soak/data/limited.yaml");
+    seeds = 60;  // an application seldom jumps
+  }
+
+  /// What the judge says where the bus thread lacks one number of the limits of this object.
+  std::string unchecked(std::uint16_t object, double OutputLimit::* number) {
+    const auto forget = [=](BusPlan& plan) {
+      for (OutputLimit& limit : plan.limits.outputs) {
+        if (plan.layout.signals[limit.signal].object.index != object) continue;
+        limit.*number = number == &OutputLimit::low ? -OutputLimit::none : OutputLimit::none;
+        if (number == &OutputLimit::low) limit.high = OutputLimit::none;
+      }
+    };
+    return broken({.plan = forget}) == "no output leaves its limits"
+               ? what
+               : "not the judge of limits: " + what;
+  }
+  void expect(const std::string& told, const char* output, const char* kind) {
+    EXPECT_TRUE(told.starts_with(output)) << told;
+    EXPECT_NE(told.find(std::string{"breaks the limit of "} + kind + ":"), std::string::npos)
+        << told;
+  }
+};
+
+TEST_F(LimitMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
+TEST_F(LimitMeddled, PositionsHaveNoRange) {
+  expect(unchecked(0x607A, &OutputLimit::low), "ranged.", "position");
+}
+TEST_F(LimitMeddled, StepsHaveNoLimit) {
+  expect(unchecked(0x607A, &OutputLimit::step), "stepped.", "step");
+}
+TEST_F(LimitMeddled, PositionsHaveNoLimitOfVelocity) {
+  expect(unchecked(0x607A, &OutputLimit::rate), "paced.", "velocity");
+}
+TEST_F(LimitMeddled, PositionsHaveNoLimitOfAcceleration) {
+  expect(unchecked(0x607A, &OutputLimit::bend), "bent.", "acceleration");
+}
+TEST_F(LimitMeddled, TargetVelocitiesHaveNoLimit) {
+  expect(unchecked(0x60FF, &OutputLimit::low), "spun.", "velocity");
+}
+TEST_F(LimitMeddled, TorquesHaveNoLimit) {
+  expect(unchecked(0x6071, &OutputLimit::low), "pushed.", "torque");
 }
 
 /// The prediction is read after images were looked for.
