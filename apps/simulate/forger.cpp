@@ -15,7 +15,8 @@ constexpr std::size_t memory = 8192;   // commands
 constexpr Time as_good_as_new = 2s;    // a command that is younger may still be obeyed
 constexpr std::int64_t low_bits = 15;  // of a position: who has sent it
 constexpr std::int64_t nobody = 6;
-constexpr std::int64_t far_ahead = 50'000;  // cycles: nobody is silent for so long
+constexpr std::int64_t fewest_away = 50'000;  // cycles, between a forged cycle and the true one
+constexpr Time least_away = 10s;              // the same; no lease lasts longer than 1 s
 constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycles
 
 }  // namespace
@@ -24,7 +25,7 @@ Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random 
     : plan_{plan},
       forged_{std::move(forged)},
       random_{random},
-      lcm_{lcm.join(1000)},
+      lcm_{lcm.join(1000, Echo::unheard)},
       channels_{plan.name} {
   lcm_.subscribe(channels_.command);
   lcm_.subscribe(channels_.image);
@@ -49,13 +50,13 @@ void Forger::publish(const std::string& channel, Bytes data) {
 void Forger::act_up(Time now) {
   switch (random_.below(4)) {
     case 0:
-      return forge_image();
+      return forge_image(now);
     case 1:
       return send_rubbish();
     case 2:
       return replay(now);
     default:
-      return forge_command();
+      return forge_command(now);
   }
 }
 
@@ -76,15 +77,28 @@ void Forger::replay(Time now) {
   }
 }
 
-void Forger::forge_command() {
-  if (heard_.empty()) return;
+/// The true cycle, counted by the clock from the newest image as the daemon does it.
+std::optional<std::int64_t> Forger::cycle_at(Time now) const {
+  const auto image = decode<image_t>(image_);
+  if (!image) return std::nullopt;
+  return image->cycle + (now - Time{image->sync_mono_ns}) / plan_.cycle.period;
+}
+
+std::int64_t Forger::far_away() const noexcept {
+  return std::max<std::int64_t>(fewest_away, least_away / plan_.cycle.period);
+}
+
+void Forger::forge_command(Time now) {
+  const auto cycle = cycle_at(now);
+  if (heard_.empty() || !cycle) return;
   auto command = decode<command_t>(heard_.back().command);
   if (!command) return;
-  const std::array<std::int64_t, 6> wrong_cycles{
-      0, -1,
-      // The newest command may be a forged one, of the last cycle that a number can hold.
-      std::min(command->cycle, never_reached) + far_ahead + random_.below(100'000), never_reached,
-      std::int64_t{0x7FFF'FFFF'FFFF'FFFF}, command->cycle - 100'000};
+  const std::array<std::int64_t, 6> wrong_cycles{0,
+                                                 -1,
+                                                 *cycle + far_away() + random_.below(100'000),
+                                                 never_reached,
+                                                 std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
+                                                 *cycle - 2 * far_away()};
   const bool other_session = random_.chance(0.2);
   if (other_session) {
     command->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
@@ -101,10 +115,12 @@ void Forger::forge_command() {
   publish(channels_.command, encode(*command, buffer_));
 }
 
-void Forger::forge_image() {
+void Forger::forge_image(Time now) {
+  const auto cycle = cycle_at(now);
   auto image = decode<image_t>(image_);
-  if (!image) return;
-  image->cycle = random_.chance(0.5) ? never_reached : image->cycle + random_.below(1'000'000);
+  if (!image || !cycle) return;
+  const std::int64_t ahead = *cycle + far_away() + random_.below(1'000'000);
+  image->cycle = random_.chance(0.5) ? never_reached : ahead;
   publish(channels_.image, encode(*image, buffer_));
 }
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,9 +13,10 @@
 
 namespace takt {
 
-/// A program that hears everything and sends what nobody may obey: messages of before once more,
-/// commands from no cycle, from the future or of another session, images of a cycle that will
-/// never be, and bytes without sense.
+/// A program that hears everything and sends what nobody may obey: old messages once more, commands
+/// from no cycle, from the future or of another session, images of a cycle that has not come, and
+/// bytes without sense. It learns from genuine messages only, and a cycle that it forges is always
+/// far from the true one.
 class Forger final : public Actor {
  public:
   /// `forged` hears each position that nobody may ever see on the wire.
@@ -22,13 +24,14 @@ class Forger final : public Actor {
 
   Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random random);
 
-  /// Any of what follows.
+  /// One of the following, by chance.
   void act_up(Time now);
   /// A replay: some of what was heard comes again, from `cycle 0` or as it was.
   void replay(Time now);
   /// The newest command with another position, which nobody obeys for one of several reasons.
-  void forge_command();
-  void forge_image();
+  void forge_command(Time now);
+  /// An image of the far future.
+  void forge_image(Time now);
   /// Bytes of any length, or a command that is cut off, on any channel.
   void send_rubbish();
   std::uint64_t sent() const noexcept { return sent_; }
@@ -42,6 +45,8 @@ class Forger final : public Actor {
     std::vector<std::byte> command;
   };
   void publish(const std::string& channel, std::span<const std::byte> data);
+  std::optional<std::int64_t> cycle_at(Time now) const;
+  std::int64_t far_away() const noexcept;
 
   const BusPlan& plan_;
   Forged forged_;

@@ -59,8 +59,8 @@ void ProgramTroubles::begin(const ProgramFault& fault) {
 void ProgramTroubles::repeat(const ProgramFault& fault, Time now) {
   if (now >= fault.until) return;
   if (fault.kind == ProgramFaultKind::replay) cast_.forger.replay(now);
-  if (fault.kind == ProgramFaultKind::forge_command) cast_.forger.forge_command();
-  if (fault.kind == ProgramFaultKind::forge_image) cast_.forger.forge_image();
+  if (fault.kind == ProgramFaultKind::forge_command) cast_.forger.forge_command(now);
+  if (fault.kind == ProgramFaultKind::forge_image) cast_.forger.forge_image(now);
   if (fault.kind == ProgramFaultKind::damage_messages) cast_.forger.send_rubbish();
   const Time then = now + fault.time;
   agenda_.add(then, [this, fault, then] { repeat(fault, then); });

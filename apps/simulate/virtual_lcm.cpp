@@ -6,7 +6,7 @@
 namespace takt {
 
 bool VirtualEndpoint::publish(const std::string& channel, std::span<const std::byte> data) {
-  lcm_.carry(channel, data);
+  lcm_.carry(*this, channel, data);
   return true;
 }
 
@@ -23,19 +23,21 @@ void VirtualEndpoint::serve(const MessageHandler& handler) {
   }
 }
 
-VirtualEndpoint& VirtualLcm::join(std::size_t room) {
-  return *endpoints_.emplace_back(std::make_unique<VirtualEndpoint>(*this, room));
+VirtualEndpoint& VirtualLcm::join(std::size_t room, Echo echo) {
+  return *endpoints_.emplace_back(std::make_unique<VirtualEndpoint>(*this, room, echo));
 }
 
 Time VirtualLcm::delay() noexcept {
   return Time{static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(delay_.count()))};
 }
 
-void VirtualLcm::carry(const std::string& channel, std::span<const std::byte> data) {
+void VirtualLcm::carry(const VirtualEndpoint& sender, const std::string& channel,
+                       std::span<const std::byte> data) {
   ++messages_;
   VirtualEndpoint::Message message;
   for (const auto& endpoint : endpoints_) {
     if (!endpoint->hears(channel)) continue;
+    if (endpoint.get() == &sender && endpoint->echo_ == Echo::unheard) continue;
     if (endpoint->waiting_.size() >= endpoint->room_) {
       ++endpoint->dropped_;
       continue;

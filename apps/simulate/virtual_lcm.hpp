@@ -14,11 +14,15 @@ namespace takt {
 
 class VirtualLcm;
 
+/// Whether a program hears its own messages, too.
+enum class Echo : std::uint8_t { heard, unheard };
+
 /// One program's connection to a VirtualLcm: a queue as that of a socket, in which messages wait
 /// until serve() takes them.
 class VirtualEndpoint final : public Transport {
  public:
-  VirtualEndpoint(VirtualLcm& lcm, std::size_t room) : lcm_{lcm}, room_{room} {}
+  VirtualEndpoint(VirtualLcm& lcm, std::size_t room, Echo echo)
+      : lcm_{lcm}, room_{room}, echo_{echo} {}
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   /// Whole names only, no patterns.
@@ -48,6 +52,7 @@ class VirtualEndpoint final : public Transport {
 
   VirtualLcm& lcm_;
   std::size_t room_;
+  Echo echo_;
   std::vector<std::string> channels_;
   std::deque<Message> waiting_;
   std::uint64_t dropped_ = 0;
@@ -61,8 +66,8 @@ class VirtualLcm {
 
   VirtualLcm(const sim::World& world, sim::Random random) : world_{world}, random_{random} {}
 
-  /// `room`: messages of its queue. Lives as long as this.
-  VirtualEndpoint& join(std::size_t room);
+  /// A new program whose queue holds `room` messages. It lives as long as this.
+  VirtualEndpoint& join(std::size_t room, Echo echo = Echo::heard);
   /// Messages take up to this long from now on.
   void set_delay(Time longest) noexcept { delay_ = longest; }
   Time now() const noexcept { return world_.now(); }
@@ -70,7 +75,8 @@ class VirtualLcm {
 
  private:
   friend class VirtualEndpoint;
-  void carry(const std::string& channel, std::span<const std::byte> data);
+  void carry(const VirtualEndpoint& sender, const std::string& channel,
+             std::span<const std::byte> data);
   Time delay() noexcept;
 
   const sim::World& world_;
