@@ -1,6 +1,7 @@
 #include "apps/simulate/virtual_daemon.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace takt {
@@ -12,6 +13,13 @@ constexpr std::size_t socket_room = 400;  // messages: 200 kB, as much as Linux 
 constexpr Time longest_step = 60us;       // of the front thread's round
 constexpr Time longest_wake_up = 80us;
 
+/// A process hears nothing of what was on the bus before it opened its socket.
+void drain(StagedPort& port) {
+  std::array<StampedFrame, 64> frames;
+  while (port.receive(frames) != 0) {
+  }
+}
+
 }  // namespace
 
 VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& lcm,
@@ -20,6 +28,7 @@ VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& 
 
 void VirtualDaemon::start() {
   session_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
+  drain(port_);
   master_ = std::make_unique<Master>(plan_);
   master_->attach(port_);
   master_->begin();
