@@ -138,7 +138,10 @@ bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
   return true;
 }
 
+/// An axis may have got an enabling word in the cycle before, which its statusword does not show
+/// yet: every axis is commanded for some cycles first.
 bool OrderedStop::nothing_to_stop() const noexcept {
+  if (stage_ == StopStage::fallback) return false;
   return std::ranges::all_of(stops_, [](const AxisStop& stop) {
     return stop.state() == AxisState::exempt || stop.state() == AxisState::rested;
   });
@@ -232,7 +235,10 @@ std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noe
   if (!reaches(axis)) return std::nullopt;
   const AxisState state = stops_[axis].state();
   switch (stage_) {
-    case StopStage::fallback:  // which may be to disable; but an axis that moves is not disabled
+    case StopStage::fallback:
+      // Where one node is stopped alone its outputs take no fallback, and its application goes on.
+      if (node_index_ != every_node) return stops_[axis].controlword();
+      // The declared fallback may be to disable; but an axis that moves must not be disabled.
       if (!stops_[axis].seen() || state == AxisState::exempt) return std::nullopt;
       return stops_[axis].controlword();
     case StopStage::quick_stop:

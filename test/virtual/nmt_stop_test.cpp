@@ -14,15 +14,10 @@ using test::Rig;
 constexpr std::uint32_t first_words = 0x201;
 constexpr std::uint32_t second_words = 0x202;
 
-/// Two loop-back drives that are enabled.
-class NmtStopOfAxes : public testing::Test {
+/// Two loop-back drives: the statusword of each is the controlword that it has got.
+class TwoAxes : public testing::Test {
  protected:
-  void SetUp() override {
-    ASSERT_TRUE(rig.boot());
-    rig.command_all(0x000F, 1);
-    rig.run(3);
-    rig.recorder.frames.clear();
-  }
+  void SetUp() override { ASSERT_TRUE(rig.boot()); }
   void order(NmtCommand command, std::uint8_t node) {
     ASSERT_TRUE(
         rig.master->submit({.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
@@ -42,6 +37,26 @@ class NmtStopOfAxes : public testing::Test {
     }
     return std::nullopt;
   }
+  /// An application that commands both axes in each cycle.
+  void command_for(int cycles, std::int64_t controlword) {
+    for (int i = 0; i < cycles; ++i) {
+      rig.command_all(controlword, 1);
+      rig.run(1);
+    }
+  }
+  /// The fault with which a request is answered; nothing before that.
+  std::optional<SdoFault> answer() {
+    Reply reply;
+    return rig.master->take(reply) ? std::optional{reply.fault} : std::nullopt;
+  }
+  /// It needs the axes to be stopped first, so that its answer takes some time.
+  void expect_answer_after_the_stop(NmtCommand command, std::uint8_t node) {
+    order(command, node);
+    rig.run(5);
+    EXPECT_FALSE(answer());
+    rig.run(200);
+    EXPECT_EQ(answer(), SdoFault::none);
+  }
   StopResult stop_in_order() {
     rig.master->request_stop();
     for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
@@ -49,6 +64,17 @@ class NmtStopOfAxes : public testing::Test {
     return rig.status().stop_result;
   }
   Rig rig{test::axes()};
+};
+
+/// They are enabled.
+class NmtStopOfAxes : public TwoAxes {
+ protected:
+  void SetUp() override {
+    TwoAxes::SetUp();
+    rig.command_all(0x000F, 1);
+    rig.run(3);
+    rig.recorder.frames.clear();
+  }
 };
 
 TEST_F(NmtStopOfAxes, LeavesWhenEveryAxisWasStoppedAndDisabled) {
@@ -68,20 +94,14 @@ TEST_F(NmtStopOfAxes, LeavesWhenEveryAxisWasStoppedAndDisabled) {
 }
 
 TEST_F(NmtStopOfAxes, IsAnsweredWhenItWasSent) {
-  order(NmtCommand::stop, 0);
-  rig.run(5);
-  Reply reply;
-  EXPECT_FALSE(rig.master->take(reply));
-  rig.run(200);
-  ASSERT_TRUE(rig.master->take(reply));
-  EXPECT_EQ(reply.fault, SdoFault::none);
+  expect_answer_after_the_stop(NmtCommand::stop, 0);
 }
 
 TEST_F(NmtStopOfAxes, LeavesTheAxesOfOtherNodesAlone) {
   for (const NmtCommand command : {NmtCommand::stop, NmtCommand::enter_preoperational}) {
     rig.recorder.frames.clear();
     order(command, 1);
-    for (int i = 0; i < 200; ++i) {  // its application goes on
+    for (int i = 0; i < 200; ++i) {  // The application of the other axis goes on.
       rig.command(1, 0x000F, 1);
       rig.run(1);
     }
@@ -108,7 +128,7 @@ TEST_F(NmtStopOfAxes, LeavesAtOnceWhereTheAxesAreDisabled) {
   rig.run(3);
   rig.recorder.frames.clear();
   order(NmtCommand::stop, 0);
-  rig.run(3);
+  rig.run(8);  // Standstill would take 25 cycles to be certain.
   EXPECT_TRUE(nmt_at(0x02, 0));
 }
 
@@ -123,10 +143,7 @@ TEST_F(NmtStopOfAxes, DoesNotWaitForADriveThatIsGone) {
 TEST_F(NmtStopOfAxes, GivesWayToTheOrderedStop) {
   order(NmtCommand::stop, 1);
   rig.run(5);
-  rig.master->request_stop();
-  for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
-  ASSERT_TRUE(rig.master->finished());
-  EXPECT_EQ(rig.status().stop_result, StopResult::confirmed);
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
   EXPECT_FALSE(nmt_at(0x02, 1));
 }
 
@@ -149,13 +166,7 @@ TEST_F(NmtStopOfAxes, OfAnAxisThatWasNotConfirmedIsNoneInTheOrderedStop) {
 }
 
 TEST_F(NmtStopOfAxes, OfTheMasterIsAnsweredWhenItsAxesAreStopped) {
-  order(NmtCommand::stop, 127);
-  rig.run(5);
-  Reply reply;
-  EXPECT_FALSE(rig.master->take(reply));
-  rig.run(200);
-  ASSERT_TRUE(rig.master->take(reply));
-  EXPECT_EQ(reply.fault, SdoFault::none);
+  expect_answer_after_the_stop(NmtCommand::stop, 127);
 }
 
 TEST_F(NmtStopOfAxes, SaysWhereAnAxisWasNotConfirmed) {
@@ -164,9 +175,7 @@ TEST_F(NmtStopOfAxes, SaysWhereAnAxisWasNotConfirmed) {
        {std::uint8_t{127}, std::uint8_t{127}, std::uint8_t{2}, std::uint8_t{0}}) {
     order(NmtCommand::stop, node);
     rig.run(900);
-    Reply reply;
-    ASSERT_TRUE(rig.master->take(reply)) << int{node};
-    EXPECT_EQ(reply.fault, SdoFault::axes_not_stopped) << int{node};
+    EXPECT_EQ(answer(), SdoFault::axes_not_stopped) << int{node};
   }
   EXPECT_TRUE(nmt_at(0x02, 2)) << "it is sent all the same";
 }
@@ -175,10 +184,8 @@ TEST_F(NmtStopOfAxes, OfTheMasterLeavesAtOnceWhereTheAxesAreDisabled) {
   rig.command_all(0x0000, 1);
   rig.run(3);
   order(NmtCommand::stop, 127);
-  rig.run(3);
-  Reply reply;
-  ASSERT_TRUE(rig.master->take(reply));
-  EXPECT_EQ(reply.fault, SdoFault::none);
+  rig.run(8);
+  EXPECT_EQ(answer(), SdoFault::none);
 }
 
 TEST_F(NmtStopOfAxes, ResetsAreNotHeldUp) {
@@ -187,25 +194,17 @@ TEST_F(NmtStopOfAxes, ResetsAreNotHeldUp) {
   EXPECT_TRUE(nmt_at(0x81, 1));
 }
 
-/// The same drives, which nobody has enabled.
-class OrderedStopOfDisabledAxes : public testing::Test {
+/// Nobody has enabled them.
+class OrderedStopOfDisabledAxes : public TwoAxes {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(rig.boot());
+    TwoAxes::SetUp();
     rig.run(10);
   }
-  StopResult stop_in_order() {
-    rig.master->request_stop();
-    for (int i = 0; i < 5000 && !rig.master->finished(); ++i) rig.cycle();
-    EXPECT_TRUE(rig.master->finished());
-    return rig.status().stop_result;
-  }
-  Rig rig{test::axes()};
 };
 
 TEST_F(OrderedStopOfDisabledAxes, IsConfirmedAfterNmtStopOfTheirNode) {
-  ASSERT_TRUE(rig.master->submit(
-      {.id = 1, .kind = RequestKind::nmt, .node = 1, .command = NmtCommand::stop}));
+  order(NmtCommand::stop, 1);
   rig.run(100);
   EXPECT_EQ(stop_in_order(), StopResult::confirmed);
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
@@ -225,6 +224,30 @@ TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasCommandedAndIsSilen
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 1);
 }
 
+/// The first enabling word of an application, in the cycle before NMT stop is asked for, in the
+/// same cycle, and in those after it.
+TEST_F(OrderedStopOfDisabledAxes, AreNotEnabledWhileNmtStopOfTheirNodeIsUnderWay) {
+  for (const int cycle : {-1, 0, 1, 2, 3}) {
+    command_for(10, 0x0000);
+    rig.recorder.frames.clear();
+    for (int i = -2; i < 100; ++i) {
+      if (i == 0) order(NmtCommand::stop, 1);
+      command_for(1, i >= cycle ? 0x000F : 0x0000);
+    }
+    const auto stop = nmt_at(0x02, 1);
+    ASSERT_TRUE(stop);
+    auto words = rig.recorder.with(first_words);
+    std::erase_if(words, [&](const sim::WireFrame& wire) { return wire.start > *stop; });
+    ASSERT_FALSE(words.empty());
+    EXPECT_EQ(words.back().frame.data[0], 0x00) << "the word before NMT stop, cycle " << cycle;
+    const auto enabling = std::ranges::count_if(
+        words, [](const sim::WireFrame& wire) { return wire.frame.data[0] == 0x0F; });
+    EXPECT_EQ(enabling, cycle < 0 ? 1 : 0) << "cycle " << cycle;
+    order(NmtCommand::start, 1);
+    rig.run(10);
+  }
+}
+
 Request enabling_word() {
   Request request{
       .id = 1, .kind = RequestKind::sdo_download, .node = 2, .object = {0x6040, 0}, .size = 2};
@@ -242,10 +265,7 @@ TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasEnabledBySdoAndIsSi
 TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereTheyWereDisabledLongAfterAnEnablingWordBySdo) {
   ASSERT_TRUE(rig.master->submit(enabling_word()));
   rig.run(50);
-  for (int i = 0; i < 200; ++i) {
-    rig.command_all(0x0000, 1);
-    rig.run(1);
-  }
+  command_for(200, 0x0000);
   rig.world->power(2_node, false);
   rig.run(300);
   EXPECT_EQ(stop_in_order(), StopResult::confirmed);
@@ -259,8 +279,7 @@ TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereAnNmtStopHasSeenThemDisabled) 
   rig.run(5);
   ASSERT_TRUE(rig.master->submit(enabling_word()));
   rig.run(10);
-  ASSERT_TRUE(rig.master->submit(
-      {.id = 2, .kind = RequestKind::nmt, .node = 2, .command = NmtCommand::stop}));
+  order(NmtCommand::stop, 2);
   rig.run(200);
   rig.command(0, 0x0000, 1);
   rig.run(10);
