@@ -14,9 +14,11 @@
 namespace takt {
 namespace {
 
-constexpr std::uint16_t axis_objects = 0x800;  // CiA 402: distance of two axes of a device
-constexpr std::int64_t profile_position = 1;   // 6060
-constexpr double rounded_digits = 1e-4;        // of a `modulo` as people write it, 6.2832
+constexpr std::uint16_t axis_objects =
+    0x800;  // The objects of two axes of a device are so far apart (CiA 402).
+constexpr std::int64_t profile_position = 1;  // This is the value of 6060.
+constexpr double rounded_digits =
+    1e-4;  // People round a `modulo` that much, for example to 6.2832.
 
 }  // namespace
 

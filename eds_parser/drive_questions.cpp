@@ -85,7 +85,8 @@ constexpr std::uint16_t axis_step = 0x800;
 constexpr unsigned most_axes = 8;
 constexpr std::int64_t quick_stop_command = 3;  // 0x6007, CiA 402-2
 
-/// 0x6007 of each axis that does not make a quick stop when NMT stop ends the exchange of PDOs.
+/// The object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop ends
+/// the exchange of PDOs, and 3 is the value with which the drive then makes a quick stop.
 std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
   std::vector<ObjectKey> objects;
   for (unsigned axis = 0; axis < most_axes; ++axis) {
