@@ -2,23 +2,27 @@
 """readme_outputs_test.py BIN [--update]: README.md and the pages of share/doc show what files contain and what commands print.
 
 A block that begins with `$ takt simulate` (or another of COMMANDS) and names only files of the tree must repeat lines of
-the stdout of that command. A block that begins with `# share/...` must repeat lines of that file. A line of three points
-matches any number of lines. --update corrects the blocks in which nothing but numbers has changed.
+the stdout of that command; `$ taktd FILE --check` too. A block that begins with `# share/...` must repeat lines of that
+file. A line of three points matches any number of lines. --update corrects the blocks in which nothing but numbers has
+changed. The commands of the tutorial run in a folder that has the files which the tutorial makes.
 
 Each relative link must lead to a file that exists, and to a heading where it has an anchor. The index must name every
 page. README.md must not be longer than LONGEST_README lines.
 """
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 README = ROOT / "README.md"
 PAGES = ROOT / "share/doc"
 NOT_CHECKED = {"CHANGELOG.md"}  # it describes former versions
 LONGEST_README = 250
-COMMANDS = ("simulate", "audit", "plan", "budget")
+COMMANDS = ("simulate", "audit", "plan", "budget", "eds")
+SHELL = {"|", "&&", ";", "-o", ">"}  # such a command is not run here
 BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r" *\d+(\.\d+)?")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
@@ -59,17 +63,26 @@ def compare(shown, real, same):
     return found, None
 
 
-def real_lines(title, tools):
-    """What the block shows a part of; None: it is none of ours."""
+def is_checked(words):
+    if not words or SHELL & set(words) or any(word.endswith(";") for word in words):
+        return False
+    return words[0] == "taktd" and "--check" in words or words[0] == "takt" and words[1] in COMMANDS
+
+
+def real_lines(title, tools, folder):
+    """The lines of which the block shows a part. None: the block is not checked."""
     if title.startswith("# share/"):
         return (ROOT / title[2:].split()[0]).read_text().splitlines()
-    words = title.removeprefix("$ ").split()
-    if not title.startswith("$ takt ") or words[1] not in COMMANDS or "|" in words:
+    words = title.removeprefix("$ ").split() if title.startswith("$ ") else []
+    files = [word for word in words if word.endswith((".yaml", ".eds", ".dcf", ".bin"))]
+    if not is_checked(words):
         return None
-    if not all((ROOT / word).exists() for word in words if word.endswith(".yaml")):
+    # A page may name a file of the tree although its commands run elsewhere.
+    places = [place for place in (folder, ROOT) if all((place / file).exists() for file in files)]
+    if not places:
         return None
-    done = subprocess.run([tools / "takt", *words[1:]], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.DEVNULL, text=True, timeout=60)
+    done = subprocess.run([tools / words[0], *words[1:]], cwd=places[0], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=60)
     return done.stdout.rstrip("\n").split("\n")
 
 
@@ -93,14 +106,23 @@ def documents():
     return [README, *sorted(page for page in PAGES.glob("*.md") if page.name not in NOT_CHECKED)]
 
 
-def check_outputs(document, tools, update):
+def make_machine(folder):
+    """The files that the tutorial lets its reader make."""
+    shutil.copy(ROOT / "share/eds/takt_drive402.eds", folder / "drive.eds")
+    network = (ROOT / "share/demo/one_axis.yaml").read_text()
+    (folder / "first.yaml").write_text(network.replace("../eds/takt_drive402.eds", "drive.eds"))
+    faults = re.search(r"^```yaml\n(faults:\n.*?)^```$", (PAGES / "tutorial.md").read_text(), re.MULTILINE | re.DOTALL)
+    (folder / "faults.yaml").write_text(faults[1])
+
+
+def check_outputs(document, tools, folder, update):
     """Titles of the blocks that were compared, and the number of those that differ."""
     text = document.read_text()
     name = document.relative_to(ROOT)
     judged, failed = [], 0
     for block in BLOCK.findall(text):
         title, *shown = block.rstrip("\n").split("\n")
-        real = real_lines(title, tools)
+        real = real_lines(title, tools, folder if document.name == "tutorial.md" else ROOT)
         if real is None:
             continue
         judged.append(title)
@@ -155,12 +177,15 @@ def complaints():
 def main(binaries, update):
     tools = pathlib.Path(binaries).resolve()
     judged, failed = [], 0
-    for document in documents():
-        titles, differing = check_outputs(document, tools, update)
-        judged += titles
-        failed += differing
+    with tempfile.TemporaryDirectory() as name:
+        make_machine(pathlib.Path(name))
+        for document in documents():
+            titles, differing = check_outputs(document, tools, pathlib.Path(name), update)
+            judged += titles
+            failed += differing
     families = [title for title in judged if title.startswith("$ takt simulate share/demo/")]
-    if len(families) < 5 or not any(title.startswith("# share/") for title in judged):
+    shown = {start: any(title.startswith(start) for title in judged) for start in ("# share/", "$ taktd", "$ takt eds")}
+    if len(families) < 5 or not all(shown.values()):
         print(f"FAIL  too few blocks: {judged}")
         failed += 1
     for complaint in complaints():
