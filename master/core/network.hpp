@@ -81,6 +81,11 @@ class Network {
   /// Its boot has started it: it may be OPERATIONAL some time before it says so.
   bool starts(std::size_t node_index) const noexcept;
 
+  /// See NodeSession::boot_refused.
+  bool boot_refused(std::size_t node_index) const noexcept {
+    return sessions_[node_index].boot_refused();
+  }
+
   /// What the newest boot of this node has read of its limits.
   std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
 

@@ -72,8 +72,8 @@ class NodeSession {
   /// The master itself was away for so long: no time-out of an answer or a heartbeat counts it.
   void excuse(Time away) noexcept;
 
-  /// Its boot has started it and waits for a sign of that.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
+  /// The boot has started the node and waits for a sign of that.
   bool starts() const noexcept { return booting() && runner_.started(); }
   /// The network is started: nodes that come later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
@@ -106,6 +106,13 @@ class NodeSession {
   /// Its SDO server owes an answer. A node that is probed may not be there at all.
   bool awaits_answer() const noexcept {
     return client_.awaits_answer() && !(booting() && runner_.probing());
+  }
+  /// No boot has succeeded so far, and the newest one has failed because the device refused the SDO
+  /// transfer of NodeStatus::boot_step.
+  bool boot_refused() const noexcept {
+    return status_.boot == BootState::failed && status_.boot_count == 0 &&
+           last_failure_.fault == SdoFault::aborted_by_device &&
+           last_failure_.step == status_.boot_step;
   }
   const NodeStatus& status() const noexcept { return status_; }
   /// No boot, no transfer and no command is under way.

@@ -44,7 +44,8 @@ StopRequests::StopRequests(const BusPlan& plan)
     : plan_{plan},
       axes_{OrderedStop::axes_of(plan)},
       polls_(axes_.size()),
-      failed_(plan.nodes.size()) {
+      failed_(plan.nodes.size()),
+      refused_boots_(plan.nodes.size()) {
   if (plan.stop_disarm != StopDisarm::sdo) return;
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     const NodePlan& node = plan.nodes[i];
@@ -123,12 +124,14 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
   return read_next(axis, !exchanging || !of.statusword, moves_unseen);
 }
 
-/// Its boot has come as far as to the step that arms it, also where it failed later. A node that is
-/// lost is not there.
-bool StopRequests::armed(const Job& job, const NodeStatus& node) noexcept {
+/// Its boot has come as far as to the step that arms it, even if it failed later, or in this step
+/// without an answer. A write that the device refused has armed nothing, unless an earlier boot
+/// has. A node that is lost is not there.
+bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept {
   if (node.boot == BootState::ready) return true;
   const bool answered = node.boot_letter != 'B' || node.nmt != NmtState::unknown;
-  return node.boot == BootState::failed && answered && job.step <= node.boot_step;
+  const bool refused = refused_boots_[job.node_index] && job.step == node.boot_step;
+  return node.boot == BootState::failed && answered && job.step <= node.boot_step && !refused;
 }
 
 /// The writes of a device follow each other; after one that it does not take no more are tried.

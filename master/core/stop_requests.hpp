@@ -20,6 +20,10 @@ class StopRequests {
 
   /// A stop begins.
   void begin() noexcept;
+  /// Says whether the boot of this node has failed because the device refused its newest step.
+  void note_boot(std::size_t node_index, bool refused) noexcept {
+    refused_boots_[node_index] = refused;
+  }
   /// The next request that is due; null: none. `exchanging` as in StopView.
   const Request* next(Time now, const OrderedStop& stop, std::span<const bool> exchanging,
                       std::span<const NodeStatus> nodes) noexcept;
@@ -79,7 +83,7 @@ class StopRequests {
   bool due_of_axis(std::size_t axis, Time now, const OrderedStop& stop, bool exchanging) noexcept;
   bool read_next(std::size_t axis, bool needs_word, bool needs_motion) noexcept;
   void ask(std::size_t axis, Word word, std::int64_t value = 0) noexcept;
-  static bool armed(const Job& job, const NodeStatus& node) noexcept;
+  bool armed(const Job& job, const NodeStatus& node) const noexcept;
   const Request* next_job(std::span<const NodeStatus> nodes) noexcept;
   void take_value(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
   void take_fault(std::size_t axis, Word word, const Reply& reply, OrderedStop& stop) noexcept;
@@ -92,6 +96,7 @@ class StopRequests {
   std::size_t next_job_ = 0;
   std::size_t answered_ = 0;  // jobs
   std::size_t turn_ = 0;      // axis that is asked next
+  std::vector<bool> refused_boots_;   // per node, see note_boot()
   std::size_t asked_ = 0;     // axis, or job, that request_ is of
   Job refused_;
   std::int64_t refusal_ = 0;

@@ -195,6 +195,11 @@ std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
   const auto node = network_.awaits_axes();
   if (!node) return std::nullopt;
   return *node == 0 ? OrderedStop::every_node : static_cast<std::uint8_t>(plan_.index_of(*node));
+  if constexpr (requires { network_.boot_refused(0); }) {
+    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+      stop_requests_.note_boot(i, network_.boot_refused(i));
+    }
+  }
 }
 
 /// A node that NMT stops or sends to pre-operational exchanges no PDOs any more, and a master in

@@ -45,6 +45,40 @@ TEST(Disarming, LeavesANodeAloneWhoseBootFailedBeforeItsArming) {
   }));
 }
 
+sim::Fault refusing(std::uint32_t abort_code) {
+  sim::Fault fault = of_drive(refuse_object);
+  fault.object = ObjectKey{0x1016, 1};
+  fault.abort_code = abort_code;
+  return fault;
+}
+
+TEST(Disarming, LeavesANodeAloneThatHasRefusedItsArming) {
+  Plant plant{watching(), {refusing(0x0602'0000)}};
+  for (int i = 0; i < 1000 && plant.node().boot != BootState::failed; ++i) plant.run(10ms);
+  ASSERT_EQ(plant.node().boot, BootState::failed);
+  plant.wire.frames.clear();
+
+  EXPECT_EQ(plant.stop(), StopResult::confirmed);
+
+  EXPECT_EQ(plant.count(EventKind::still_armed), 0) << plant.text_of(EventKind::still_armed);
+  EXPECT_TRUE(std::ranges::none_of(plant.wire.frames, [](const Frame& frame) {
+    return frame.id == CobId::base(0x606) && frame.data[1] == 0x16 && frame.data[2] == 0x10;
+  }));
+}
+
+/// Only the answer to the write is missing: the device may be armed.
+TEST(Disarming, IsTriedWhereTheArmingWasNotAnswered) {
+  sim::Fault mute = of_drive(mute_sdo);
+  mute.object = ObjectKey{0x1016, 1};
+  Plant plant{watching(", sdo_timeout_ms: 300"), {mute}};
+  for (int i = 0; i < 1000 && plant.node().boot != BootState::failed; ++i) plant.run(10ms);
+  ASSERT_EQ(plant.node().boot, BootState::failed);
+
+  plant.stop();
+
+  EXPECT_EQ(plant.count(EventKind::still_armed), 1);
+}
+
 TEST(Disarming, SaysForHowLongTheDeviceGaveNoAnswer) {
   Plant plant{watching(", sdo_timeout_ms: 300")};
   plant.run(5s);
@@ -64,10 +98,7 @@ TEST(Disarming, SaysWithWhichCodeTheDeviceRefused) {
   Plant plant{watching()};
   plant.run(5s);
   ASSERT_EQ(plant.node().boot, BootState::ready);
-  sim::Fault refuses = of_drive(refuse_object);
-  refuses.object = ObjectKey{0x1016, 1};
-  refuses.abort_code = 0x0504'0000;
-  plant.world.add(refuses);
+  plant.world.add(refusing(0x0504'0000));
 
   EXPECT_EQ(plant.stop(), StopResult::confirmed);
 
