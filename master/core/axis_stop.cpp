@@ -52,6 +52,7 @@ AxisState first_state(AxisPrior prior) noexcept {
     case AxisPrior::disabled:
       return AxisState::rested;
     case AxisPrior::exposed:
+    case AxisPrior::foreign:
       return AxisState::unseen;
   }
   return AxisState::unseen;
@@ -61,6 +62,7 @@ AxisState first_state(AxisPrior prior) noexcept {
 
 void AxisStop::begin(Time now, AxisPrior prior) noexcept {
   state_ = first_state(prior);
+  prior_ = prior;
   entered_ = answered_ = now;
 }
 
@@ -171,6 +173,7 @@ std::int64_t AxisStop::velocity() const noexcept {
 
 AxisVerdict AxisStop::verdict(Time now, bool exchanging) const noexcept {
   if (confirmed()) return AxisVerdict::stopped;
+  if (state_ == AxisState::unseen && refusal_ != 0) return AxisVerdict::refused;
   const bool answers = silence(now) < silent_after;
   if (state_ == AxisState::dropped || (state_ == AxisState::cut && disabled_seen_)) {
     return AxisVerdict::moving;

@@ -8,37 +8,42 @@ namespace takt {
 
 /// What the ordered stop knows of one axis.
 enum class AxisState : std::uint8_t {
-  unseen,    ///< its statusword was not seen since the stop began
-  asked,     ///< the same, but it need not answer: its node was neither ready nor OPERATIONAL
-  rested,    ///< the same, but it was disabled before, and nothing could enable it since
-  exempt,    ///< it was disabled when the stop began, or its node was never heard
-  braking,   ///< it is told to stop quickly, and was not seen at standstill
-  standing,  ///< it was seen at standstill and is told to disable
-  settling,  ///< it disabled itself before its standstill was certain
-  stopped,   ///< it was seen at standstill and disabled
-  cut,       ///< the time was over: it was told to disable although it was not at standstill
-  dropped,   ///< it was disabled and moved on
+  unseen,    ///< No statusword has come since the stop began.
+  asked,     ///< As `unseen`; but an answer is not required, because the node was neither ready nor
+             ///< OPERATIONAL.
+  rested,    ///< As `unseen`; but the axis was disabled before, and nothing could enable it since.
+  exempt,    ///< Nothing is to be stopped: the axis was disabled when the stop began, its node was
+             ///< never heard, or it is no drive.
+  braking,   ///< The axis is commanded to stop quickly, and was not seen at standstill.
+  standing,  ///< The axis was seen at standstill, and is commanded to disable.
+  settling,  ///< The axis disabled itself before its standstill was certain.
+  stopped,   ///< The axis was seen at standstill and disabled.
+  cut,       ///< The time was over: the axis was commanded to disable although it still moved.
+  dropped,   ///< The axis was disabled and moved on.
 };
 
 /// What is known of an axis when the stop begins.
 enum class AxisPrior : std::uint8_t {
-  untouched,  ///< the stop does not reach it, or its node was never heard
-  heard,      ///< its node was heard, but was neither ready nor OPERATIONAL
-  disabled,   ///< its node was ready; it was seen disabled, and nothing could enable it since
-  exposed,    ///< its node was ready, or OPERATIONAL without this master: it may be enabled
+  untouched,  ///< The stop does not reach the axis, or its node was never heard.
+  heard,      ///< The node was heard, but was neither ready nor OPERATIONAL.
+  disabled,  ///< The node was ready; the axis was seen disabled, and nothing could enable it since.
+  exposed,   ///< The node was ready: the axis may be enabled.
+  foreign,   ///< The node is OPERATIONAL although this master has not booted it: the axis may be
+             ///< enabled.
 };
 
-/// What the front side tells of one axis after the stop.
+/// What the front side reports of one axis after the stop.
 enum class AxisVerdict : std::uint8_t {
-  stopped,  ///< confirmed, or there was nothing to stop
-  moving,   ///< it was disabled while it moved
-  enabled,  ///< it was not disabled
-  silent,   ///< no answer for some time
-  lost,     ///< its node does not exchange PDOs and does not answer
+  stopped,  ///< The stop is confirmed, or there was nothing to stop.
+  moving,   ///< The axis was disabled while it moved.
+  enabled,  ///< The axis was not disabled.
+  silent,   ///< No answer has come for some time.
+  lost,     ///< The node does not exchange PDOs and does not answer.
+  refused,  ///< The node answers, but refuses to tell the statusword.
 };
 
-/// What was read of an axis since the last call; empty: nothing new, or nothing that can be relied
-/// on. Raw values of the device.
+/// What was read of an axis since the last call. An empty value is not new, or not reliable. The
+/// values are those of the device, without units.
 struct AxisSample {
   std::optional<std::int64_t> statusword;
   std::optional<std::int64_t> velocity;  ///< 0x606C
@@ -47,8 +52,8 @@ struct AxisSample {
   bool empty() const noexcept { return !statusword && !velocity && !position; }
 };
 
-/// Judges whether an axis moves: by 0x606C, else by differences of 0x6064. Standstill is certain
-/// when the value has stayed within a window for `standstill_time`.
+/// Judges whether an axis moves, by 0x606C or, without it, by differences of 0x6064. Standstill is
+/// certain when the value has stayed within a window for `standstill_time`.
 class Standstill {
  public:
   static constexpr Time standstill_time = std::chrono::milliseconds{50};
@@ -57,11 +62,11 @@ class Standstill {
       : velocity_window_{plan.velocity_window}, position_window_{plan.position_window} {}
 
   void take(Time now, const AxisSample& sample) noexcept;
-  /// It has stayed within the window for long enough.
+  /// The value has stayed within the window for long enough.
   bool certain() const noexcept { return resting_ && last_ - since_ >= standstill_time; }
   /// The newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
-  /// Raw units of 0x606C, or of 0x6064 in a second.
+  /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
   std::int64_t velocity() const noexcept { return velocity_; }
   bool by_position() const noexcept { return by_position_; }
 
@@ -69,25 +74,25 @@ class Standstill {
   void rest(Time now, bool within) noexcept;
 
   std::int64_t velocity_window_;
-  std::int64_t position_window_;  ///< within standstill_time
+  std::int64_t position_window_;  ///< The way that counts as standstill, in standstill_time.
   std::int64_t velocity_ = 0;
-  std::int64_t anchor_ = 0;  ///< position from which differences are measured
+  std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
   std::int64_t position_ = 0;
   Time position_at_{};
-  Time since_{};  ///< at rest since then
-  Time last_{};   ///< newest value
+  Time since_{};  ///< The axis is at rest since then.
+  Time last_{};   ///< The time of the newest value.
   bool measured_ = false;
   bool resting_ = false;
   bool by_position_ = false;
 };
 
-/// The ordered stop of one axis: quick stop, standstill seen, disabled. The transitions are the
-/// table in axis_stop.cpp. Bus thread only.
+/// The ordered stop of one axis: it is commanded to stop quickly, is seen at standstill, and is
+/// disabled. The table in axis_stop.cpp has the transitions. Bus thread only.
 class AxisStop {
  public:
   static constexpr std::int64_t quick_stop_word = 0x0002;
   static constexpr std::int64_t disable_voltage_word = 0x0000;
-  /// An axis that disables itself may be as much younger at rest than its newest velocity says.
+  /// An axis that disables itself at the end of its ramp may show a velocity for this long.
   static constexpr Time settling_grace = std::chrono::milliseconds{40};
 
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
@@ -95,34 +100,41 @@ class AxisStop {
 
   void begin(Time now, AxisPrior prior) noexcept;
   void step(Time now, const AxisSample& sample) noexcept;
-  /// The time for standing still is over.
+  /// The time in which the axis can come to standstill is over.
   void cut() noexcept;
-  /// The device says that it has no such statusword.
+  /// The device has answered the read of its statusword with this abort code.
+  void refuse(std::uint32_t abort_code) noexcept { refusal_ = abort_code; }
+  /// The device says that it has no such statusword, and that it is no drive. It may have been one
+  /// when this master had booted it.
   void absent() noexcept {
-    if (state_ == AxisState::asked) state_ = AxisState::exempt;
+    const bool foreign = state_ == AxisState::unseen && prior_ == AxisPrior::foreign;
+    if (foreign || state_ == AxisState::asked) state_ = AxisState::exempt;
   }
 
   AxisState state() const noexcept { return state_; }
-  /// Its statusword was seen since the stop began.
+  /// A statusword has come since the stop began.
   bool seen() const noexcept {
     return state_ != AxisState::unseen && state_ != AxisState::asked && state_ != AxisState::rested;
   }
-  /// Nothing more is to be waited for.
+  /// The stop has nothing more to wait for.
   bool settled() const noexcept;
   bool confirmed() const noexcept {
     return state_ == AxisState::stopped || state_ == AxisState::exempt ||
            state_ == AxisState::asked || state_ == AxisState::rested;
   }
-  /// It was seen at standstill and disabled, and its newest statusword still says disabled.
+  /// The axis was seen at standstill and disabled, and its newest statusword still says disabled.
   bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
   std::int64_t controlword() const noexcept;
   Time silence(Time now) const noexcept { return now - answered_; }
-  /// While it was disabled, or now.
+  /// The velocity when the axis was disabled, else the newest one.
   std::int64_t velocity() const noexcept;
   bool by_position() const noexcept { return standstill_.by_position(); }
+  /// The abort code of AxisVerdict::refused.
+  std::uint32_t refusal() const noexcept { return refusal_; }
   AxisVerdict verdict(Time now, bool exchanging) const noexcept;
 
-  /// The power stage is off: not ready, switch on disabled, fault, or ready to switch on.
+  /// The power stage is off: the state is "not ready to switch on", "switch on disabled", "fault"
+  /// or "ready to switch on". CiA 402-2, 0x6041.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
     const std::int64_t state = statusword & 0x4F;
     return state == 0x00 || state == 0x40 || state == 0x08 || (statusword & 0x6F) == 0x21;
@@ -130,11 +142,11 @@ class AxisStop {
 
  private:
   enum class Seen : std::uint8_t {
-    powered,   ///< it is enabled
-    standing,  ///< it is enabled and certainly at standstill
-    off,       ///< it is disabled
-    off_rest,  ///< it is disabled and certainly at standstill
-    off_move,  ///< it is disabled and moves
+    powered,   ///< The axis is enabled.
+    standing,  ///< The axis is enabled and certainly at standstill.
+    off,       ///< The axis is disabled.
+    off_rest,  ///< The axis is disabled and certainly at standstill.
+    off_move,  ///< The axis is disabled and moves.
   };
   static AxisState next(AxisState state, Seen seen) noexcept;
   Seen judge(Time now) const noexcept;
@@ -142,11 +154,13 @@ class AxisStop {
 
   Standstill standstill_;
   AxisState state_ = AxisState::unseen;
+  AxisPrior prior_ = AxisPrior::exposed;
+  std::uint32_t refusal_ = 0;  ///< The abort code of the newest refused read; 0 means none.
   bool powered_ = true;
-  bool disabled_seen_ = false;  ///< at least once since it was enabled
+  bool disabled_seen_ = false;  ///< The axis was seen disabled during this stop.
   Time entered_{};
   Time answered_{};
-  std::int64_t velocity_then_ = 0;  ///< when it was disabled
+  std::int64_t velocity_then_ = 0;  ///< The velocity when the axis was disabled.
 };
 
 }  // namespace takt

@@ -53,7 +53,7 @@ AxisPrior prior_of(const NodeStatus& node, const AxisMemory& memory) noexcept {
   }
   const bool operational =
       OrderedStop::says_operational(node) || node.boot_letter == 'L' || memory.operational();
-  if (operational) return AxisPrior::exposed;
+  if (operational) return AxisPrior::foreign;
   const bool answered = node.boot_letter != 0 && node.boot_letter != 'B';
   return node.nmt != NmtState::unknown || answered ? AxisPrior::heard : AxisPrior::untouched;
 }

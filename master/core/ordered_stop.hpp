@@ -81,7 +81,11 @@ class OrderedStop {
   void begin_idle(Time now) noexcept;
   /// What an SDO has read of an axis; used in the next step.
   void take(std::size_t axis, const AxisSample& sample) noexcept;
-  /// The device says that it has no statusword of this axis.
+  /// The device has refused to tell the statusword of this axis.
+  void take_refusal(std::size_t axis, std::uint32_t abort_code) noexcept {
+    stops_[axis].refuse(abort_code);
+  }
+  /// The device has no statusword of this axis, and is no drive.
   void take_absence(std::size_t axis) noexcept { stops_[axis].absent(); }
   /// Once a cycle, before the outputs are packed.
   void step(Time now, const StopView& view) noexcept;

@@ -38,6 +38,15 @@ bool arms(const BusPlan& plan, const BootStep& step) {
   }
 }
 
+/// The device says of itself that it has another profile than that of drives. A device without a
+/// standard profile (0) may be a drive, and so may one of several logical devices: its device type
+/// is that of the first. CiA 301, 0x1000.
+bool is_no_drive(std::uint32_t device_type) noexcept {
+  constexpr std::uint32_t several_devices = 0xFFFF;
+  const std::uint32_t profile = device_type & 0xFFFF;
+  return profile != 402 && profile != 0 && device_type >> 16U != several_devices;
+}
+
 }  // namespace
 
 StopRequests::StopRequests(const BusPlan& plan)
@@ -82,15 +91,16 @@ void StopRequests::begin() noexcept {
 }
 
 void StopRequests::ask(std::size_t axis, Word word, std::int64_t value) noexcept {
-  constexpr std::array<std::uint16_t, 4> bases{0x6041, 0x606C, 0x6064, 0x6040};
+  constexpr std::array<std::uint16_t, 5> bases{0x6041, 0x606C, 0x6064, 0x6040, 0x1000};
   const StopAxis& of = axes_[axis];
   const auto kind = static_cast<std::size_t>(word);
   const bool writes = word == Word::control;
+  const int offset = word == Word::device_type ? 0 : of.number * axis_step;
   asked_ = axis;
   request_.id = mark | axis << 8U | kind;
   request_.kind = writes ? RequestKind::sdo_download : RequestKind::sdo_upload;
   request_.node = plan_.nodes[of.node_index].id.value();
-  request_.object = {static_cast<std::uint16_t>(bases[kind] + of.number * axis_step), 0};
+  request_.object = {static_cast<std::uint16_t>(bases[kind] + offset), 0};
   request_.size = writes ? 2 : 0;
   request_.timeout = Time{};
   request_.data[0] = static_cast<std::byte>(value & 0xFF);
@@ -112,6 +122,10 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
   const StopAxis& of = axes_[axis];
   const AxisStop& state = stop.axis(axis);
   if (polls_[axis].waiting || now < polls_[axis].due || state.settled()) return false;
+  if (polls_[axis].type == TypeQuery::due) {
+    ask(axis, Word::device_type);
+    return true;
+  }
   const auto word = stop.controlword(axis);
   const bool by_sdo = !of.controlword || !exchanging;
   const bool may_write = state.seen() && now >= polls_[axis].write_again;
@@ -201,10 +215,15 @@ bool StopRequests::take(const Reply& reply, Time now, OrderedStop& stop) noexcep
 
 void StopRequests::take_fault(std::size_t axis, Word word, const Reply& reply,
                               OrderedStop& stop) noexcept {
+  Poll& poll = polls_[axis];
+  if (word == Word::device_type) poll.type = TypeQuery::answered;
   if (reply.fault != SdoFault::aborted_by_device) return;
-  if (word == Word::velocity) polls_[axis].no_velocity = true;
-  const bool missing = reply.abort_code == abort_code::no_object;
-  if (word == Word::status && missing) stop.take_absence(axis);
+  if (word == Word::velocity) poll.no_velocity = true;
+  if (word != Word::status) return;
+  stop.take_refusal(axis, reply.abort_code);
+  if (reply.abort_code != abort_code::no_object) return;
+  if (stop.axis(axis).state() == AxisState::asked) return stop.take_absence(axis);
+  if (poll.type == TypeQuery::not_needed) poll.type = TypeQuery::due;
 }
 
 std::optional<StopRequests::AxisWord> StopRequests::statusword_of(const Reply& reply) noexcept {
@@ -222,10 +241,15 @@ void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
     poll.written = poll.writing;
     return;
   }
+  if (word == Word::device_type) poll.type = TypeQuery::answered;
   if (reply.size == 0 || reply.size > 4) return;
   std::uint32_t raw = 0;
   for (std::size_t i = 0; i < reply.size; ++i) {
     raw |= std::to_integer<std::uint32_t>(reply.data[i]) << (8 * i);
+  }
+  if (word == Word::device_type) {
+    if (reply.size == 4 && is_no_drive(raw)) stop.take_absence(axis);
+    return;
   }
   const int unused = 32 - 8 * static_cast<int>(reply.size);
   const auto value = static_cast<std::int32_t>(raw << unused) >> unused;

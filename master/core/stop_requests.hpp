@@ -56,11 +56,14 @@ class StopRequests {
   bool disarmed() const noexcept { return answered_ == jobs_.size(); }
 
  private:
-  enum class Word : std::uint8_t { status, velocity, position, control };
+  enum class Word : std::uint8_t { status, velocity, position, control, device_type };
+  /// A device that has no statusword is asked for its device type once.
+  enum class TypeQuery : std::uint8_t { not_needed, due, answered };
   struct Poll {
-    bool waiting = false;       // for an answer
-    bool no_velocity = false;   // the device has no 0x606C
-    bool word_next = false;     // the statusword was read last
+    bool waiting = false;      // for an answer
+    bool no_velocity = false;  // the device has no 0x606C
+    bool word_next = false;    // the statusword was read last
+    TypeQuery type = TypeQuery::not_needed;
     std::int64_t writing = -1;  // controlword that is under way by SDO
     std::int64_t written = -1;  // controlword that the device has taken by SDO
     Time due{};
@@ -93,10 +96,10 @@ class StopRequests {
   std::vector<Poll> polls_;
   std::vector<Job> jobs_;
   std::vector<std::uint8_t> failed_;  // per node: it took no write, or is not there
+  std::vector<bool> refused_boots_;   // per node, see note_boot()
   std::size_t next_job_ = 0;
   std::size_t answered_ = 0;  // jobs
   std::size_t turn_ = 0;      // axis that is asked next
-  std::vector<bool> refused_boots_;   // per node, see note_boot()
   std::size_t asked_ = 0;     // axis, or job, that request_ is of
   Job refused_;
   std::int64_t refusal_ = 0;

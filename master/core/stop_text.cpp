@@ -43,6 +43,16 @@ std::string velocity_text(const BusPlan& plan, const Event& event) {
   return number_text(speed) + " " + unit;
 }
 
+std::string refusal_text(const Event& event) {
+  const auto code = static_cast<std::uint32_t>(event.value);
+  const auto index = static_cast<std::uint16_t>(0x6041 + axis_number(event) * axis_step);
+  const std::string object =
+      "statusword " + to_string(ObjectKey{index, 0}) + " (" + abort_digits(code) + ")";
+  const bool missing = code == abort_code::no_object;
+  return (missing ? "answers that it has no " : "refuses to tell its ") + object +
+         ": it is not known whether it is enabled";
+}
+
 }  // namespace
 
 std::string reaction_text(const Event& event) {
@@ -71,6 +81,8 @@ std::string axis_stop_text(const BusPlan& plan, const Event& event) {
       return "no answer for " + time_text(Time{event.value});
     case AxisVerdict::lost:
       return "the drive is lost, no answer for " + time_text(Time{event.value});
+    case AxisVerdict::refused:
+      return refusal_text(event);
   }
   return "was not stopped";
 }

@@ -9,6 +9,22 @@ inline AxesAtRest rest_of(const OrderedStop& stop) noexcept {
   return stop.result() == StopResult::unconfirmed ? AxesAtRest::unconfirmed : AxesAtRest::confirmed;
 }
 
+/// The value of EventKind::axis_not_stopped.
+inline std::int64_t event_value(const AxisStop& axis, AxisVerdict verdict, Time now) noexcept {
+  switch (verdict) {
+    case AxisVerdict::stopped:
+    case AxisVerdict::moving:
+    case AxisVerdict::enabled:
+      return axis.velocity();
+    case AxisVerdict::silent:
+    case AxisVerdict::lost:
+      return axis.silence(now).count();
+    case AxisVerdict::refused:
+      return std::int64_t{axis.refusal()};
+  }
+  return 0;
+}
+
 /// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
 template <Port P, class N>
 void BusLoop<P, N>::stop_drives_after_loss() noexcept {
@@ -163,13 +179,12 @@ void BusLoop<P, N>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept
     const AxisStop& one = stop.axis(i);
     const AxisVerdict verdict = one.verdict(now, exchanging_[axis.node_index]);
     if (verdict == AxisVerdict::stopped) continue;
-    const bool told_time = verdict == AxisVerdict::silent || verdict == AxisVerdict::lost;
     events_.push({.when = now,
                   .kind = EventKind::axis_not_stopped,
                   .node = plan_.nodes[axis.node_index].id.value(),
                   .detail = static_cast<std::uint32_t>(verdict) | std::uint32_t{axis.number} << 8U |
                             (one.by_position() ? 1U << 16U : 0U),
-                  .value = told_time ? one.silence(now).count() : one.velocity()});
+                  .value = event_value(one, verdict, now)});
   }
 }
 
@@ -180,6 +195,11 @@ void BusLoop<P, N>::ask_for_stop() noexcept {
   const OrderedStop& stop = active_stop();
   const bool halted = &stop == &halt_ && halt_.axes_done();
   if (options_.observe || halted || stop.stage() == StopStage::running) return;
+  if constexpr (requires { network_.boot_refused(0); }) {
+    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+      stop_requests_.note_boot(i, network_.boot_refused(i));
+    }
+  }
   const Time now = port_.now();
   while (const Request* request = stop_requests_.next(now, stop, exchanging_, network_.nodes())) {
     if (!network_.submit(*request, now)) return;
@@ -195,11 +215,6 @@ std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
   const auto node = network_.awaits_axes();
   if (!node) return std::nullopt;
   return *node == 0 ? OrderedStop::every_node : static_cast<std::uint8_t>(plan_.index_of(*node));
-  if constexpr (requires { network_.boot_refused(0); }) {
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      stop_requests_.note_boot(i, network_.boot_refused(i));
-    }
-  }
 }
 
 /// A node that NMT stops or sends to pre-operational exchanges no PDOs any more, and a master in

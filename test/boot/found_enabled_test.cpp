@@ -20,13 +20,19 @@ sim::Fault override_of(ObjectKey object, std::vector<std::byte> value) {
 /// A drive that starts itself, has a heartbeat of 50 ms, and another mapping than the network file.
 class FoundEnabled : public testing::Test {
  protected:
-  explicit FoundEnabled(const std::string& keys = "reset: keep_alive")
+  explicit FoundEnabled(const std::string& keys = "reset: keep_alive", sim::Faults more = {})
       : plant{network_of("bus: {name: plant}\nmaster: {sync_period: 10000}\nnodes:\n"
                          "  lift: {node_id: 6, dcf: ../../../share/eds/takt_drive402.eds, "
                          "profile: cia402, heartbeat_producer: 100, "
                          "rpdo: {2: {mapping: [{index: 0x6060}]}}, " +
                          keys + "}\n"),
-              {of_drive(self_start), override_of({0x1017, 0}, {std::byte{50}, std::byte{0}})}} {}
+              all_of(std::move(more))} {}
+
+  static sim::Faults all_of(sim::Faults more) {
+    more.push_back(of_drive(self_start));
+    more.push_back(override_of({0x1017, 0}, {std::byte{50}, std::byte{0}}));
+    return more;
+  }
 
   void SetUp() override { plant.run_without_master(1s); }
 
@@ -127,6 +133,64 @@ TEST_F(FoundEnabled, IsConfirmedWhereItIsDisabledAlready) {
   EXPECT_TRUE(std::ranges::none_of(plant.wire.frames, [](const Frame& frame) {
     return frame.id == CobId::base(0x606) && frame.data[1] == 0x40 && frame.data[2] == 0x60;
   })) << "it is only asked";
+}
+
+/// It answers the read of its statusword with an abort code, and has this device type.
+class FoundWithoutStatusword : public FoundEnabled {
+ protected:
+  explicit FoundWithoutStatusword(std::uint8_t profile_low = 0x92, std::uint8_t profile_high = 0x01)
+      : FoundEnabled{"reset: keep_alive",
+                     {override_of({0x1000, 0}, {std::byte{profile_low}, std::byte{profile_high},
+                                                std::byte{0x02}, std::byte{0x00}})}} {}
+  StopResult stop_refused_with(std::uint32_t abort_code) {
+    plant.run(5s);
+    EXPECT_EQ(plant.node().boot_count, 0U);
+    EXPECT_EQ(plant.node().nmt, NmtState::operational);
+    sim::Fault refuses = of_drive(refuse_object);
+    refuses.object = ObjectKey{0x6041, 0};
+    refuses.abort_code = abort_code;
+    plant.world.add(refuses);
+    return plant.stop();
+  }
+  std::string text() const { return plant.text_of(EventKind::axis_not_stopped); }
+};
+
+TEST_F(FoundWithoutStatusword, IsNotConfirmedWhereItSaysThatItIsADrive) {
+  EXPECT_EQ(stop_refused_with(0x0602'0000), StopResult::unconfirmed);
+  EXPECT_NE(text().find("answers that it has no statusword 6041:00 (0602 0000): it is not known "
+                        "whether it is enabled"),
+            std::string::npos)
+      << text();
+}
+
+TEST_F(FoundWithoutStatusword, IsNotConfirmedWhereItRefusesForAnotherReason) {
+  EXPECT_EQ(stop_refused_with(0x0800'0022), StopResult::unconfirmed);
+  EXPECT_NE(text().find("refuses to tell its statusword 6041:00 (0800 0022)"), std::string::npos)
+      << text();
+}
+
+/// A device of profile 401.
+class FoundAsAnotherDevice : public FoundWithoutStatusword {
+ protected:
+  FoundAsAnotherDevice() : FoundWithoutStatusword{0x91} {}
+};
+
+TEST_F(FoundAsAnotherDevice, NeedsNoConfirmationWithoutAStatusword) {
+  EXPECT_EQ(stop_refused_with(0x0602'0000), StopResult::confirmed) << text();
+}
+
+TEST_F(FoundAsAnotherDevice, IsNotConfirmedWhereItRefusesForAnotherReason) {
+  EXPECT_EQ(stop_refused_with(0x0800'0022), StopResult::unconfirmed);
+}
+
+/// A device without a standard profile may be a drive: its EDS says so.
+class FoundWithoutProfile : public FoundWithoutStatusword {
+ protected:
+  FoundWithoutProfile() : FoundWithoutStatusword{0x00, 0x00} {}
+};
+
+TEST_F(FoundWithoutProfile, IsNotConfirmedWithoutAStatusword) {
+  EXPECT_EQ(stop_refused_with(0x0602'0000), StopResult::unconfirmed);
 }
 
 /// A drive that isn't there does not become OPERATIONAL by a broadcast.
