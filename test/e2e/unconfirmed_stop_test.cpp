@@ -1,5 +1,6 @@
 // Exit code 6: the ordered stop was not confirmed.
 #include <csignal>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -16,18 +17,33 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
   text.replace(at, what.size(), by);
 }
 
-TEST(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
+/// A daemon and its simulated drives on a unix bus.
+class UnconfirmedStop : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  }
+  /// Nothing is known any more of whether the drives move.
+  void lose_drives() {
+    devices.signal(SIGKILL);
+    ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+  }
+  /// An application enables the drives, and they are lost while it moves them.
+  void lose_enabled_drives() {
+    const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                       folder / "move"};
+    ASSERT_TRUE(move.says("sine of")) << move.output();
+    lose_drives();
+  }
   const Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
-  const auto network = slow_network(folder.path());
+  const std::filesystem::path network = slow_network(folder.path());
   DaemonProcess daemon{network, {"--bus", bus}};
   const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
-  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
-  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
-                     folder / "move"};
-  ASSERT_TRUE(move.says("sine of")) << move.output();  // they are enabled
-  devices.signal(SIGKILL);  // whether the drives move is not known any more
-  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+};
+
+TEST_F(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
+  ASSERT_NO_FATAL_FAILURE(lose_enabled_drives());
 
   daemon.signal(SIGTERM);
 
@@ -39,15 +55,8 @@ TEST(UnconfirmedStop, OfTaktdIs6WithALineForEachAxis) {
   EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 2U);
 }
 
-TEST(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
-  const Folder folder;
-  const std::string bus = "unix:" + (folder / "bus").string();
-  const auto network = slow_network(folder.path());
-  DaemonProcess daemon{network, {"--bus", bus}};
-  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
-  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
-  devices.signal(SIGKILL);
-  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+TEST_F(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
+  ASSERT_NO_FATAL_FAILURE(lose_drives());
 
   daemon.signal(SIGTERM);
 
@@ -55,19 +64,9 @@ TEST(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
   EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 0U);
 }
 
-/// The daemon's own id: the answer comes when the axes were stopped.
-TEST(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
-  const Folder folder;
-  const std::string bus = "unix:" + (folder / "bus").string();
-  const auto network = slow_network(folder.path());
-  DaemonProcess daemon{network, {"--bus", bus}};
-  const Process devices{{TAKT, "sim", network.string(), "--bus", bus}, folder / "devices"};
-  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
-  const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
-                     folder / "move"};
-  ASSERT_TRUE(move.says("sine of")) << move.output();
-  devices.signal(SIGKILL);
-  ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
+/// The answer to an NMT stop of the daemon itself comes when the axes were stopped.
+TEST_F(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
+  ASSERT_NO_FATAL_FAILURE(lose_enabled_drives());
 
   const Ended stop =
       run({TAKT, "nmt", "stop", "127", "--lcm-url", daemon.lcm_url()}, folder.path());
@@ -77,8 +76,8 @@ TEST(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
       << stop.output;
 }
 
-/// A ramp of minutes, and a second for the stop.
-TEST(UnconfirmedStop, OfASimulationIs6) {
+/// The ramp takes minutes, and the stop has a second.
+TEST(UnconfirmedStopOfASimulation, HasExitCode6) {
   const Folder folder;
   const auto network = slow_network(folder.path(), [](std::string& text) {
     replace(text, "heartbeat_producer: 100    # ms",
