@@ -125,8 +125,12 @@ class SyncCounterRestarts : public testing::Test {
     rig.emplace(plan);
   }
   /// The counters that follow on this command, without those of the cycle in which it was sent.
+  /// Before it is sent, axes may have to stop. A command to the master alone is never sent.
   std::vector<int> counters_after(NmtCommand command, std::uint8_t node) {
+    rig->recorder.frames.clear();
     EXPECT_TRUE(ask(*rig, {.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
+    const bool alone = node == 127;
+    for (int i = 0; i < 20 && !alone && rig->recorder.with(0x000).empty(); ++i) rig->run(1);
     rig->recorder.frames.clear();
     rig->run(3);
     std::vector<int> counters;
@@ -142,7 +146,7 @@ TEST_F(SyncCounterRestarts, WhenTheMasterLeavesStopped) {
   ASSERT_TRUE(rig->boot());
   rig->run(10);
   const auto stopped = counters_after(NmtCommand::stop, 0);
-  ASSERT_EQ(stopped.size(), 3U);
+  ASSERT_FALSE(stopped.empty()) << "SYNC ends some cycles later";
   EXPECT_GT(stopped[0], 10) << "not yet";
   EXPECT_THAT(counters_after(NmtCommand::start, 0), ElementsAre(1, 2, 3));
 
