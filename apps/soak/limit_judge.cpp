@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "apps/soak/image_judge.hpp"
 #include "apps/soak/true_axes.hpp"
@@ -248,9 +247,6 @@ void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time n
     place.enables = false;
     place.doubt = cycles_of_doubt;
   }
-  // The fallback may have been in force in a cycle whose frame found no room.
-  const bool left_out = now - std::exchange(place.seen, now) > plan_.cycle.period * 3 / 2;
-  if (left_out) place.doubt = std::max(place.doubt, 2U);
   if (!begins && value == place.value) return;
   ++judged_;
   const bool own = is_own_value(signal_of(place), value);

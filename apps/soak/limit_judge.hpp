@@ -51,7 +51,6 @@ class LimitJudge {
     std::optional<SignalIndex> controlword{};  ///< of the same axis, where it is an output
     std::optional<double> value{};             ///< sent last
     Time when{};                               ///< `value` was new
-    Time seen{};                               ///< it was sent last, new or not
     std::optional<Way> last_way{};             ///< to `value`, while the drive followed
     std::int64_t mode = 0;                     ///< 6060 as it was sent, else 6061 as it was heard
     bool enables = false;                      ///< the controlword that was sent last

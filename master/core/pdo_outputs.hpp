@@ -199,6 +199,8 @@ class PdoOutputs {
   bool judge(std::size_t place, std::int64_t value, std::int64_t mode,
              OutputMoment moment) noexcept;
   void drop_node(std::size_t node_index) noexcept;
+  /// Ends the refusal of commands to an output, once the fallback of its node was sent.
+  void forgive(std::size_t place, OutputMoment moment) noexcept;
   void note_limited(std::size_t row, std::uint64_t cycle) noexcept;
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;

@@ -80,6 +80,18 @@ bool PdoOutputs::judge(std::size_t place, std::int64_t value, std::int64_t mode,
   return false;
 }
 
+/// A cycle without outputs, or an inhibit time, may keep the fallback back. Until it is sent the
+/// axis follows set-points, but commands would count as those of an axis that does not.
+void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
+  const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    const bool waits = row.open && row.ready && row.pending;
+    if (waits && plan_.pdos.rpdos[i].node_index == node_index) return;
+  }
+  limits_.forgive(place, moment.cycle);
+}
+
 /// A new mode is judged as well: the position that it makes valid may be far away.
 void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
                             OutputMoment moment) noexcept {
@@ -102,7 +114,7 @@ void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_poi
     output.generation = set_points[output_of(limit.signal)].generation;
     return;
   }
-  if (judge(place, value, mode, moment) && new_value) limits_.forgive(place, moment.cycle);
+  if (judge(place, value, mode, moment) && new_value) forgive(place, moment);
 }
 
 void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
@@ -139,7 +151,7 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   }
   const std::int64_t mode = limit.mode ? image_.values[*limit.mode] : 0;
   if (limits_.lacks_start(place, mode) || !judge(place, value, mode, moment)) return false;
-  limits_.forgive(place, moment.cycle);
+  forgive(place, moment);
   if (limits_.holds(node_index)) return false;
   limits_.admit(place, value, moment.cycle);
   return true;

@@ -66,6 +66,20 @@ TEST(OutputLimits, HearTheNodeAgainFromTheNextCommandInside) {
   EXPECT_EQ(axes.controlword(), enable_operation);
 }
 
+TEST(OutputLimits, HearNothingBeforeTheFallbackWasSent) {
+  LimitedAxes axes{1, stepping};
+  axes.cycle_with(0, 5);
+  axes.lose_frames(true);  // a cycle without outputs
+  axes.cycle_with(0, 505);
+  axes.lose_frames(false);
+  axes.cycle_with(0, 12);
+  EXPECT_EQ(axes.position(), 5);
+  EXPECT_EQ(axes.controlword(), quick_stop);
+  axes.cycle_with(0, 12);
+  EXPECT_EQ(axes.position(), 12);
+  EXPECT_EQ(axes.controlword(), enable_operation);
+}
+
 TEST(OutputLimits, HearTheNodeAgainWhenTheRefusedCommandHasGrownOld) {
   LimitedAxes axes{1, stepping};
   axes.cycle_with(0, 5);
