@@ -21,7 +21,7 @@ struct Address {
   const sockaddr* generic() const noexcept { return reinterpret_cast<const sockaddr*>(&name); }
 };
 
-/// What the kernel calls an interface that may have been given by another name of it.
+/// Returns the kernel's name of an interface, which may be given by an alternative name.
 std::string real_interface(const std::string& name) {
   std::array<char, IF_NAMESIZE> real{};
   const unsigned index = ::if_nametoindex(name.c_str());
@@ -35,7 +35,7 @@ std::string real_path(const std::string& path) {
   return error ? path : real.string();
 }
 
-/// FNV-1a: for paths that are longer than the name of a socket may be.
+/// FNV-1a hash, for paths that are longer than the name of a socket may be.
 std::string hash(const std::string& text) {
   std::uint64_t value = 0xCBF2'9CE4'8422'2325;
   for (const char letter : text) {
@@ -44,7 +44,7 @@ std::string hash(const std::string& text) {
   return std::to_string(value);
 }
 
-/// An abstract name: it begins with a zero byte and is no file.
+/// Builds an abstract address: the name begins with a zero byte and is not a file.
 Address address_of(const BusName& bus) {
   const bool interface = bus.kind == BusName::Kind::can_interface;
   std::string name = interface ? real_interface(bus.name) : "unix:" + real_path(bus.name);
@@ -59,7 +59,7 @@ Address address_of(const BusName& bus) {
   return address;
 }
 
-/// "process 1234 (taktd)", as far as that can be known from here.
+/// Returns "process 1234 (taktd)", as far as this process can find out.
 std::string holder_of(const Address& address) {
   const FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   ucred holder{};

@@ -7,12 +7,12 @@
 
 namespace takt {
 
-/// The right to be the master of a bus. One process of a network namespace has it, for as long as
-/// this object lives: it holds an abstract unix socket, which the kernel takes away from a process
-/// however that ends. A simulated bus belongs to one process anyhow and is never refused.
+/// The right to be the master of a bus. Within a network namespace, one process has it as long as
+/// this object lives. The object holds an abstract unix socket, which the kernel releases however
+/// the process ends. A simulated bus belongs to one process anyway and is never refused.
 class BusClaim {
  public:
-  /// An error says who the master is.
+  /// The error names the process that is the master.
   static std::expected<BusClaim, BusError> take(const BusName& bus);
 
  private:

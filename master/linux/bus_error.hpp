@@ -3,7 +3,7 @@
 
 namespace takt {
 
-/// Why a bus could not be opened: who, what, and what to try.
+/// Tells why a bus could not be opened: what failed and what to try.
 struct BusError {
   std::string message;
   int error = 0;  ///< errno

@@ -4,13 +4,14 @@
 
 namespace takt {
 
-/// What stands behind `--bus` and `interface:`.
+/// The meaning of `--bus` and `interface:`.
 struct BusName {
   enum class Kind : unsigned char { simulated, can_interface, unix_path };
   Kind kind = Kind::simulated;
   std::string name{};  ///< interface or path
 
-  /// `sim` and nothing at all: simulated; `unix:PATH`; else the name of a CAN interface.
+  /// An empty text or `sim` is a simulated bus, `unix:PATH` is a unix bus, and anything else is the
+  /// name of a CAN interface.
   static BusName parse(std::string_view text) {
     constexpr std::string_view prefix = "unix:";
     if (text.empty() || text == "sim") return {};

@@ -12,7 +12,7 @@ namespace takt {
 inline constexpr std::size_t can_control_bytes =
     CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t));
 
-/// The kernel's stamp and its count of frames dropped since the socket was opened.
+/// The kernel's time stamp and its count of frames dropped since the socket was opened.
 struct CanControl {
   Time realtime{};
   std::optional<std::uint32_t> dropped{};
@@ -35,8 +35,8 @@ inline CanControl can_control_of(msghdr& header) noexcept {
   return control;
 }
 
-/// A kernel stamp as monotonic time. One that a step of the wall clock has made impossible counts
-/// as now.
+/// Converts a kernel time stamp to monotonic time. If a step of the wall clock has made the stamp
+/// impossible, the result is `now`.
 constexpr Time monotonic_stamp(Time realtime, Time offset, Time now) noexcept {
   constexpr Time oldest = std::chrono::seconds{1};
   const Time when = realtime - offset;

@@ -22,7 +22,8 @@ void apply_error_frame(const can_frame& frame, PortNews& news) noexcept {
     if ((what & CAN_ERR_CRTL_RX_OVERFLOW) != 0) ++news.receive_overruns;
     if ((what & state_bits) != 0) news.bus_off = false;
   }
-  // Drivers fill in the counters with changes of state; newer ones say so by CAN_ERR_CNT.
+  // Drivers fill in the counters when the state changes; newer drivers announce them by
+  // CAN_ERR_CNT.
   if ((frame.can_id & (CAN_ERR_CRTL | CAN_ERR_CNT)) != 0) {
     news.tx_error_counter = frame.data[6];
     news.rx_error_counter = frame.data[7];

@@ -8,7 +8,7 @@ namespace {
 
 using IdSet = std::bitset<2048>;
 
-// With exactly these masks the kernel keeps a filter in a table by identifier instead of in a list.
+// For exactly these masks, the kernel keeps a filter in a table by identifier instead of in a list.
 constexpr canid_t exact_base = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
 constexpr canid_t exact_extended = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
 constexpr CobId lss_answers = CobId::base(0x7E4);
@@ -20,8 +20,8 @@ std::size_t count(const IdSet& wanted, std::size_t first, std::size_t size) {
   return members;
 }
 
-/// Covers [first, first + size), an aligned block, with prefixes of at most `slack` unwanted
-/// identifiers each.
+/// Covers the aligned block [first, first + size) with prefixes that let at most `slack` unwanted
+/// identifiers pass each.
 void cover(const IdSet& wanted, std::size_t first, std::size_t size, std::size_t slack,
            std::vector<can_filter>& out) {
   const std::size_t members = count(wanted, first, size);
@@ -70,14 +70,15 @@ std::vector<can_filter> filters_for(std::span<const CobId> ids, std::size_t limi
 std::vector<can_filter> filters_for(const BusPlan& plan) {
   std::vector<CobId> ids{lss_answers};
   if (plan.cycle.sync) ids.push_back(plan.cycle.sync_cob_id);
-  ids.push_back(default_sdo_channel(plan.master_id).request);  // its own server
+  // Requests to the SDO server of the master.
+  ids.push_back(default_sdo_channel(plan.master_id).request);
   for (const PdoRow& row : plan.pdos.tpdos) ids.push_back(row.cob_id);
   for (const NodePlan& node : plan.nodes) {
     ids.push_back(node.sdo.channel_of(node.id).answer);
     ids.push_back(node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())));
     ids.push_back(CobId::base(0x700U + node.id.value()));
   }
-  // Signs of life of nodes that are not in the plan, as long as all filters stay exact.
+  // Heartbeats of nodes that are not in the plan, as long as all filters stay exact.
   const std::size_t own = ids.size();
   for (std::uint32_t node = 1; node <= 127; ++node) {
     if (node != plan.master_id.value()) ids.push_back(CobId::base(0x700U + node));

@@ -23,7 +23,7 @@ std::optional<T> value_of(const rtattr* attribute) {
   return value;
 }
 
-/// Attributes by their number, of one nesting level.
+/// Returns the attributes of one nesting level, indexed by their number.
 template <std::size_t N>
 std::array<const rtattr*, N> table_of(const rtattr* first, std::size_t bytes) {
   std::array<const rtattr*, N> table{};
@@ -151,7 +151,7 @@ std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrat
                   ": ip link set " + n + " down && ip link set " + n + " up type can bitrate " +
                   std::to_string(bitrate));
   }
-  const std::size_t room = frames_a_cycle + 16;  // services beside the outputs
+  const std::size_t room = frames_a_cycle + 16;  // service frames in addition to the outputs
   if (link.tx_queue_length != 0 && link.tx_queue_length < room) {
     out.push_back(n + " has a send queue of " + std::to_string(link.tx_queue_length) +
                   " frames, a cycle may send " + std::to_string(room) + ": ip link set " + n +

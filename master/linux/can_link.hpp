@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// State of a CAN controller, as the driver tells it.
+/// State of a CAN controller as the driver reports it.
 enum class CanState : std::uint8_t {
   error_active,
   error_warning,
@@ -20,32 +20,33 @@ enum class CanState : std::uint8_t {
 };
 std::string_view name(CanState state) noexcept;
 
-/// A CAN interface as the kernel describes it (`ip -details -statistics link show`). What a virtual
-/// interface does not have is absent.
+/// A CAN interface as the kernel describes it (`ip -details -statistics link show`). Properties
+/// that a virtual interface lacks are absent.
 struct CanLink {
   std::string name;
-  std::string kind;  ///< "can", "vcan", "vxcan"; empty: not told
+  std::string kind;  ///< "can", "vcan", "vxcan"; empty if the kernel does not name it
   bool is_can = false;
   bool up = false;
   std::uint32_t tx_queue_length = 0;  ///< frames
   std::optional<std::uint32_t> bitrate{};
-  std::optional<std::uint32_t> restart_ms{};  ///< after bus-off; 0 = never by itself
+  std::optional<std::uint32_t> restart_ms{};  ///< delay after bus-off; 0 means no automatic restart
   std::optional<CanState> state{};
   std::optional<std::uint16_t> tx_errors{};
   std::optional<std::uint16_t> rx_errors{};
-  std::optional<std::uint32_t> bus_off_count{};  ///< times, since the driver was loaded
+  /// Number of bus-off events since the driver was loaded.
+  std::optional<std::uint32_t> bus_off_count{};
   bool listen_only = false;
   std::uint64_t rx_frames = 0;
   std::uint64_t tx_frames = 0;
   std::uint64_t rx_dropped = 0;
 };
 
-/// Asks the kernel by netlink (RTM_GETLINK); needs no privilege.
+/// Queries the kernel by netlink (RTM_GETLINK). Needs no privilege.
 std::expected<CanLink, BusError> read_can_link(const std::string& interface);
 
-/// Sentences about what does not fit the network file or will hurt while running, each with the
-/// command that mends it. Empty: all is well. `frames_a_cycle`: the most that the master sends at
-/// once.
+/// Lists what contradicts the network file or will cause trouble in operation, one sentence each
+/// with the command that corrects it. Empty if there is nothing to report. `frames_a_cycle` is the
+/// largest number of frames that the master sends at once.
 std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrate,
                                        std::size_t frames_a_cycle);
 

@@ -56,7 +56,7 @@ struct DiagnosticSocket::State {
   FileDescriptor socket;
   Time next_look{};
   HeardTraffic traffic;
-  std::uint64_t lost_before = 0;  // by sockets before this one
+  std::uint64_t lost_before = 0;  // lost on previous sockets
   MessageBatch<can_frame, batch_frames, can_control_bytes> can;
   MessageBatch<UnixBusRecord, batch_frames, 0> unix_bus;
 
@@ -104,7 +104,7 @@ void DiagnosticSocket::State::take_can(std::size_t i, Time offset, Time now,
 
 void DiagnosticSocket::State::take_unix(std::size_t i, const OnFrame& on_frame) {
   const UnixBusRecord& record = unix_bus.record(i);
-  if (unix_bus.bytes(i) == 0) socket.reset();  // end of file: the hub is gone
+  if (unix_bus.bytes(i) == 0) socket.reset();  // end of file: the hub has ended
   if (unix_bus.bytes(i) != sizeof(UnixBusRecord) || !valid(record)) return;
   traffic.lost = lost_before + record.lost;
   const Frame frame = from_kernel(record.can_id, record.length, record.data);

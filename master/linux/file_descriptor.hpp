@@ -4,7 +4,7 @@
 
 namespace takt {
 
-/// Owner of one file descriptor.
+/// Owns one file descriptor.
 class FileDescriptor {
  public:
   FileDescriptor() noexcept = default;

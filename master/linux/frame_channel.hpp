@@ -13,22 +13,23 @@
 
 namespace takt {
 
-/// Frames in and out for programs without real time: devices, dumps, tools. Hears everything that
-/// others send, nothing of its own. One thread.
+/// Sends and receives frames for programs without real time: devices, dumps, tools. It receives
+/// everything that others send and nothing that it sends itself. One thread.
 class FrameChannel {
  public:
-  /// `can0`, `vcan0`, `unix:PATH`.
+  /// `bus` is the name of a CAN interface (`can0`, `vcan0`) or `unix:PATH`.
   static std::expected<FrameChannel, BusError> open(std::string_view bus,
                                                     BusMember member = BusMember::resident);
-  /// The devices' end of make_socket_pair_bus().
+  /// Takes the devices' end of make_socket_pair_bus().
   explicit FrameChannel(UnixBusPort port) : port_{std::move(port)} {}
   explicit FrameChannel(SocketCanPort port) : port_{std::move(port)} {}
 
-  /// False: the interface is down or its buffers are full; the frame is lost.
+  /// Returns false if the interface is down or its buffers are full; the frame is lost.
   bool send(const Frame& frame) noexcept { return send(std::span{&frame, 1}).sent == 1; }
   SendResult send(std::span<const Frame> frames) noexcept;
 
-  /// The next frame; waits for at most `timeout` (0: does not wait). False: none came.
+  /// Takes the next frame and waits at most `timeout` for it (0 does not wait). Returns false if no
+  /// frame came.
   bool receive(StampedFrame& frame, Time timeout) noexcept;
 
   PortNews news() const noexcept;

@@ -7,14 +7,15 @@
 
 namespace takt {
 
-/// Sees that a frame which this machine sends has been on the bus: another socket hears it only
-/// then, whatever still waits in the queue of the interface. One thread.
+/// Confirms that a frame sent by this machine has been on the bus. Another socket receives the
+/// frame only then, however long it waits in the queue of the interface. One thread.
 class FrameWitness {
  public:
-  /// Before the frame is sent.
+  /// Must be called before the frame is sent.
   static std::expected<FrameWitness, BusError> open(std::string_view bus);
 
-  /// Waits for a frame of `id` whose first byte is `first`, for at most `timeout`.
+  /// Waits at most `timeout` for a frame with COB-ID `id` and first byte `first`. Returns true if
+  /// it came.
   bool sees(CobId id, std::uint8_t first, Time timeout) noexcept;
 
  private:

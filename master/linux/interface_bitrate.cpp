@@ -23,7 +23,7 @@ bool run(std::vector<std::string> words) {
   return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// None: a bus without bit rate.
+/// Returns std::nullopt for a bus without a bit rate.
 std::optional<CanLink> link_of(const std::string& bus) {
   const BusName name = BusName::parse(bus);
   if (name.kind != BusName::Kind::can_interface) return {};
@@ -35,7 +35,7 @@ std::optional<CanLink> link_of(const std::string& bus) {
 
 std::string interface_bitrate_trouble(const CanLink& link) {
   if (link.kind != "can") return {};
-  const std::string length = std::to_string(link.tx_queue_length);  // as it is
+  const std::string length = std::to_string(link.tx_queue_length);  // the current length
   if (run({"ip", "link", "set", link.name, "txqueuelen", length})) return {};
   return "the bit rate of " + link.name +
          " can't be changed (ip link: needs root, or CAP_NET_ADMIN); no device was changed";

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint16_t none = 0xFFFF;
 constexpr std::uint32_t window_syncs = 32;
 constexpr std::uint8_t unasked_limit = 3;
-constexpr int most_asked = 8;  // a node that never answers gives no credit for ever
+constexpr int most_asked = 8;  // limits the credit of a node that never answers
 constexpr std::size_t max_events = 64;
 constexpr Time tell_again = std::chrono::seconds{10};
 constexpr Time adjust_every = std::chrono::seconds{1};
@@ -86,9 +86,8 @@ void IntruderWatch::watch_sdo(const StampedFrame& stamped) {
        stamped.frame, stamped.when);
 }
 
-/// Frames that the diagnostic socket itself has lost leave `seen` behind for good; what was behind
-/// all through a second is therefore taken as lost. Frames on their way are behind only for a
-/// moment.
+/// If the diagnostic socket itself loses frames, `seen` stays behind for good. A lag that lasted a
+/// whole second therefore counts as loss. Frames on their way cause a lag only for a moment.
 void IntruderWatch::on_drained(const SentFrames& sent, Time now) {
   const bool adjust = now - adjusted_ >= adjust_every;
   for (Own& own : own_) {

@@ -10,37 +10,39 @@
 
 namespace takt {
 
-/// Who has put a frame onto the wire, as far as the kernel knows.
+/// Origin of a frame, as far as the kernel knows it.
 enum class Origin : std::uint8_t {
-  wire,          ///< another device, for certain
-  this_machine,  ///< our bus thread or another program here: only counting tells them apart
+  wire,  ///< another device, for certain
+  /// Our bus thread or another program on this machine; only counting distinguishes them.
+  this_machine,
 };
 
-/// Finds those who should not be on the bus: another SYNC, another NMT master, two senders of one
-/// COB-ID. Pure: frames, times and counts in, events out. Front thread.
+/// Detects participants that should not be on the bus: another producer of SYNC, another NMT
+/// master, two senders of one COB-ID. Takes frames, times and counts, gives events, and makes no
+/// system calls. Front thread.
 ///
-/// * An identifier of the master's (SYNC, NMT, RPDOs, its heartbeat): a frame of it from the wire,
-/// or
-///   more frames of it than the bus thread has sent.
-/// * A cyclic TPDO: one and a half times as many frames as its transmission type allows over 32
-/// SYNCs.
-/// * An SDO server: answers that nobody has asked for, three times (two nodes of one id both
-/// answer).
+/// * COB-IDs of the master (SYNC, NMT, RPDOs, its heartbeat): a frame comes from the wire, or there
+///   are more frames than the bus thread has sent.
+/// * Cyclic TPDOs: within 32 SYNCs, more than one and a half times as many frames arrive as the
+///   transmission type allows.
+/// * SDO servers: three answers arrive that nobody has requested (two nodes with one node-ID both
+///   answer).
 class IntruderWatch {
  public:
   explicit IntruderWatch(const BusPlan& plan);
 
   void on_frame(const StampedFrame& frame, Origin origin);
-  /// All frames that were waiting have been given; compares with what the bus thread has sent.
+  /// Tells that all waiting frames were given, and compares their counts with what the bus thread
+  /// has sent.
   void on_drained(const SentFrames& sent, Time now);
   bool take(Event& event);
 
  private:
-  struct Own {  // one identifier of the master's
+  struct Own {  // one COB-ID of the master
     CobId id;
     EventKind kind = EventKind::duplicate_cob_id;
-    std::uint32_t seen = 0;          // on this machine's side, in step with SentFrames
-    std::uint32_t least_behind = 0;  // of sent - seen since the last adjustment
+    std::uint32_t seen = 0;          // frames seen from this machine, comparable with SentFrames
+    std::uint32_t least_behind = 0;  // minimum of sent - seen since the last adjustment
     Frame last;
   };
   struct Cyclic {  // one cyclic TPDO
@@ -51,7 +53,7 @@ class IntruderWatch {
   };
   struct SdoServer {
     std::uint8_t asked = 0;  // requests whose answer may still come, however late
-    bool block = false;      // block transfer: several answers to one request
+    bool block = false;      // a block transfer runs: one request has several answers
     std::uint8_t unasked = 0;
   };
 

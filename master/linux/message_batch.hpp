@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Buffers for recvmmsg and sendmmsg of equal records: prepared once, then one system call a batch.
-/// Holds pointers into itself, so it stays where it was made.
+/// Buffers for recvmmsg and sendmmsg of equal records, prepared once; each batch then takes one
+/// system call. The object holds pointers into itself, so it cannot move.
 template <class Record, std::size_t N, std::size_t ControlBytes>
 class MessageBatch {
  public:
@@ -29,7 +29,8 @@ class MessageBatch {
   msghdr& header(std::size_t i) noexcept { return headers_[i].msg_hdr; }
   std::size_t bytes(std::size_t i) const noexcept { return headers_[i].msg_len; }
 
-  /// Takes at most `limit` messages without waiting. -1: errno says why.
+  /// Takes at most `limit` messages without waiting. Returns -1 on failure, with the reason in
+  /// errno.
   int receive(int fd, std::size_t limit) noexcept {
     const std::size_t count = std::min(limit, N);
     for (std::size_t i = 0; i < dirty_; ++i) prepare(i);
@@ -39,7 +40,8 @@ class MessageBatch {
     return got;
   }
 
-  /// Sends records [first, first + count) without waiting. -1: errno says why.
+  /// Sends records [first, first + count) without waiting. Returns -1 on failure, with the reason
+  /// in errno.
   int send(int fd, std::size_t first, std::size_t count) noexcept {
     return sendmmsg(fd, &headers_[first], static_cast<unsigned>(count),
                     MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -59,7 +61,7 @@ class MessageBatch {
   std::array<iovec, N> vectors_{};
   std::array<mmsghdr, N> headers_{};
   std::array<Control, ControlBytes == 0 ? 1 : N> controls_{};
-  std::size_t dirty_ = 0;  // headers that the kernel has changed since they were prepared
+  std::size_t dirty_ = 0;  // headers changed by the kernel since they were prepared
 };
 
 }  // namespace takt

@@ -10,8 +10,8 @@ namespace takt {
 
 using AnyPort = std::variant<SocketCanPort, UnixBusPort>;
 
-/// The bus of the bus thread: `can0` with the filters and the SYNC of the plan, or `unix:PATH`.
-/// `sent` counts what is sent, for a DiagnosticSocket.
+/// Opens the bus for the bus thread: `can0` with the filters and the SYNC of the plan, or
+/// `unix:PATH`. `sent` counts the sent frames for a DiagnosticSocket.
 std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& plan, Time spin,
                                           SentFrames* sent = nullptr);
 

@@ -39,7 +39,7 @@ bool has_capability(unsigned capability) {
   return (data[capability / 32].effective >> (capability % 32) & 1) != 0;
 }
 
-/// Raises the soft limit to the hard one; gives the limit then in force.
+/// Raises the soft limit to the hard limit and returns the limit then in force.
 rlim_t raise_limit(__rlimit_resource resource) {
   rlimit limit{};
   getrlimit(resource, &limit);
@@ -79,8 +79,8 @@ void pin(int cpu, RtReport& report) {
                            " (not one of this machine's, or not in this process's cpuset)");
 }
 
-/// MCL_FUTURE under a finite limit would turn a later allocation into a failure, so it is asked for
-/// only where nothing limits it.
+/// Under a finite limit, MCL_FUTURE could turn a later allocation into a failure. The function
+/// therefore locks memory only if nothing limits it.
 void lock_memory(RtReport& report) {
   const rlim_t limit = raise_limit(RLIMIT_MEMLOCK);
   if (limit == RLIM_INFINITY || has_capability(CAP_IPC_LOCK)) {

@@ -8,13 +8,14 @@
 
 namespace takt {
 
-/// How many frames of each 11-bit identifier the bus thread has handed to the bus: what tells the
-/// diagnostic socket its frames from those of others. One writer, any reader, no lock.
+/// Counts the frames of each 11-bit identifier that the bus thread has handed to the bus, so that
+/// the diagnostic socket can tell them from the frames of others. One writer, any reader, no lock.
 class SentFrames {
  public:
-  /// Writer, before the frames are sent: a reader never sees a frame that is not counted yet.
+  /// Writer: counts frames before they are sent, so that a reader never sees a frame that is not
+  /// counted yet.
   void add(std::span<const Frame> frames) noexcept { change(frames, 1); }
-  /// Writer: these were refused after all.
+  /// Writer: subtracts frames that were refused after all.
   void take_back(std::span<const Frame> frames) noexcept { change(frames, ~std::uint32_t{0}); }
 
   std::uint32_t of(CobId id) const noexcept {

@@ -31,7 +31,8 @@ bool set_option(int fd, int level, int option, int value) noexcept {
   return setsockopt(fd, level, option, &value, sizeof value) == 0;
 }
 
-/// The interface itself is missing, down or was replaced: nothing works until it is back.
+/// Returns true if the interface is missing, down or was replaced, so that nothing works until it
+/// is back.
 constexpr bool means_down(int error) noexcept {
   return error == ENETDOWN || error == ENODEV || error == ENXIO || error == ENETUNREACH;
 }
@@ -44,14 +45,14 @@ struct SocketCanPort::State {
   }
 
   int fd = -1;
-  ifreq request{};  // the interface's name
+  ifreq request{};  // holds the name of the interface
   std::vector<can_filter> filters;
   std::optional<canid_t> sync_id;
   Time spin{};
   SentFrames* sent = nullptr;
   Time next_look{};
   PortNews news;
-  std::uint32_t dropped = 0;  // by the kernel, of news.receive_overruns
+  std::uint32_t dropped = 0;  // part of news.receive_overruns that the kernel dropped
   MessageBatch<can_frame, batch_frames, can_control_bytes> in;
   MessageBatch<can_frame, batch_frames, 0> out;
 
@@ -62,7 +63,8 @@ struct SocketCanPort::State {
   bool take(std::size_t i, Time offset, Time now, StampedFrame& frame) noexcept;
 };
 
-/// Filters and binding; both are lost when the interface is deleted, and both may be repeated.
+/// Sets the filters and binds the socket. Deleting the interface loses both, and both may be
+/// repeated.
 bool SocketCanPort::State::bind_interface() noexcept {
   ifreq index = request;
   if (ioctl(fd, SIOCGIFINDEX, &index) != 0) return false;
@@ -88,22 +90,23 @@ void SocketCanPort::State::look_for_interface() noexcept {
   ifreq flags = request;
   if (ioctl(fd, SIOCGIFFLAGS, &flags) != 0 || (flags.ifr_flags & IFF_UP) == 0) return;
   if (!bind_interface()) return;
-  int stale = 0;  // the error of going down, where no call has fetched it yet
+  int stale = 0;  // error of the interface going down, if no call has fetched it yet
   socklen_t size = sizeof stale;
   getsockopt(fd, SOL_SOCKET, SO_ERROR, &stale, &size);
   news.interface_down = false;
-  news.bus_off = false;  // a controller starts error-active
+  news.bus_off = false;  // a controller starts in the state error-active
   news.error_passive = false;
 }
 
-/// Messages that the next batch has got.
+/// Returns the number of messages in the next batch.
 std::size_t SocketCanPort::State::fetch(std::size_t most) noexcept {
   const int got = in.receive(fd, most);
   if (got < 0 && errno != EAGAIN && errno != EINTR) note(errno);
   return got < 0 ? 0 : static_cast<std::size_t>(got);
 }
 
-/// Message i of the batch: false where it is for the port alone (error frames, own frames).
+/// Takes message i of the batch. Returns false if the message is for the port alone (an error frame
+/// or an own frame).
 bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
                                 StampedFrame& frame) noexcept {
   if (in.bytes(i) != CAN_MTU) return false;
@@ -120,7 +123,7 @@ bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
   const Time when = monotonic_stamp(control.realtime, offset, now);
   if (header.msg_flags & MSG_CONFIRM) {
     if (sync_id == raw.can_id) news.last_sync_echo = when;
-    news.bus_off = false;  // what was on the wire was not sent by a controller that is off
+    news.bus_off = false;  // an echo proves that the controller is not bus-off
     return false;
   }
   frame = {.frame = from_kernel(raw.can_id, raw.can_dlc, raw.data), .when = when};
@@ -157,7 +160,7 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
       setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0) {
     return std::unexpected{error_of(name, "socket option", errno)};
   }
-  // Room for the burst after a stall; only privilege gets beyond net.core.rmem_max.
+  // Room for the burst after a stall. Only a privileged process can exceed net.core.rmem_max.
   if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, 1 << 20)) {
     set_option(fd, SOL_SOCKET, SO_RCVBUF, 1 << 20);
   }

@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// A thread that runs `body`, or the errno that says why the machine has none to give: its limit of
-/// processes (RLIMIT_NPROC, TasksMax of systemd) or its memory.
+/// Starts a thread that runs `body`. Returns the errno if the machine refuses: its limit of
+/// processes (RLIMIT_NPROC, TasksMax of systemd) or its memory is exhausted.
 template <class Body>
 std::expected<std::thread, int> start_thread(Body&& body) noexcept {
   try {

@@ -9,7 +9,8 @@
 
 namespace takt {
 
-/// The address of a path; none where it is empty or too long for the kernel (107 bytes).
+/// Returns the address of a path, or std::nullopt if the path is empty or too long for the kernel
+/// (107 bytes).
 inline std::optional<sockaddr_un> unix_address(const std::string& path) noexcept {
   sockaddr_un address{};
   if (path.empty() || path.size() >= sizeof address.sun_path) return std::nullopt;
@@ -18,7 +19,8 @@ inline std::optional<sockaddr_un> unix_address(const std::string& path) noexcept
   return address;
 }
 
-/// A connected, non-blocking SEQPACKET socket; none: errno says why.
+/// Returns a connected, non-blocking SEQPACKET socket, or an empty descriptor with the reason in
+/// errno.
 inline FileDescriptor connect_unix(const sockaddr_un& address) noexcept {
   FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   const auto* target = reinterpret_cast<const sockaddr*>(&address);

@@ -19,20 +19,21 @@ namespace {
 constexpr std::size_t batch_frames = 256;
 constexpr Time look_again = std::chrono::milliseconds{10};
 constexpr Time open_limit = std::chrono::seconds{2};
-constexpr Time guest_patience = std::chrono::milliseconds{60};  // a host is replaced within 20 ms
+// A new host takes over within 20 ms.
+constexpr Time guest_patience = std::chrono::milliseconds{60};
 
 }  // namespace
 
 struct UnixBusPort::State {
   FileDescriptor socket;
-  std::optional<UnixBusHub> hub;       // none: an end of a socket pair, or a guest
-  std::optional<sockaddr_un> address;  // none: an end of a socket pair
+  std::optional<UnixBusHub> hub;       // empty for an end of a socket pair and for a guest
+  std::optional<sockaddr_un> address;  // empty for an end of a socket pair
   std::optional<canid_t> sync_id;
   bool echoes = false;
   Time spin{};
   SentFrames* sent = nullptr;
   Time next_look{};
-  std::uint32_t lost_before = 0;  // on earlier connections
+  std::uint32_t lost_before = 0;  // frames lost on earlier connections
   PortNews news;
   MessageBatch<UnixBusRecord, batch_frames, 0> in;
   MessageBatch<UnixBusRecord, batch_frames, 0> out;
@@ -66,7 +67,7 @@ void UnixBusPort::State::look_for_hub() noexcept {
   news.interface_down = !socket;
 }
 
-/// What was received goes back to its sender as his own. Lost echoes are nobody's loss.
+/// Sends received frames back to their sender as its own. Losing echoes harms nobody.
 void UnixBusPort::State::echo(std::size_t count) noexcept {
   const std::int64_t now = monotonic_now().count();
   for (std::size_t i = 0; i < count; ++i) {
@@ -77,7 +78,8 @@ void UnixBusPort::State::echo(std::size_t count) noexcept {
   out.send(socket.get(), 0, count);
 }
 
-/// Message i of the batch: false where it is for the port alone (an echo) or not a frame.
+/// Takes message i of the batch. Returns false if it is not a frame or is for the port alone (an
+/// echo).
 bool UnixBusPort::State::take(std::size_t i, StampedFrame& frame) noexcept {
   const UnixBusRecord& record = in.record(i);
   if (in.bytes(i) != sizeof(UnixBusRecord) || !valid(record)) return false;
@@ -96,7 +98,7 @@ UnixBusPort::UnixBusPort(UnixBusPort&&) noexcept = default;
 UnixBusPort& UnixBusPort::operator=(UnixBusPort&&) noexcept = default;
 UnixBusPort::~UnixBusPort() = default;
 
-/// Connects, and tries again until `limit` where nobody listens (yet).
+/// Connects, and retries until `limit` if nobody listens (yet).
 bool UnixBusPort::State::connect_until(Time limit) noexcept {
   while (!(socket = connect_unix(*address))) {
     if (monotonic_now() > limit) return false;
@@ -118,7 +120,7 @@ std::expected<UnixBusPort, BusError> UnixBusPort::open(const UnixBusOptions& opt
   state->spin = options.spin;
   state->sent = options.sent;
   if (options.sync_cob_id) state->sync_id = kernel_id(Frame{.id = *options.sync_cob_id});
-  // Another process may hold the lock and not listen yet.
+  // Another process may hold the lock but not listen yet.
   if (!guest && !state->connect_until(monotonic_now() + open_limit)) {
     const int error = errno;
     return std::unexpected{
@@ -185,7 +187,7 @@ SendResult UnixBusPort::send(std::span<const Frame> out) noexcept {
     const std::int64_t now = monotonic_now().count();
     for (std::size_t i = 0; i < count; ++i) {
       state.out.record(i) = to_record(out[result.sent + i]);
-      state.out.record(i).when = now;  // a hub puts its own time there
+      state.out.record(i).when = now;  // a hub overwrites this with its own time
     }
     for (std::size_t done = 0; done < count;) {
       const int sent = state.out.send(state.socket.get(), done, count - done);

@@ -13,24 +13,25 @@
 
 namespace takt {
 
-/// Who hosts a bus between processes.
+/// The role of a member in hosting a bus between processes.
 enum class BusMember : std::uint8_t {
-  resident,  ///< where nobody else does; takes over from a host that ends
-  guest,     ///< a short-lived tool: only where nobody hosts when it comes
+  resident,  ///< hosts if nobody else does, and takes over from a host that ends
+  guest,     ///< a short-lived tool; hosts only if nobody hosts when it joins
 };
 
 struct UnixBusOptions {
-  std::string path;                    ///< of `unix:PATH`, without `unix:`
-  std::optional<CobId> sync_cob_id{};  ///< own frames whose echo is news().last_sync_echo
+  std::string path;  ///< path of `unix:PATH`, without `unix:`
+  /// COB-ID of the own frames whose echo is news().last_sync_echo.
+  std::optional<CobId> sync_cob_id{};
   Time spin{};
-  SentFrames* sent = nullptr;  ///< counts what was sent, for a DiagnosticSocket
+  SentFrames* sent = nullptr;  ///< counts the sent frames for a DiagnosticSocket
   BusMember member = BusMember::resident;
 };
 
 /// A bus between the processes of one machine (`unix:PATH`) as a Port, for machines whose kernel
-/// has no CAN. Frames reach all other members; stamps are the hub's. Where the hub's process ends
-/// the interface is down until another process has taken over; receive() looks for it, at most
-/// every 10 ms. A full socket is told as ENOBUFS.
+/// has no CAN. Frames reach all other members; the hub sets the time stamps. If the process of the
+/// hub ends, the interface is down until another process has taken over; receive() looks for the
+/// new hub at most every 10 ms. The port reports a full socket as ENOBUFS.
 class UnixBusPort {
  public:
   static std::expected<UnixBusPort, BusError> open(const UnixBusOptions& options);
@@ -53,8 +54,8 @@ class UnixBusPort {
   std::unique_ptr<State> state_;
 };
 
-/// A bus of two members inside one process: the master's end and the devices' end. The devices'
-/// end echoes what it receives, so the master sees its SYNC on the wire.
+/// Makes a bus of two members inside one process: the master's end and the devices' end. The
+/// devices' end echoes what it receives, so the master sees its own SYNC on the wire.
 std::pair<UnixBusPort, UnixBusPort> make_socket_pair_bus(
     std::optional<CobId> sync_cob_id = CobId::base(0x080), Time spin = {});
 

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t max_clients = 64;
 constexpr std::size_t batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
-constexpr int most_batches = 4096;  // of one client that are handed over
+constexpr int most_batches = 4096;  // most batches of one client that hand_over() forwards
 
 struct Client {
   FileDescriptor socket;
@@ -41,13 +41,14 @@ void enlarge_send_buffer(int fd) noexcept {
   }
 }
 
-/// Anything else that is there stays, and bind() then says that the address is in use.
+/// Removes only a socket. Anything else at the path stays, and bind() then reports that the address
+/// is in use.
 void remove_socket(const char* path) noexcept {
   struct stat found{};
   if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path);
 }
 
-/// What bind() or listen() has refused, in words.
+/// Describes why bind() or listen() failed.
 std::string refusal(const std::string& path, int error) {
   struct stat found{};
   if (error != EADDRINUSE || lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) {
@@ -69,9 +70,9 @@ class UnixBusHub::Impl {
     if (write(stop_.get(), &one, sizeof one) == sizeof one) thread_.join();
   }
 
-  /// False: somebody else hosts. An error is that of listening.
+  /// Returns false if another process hosts. The error is that of listening.
   std::expected<bool, int> try_to_host();
-  /// An error is that of the thread, which could not be created.
+  /// The error says why the thread could not be created.
   std::expected<void, int> start() {
     auto thread = start_thread([this] { run(); });
     if (!thread) return std::unexpected{thread.error()};
@@ -103,7 +104,7 @@ class UnixBusHub::Impl {
 std::expected<bool, int> UnixBusHub::Impl::try_to_host() {
   if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) return false;
   FileDescriptor listener{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  remove_socket(address_.sun_path);  // of a host that is gone: the lock is ours
+  remove_socket(address_.sun_path);  // left by a host that has ended: this process holds the lock
   const auto* address = reinterpret_cast<const sockaddr*>(&address_);
   if (!listener || bind(listener.get(), address, sizeof address_) != 0 ||
       listen(listener.get(), static_cast<int>(max_clients)) != 0) {
@@ -150,8 +151,8 @@ void UnixBusHub::Impl::serve() {
   }
 }
 
-/// The host ends: what clients have sent already still reaches the others, what they send from now
-/// on is refused to them.
+/// Ends the service of this host. Frames that clients have already sent still reach the others; the
+/// kernel refuses what they send from now on.
 void UnixBusHub::Impl::hand_over() {
   while (accept_client()) {
   }
@@ -164,7 +165,7 @@ void UnixBusHub::Impl::hand_over() {
   }
 }
 
-/// False: nobody waits.
+/// Returns false if no client is waiting.
 bool UnixBusHub::Impl::accept_client() {
   FileDescriptor socket{accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   if (!socket) return false;
@@ -174,8 +175,8 @@ bool UnixBusHub::Impl::accept_client() {
   return true;
 }
 
-/// A client that ends without having read everything resets its connection: what it has sent can be
-/// read after that error.
+/// A client that ends without having read everything resets its connection. The frames that it sent
+/// can still be read after that error.
 void UnixBusHub::Impl::forward_from(Client& sender) {
   const int got = in_.receive(sender.socket.get(), batch_frames);
   if (got < 0) {
@@ -196,7 +197,7 @@ void UnixBusHub::Impl::forward_from(Client& sender) {
   }
 }
 
-/// A receiver that has ended stays until all that it has sent was read.
+/// A receiver that has ended stays until everything that it sent has been read.
 void UnixBusHub::Impl::deliver(Client& receiver, bool own, std::size_t count) {
   if (count == 0) return;
   for (std::size_t i = 0; i < count; ++i) {

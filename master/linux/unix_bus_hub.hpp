@@ -7,16 +7,16 @@
 
 namespace takt {
 
-/// The wire of `unix:PATH`. Every process that uses the bus owns one; exactly one of them, the
+/// The wire of `unix:PATH`. Every resident process on the bus owns a hub. Exactly one of them, the
 /// holder of the lock file PATH.lock, listens on PATH and hands each frame to all others, and back
 /// to its sender as an echo. When that process ends, however it ends, another one takes over within
-/// 20 ms; where it ends in order, frames that it has taken still arrive.
+/// 20 ms. If it ends in order, the frames that it has taken still arrive.
 ///
-/// A client that does not read loses frames (each later frame tells it how many); it never blocks
-/// the bus. At most 64 clients.
+/// A client that does not read loses frames (each later frame carries the number lost) and never
+/// blocks the bus. At most 64 clients.
 class UnixBusHub {
  public:
-  /// Hosts at once where nobody else does; else stands by. One thread of ordinary priority.
+  /// Hosts at once if nobody else does, otherwise stands by. Runs one thread of ordinary priority.
   static std::expected<UnixBusHub, BusError> join(const std::string& path);
   UnixBusHub(UnixBusHub&&) noexcept;
   UnixBusHub& operator=(UnixBusHub&&) noexcept;

@@ -6,10 +6,10 @@
 
 namespace takt {
 
-/// Learns when the last expected PDO is usually there, so that one drain at that time finds them
-/// all. A PDO that comes later is waited for, so a single one must not make the images of the next
-/// cycles late: the prediction is a high quantile of the arrivals and not the latest of them. Times
-/// count from SYNC. Bounded by the receive window.
+/// Learns when the last expected PDO usually arrives, so that one drain at that time finds all of
+/// them. The loop waits for PDOs that come later, so a single late PDO must not delay the images of
+/// the next cycles: the prediction is a high quantile of the arrival times, not their maximum.
+/// Times count from SYNC and are limited to the receive window.
 class ArrivalPrediction {
  public:
   explicit ArrivalPrediction(Time window) noexcept : window_{window}, predicted_{window} {}
@@ -17,7 +17,7 @@ class ArrivalPrediction {
   Time predicted() const noexcept { return predicted_; }
   bool learned() const noexcept { return seen_ >= learning; }
 
-  /// All expected PDOs were there at the first drain; the last one came at `arrival`.
+  /// All expected PDOs had arrived at the first drain; the last one came at `arrival`.
   void in_time(Time arrival) noexcept {
     if (seen_ < learning) {
       latest_ = std::max(latest_, arrival);
@@ -27,8 +27,8 @@ class ArrivalPrediction {
     predicted_ -= (predicted_ - std::min(predicted_, arrival + margin)) / slowness;
   }
 
-  /// The last one came at `arrival`, after the first drain; where it stayed away nothing is
-  /// learned.
+  /// The last expected PDO came at `arrival`, after the first drain. The caller reports nothing if
+  /// a PDO never came.
   void late(Time arrival) noexcept {
     const Time excess = std::max(Time{0}, arrival - predicted_) + margin;
     predicted_ = std::min(window_, predicted_ + std::min(excess, step));
@@ -41,9 +41,11 @@ class ArrivalPrediction {
 
  private:
   static constexpr std::uint32_t learning = 16;  ///< cycles that wait for the whole window
-  static constexpr std::int64_t slowness = 256;  ///< cycles that a late PDO is remembered
+  /// A late PDO affects the prediction for about this many cycles.
+  static constexpr std::int64_t slowness = 256;
   static constexpr Time margin = std::chrono::microseconds{5};
-  static constexpr Time step = std::chrono::microseconds{20};  ///< at most, for a late PDO
+  /// Largest increase for one late PDO.
+  static constexpr Time step = std::chrono::microseconds{20};
 
   Time window_;
   Time predicted_;

@@ -5,8 +5,8 @@
 
 namespace takt {
 
-/// Absolute deadlines of the cycles: start + k * period, so that nothing drifts. Missed periods
-/// are left out, never caught up; the phase is kept.
+/// Computes the absolute deadlines of the cycles as start + k * period, so that they do not drift.
+/// The clock skips missed periods and never catches up; the phase stays the same.
 class BeatClock {
  public:
   explicit BeatClock(Time period) noexcept : period_{period} {}
@@ -19,8 +19,8 @@ class BeatClock {
   std::uint64_t cycle() const noexcept { return cycle_; }  ///< number of the period, from 1
   Time period() const noexcept { return period_; }
 
-  /// At `now`, is the deadline so long gone that a SYNC would come too close to the next one? Then
-  /// goes to the next deadline in the future. Returns the periods left out.
+  /// If a SYNC at `now` would come too close to the next deadline, moves to the next deadline in
+  /// the future. Returns the number of skipped periods.
   std::uint64_t skip_missed(Time now) noexcept {
     const Time late = now - deadline_;
     if (late <= period_ / 2) return 0;
@@ -29,8 +29,8 @@ class BeatClock {
     cycle_ += static_cast<std::uint64_t>(missed);
     return static_cast<std::uint64_t>(missed);
   }
-  /// The beat is somebody else's: it was at `beat`, and the next is expected a `period` later.
-  /// Returns the periods left out since the deadline.
+  /// Follows the SYNC of another device: the beat was at `beat`, and the next one is expected one
+  /// `period` later. Returns the number of periods skipped since the deadline.
   std::uint64_t follow(Time beat, Time period) noexcept {
     const std::int64_t late = (beat - deadline_ + period / 2) / period;
     const auto missed = static_cast<std::uint64_t>(late > 0 ? late : 0);
@@ -56,10 +56,11 @@ class BeatClock {
   std::uint64_t cycle_ = 0;
 };
 
-/// The counter of SYNC: 1..overflow, counting only what was sent. CiA 301, 7.2.5.
+/// The counter of SYNC runs from 1 to the overflow value and counts only SYNCs that were sent. CiA
+/// 301, 7.2.5.
 class SyncCounter {
  public:
-  /// `overflow` as in 0x1019; below 2: SYNC has no counter.
+  /// `overflow` has the meaning of object 0x1019; below 2, SYNC has no counter.
   explicit SyncCounter(std::uint8_t overflow) noexcept : overflow_{overflow} {}
   bool used() const noexcept { return overflow_ >= 2; }
   std::uint8_t next() const noexcept { return next_; }

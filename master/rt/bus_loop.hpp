@@ -33,47 +33,55 @@
 namespace takt {
 
 struct BusLoopOptions {
-  bool observe = false;              ///< listen only: nothing at all is sent
-  Controller* controller = nullptr;  ///< called in each cycle; outlives the loop
+  bool observe = false;              ///< listen only; the loop sends nothing
+  Controller* controller = nullptr;  ///< called in each cycle; must outlive the loop
 };
 
-/// What is recorded can be gone on with in the middle of a run.
+/// True if a replay can continue a recording of this loop from the middle of a run.
 template <class P, class N>
 inline constexpr bool keeps_state = WitnessPort<P> && requires(const N machine) { machine.idle(); };
 
-/// The bus thread: one SYNC cycle after another. A complete cycle makes six system calls (sleep,
-/// SYNC, sleep, receive, sleep, outputs), one with a missing PDO eight; service frames add theirs.
-/// Nothing allocates, locks or throws after construction. `N` is the machine of the services:
-/// boot, SDO, NMT.
+/// The bus thread runs one SYNC cycle after another. A complete cycle makes six system calls
+/// (sleep, SYNC, sleep, receive, sleep, outputs), a cycle with a missing PDO makes eight; service
+/// frames add more. Nothing allocates, locks or throws after construction. `N` is the state machine
+/// of the services (boot, SDO, NMT).
 template <Port P, class N = Network>
 class BusLoop {
  public:
-  /// Keeps references to all three.
+  /// The loop keeps references to `plan`, `port` and `exchange`.
   BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options = {});
   BusLoop(const BusLoop&) = delete;
   BusLoop& operator=(const BusLoop&) = delete;
 
-  /// The first SYNC comes one period from now.
+  /// The first SYNC goes out one period after this call.
   void start() noexcept;
-  /// Instead of start(): goes on behind the publishing of the cycle in which another loop of this
-  /// plan has written its checkpoint, to the end of that cycle. False: it is of another plan.
+  /// Replaces start(): continues from a checkpoint that another loop with this plan has written.
+  /// Runs the rest of that cycle, from behind the publication of its image. Returns false if the
+  /// checkpoint belongs to another plan.
   bool resume(std::span<const std::uint64_t> checkpoint) noexcept;
-  /// One whole cycle: returns after its outputs were sent.
+  /// Runs one whole cycle and returns after its outputs have been sent.
   void cycle() noexcept;
   void request_stop() noexcept { exchange_.stop_requested.store(true, std::memory_order_relaxed); }
-  /// The ordered stop is over; no cycle may follow.
+  /// Returns true once the ordered stop is complete; the caller must not run another cycle.
   bool done() const noexcept { return done_; }
 
  private:
-  static constexpr std::size_t batch = 256;              ///< frames taken by one receive
-  static constexpr unsigned most_wakes = 8;              ///< of one cycle, for PDOs that are late
-  static constexpr unsigned patience_with_services = 2;  ///< cycles without room for them
-  static constexpr std::size_t burst_frames = 6;         ///< handed over at once; queues are short
-  static constexpr std::size_t burst_ahead = 3;          ///< still in the queue when more follow
+  static constexpr std::size_t batch = 256;  ///< most frames that one receive takes
+  /// Most wake-ups of one cycle for late PDOs.
+  static constexpr unsigned most_wakes = 8;
+  /// Cycles without room for service frames before one is forced out.
+  static constexpr unsigned patience_with_services = 2;
+  /// Most frames handed over at once, because interface queues are short.
+  static constexpr std::size_t burst_frames = 6;
+  /// Frames still in the queue when the next ones follow.
+  static constexpr std::size_t burst_ahead = 3;
   static constexpr Time long_cycle = std::chrono::milliseconds{50};
-  static constexpr Time round_distance = std::chrono::milliseconds{10};  ///< in a long cycle
-  static constexpr unsigned patience_with_stalls = 16;  ///< one after another, before a SYNC
-  static constexpr int longest_lapse = 2;  ///< periods without this thread that nobody need know of
+  /// Time between the service rounds of a long cycle.
+  static constexpr Time round_distance = std::chrono::milliseconds{10};
+  /// Successive stalls tolerated before a SYNC.
+  static constexpr unsigned patience_with_stalls = 16;
+  /// Longest absence of this thread, in periods, that needs no excuse.
+  static constexpr int longest_lapse = 2;
   static constexpr Time status_interval = std::chrono::milliseconds{10};
 
   void finish_cycle() noexcept;
@@ -109,9 +117,9 @@ class BusLoop {
   void serve_round() noexcept;
   bool rest_until_next_round() noexcept;
   enum class Handed : std::uint8_t {
-    nothing,   ///< there was none, or no room for it
-    requests,  ///< answers will come soon
-    burst,     ///< nobody answers, more may follow as the wire takes them
+    nothing,   ///< there were no frames, or no room for them
+    requests,  ///< answers to these frames will come soon
+    burst,     ///< these frames have no answers; more may follow as the wire takes them
   };
   Time under_way(std::size_t open) const noexcept;
   Handed send_services(std::size_t& budget, Time under_way) noexcept;
@@ -149,7 +157,7 @@ class BusLoop {
   void give_events() noexcept;
   void write_status() noexcept;
   std::size_t send(std::span<const Frame> frames) noexcept;
-  // What comes from the front thread and goes there; past the port where it wants to see it.
+  // Exchange with the front thread. A WitnessPort sees everything that passes here.
   const SetPointFrame& newest_set_points() noexcept;
   bool next_request() noexcept;
   bool asked_to_stop() noexcept;
@@ -168,8 +176,9 @@ class BusLoop {
   PdoRequests pdo_requests_;
   TimeProducer time_;
   OrderedStop stop_;
-  OrderedStop halt_;  ///< the same before NMT ends the PDO exchange; in NMT Stopped it lasts on
-  std::vector<AxisMemory> memory_;  ///< of the axes of stop_
+  /// Stops axes before NMT ends their PDO exchange; lasts as long as NMT Stopped.
+  OrderedStop halt_;
+  std::vector<AxisMemory> memory_;  ///< one element per axis of stop_
   StopRequests stop_requests_;
   FallbackWriter fallbacks_;
   PortWatch port_watch_;
@@ -182,32 +191,36 @@ class BusLoop {
   ArrivalPrediction prediction_;
   WireTime wire_;
   std::vector<StampedFrame> received_;
-  std::size_t left_from_ = 0;  ///< frames of `received_` behind a SYNC: of the next cycle
+  /// First and end of the frames in `received_` behind a SYNC; they belong to the next cycle.
+  std::size_t left_from_ = 0;
   std::size_t left_end_ = 0;
   std::array<bool, 128> exchanging_{};
-  std::vector<std::uint8_t> quick_stopped_;  ///< per axis of stop_: after the loss of a node
-  bool hearing_ = false;                     ///< PDOs of some node are taken
+  /// Per axis of stop_: 1 while the loss of another node forces its controlword.
+  std::vector<std::uint8_t> quick_stopped_;
+  bool hearing_ = false;  ///< the loop takes PDOs of at least one node
   BusStatus status_;
   Reply reply_;
   Request request_;
   bool reply_waits_ = false;
   bool done_ = false;
-  bool gate_open_ = true;   ///< frames may be sent in this cycle
+  bool gate_open_ = true;   ///< the loop may send frames in this cycle
   bool followed_ = false;   ///< the followed SYNC began this cycle
-  bool sync_lost_ = false;  ///< and is lost; its reaction is in force
-  Time wire_free_{};        ///< the service frames handed over in this cycle have ended
+  bool sync_lost_ = false;  ///< the followed SYNC is lost and the configured reaction is in force
+  /// Time at which the service frames handed over in this cycle have left the wire.
+  Time wire_free_{};
   std::size_t asked_ = 0;   ///< SDO requests handed over since the last round
-  Time stream_end_{};       ///< of the newest that was asked for, at the latest
+  Time stream_end_{};       ///< latest end of the newest sub-block that was requested
   unsigned starved_ = 0;    ///< cycles in which service frames found no room
-  std::uint64_t held_ = 0;  ///< cycles since it was open
+  std::uint64_t held_ = 0;  ///< cycles held back since the gate was last open
   MissedBecause held_because_ = MissedBecause::not_seen;
-  bool late_cycle_ = false;  ///< this thread was late in the newest cycle, before its publication
-  Time sync_sent_{};         ///< of this cycle
-  Time last_sync_{};         ///< of the cycle before
-  Time sync_time_{};         ///< the same, by its echo where there is one
+  /// This thread was late in the newest cycle, before the image was published.
+  bool late_cycle_ = false;
+  Time sync_sent_{};  ///< SYNC of this cycle
+  Time last_sync_{};  ///< SYNC of the previous cycle
+  Time sync_time_{};  ///< SYNC of this cycle, by its echo if there is one
   Time last_status_{};
-  Time published_{};             ///< kept where checkpoints are
-  std::size_t state_words_ = 0;  ///< of a checkpoint
+  Time published_{};             ///< publish time of the newest image; set only with checkpoints
+  std::size_t state_words_ = 0;  ///< size of a checkpoint
 };
 
 }  // namespace takt

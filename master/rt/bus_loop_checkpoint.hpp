@@ -1,10 +1,10 @@
 #pragma once
-// Member functions of BusLoop: checkpoints of a recording, from which a replay can begin.
+// Member functions of BusLoop for the checkpoints of a recording, from which a replay can begin.
 #include "master/rt/bus_loop.hpp"
 
 namespace takt {
 
-/// Nothing is under way, so that what keep() names is all that decides what comes.
+/// Returns true if nothing is under way, so that the state in keep() alone decides what follows.
 template <Port P, class N>
 bool BusLoop<P, N>::idle() const noexcept {
   return stop_.stage() == StopStage::running && halt_.stage() == StopStage::running &&
@@ -21,7 +21,7 @@ void BusLoop<P, N>::keep(Archive& state) noexcept {
   state(held_because_, late_cycle_, status_.beats, memory_);
 }
 
-/// In the slack, where there is time for it; now and then.
+/// Writes a checkpoint from time to time, in the slack and only if there is time for it.
 template <Port P, class N>
 void BusLoop<P, N>::keep_state() noexcept {
   if constexpr (keeps_state<P, N>) {

@@ -1,5 +1,5 @@
 #pragma once
-// Member functions of BusLoop: what comes from the front thread and goes there.
+// Member functions of BusLoop for the exchange with the front thread.
 #include "master/rt/bus_loop.hpp"
 
 namespace takt {

@@ -68,7 +68,7 @@ void BusLoop<P, N>::finish_cycle() noexcept {
   clock_.next();
 }
 
-/// Which nodes exchange PDOs in this cycle.
+/// Updates which nodes exchange PDOs in this cycle.
 template <Port P, class N>
 void BusLoop<P, N>::follow_nodes() noexcept {
   hearing_ = false;
@@ -85,9 +85,9 @@ void BusLoop<P, N>::follow_nodes() noexcept {
         pdos_.outputs().shut(i);
       }
     }
-    // Without knowing of SYNC no cycle can wait for answers to it.
+    // A master that only observes and does not know SYNC cannot wait for answers to it.
     const bool beats = !options_.observe || follower_.used();
-    // At the end of an ordered stop a heartbeat from before the last NMT command may still say
+    // At the end of an ordered stop, a heartbeat sent before the last NMT command may still report
     // OPERATIONAL.
     const Reception beating = stop_.axes_done() ? Reception::early : Reception::full;
     const Reception heard = beats ? beating : Reception::listening;
@@ -99,7 +99,7 @@ void BusLoop<P, N>::follow_nodes() noexcept {
   }
 }
 
-/// Frames that could not leave yet must not be followed by others.
+/// If earlier frames could not leave yet, no other frames may follow them.
 template <Port P, class N>
 void BusLoop<P, N>::look_at_wire() noexcept {
   if (gate_.doubtful(port_.news())) drain();
@@ -115,8 +115,8 @@ void BusLoop<P, N>::look_at_wire() noexcept {
   }
 }
 
-/// A late cycle explains only the cycle that follows it. An error of the controller, which may be
-/// reported some cycles later, explains all of them.
+/// A late cycle explains only the cycle that follows it. A controller error explains all held
+/// cycles, because the controller may report it some cycles later.
 template <Port P, class N>
 void BusLoop<P, N>::note_held() noexcept {
   const PortNews news = port_.news();
@@ -126,7 +126,7 @@ void BusLoop<P, N>::note_held() noexcept {
   if (news.bus_off || news.error_passive) held_because_ = MissedBecause::wire_blocked;
 }
 
-/// The time at which the image of this cycle is published, whatever is missing in it.
+/// Returns the time at which the loop publishes the image of this cycle, whatever is missing in it.
 template <Port P, class N>
 Time BusLoop<P, N>::end_of_window() const noexcept {
   return std::min(sync_sent_ + plan_.cycle.receive_window,
@@ -136,9 +136,10 @@ Time BusLoop<P, N>::end_of_window() const noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::receive() noexcept {
   const Time end = end_of_window();
-  // While no node exchanges PDOs (all still boot) the whole slack belongs to the services.
+  // While no node exchanges PDOs (all nodes still boot), the services get the whole slack.
   if (plan_.cycle.sync && hearing_) {
-    // Event-driven PDOs alone teach no arrival; half of the window leaves room for services.
+    // If only event-driven PDOs are mapped, there is no arrival to learn; half of the window leaves
+    // room for services.
     const bool nothing_due = pdos_.inputs().expected() == 0 && !prediction_.learned();
     const Time wait = nothing_due ? plan_.cycle.receive_window / 2 : prediction_.predicted();
     port_.sleep_until(std::min(sync_sent_ + wait, end));
@@ -149,8 +150,8 @@ void BusLoop<P, N>::receive() noexcept {
   learn(in_time);
 }
 
-/// PDOs that are later than predicted are taken as they come. Frames of others wake this thread as
-/// well, so after a few of them the rest is taken at the end.
+/// Takes PDOs that are later than predicted as they arrive. Other frames wake this thread as well,
+/// so after a few wake-ups the loop takes the rest at the end of the window.
 template <Port P, class N>
 void BusLoop<P, N>::await_rest(Time end) noexcept {
   for (unsigned wakes = 0; wakes < most_wakes; ++wakes) {
@@ -245,7 +246,7 @@ void BusLoop<P, N>::run_controller(const ImageStamp& stamp) noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::predict_next_publish(Time now) noexcept {
   Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
-  // After a stall within the cycle: the clock will skip what is over.
+  // After a stall within the cycle, the clock will skip the periods that have passed.
   const Time late = now - next;
   if (late > Time{}) next += (late / clock_.period() + 1) * clock_.period();
   exchange_.next_publish.store(next.count(), std::memory_order_release);
@@ -253,7 +254,7 @@ void BusLoop<P, N>::predict_next_publish(Time now) noexcept {
 
 template <Port P, class N>
 void BusLoop<P, N>::send_outputs() noexcept {
-  if (follower_.arrived()) return;  // it came early: these are outputs of the next cycle
+  if (follower_.arrived()) return;  // SYNC came early: these outputs belong to the next cycle.
   port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
   if (options_.observe || outputs_rest()) return;
   const Time now = port_.now();
@@ -264,7 +265,7 @@ void BusLoop<P, N>::send_outputs() noexcept {
     exchange_.timing.command_age.record(now - commands.when);
   }
   if (frames.empty()) return;
-  // SYNC comes first: outputs that could not end before it wait for the next cycle.
+  // SYNC has precedence: outputs that could not end before it wait for the next cycle.
   const Time room = clock_.deadline() + clock_.period() - now;
   if (wire_.worst(frames) > room) [[unlikely]] {
     frames = pdos_.outputs().pack_less(wire_.bits_in(room), WireTime::worst_bits);

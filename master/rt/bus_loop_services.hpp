@@ -1,5 +1,5 @@
 #pragma once
-// Member functions of BusLoop: the slack of a cycle, in which services and requests have their
+// Member functions of BusLoop for the slack of a cycle, in which services and requests have their
 // turn.
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 
 namespace takt {
 
-/// Cycles so full that no dialogue fits before the outputs must not keep nodes from booting: one
-/// service frame goes out right behind SYNC. PDOs have priority over it on the wire.
+/// Cycles that are too full for a dialogue before the outputs must not keep nodes from booting.
+/// This sends one service frame directly behind SYNC; PDOs have priority over it on the wire.
 template <Port P, class N>
 void BusLoop<P, N>::relieve_services() noexcept {
   if (behind_stream(port_.now())) return;
@@ -17,8 +17,8 @@ void BusLoop<P, N>::relieve_services() noexcept {
   starved_ = 0;
 }
 
-/// While this thread stood still nobody listened: what came in has been read by now, what the
-/// socket could not hold is no silence of a device.
+/// While this thread stood still, nobody listened. It has read what came in by now; frames that the
+/// socket could not hold must not count as silence of a device.
 template <Port P, class N>
 void BusLoop<P, N>::excuse_absence() noexcept {
   const Time away = sync_sent_ - std::exchange(last_sync_, sync_sent_) - clock_.period();
@@ -27,14 +27,15 @@ void BusLoop<P, N>::excuse_absence() noexcept {
   pdo_requests_.excuse(away);
 }
 
-/// This thread stood still since SYNC: that has to be excused before anything times out.
+/// Returns true if this thread stood still since SYNC. The absence must be excused before anything
+/// times out.
 template <Port P, class N>
 bool BusLoop<P, N>::stalled(Time now) const noexcept {
   return now - sync_sent_ > longest_lapse * clock_.period();
 }
 
-/// Slack: machines and requests. A long cycle has many rounds, so that boots and heartbeats go on
-/// as in a short one.
+/// Runs the state machines and the requests in the slack. A long cycle has many rounds, so that
+/// boots and heartbeats proceed as fast as in a short cycle.
 template <Port P, class N>
 void BusLoop<P, N>::serve() noexcept {
   excuse_absence();
@@ -46,7 +47,7 @@ void BusLoop<P, N>::serve() noexcept {
   step_stop();
 }
 
-/// False: the outputs come next, or a followed SYNC has come early.
+/// Returns false if the outputs come next, or if a followed SYNC came early.
 template <Port P, class N>
 bool BusLoop<P, N>::rest_until_next_round() noexcept {
   const Time next = port_.now() + round_distance;
@@ -57,8 +58,8 @@ bool BusLoop<P, N>::rest_until_next_round() noexcept {
   return !follower_.arrived();
 }
 
-/// A node sends its event-driven PDOs as soon as it is started, often in this very round and never
-/// again until they change.
+/// A node sends its event-driven PDOs as soon as it is started, often in this round, and not again
+/// until they change.
 template <Port P, class N>
 void BusLoop<P, N>::expect_started_nodes() noexcept {
   if (!services_.has(nmt_cob_id)) return;
@@ -69,7 +70,7 @@ void BusLoop<P, N>::expect_started_nodes() noexcept {
   }
 }
 
-/// Service frames and the answers to them end before the outputs.
+/// Runs one round of services. Service frames and their answers end before the outputs.
 template <Port P, class N>
 void BusLoop<P, N>::serve_round() noexcept {
   take_requests();
@@ -82,8 +83,8 @@ void BusLoop<P, N>::serve_round() noexcept {
     last_look = std::min(last_look, port_.now() + round_distance);
   }
   std::size_t budget = plan_.cycle.service_frames;
-  std::size_t open = 0;  // dialogues of this round without an answer so far
-  bool idle = true;      // nothing of this round was handed over
+  std::size_t open = 0;  // dialogues of this round that are still unanswered
+  bool idle = true;      // this round has handed over nothing so far
   services_.inbox().set_limit(budget);
   if (const Time now = port_.now(); !stalled(now)) {
     pdo_requests_.on_time(exchanging_, status_.beats, now, services_.inbox());
@@ -111,7 +112,7 @@ void BusLoop<P, N>::serve_round() noexcept {
     }
     const std::uint64_t heard = status_.frames_received;
     drain();
-    // Where nobody exchanges PDOs yet (all boot) an answer gives its place to the next request.
+    // While no node exchanges PDOs (all nodes boot), each answer makes room for the next request.
     const std::size_t answered = std::min<std::size_t>(open, status_.frames_received - heard);
     open -= answered;
     budget += answered;
@@ -121,8 +122,9 @@ void BusLoop<P, N>::serve_round() noexcept {
   give_replies();
 }
 
-/// A device sends a sub-block, or has not ended one that was given up: a frame of less priority
-/// would wait for its end in the queue of the controller, and SYNC behind it.
+/// Returns true while a device sends a sub-block, or has not ended an abandoned one. A frame of
+/// lower priority would wait for the end of the sub-block in the transmit queue of the controller,
+/// and SYNC would wait behind that frame.
 template <Port P, class N>
 bool BusLoop<P, N>::behind_stream(Time now) const noexcept {
   return now < stream_end_ &&
@@ -130,8 +132,9 @@ bool BusLoop<P, N>::behind_stream(Time now) const noexcept {
              services_.count(Answer::stream);
 }
 
-/// What may still be under way: in operation all that servers owe, so that it finds room before
-/// the outputs even if it comes at once. `open`: dialogues of this round.
+/// Returns the wire time to reserve for answers under way. In operation, this covers everything
+/// that servers owe, so that it fits before the outputs even if it comes at once. `open` counts the
+/// unanswered dialogues of this round.
 template <Port P, class N>
 Time BusLoop<P, N>::under_way(std::size_t open) const noexcept {
   if (!hearing_) return wire_.worst_dialogue() * open;
@@ -140,7 +143,8 @@ Time BusLoop<P, N>::under_way(std::size_t open) const noexcept {
   return wire_.worst_dialogue() / 2 * (owed + std::min(owed, asked_));
 }
 
-/// The first service frames, as many as the port takes.
+/// Hands over the first `most` service frames, or as many of them as the port takes. Returns their
+/// number.
 template <Port P, class N>
 std::size_t BusLoop<P, N>::hand_over(std::size_t most) noexcept {
   const std::size_t streams = services_.count(Answer::stream);
@@ -176,7 +180,7 @@ auto BusLoop<P, N>::send_services(std::size_t& budget, Time under_way) noexcept 
   return burst ? Handed::burst : Handed::requests;
 }
 
-/// TIME tells the moment at which it is sent: it never waits in a queue.
+/// TIME carries the moment at which it is sent, so it never waits in a queue.
 template <Port P, class N>
 void BusLoop<P, N>::send_time() noexcept {
   const Time now = port_.now();

@@ -1,6 +1,6 @@
 #pragma once
-// Member functions of BusLoop: the ordered stop, the stop of axes before NMT ends their PDO
-// exchange, and drives that stop because another node was lost.
+// Member functions of BusLoop for the ordered stop, for the stop of axes before NMT ends their PDO
+// exchange, and for drives that stop because another node was lost.
 #include "master/rt/bus_loop.hpp"
 
 namespace takt {
@@ -9,7 +9,7 @@ inline AxesAtRest rest_of(const OrderedStop& stop) noexcept {
   return stop.result() == StopResult::unconfirmed ? AxesAtRest::unconfirmed : AxesAtRest::confirmed;
 }
 
-/// The value of EventKind::axis_not_stopped.
+/// Returns the value of EventKind::axis_not_stopped.
 inline std::int64_t event_value(const AxisStop& axis, AxisVerdict verdict, Time now) noexcept {
   switch (verdict) {
     case AxisVerdict::stopped:
@@ -25,7 +25,8 @@ inline std::int64_t event_value(const AxisStop& axis, AxisVerdict verdict, Time 
   return 0;
 }
 
-/// LossReaction::quick_stop: quick stop, then disabled, until the lost node is back.
+/// LossReaction::quick_stop: the drives make a quick stop and stay disabled until the lost node is
+/// back.
 template <Port P, class N>
 void BusLoop<P, N>::stop_drives_after_loss() noexcept {
   if constexpr (requires { network_.stops_drives(); }) {
@@ -57,7 +58,7 @@ StopView BusLoop<P, N>::stop_view() const noexcept {
           .network_stopped = options_.observe || (network_.stopped() && services_.empty())};
 }
 
-/// The one whose axes are stopped now. The ordered stop takes the place of a halt.
+/// Returns the stop that acts on the axes now. The ordered stop supersedes a halt.
 template <Port P, class N>
 OrderedStop& BusLoop<P, N>::active_stop() noexcept {
   return stop_.stage() == StopStage::running ? halt_ : stop_;
@@ -86,7 +87,7 @@ void BusLoop<P, N>::begin_stop(Time now) noexcept {
   pdo_requests_.cancel_all();
 }
 
-/// A request that may bring a controlword to this axis is not answered yet.
+/// Returns true while a request that may bring a controlword to this axis is unanswered.
 template <Port P, class N>
 bool BusLoop<P, N>::word_under_way(const StopAxis& axis) const noexcept {
   const std::uint8_t node = plan_.nodes[axis.node_index].id.value();
@@ -98,7 +99,7 @@ bool BusLoop<P, N>::word_under_way(const StopAxis& axis) const noexcept {
   return false;
 }
 
-/// What the next stop may rely on.
+/// Updates the memory of each axis, on which the next stop may rely.
 template <Port P, class N>
 void BusLoop<P, N>::remember_axes() noexcept {
   for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -119,8 +120,8 @@ void BusLoop<P, N>::remember_axes() noexcept {
   }
 }
 
-/// A request that may bring a controlword to an axis. What an RPDO on request brings isn't
-/// looked at: it counts as enabling.
+/// Notes a request that may bring a controlword to an axis. The loop does not inspect the content
+/// of an RPDO sent on request: it counts as enabling.
 template <Port P, class N>
 void BusLoop<P, N>::remember_word(const Request& request) noexcept {
   const bool writes = request.kind == RequestKind::sdo_download;
@@ -134,7 +135,7 @@ void BusLoop<P, N>::remember_word(const Request& request) noexcept {
   }
 }
 
-/// Begins and follows the ordered stop.
+/// Begins and advances the ordered stop.
 template <Port P, class N>
 void BusLoop<P, N>::step_stop() noexcept {
   const Time now = port_.now();
@@ -171,7 +172,7 @@ void BusLoop<P, N>::force_axes(const OrderedStop& stop) noexcept {
   }
 }
 
-/// One event for each axis that was not seen at standstill and disabled.
+/// Reports one event for each axis that was not seen at standstill and disabled.
 template <Port P, class N>
 void BusLoop<P, N>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept {
   for (std::size_t i = 0; i < stop.axes().size(); ++i) {
@@ -188,8 +189,8 @@ void BusLoop<P, N>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept
   }
 }
 
-/// What the stop reads and writes by SDO. A master in NMT Stopped disarms nothing: it is still
-/// there.
+/// Submits the SDO requests of the stop. A master in NMT Stopped disarms nothing, because it is
+/// still present.
 template <Port P, class N>
 void BusLoop<P, N>::ask_for_stop() noexcept {
   const OrderedStop& stop = active_stop();
@@ -208,7 +209,7 @@ void BusLoop<P, N>::ask_for_stop() noexcept {
   }
 }
 
-/// The node whose axes are to be stopped before its PDO exchange ends, or every node.
+/// Returns the node whose axes must stop before its PDO exchange ends, or every_node.
 template <Port P, class N>
 std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
   if (network_.own_state() == NmtState::stopped) return OrderedStop::every_node;
@@ -217,8 +218,8 @@ std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
   return *node == 0 ? OrderedStop::every_node : static_cast<std::uint8_t>(plan_.index_of(*node));
 }
 
-/// A node that NMT stops or sends to pre-operational exchanges no PDOs any more, and a master in
-/// NMT Stopped makes no SYNC (CiA 301, 7.3.2.2): the axes are stopped before that.
+/// A node that NMT stops or sends to PRE-OPERATIONAL no longer exchanges PDOs, and a master in NMT
+/// Stopped makes no SYNC (CiA 301, 7.3.2.2). The loop therefore stops the axes first.
 template <Port P, class N>
 void BusLoop<P, N>::follow_own_state() noexcept {
   if constexpr (requires { network_.own_state(); }) {
@@ -233,7 +234,7 @@ void BusLoop<P, N>::follow_own_state() noexcept {
   }
 }
 
-/// Tells the network once that the axes are at rest, or that their time is over.
+/// Informs the network once the axes are at rest or their time is over.
 template <Port P, class N>
 void BusLoop<P, N>::step_halt(Time now) noexcept {
   if (!halt_.axes_done()) {
@@ -267,7 +268,8 @@ void BusLoop<P, N>::end_halt() noexcept {
   if (all) pdos_.outputs().hear_again();
 }
 
-/// No SYNC in NMT Stopped. In an ordered stop SYNC is needed again to see the axes.
+/// Returns true in NMT Stopped, when the master sends no SYNC. An ordered stop needs SYNC again to
+/// see the axes.
 template <Port P, class N>
 bool BusLoop<P, N>::silent() const noexcept {
   if constexpr (requires { network_.own_state(); }) {

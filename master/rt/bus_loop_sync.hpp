@@ -1,5 +1,6 @@
 #pragma once
-// Member functions of BusLoop: the beginning of a cycle, by its own SYNC or by the one it follows.
+// Member functions of BusLoop for the beginning of a cycle, by the master's own SYNC or by the SYNC
+// that it follows.
 #include <algorithm>
 #include <chrono>
 
@@ -28,7 +29,7 @@ void BusLoop<P, N>::wait_for_beat() noexcept {
   look_at_wire();
 }
 
-/// The beat that was due comes whole periods late: after those that were left out.
+/// Records the beat that was due as whole periods late, once the skipped periods are known.
 template <Port P, class N>
 void BusLoop<P, N>::record_skipped(std::uint64_t missed) noexcept {
   exchange_.timing.sync_lateness.record(static_cast<std::int64_t>(missed) * clock_.period());
@@ -40,7 +41,8 @@ void BusLoop<P, N>::note_missed(std::uint64_t missed, Time now) noexcept {
   tell(EventKind::cycles_missed, now, static_cast<std::int64_t>(missed));
 }
 
-/// The frame of another device that begins the next cycle. What follows it waits for that.
+/// Returns true for a SYNC of another device that begins the next cycle. The frames behind it stay
+/// for that cycle.
 template <Port P, class N>
 bool BusLoop<P, N>::begins_cycle(const StampedFrame& stamped) noexcept {
   if (!follower_.is_sync(stamped.frame)) return false;
@@ -48,7 +50,7 @@ bool BusLoop<P, N>::begins_cycle(const StampedFrame& stamped) noexcept {
   return follower_.arrived();
 }
 
-/// Until SYNC is there, or a moment after its time.
+/// Waits until SYNC arrives, or until shortly after its expected time.
 template <Port P, class N>
 void BusLoop<P, N>::await_sync() noexcept {
   const Time until = follower_.end_of_wait(clock_.deadline());
@@ -60,13 +62,13 @@ void BusLoop<P, N>::await_sync() noexcept {
     } else if (port_.now() - follower_.arrival() <= clock_.period() / 2) {
       return;
     } else {
-      follower_.take();  // too long ago to begin a cycle; a newer one may be behind it
+      follower_.take();  // The SYNC is too old to begin a cycle; a newer one may be behind it.
     }
   }
 }
 
-/// A cycle begins with the arrival of SYNC. Where none comes it begins by our own clock, so that
-/// services go on and the loss is seen.
+/// A cycle begins with the arrival of SYNC. If no SYNC comes, the cycle begins by the master's own
+/// clock, so that services continue and the loss is detected.
 template <Port P, class N>
 void BusLoop<P, N>::wait_for_sync() noexcept {
   const bool was_locked = follower_.locked();
@@ -84,7 +86,7 @@ void BusLoop<P, N>::wait_for_sync() noexcept {
     follower_.on_silence(now, network_.nodes());
     missed = clock_.skip_missed(now - follower_.patience());
     status_.cycles_missed += was_locked;
-    // After a stall the deadline may lie before us, and a SYNC may come before it.
+    // After a stall the deadline may lie in the future, and a SYNC may come before it.
     sync_sent_ = std::min(clock_.deadline(), now);
   }
   if (missed != 0) {
@@ -95,7 +97,7 @@ void BusLoop<P, N>::wait_for_sync() noexcept {
   look_at_wire();
 }
 
-/// What the network file says of a SYNC that stays away.
+/// Applies the reaction to the loss of SYNC that the network file configures.
 template <Port P, class N>
 void BusLoop<P, N>::react_to_sync() noexcept {
   if (follower_.lost() == sync_lost_) return;
@@ -104,7 +106,7 @@ void BusLoop<P, N>::react_to_sync() noexcept {
   if (options_.observe || stop_.stage() != StopStage::running) return;
   switch (plan_.cycle.on_sync_loss) {
     case SyncLoss::hold:
-      return;  // outputs_rest()
+      return;  // outputs_rest() holds the outputs
     case SyncLoss::fallback:
       return take_fallbacks();
     case SyncLoss::stop:
@@ -125,7 +127,8 @@ void BusLoop<P, N>::take_fallbacks() noexcept {
   fallbacks_.begin(pdos_.outputs());
 }
 
-/// What is not written by now must not reach a drive that is commanded again, or is being stopped.
+/// Fallbacks that are not yet written must not reach a drive that is commanded again or is being
+/// stopped.
 template <Port P, class N>
 void BusLoop<P, N>::call_off_fallbacks() noexcept {
   fallbacks_.stop();
@@ -145,7 +148,7 @@ bool BusLoop<P, N>::outputs_rest() const noexcept {
          stop_.stage() == StopStage::running;
 }
 
-/// The beat itself: own SYNC goes out, the one that is followed is here.
+/// Begins the beat: sends the own SYNC, or notes whether the followed SYNC came.
 template <Port P, class N>
 void BusLoop<P, N>::begin_beat() noexcept {
   const bool heard = follower_.used() ? followed_ : send_sync();
@@ -154,7 +157,7 @@ void BusLoop<P, N>::begin_beat() noexcept {
   if (starved_ >= patience_with_services) relieve_services();
 }
 
-/// False: there is a SYNC to be sent, and it was not.
+/// Returns false if a SYNC is due and was not sent.
 template <Port P, class N>
 bool BusLoop<P, N>::send_sync() noexcept {
   if (!plan_.cycle.sync || options_.observe) return true;

@@ -14,17 +14,19 @@
 
 namespace takt {
 
-/// Times of the cycle, recorded by the bus thread.
+/// Timing of the cycle, recorded by the bus thread.
 struct TimingHistograms {
-  Histogram sync_lateness;     ///< SYNC handed over, against its deadline
-  Histogram sync_on_wire;      ///< the same by the echo, where the port has one
-  Histogram sync_to_last_pdo;  ///< arrival of the last expected PDO
+  /// Time from the deadline to the moment at which SYNC was handed over.
+  Histogram sync_lateness;
+  /// Time from the deadline to the echo of SYNC, if the port has echoes.
+  Histogram sync_on_wire;
+  Histogram sync_to_last_pdo;  ///< time from SYNC to the arrival of the last expected PDO
   Histogram sync_to_publish;
-  Histogram command_age;  ///< from SetPoints::publish() to the outputs that carry it
+  Histogram command_age;  ///< time from SetPoints::publish() to the outputs that carry the command
 };
 
-/// Everything that the bus thread and the front thread share; no lock between them. Large: lives
-/// on the heap.
+/// Everything that the bus thread and the front thread share, without a lock between them. The
+/// object is large and belongs on the heap.
 struct Exchange {
   explicit Exchange(const BusPlan& plan)
       : images{plan.layout.signals.size(), plan.pdos.tpdos.size()},
@@ -33,20 +35,21 @@ struct Exchange {
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  // bus -> front
+  // From the bus thread to the front thread.
   ImageRing images;
   SpscRing<Reply, 16> replies;
   SpscRing<Event, 1024> events;
   StatusBoard status;
   TimingHistograms timing;
-  /// When the next image will be there (monotonic, ns): the front thread sleeps to it by itself.
+  /// Expected publish time of the next image (monotonic clock, ns). The front thread sets its own
+  /// timer to this time; nobody wakes it.
   std::atomic<std::int64_t> next_publish{0};
-  std::atomic<bool> finished{false};  ///< the ordered stop is over
+  std::atomic<bool> finished{false};  ///< true once the ordered stop is complete
 
-  // front -> bus
+  // From the front thread to the bus thread.
   SetPoints set_points;
   SpscRing<Request, 16> requests;
-  std::array<SdoTransfer, 4> transfers;  ///< whose turn it is: see SdoTransfer
+  std::array<SdoTransfer, 4> transfers;  ///< SdoTransfer says which thread may use each of them
   std::atomic<bool> stop_requested{false};
 };
 

@@ -9,7 +9,8 @@
 
 namespace takt {
 
-/// Counts of a Histogram at one moment; the difference of two is the time between them.
+/// Counts of a Histogram at one moment. The difference of two snapshots covers the time between
+/// them.
 struct HistogramSnapshot {
   static constexpr unsigned fine = 8;      ///< bins per octave
   static constexpr unsigned octaves = 27;  ///< 125 ns * 2^27 = 16.8 s
@@ -18,18 +19,19 @@ struct HistogramSnapshot {
   std::array<std::uint64_t, bins> counts{};
 
   std::uint64_t total() const noexcept;
-  /// Upper edge of the bin below which the fraction `p` of all times lies; 0 when empty.
+  /// Upper edge of the bin below which the fraction `p` of all times lies. Returns 0 if the
+  /// histogram is empty.
   Time percentile(double p) const noexcept;
   Time minimum() const noexcept { return percentile(0.0); }
   Time maximum() const noexcept { return percentile(1.0); }
-  /// Counts per octave: number i is of times in [2^i, 2^(i+1)) * 125 ns, as timing_t has them.
+  /// Counts per octave: element i counts the times in [2^i, 2^(i+1)) * 125 ns, as in timing_t.
   std::array<std::uint64_t, octaves> by_octave() const noexcept;
 
   HistogramSnapshot operator-(const HistogramSnapshot& earlier) const noexcept;
 };
 
-/// Times with a resolution of an eighth octave from 125 ns on. One thread records, others take
-/// snapshots; no lock.
+/// Histogram of times with a resolution of one eighth of an octave above 125 ns. One thread records
+/// and other threads take snapshots, without a lock.
 class Histogram {
  public:
   /// Negative times count as zero.
@@ -39,7 +41,7 @@ class Histogram {
   }
   HistogramSnapshot snapshot() const noexcept;
 
-  /// Bins 0..7 are linear in 125 ns / 8; from there eight bins an octave.
+  /// Bins 0..7 are linear with a width of 125 ns / 8; above them each octave has eight bins.
   static constexpr std::size_t bin_of(Time time) noexcept {
     if (time <= Time{0}) return 0;
     const std::uint64_t units = static_cast<std::uint64_t>(time.count()) * 8 / 125;
@@ -48,7 +50,7 @@ class Histogram {
     if (octave >= HistogramSnapshot::octaves) return HistogramSnapshot::bins - 1;
     return (std::size_t{octave} + 1) * 8 + ((units >> octave) & 7);
   }
-  /// First time that no longer belongs to the bin.
+  /// The first time that no longer belongs to the bin.
   static constexpr Time upper_edge(std::size_t bin) noexcept {
     const std::uint64_t octave = bin / 8;
     const std::uint64_t step = bin % 8 + 1;

@@ -14,22 +14,23 @@
 
 namespace takt {
 
-/// What a record of the journal holds. A record is one word, tag and payload, and the words that
-/// the tag demands. Numbers are part of the file format.
+/// Kinds of journal records. A record is one word with tag and payload, and the further words that
+/// the tag demands. The numbers are part of the file format.
 enum class Mark : std::uint8_t {
-  cycle = 1,          ///< payload: cycle number
-  now = 2,            ///< payload: time
-  wait = 3,           ///< payload: 1 = a frame can be received
-  receive = 4,        ///< payload: frames; three words each
-  send = 5,           ///< payload: SendPayload; two words a frame that was offered
-  news = 6,           ///< payload: NewsPart; the words of the parts that have changed
-  set_points = 7,     ///< payload: how many, 0 = those of before; time, three words each
-  request = 8,        ///< payload: words
-  stop = 9,           ///< the ordered stop was asked for
+  cycle = 1,    ///< payload: cycle number
+  now = 2,      ///< payload: time
+  wait = 3,     ///< payload: 1 if a frame can be received
+  receive = 4,  ///< payload: number of frames, three words each
+  send = 5,     ///< payload: SendPayload; two words for each frame that was offered
+  news = 6,     ///< payload: NewsPart; the words of the parts that have changed
+  /// Payload: number of set points, or 0 if unchanged; time, then three words each.
+  set_points = 7,
+  request = 8,        ///< payload: number of words
+  stop = 9,           ///< the front thread requested the ordered stop
   replies_full = 10,  ///< a reply had to wait
   event = 11,         ///< event_words words
-  gap = 12,           ///< something was too long to be kept
-  checkpoint = 13,    ///< payload: words; what the master knows, see BusLoop::resume
+  gap = 12,           ///< an item was too long to be kept
+  checkpoint = 13,    ///< payload: number of words; state of the master, see BusLoop::resume
 };
 
 namespace journal {
@@ -51,14 +52,14 @@ constexpr std::uint64_t payload_of(std::uint64_t word) noexcept { return word & 
 
 }  // namespace journal
 
-/// A stretch of the journal: records one behind the other, the oldest are overwritten. A record is
-/// never cut by the end of the tape.
+/// A section of the journal. The records lie one behind the other, and new records overwrite the
+/// oldest ones. The end of the tape never cuts a record.
 class Tape {
  public:
   explicit Tape(std::size_t words) : words_(words) { assert(words >= blocks); }
 
-  /// Room for a record of `count` words. Null: the tape would have to begin anew for a record
-  /// that is longer than a quarter of it.
+  /// Returns room for a record of `count` words. Returns nullptr if the record does not fit before
+  /// the end of the tape and is longer than a quarter of the tape.
   std::uint64_t* claim(std::size_t count) noexcept {
     if (at_ + count > words_.size()) [[unlikely]] {
       if (!turn(count)) return nullptr;
@@ -70,7 +71,7 @@ class Tape {
   void put(std::uint64_t word) noexcept {
     if (std::uint64_t* const room = claim(1)) *room = word;
   }
-  /// The next record begins a cycle: one that reading may begin with.
+  /// Marks that the next record begins a cycle, at which a reader may start.
   void mark_cycle() noexcept {
     const std::size_t block = at_ * blocks / words_.size();
     if (block == block_) return;
@@ -86,15 +87,16 @@ class Tape {
     checkpoint_due_ = true;
   }
   bool checkpoint_due() const noexcept { return checkpoint_due_; }
-  /// It is made, or can't be. False: a checkpoint of so many words would take the room of all else.
+  /// Marks the due checkpoint as handled, whether it is written or not. Returns false if a
+  /// checkpoint of `words` words would leave too little room for other records.
   bool begin_checkpoint(std::size_t words) noexcept {
     checkpoint_due_ = false;
     return words < words_.size() / (2 * blocks / blocks_a_checkpoint);
   }
 
-  /// All records are here, from the first on.
+  /// Returns true if the tape still holds all records from the first one on.
   bool whole() const noexcept { return lap_ == 0; }
-  /// The records in order, beginning with that of a cycle where the tape isn't whole.
+  /// Returns the records in order. If the tape is not whole, they begin with the record of a cycle.
   std::vector<std::uint64_t> read() const;
 
  private:
@@ -112,18 +114,19 @@ class Tape {
   std::vector<std::uint64_t> words_;
   std::size_t at_ = 0;
   std::uint64_t lap_ = 0;
-  std::size_t end_of_lap_ = 0;  // of the one before
+  std::size_t end_of_lap_ = 0;  // of the previous lap
   std::size_t block_ = blocks;
   bool checkpoint_due_ = true;
-  std::array<std::uint64_t, blocks> begins_{};  // position + 1 of the first cycle in each; 0: none
+  // Position + 1 of the first cycle in each block; 0 means none.
+  std::array<std::uint64_t, blocks> begins_{};
 };
 
-/// Everything that decides what the bus thread does, call by call: what the port answered and what
-/// came from the front thread. Two tapes: one records, the other may be read meanwhile; nobody
-/// waits. Bus thread, but for want() and what follows.
+/// Records everything that decides what the bus thread does, call by call: the answers of the port
+/// and the input from the front thread. One of two tapes records while the other may be read;
+/// neither side waits. All functions belong to the bus thread except those marked as front side.
 class Journal {
  public:
-  /// `bytes` of memory for each of the two tapes.
+  /// `bytes` is the size of each of the two tapes.
   explicit Journal(std::size_t bytes) : tapes_{Tape{bytes / 8}, Tape{bytes / 8}} {}
 
   void begin_cycle(std::uint64_t cycle) noexcept {
@@ -134,7 +137,8 @@ class Journal {
   }
   void put(Mark mark, std::uint64_t payload) noexcept { tape_->put(journal::word(mark, payload)); }
   void put(Mark mark, Time time) noexcept { put(mark, static_cast<std::uint64_t>(time.count())); }
-  /// A record with `count` words behind the first, to be filled; null: too long.
+  /// Begins a record with `count` words behind the first and returns room for them. Returns nullptr
+  /// if the record is too long.
   std::uint64_t* claim(Mark mark, std::uint64_t payload, std::size_t count) noexcept {
     std::uint64_t* const room = tape_->claim(count + 1);
     if (room == nullptr) [[unlikely]] {
@@ -153,22 +157,24 @@ class Journal {
     }
   }
   bool checkpoint_due() const noexcept { return tape_->checkpoint_due(); }
-  /// Room for a checkpoint; null: too long for this tape.
+  /// Returns room for a checkpoint, or nullptr if the checkpoint is too long for this tape.
   std::uint64_t* checkpoint(std::size_t words) noexcept {
     return tape_->begin_checkpoint(words) ? claim(Mark::checkpoint, words, words) : nullptr;
   }
-  /// Counts the tapes that were begun: what has to be told once on each is told again.
+  /// Returns the number of tapes begun so far. A new tape repeats everything that is recorded only
+  /// once per tape.
   unsigned tape() const noexcept { return tapes_begun_; }
 
-  /// Front side: the running tape is wanted; recording goes on, on the other one, at the next
-  /// cycle. Not again before give_back().
+  /// Front side: requests the running tape. At the next cycle, recording continues on the other
+  /// tape. The front side must not call this again before give_back().
   void want() noexcept { state_.store(State::wanted, std::memory_order_release); }
-  /// Front side: the wanted tape, for this thread or one that it starts; null: not yet.
+  /// Front side: returns the requested tape, for this thread or one that it starts. Returns nullptr
+  /// if the tape is not available yet.
   const Tape* wanted() const noexcept {
     if (state_.load(std::memory_order_acquire) != State::changed) return nullptr;
     return &tapes_[1 - running_];
   }
-  /// Front side, where the bus thread has ended: the tape that was running.
+  /// Front side: returns the tape in use, once the bus thread has ended.
   const Tape& last() const noexcept { return *tape_; }
   void give_back() noexcept { state_.store(State::recording, std::memory_order_release); }
 

@@ -7,11 +7,11 @@ namespace {
 
 constexpr std::size_t head_words = 4;
 constexpr std::size_t most_transfer_bytes = 16 << 20;
-constexpr std::size_t most_kept_bytes = 64 << 10;  // copied within one cycle
+constexpr std::size_t most_kept_bytes = 64 << 10;  // limit of the copy within one cycle
 
 std::size_t words_for(std::size_t bytes) noexcept { return (bytes + 7) / 8; }
 
-/// 1, 2 ...; 0: none.
+/// Returns the number of the transfer, from 1; 0 if there is none.
 std::size_t number_of(const SdoTransfer* transfer, const SdoTransfers& transfers) noexcept {
   for (std::size_t i = 0; i < transfers.size(); ++i) {
     if (transfer == &transfers[i]) return i + 1;

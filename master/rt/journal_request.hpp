@@ -9,15 +9,15 @@
 
 namespace takt {
 
-/// The transfers of an Exchange, or those of a replay in their place.
+/// The transfers of an Exchange, or those that a replay uses instead.
 using SdoTransfers = std::array<SdoTransfer, 4>;
 
-/// Writes down an accepted request, with the value of a long download. A gap where the value has
-/// more than 64 KiB, or more than the journal has room for: what follows can't be replayed. Bus
-/// thread.
+/// Records an accepted request, with the value of a long download. Records a gap if the value is
+/// longer than 64 KiB or than the journal has room for; a replay cannot pass the gap. Bus thread.
 void put_request(Journal& journal, const Request& request, const SdoTransfers& transfers) noexcept;
 
-/// The request of a record; `words` are those behind its first. False: not a request.
+/// Reads a request from a record; `words` are the words behind the first. Returns false if they do
+/// not form a request.
 bool get_request(std::span<const std::uint64_t> words, Request& request, SdoTransfers& transfers);
 
 }  // namespace takt

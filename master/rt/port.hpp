@@ -9,24 +9,26 @@
 
 namespace takt {
 
-/// What became of a send. `error` is an errno (ENOBUFS, ENETDOWN ...) when `sent` is short.
+/// Result of a send. `error` is an errno (ENOBUFS, ENETDOWN ...) if `sent` is short.
 struct SendResult {
   std::size_t sent = 0;
   int error = 0;
 };
 
-/// Trouble and news of the interface itself, counted by the port, taken by the loop once a cycle.
+/// State and counters of the interface itself. The port updates them, and the loop takes them once
+/// per cycle.
 struct PortNews {
-  bool interface_down = false;         ///< now
-  bool error_passive = false;          ///< now
-  bool bus_off = false;                ///< now
-  std::uint32_t receive_overruns = 0;  ///< frames that the kernel dropped, since the start
-  std::uint32_t error_frames = 0;      ///< since the start
+  bool interface_down = false;         ///< current state
+  bool error_passive = false;          ///< current state
+  bool bus_off = false;                ///< current state
+  std::uint32_t receive_overruns = 0;  ///< frames that the kernel dropped since the start
+  std::uint32_t error_frames = 0;      ///< CAN error frames since the start
   std::uint8_t tx_error_counter = 0;
   std::uint8_t rx_error_counter = 0;
-  int last_error = 0;     ///< errno of the newest trouble
-  Time since_1970{};      ///< UTC minus the clock of the port; 0 = not known
-  Time last_sync_echo{};  ///< when our newest SYNC was on the wire by its echo; 0 = no echo yet
+  int last_error = 0;  ///< errno of the newest trouble
+  Time since_1970{};   ///< UTC minus the clock of the port; 0 if unknown
+  /// Time of our newest SYNC on the wire, by its echo; 0 before the first echo.
+  Time last_sync_echo{};
 
   template <class Archive>
   void keep(Archive& state) noexcept {
@@ -35,19 +37,20 @@ struct PortNews {
   }
 };
 
-/// The bus and the clock as the bus loop sees them: SocketCAN, a unix socket or the simulation.
-/// One thread. Nothing here allocates, locks or throws.
+/// The bus and the clock as the bus loop sees them: SocketCAN, a unix socket or the simulation. One
+/// thread uses the port. No function allocates, locks or throws.
 template <class P>
 concept Port = requires(P port, const P constant, Time until, std::span<const Frame> out,
                         std::span<StampedFrame> in) {
   { port.now() } noexcept -> std::same_as<Time>;
-  /// Sleeps to an absolute time; may come back late, never early.
+  /// Sleeps until an absolute time; may return late, never early.
   { port.sleep_until(until) } noexcept;
-  /// The same for SYNC: wakes early and spins the rest.
+  /// Sleeps until the time of SYNC with higher precision: wakes early and spins the rest.
   { port.sleep_precisely_until(until) } noexcept;
-  /// Sleeps until a frame can be received (true) or the time has come (false).
+  /// Sleeps until a frame can be received (returns true) or until the given time (returns false).
   { port.wait_frame(until) } noexcept -> std::same_as<bool>;
-  /// Takes what has been received, in order, without waiting. Own SYNC echoes are kept back (news).
+  /// Takes the received frames in order, without waiting. Echoes of the own SYNC appear only in
+  /// news().
   { port.receive(in) } noexcept -> std::same_as<std::size_t>;
   /// Hands frames to the bus in order, without waiting.
   { port.send(out) } noexcept -> std::same_as<SendResult>;

@@ -33,7 +33,8 @@ void PortWatch::on_news(const PortNews& news, Time now) noexcept {
 }
 
 void PortWatch::on_send(std::size_t unsent, int error, Time now) noexcept {
-  constexpr Time silence = std::chrono::seconds{1};  // of a lasting trouble
+  // Time between two reports of a lasting failure.
+  constexpr Time silence = std::chrono::seconds{1};
   if (unsent == 0 || (error != ENOBUFS && error != EAGAIN)) return;
   if (full_told_ && now - last_full_ < silence) return;
   const SendTrouble cause = seen_.bus_off         ? SendTrouble::bus_off

@@ -8,13 +8,15 @@
 
 namespace takt {
 
-/// Turns changes of PortNews and failed sends into events, each told once. Bus thread only.
+/// Turns changes of PortNews and failed sends into events and reports each of them once. Bus thread
+/// only.
 class PortWatch {
  public:
   explicit PortWatch(EventQueue& events) noexcept : events_{events} {}
 
   void on_news(const PortNews& news, Time now) noexcept;
-  /// `unsent` frames were refused with `error`; 0: all went out.
+  /// Reports that the interface refused `unsent` frames with `error`; `unsent` is 0 if all went
+  /// out.
   void on_send(std::size_t unsent, int error, Time now) noexcept;
 
   template <class Archive>

@@ -10,11 +10,11 @@
 
 namespace takt {
 
-/// When an image was taken.
+/// Identifies an image and the time at which it was taken.
 struct ImageStamp {
-  std::uint64_t cycle = 0;  ///< jumps by the number of missed periods
+  std::uint64_t cycle = 0;  ///< cycle number; jumps by the number of missed periods
   std::uint64_t beat = 0;   ///< SYNCs sent so far
-  Time sync_time{};         ///< of SYNC: by its echo where there is one
+  Time sync_time{};         ///< time of SYNC, by its echo if there is one
   Time publish_time{};
   std::uint32_t missing = 0;  ///< expected PDOs that did not arrive
 };
@@ -27,32 +27,33 @@ struct ImageView {
   Time publish_time{};
   std::uint32_t missing = 0;
   std::span<const std::int64_t> values;       ///< all signals: inputs, then outputs as last sent
-  std::span<const std::uint64_t> stale_bits;  ///< bit n % 64 of word n / 64: signal n
+  std::span<const std::uint64_t> stale_bits;  ///< signal n is bit n % 64 of word n / 64
   std::span<const PdoMark> pdos{};            ///< rows of PdoTable::tpdos
 
-  /// Cycles since the newest frame of this TPDO; 0: it came in this one. None came while its
-  /// `received` is 0.
+  /// Cycles since the newest frame of this TPDO; 0 if the frame came in this cycle. Meaningless
+  /// while the mark's `received` is 0, because no frame has come yet.
   std::uint32_t age(std::size_t tpdo) const noexcept {
     return static_cast<std::uint32_t>(cycle) - pdos[tpdo].cycle;
   }
 };
 
-/// Images on their way from the bus thread to the front thread: 64 slots, one producer, one
-/// consumer, wait-free. A full ring drops the newest image and counts it.
+/// Carries images from the bus thread to the front thread: 64 slots, one producer, one consumer,
+/// wait-free. A full ring drops the newest image and counts the loss.
 class ImageRing {
  public:
   static constexpr std::size_t slots = 64;
 
   explicit ImageRing(std::size_t signals, std::size_t tpdos = 0);
 
-  /// Bus thread. False: the front thread is 64 images behind.
+  /// Bus thread. Returns false if the front thread is 64 images behind.
   bool publish(const ImageStamp& stamp, std::span<const std::int64_t> values,
                std::span<const std::uint64_t> stale_bits,
                std::span<const PdoMark> pdos = {}) noexcept;
 
-  /// Front thread: the next image in order; false: none. Frees the one taken before.
+  /// Front thread: takes the next image in order and frees the one taken before. Returns false if
+  /// there is none.
   bool take(ImageView& view) noexcept;
-  /// Front thread: the newest image, skipping older ones; false: none.
+  /// Front thread: takes the newest image and skips older ones. Returns false if there is none.
   bool take_newest(ImageView& view) noexcept;
 
   /// Images lost because the front thread was too slow. Any thread.
@@ -63,7 +64,7 @@ class ImageRing {
   void release() noexcept;
 
   std::size_t signals_;
-  std::size_t words_;  ///< of stale bits
+  std::size_t words_;  ///< words of stale bits per image
   std::size_t tpdos_;
   std::vector<ImageStamp> stamps_;
   std::vector<std::int64_t> values_;
@@ -71,7 +72,7 @@ class ImageRing {
   std::vector<PdoMark> pdos_;
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};
-  bool holding_ = false;  // front thread's
+  bool holding_ = false;  // front thread only
   alignas(64) std::atomic<std::uint64_t> overruns_{0};
 };
 

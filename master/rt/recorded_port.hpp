@@ -13,8 +13,8 @@
 
 namespace takt {
 
-/// A port that also stands between the bus loop and the front thread: all that decides what the
-/// loop does passes through it.
+/// A port that also stands between the bus loop and the front thread, so that everything that
+/// decides what the loop does passes through it.
 template <class P>
 concept WitnessPort =
     Port<P> && requires(P port, Exchange& exchange, std::uint64_t cycle, Request& request,
@@ -31,7 +31,7 @@ concept WitnessPort =
 
 namespace journal {
 
-/// Which parts of the news follow, each in its own words.
+/// Tells which parts of the news follow, each in its own words.
 enum NewsPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
 inline constexpr std::size_t state_words = 3;
 
@@ -49,7 +49,7 @@ struct SendPayload {
   }
 };
 
-/// All of the news but its times.
+/// Packs all of the news except its times.
 inline void put_state(const PortNews& news, std::uint64_t* to) noexcept {
   to[0] = std::uint64_t{news.interface_down} | std::uint64_t{news.error_passive} << 1 |
           std::uint64_t{news.bus_off} << 2 | std::uint64_t{news.tx_error_counter} << 8 |
@@ -70,12 +70,12 @@ inline void get_state(const std::uint64_t* from, PortNews& news) noexcept {
 
 }  // namespace journal
 
-/// Writes down what another port answers, and what comes from the front thread. Adds no system
-/// call, allocates nothing. Without a journal it only forwards. Bus thread only.
+/// Records the answers of another port and the input from the front thread. This adds no system
+/// call and allocates nothing. Without a journal, the port only forwards. Bus thread only.
 template <Port P>
 class RecordedPort {
  public:
-  /// Keeps both.
+  /// Keeps pointers to `port` and `journal`.
   RecordedPort(P& port, Journal* journal) noexcept : port_{&port}, journal_{journal} {}
 
   Time now() noexcept {
@@ -122,7 +122,8 @@ class RecordedPort {
     points_ = nullptr;
   }
   bool checkpoint_due() const noexcept { return journal_ != nullptr && journal_->checkpoint_due(); }
-  /// Room for what the loop knows; what this port has told counts no more. Null: too much.
+  /// Returns room for the state of the loop, or nullptr if it is too long. Whatever this port has
+  /// recorded once is recorded again behind the checkpoint.
   std::uint64_t* checkpoint(std::size_t words) noexcept {
     std::uint64_t* const room = journal_->checkpoint(words);
     if (room == nullptr) return nullptr;
@@ -158,8 +159,8 @@ class RecordedPort {
   }
 
  private:
-  /// The time of day is not known better than to a few microseconds: smaller changes are kept from
-  /// the loop, for each would be a record.
+  /// The time of day is accurate to a few microseconds at best. The port hides smaller changes from
+  /// the loop, because each would need a record.
   void note(PortNews& news) const noexcept {
     constexpr Time jitter = std::chrono::microseconds{50};
     std::uint64_t parts = 0;
@@ -192,7 +193,7 @@ class RecordedPort {
   static std::uint64_t count_of(Time time) noexcept {
     return static_cast<std::uint64_t>(time.count());
   }
-  /// The triple buffer gives another one of its frames whenever it has a new one.
+  /// The triple buffer returns another of its frames whenever it has a new set.
   void note(const SetPointFrame& frame) noexcept {
     if (&frame == points_) return journal_->put(Mark::set_points, std::uint64_t{0});
     points_ = &frame;
@@ -207,8 +208,8 @@ class RecordedPort {
   P* port_;
   Journal* journal_;
   unsigned tape_ = 1;
-  mutable PortNews told_;                  // at the newest look
-  const SetPointFrame* points_ = nullptr;  // handed to the loop last
+  mutable PortNews told_;                  // as recorded last
+  const SetPointFrame* points_ = nullptr;  // the frame that the loop received last
 };
 
 }  // namespace takt

@@ -9,7 +9,7 @@ namespace {
 
 using What = ReplayDifference::What;
 
-constexpr Time step = std::chrono::microseconds{1};  // of the clock after a difference
+constexpr Time step = std::chrono::microseconds{1};  // step of the clock after a difference
 constexpr std::uint64_t latest = journal::payload_mask;
 
 }  // namespace
@@ -23,7 +23,7 @@ void ReplayPort::begin_part() const noexcept {
   words_ = parts_[part_].words;
   frames_ = parts_[part_].frames;
   at_ = 0;
-  news_ = {};  // each recording tells all that differs from this
+  news_ = {};  // each recording tells all that differs from this state
 }
 
 void ReplayPort::differ(ReplayDifference difference) const noexcept {
@@ -34,7 +34,7 @@ void ReplayPort::differ(ReplayDifference difference) const noexcept {
   difference_ = difference;
 }
 
-/// Behind it all is told anew.
+/// Skips a checkpoint. The records behind it repeat the whole state.
 void ReplayPort::pass_checkpoint() const noexcept {
   const std::uint64_t count = journal::payload_of(words_[at_++]);
   std::span<const std::uint64_t> words;
@@ -56,7 +56,8 @@ bool ReplayPort::comes(Mark mark) const noexcept {
   return !over() && journal::mark_of(words_[at_]) == mark;
 }
 
-/// The payload of the next record. None: it is no such record, or all is over.
+/// Returns the payload of the next record. Returns std::nullopt if it is another record or the
+/// replay is over.
 std::optional<std::uint64_t> ReplayPort::next(Mark mark) const noexcept {
   if (!comes(mark)) {
     if (over()) return std::nullopt;
@@ -79,7 +80,7 @@ bool ReplayPort::take(std::size_t count, std::span<const std::uint64_t>& words) 
   return true;
 }
 
-/// A time of which sums and differences can be taken.
+/// Takes a time that is small enough for sums and differences.
 bool ReplayPort::take_time(Time& time) const noexcept {
   std::span<const std::uint64_t> word;
   if (!take(1, word)) return false;
@@ -158,7 +159,7 @@ PortNews ReplayPort::news() const noexcept {
   if ((*parts & journal::echo) != 0) take_time(news_.last_sync_echo);
   std::span<const std::uint64_t> words;
   if ((*parts & journal::utc) != 0 && take(1, words)) {
-    // TIME checks what it makes of this; no sum may leave the range of Time.
+    // TIME checks the result; the clamp keeps sums within the range of Time.
     const auto utc = static_cast<std::int64_t>(words[0]);
     constexpr std::int64_t limit = std::int64_t{1} << 61;
     news_.since_1970 = Time{std::clamp(utc, -limit, limit)};

@@ -13,48 +13,50 @@
 
 namespace takt {
 
-/// A journal as it lies in a file: the frames stand beside it, in the order of their times.
-///   receive: two words each, time and number of the frame
-///   send:    one word each of those that were sent, the number of the frame
-///   event:   none; events stand beside it too
-/// All other records are as Mark says.
+/// A journal in the form of a file. The frames lie in a separate list, ordered by time, and the
+/// records refer to them by number:
+///   receive: two words for each frame, its time and its number
+///   send:    one word for each frame that was sent, its number
+///   event:   no words; the file keeps the events separately as well
+/// All other records have the form that Mark describes.
 struct Recording {
   std::vector<std::uint64_t> words{};
   std::vector<Frame> frames{};
 };
 
-/// Where the master does something else than it did when it was recorded.
+/// The first point at which the master acts differently than in the recording.
 struct ReplayDifference {
   enum class What : std::uint8_t {
-    call,     ///< it asks its bus or its clock for something else
-    frame,    ///< it sends another frame
-    count,    ///< it sends more or fewer frames at once
-    cycle,    ///< it is in another cycle
-    broken,   ///< the recording itself makes no sense here
-    missing,  ///< something was too long to be recorded
+    call,     ///< the master makes another call to its bus or its clock
+    frame,    ///< the master sends another frame
+    count,    ///< the master sends more or fewer frames at once
+    cycle,    ///< the master is in another cycle
+    broken,   ///< the recording itself is invalid at this point
+    missing,  ///< an item was too long to be recorded
   };
   What what = What::call;
   std::uint64_t cycle = 0;
   Time when{};
-  Mark recorded{};  ///< call: what comes next in the recording
-  Mark asked{};     ///< and what the master did
-  Frame sent{};     ///< frame: now; `expected` in the recording
+  Mark recorded{};  ///< call: the next call in the recording
+  Mark asked{};     ///< call: the call that the master made
+  Frame sent{};     ///< frame: the frame sent now; `expected` is the recorded one
   Frame expected{};
-  std::size_t line = 0;  ///< frame: number of the expected one, from 0
-  std::size_t part = 0;  ///< of the recordings that follow one another
+  std::size_t line = 0;  ///< frame: number of the expected frame, from 0
+  std::size_t part = 0;  ///< index of the recording among those that follow one another
   std::uint64_t counted = 0;
   std::uint64_t counted_before = 0;
 };
 
-/// Plays a recording to a bus loop: each call is answered as it was then. From the first difference
-/// on nothing comes any more; the clock goes on, so that the cycle can end. Any words are safe.
+/// Plays a recording to a bus loop and answers each call as it was answered then. From the first
+/// difference on, the port gives no more input; only its clock advances, so that the cycle can end.
+/// Arbitrary words in the recording are safe.
 class ReplayPort {
  public:
-  /// Keeps references to the recordings, which follow one another. `outputs` of the plan that is
-  /// replayed.
+  /// Keeps references to the recordings, which follow one another in time. `outputs` is the number
+  /// of outputs in the replayed plan.
   ReplayPort(std::span<const Recording> parts, std::size_t outputs);
 
-  /// All is played, or nothing fits any more.
+  /// Returns true if the recordings are played to the end, or if a difference was found.
   bool over() const noexcept {
     return difference_ || (part_ + 1 >= parts_.size() && at_ == words_.size());
   }
@@ -70,7 +72,7 @@ class ReplayPort {
   PortNews news() const noexcept;
 
   void begin_cycle(std::uint64_t cycle) noexcept;
-  /// Those of the recording are passed over.
+  /// The replay skips the checkpoints of the recording and writes none.
   bool checkpoint_due() const noexcept { return false; }
   std::uint64_t* checkpoint(std::size_t) noexcept { return nullptr; }
   const SetPointFrame& set_points(Exchange& exchange) noexcept;
@@ -91,7 +93,7 @@ class ReplayPort {
   void begin_part() const noexcept;
 
   std::span<const Recording> parts_;
-  // Reading news is no change of a port, but a step in its recording.
+  // Reading the news does not change a port, but advances the recording; hence `mutable`.
   mutable std::size_t part_ = 0;
   mutable std::span<const std::uint64_t> words_;
   mutable std::span<const Frame> frames_;

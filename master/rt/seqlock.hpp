@@ -10,13 +10,13 @@
 
 namespace takt {
 
-/// Bytes that one thread writes and others read without being torn. The writer never waits; a
-/// reader retries while it is being overtaken.
+/// Holds bytes that one thread writes and other threads read without tearing. The writer never
+/// waits; a reader retries while the writer overtakes it.
 class Seqlock {
  public:
   explicit Seqlock(std::size_t bytes) : words_((bytes + 7) / 8) {}
 
-  /// Writer: between begin() and end(), any number of put().
+  /// Writer: calls put() any number of times between begin() and end().
   void begin() noexcept {
     version_.store(version_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_release);
@@ -34,7 +34,7 @@ class Seqlock {
     version_.store(version_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  /// Any thread. Runs `read_all`, which calls get(), until nothing was written meanwhile.
+  /// Any thread. Repeats `read_all`, which calls get(), until no write happened meanwhile.
   template <class F>
   void read(F&& read_all) const noexcept {
     for (;;) {

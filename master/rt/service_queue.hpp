@@ -10,10 +10,10 @@
 
 namespace takt {
 
-/// Service frames of the machines that wait for their turn in the slack. Bus thread only.
+/// Service frames of the state machines that wait for their turn in the slack. Bus thread only.
 class ServiceQueue {
  public:
-  /// Machines write here; what does not fit they offer again.
+  /// The state machines write here. They offer frames that do not fit again later.
   Outbox& inbox() noexcept { return outbox_; }
   bool empty() const noexcept { return outbox_.empty(); }
   std::size_t size() const noexcept { return outbox_.frames().size(); }
@@ -24,8 +24,8 @@ class ServiceQueue {
   std::size_t count(Answer answer) const noexcept {
     return static_cast<std::size_t>(std::ranges::count(outbox_.answers(), answer));
   }
-  /// How many of the first `most` frames end within `room`, answers included. A stream has priority
-  /// over what would follow it.
+  /// Returns how many of the first `most` frames end within `room`, including their answers. A
+  /// stream ends the count, because it has priority over the frames that follow it.
   std::size_t fitting(std::size_t most, Time room, const WireTime& wire) const noexcept {
     Time needed{};
     std::size_t count = 0;
@@ -37,12 +37,12 @@ class ServiceQueue {
     }
     return count;
   }
-  /// Of the first `most` frames those to SDO servers.
+  /// Number of frames to SDO servers among the first `most` frames.
   std::size_t to_servers(std::size_t most) const noexcept {
     return static_cast<std::size_t>(
         std::ranges::count_if(outbox_.answers().first(std::min(most, size())), by_server));
   }
-  /// What the others of them take, with their answers.
+  /// Wire time of the other frames among the first `most`, including their answers.
   Time to_others(std::size_t most, const WireTime& wire) const noexcept {
     Time sum{};
     for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
@@ -50,7 +50,7 @@ class ServiceQueue {
     }
     return sum;
   }
-  /// Nobody answers any of the first `count` frames.
+  /// Returns true if nobody answers any of the first `count` frames.
   bool unanswered(std::size_t count) const noexcept {
     return std::ranges::all_of(outbox_.answers().first(std::min(count, size())),
                                [](Answer answer) { return !awaited(answer); });
@@ -58,7 +58,7 @@ class ServiceQueue {
   std::span<const Frame> first(std::size_t count) const noexcept {
     return outbox_.frames().first(std::min(count, size()));
   }
-  /// The first `count` went out.
+  /// Removes the first `count` frames, which have gone out.
   void drop(std::size_t count) noexcept {
     const std::size_t kept = size() - count;
     std::copy_n(outbox_.frames().begin() + static_cast<std::ptrdiff_t>(count), kept, rest_.begin());

@@ -7,15 +7,15 @@
 
 namespace takt {
 
-/// Ring between exactly one producer and one consumer thread. Wait-free; a full ring refuses and
-/// counts. N is a power of two.
+/// Ring between exactly one producer thread and one consumer thread. Wait-free. A full ring refuses
+/// items and counts them. N is a power of two.
 template <class T, std::size_t N>
 class SpscRing {
   static_assert(std::is_trivially_copyable_v<T>);
   static_assert(N >= 2 && (N & (N - 1)) == 0);
 
  public:
-  /// Producer. False: full; the item is lost and counted.
+  /// Producer. Returns false if the ring is full; the item is lost and counted.
   bool push(const T& item) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_seen_ == N) {
@@ -30,14 +30,14 @@ class SpscRing {
     return true;
   }
 
-  /// Producer. True: the next push would be refused.
+  /// Producer. Returns true if the next push would be refused.
   bool full() noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_seen_ == N) tail_seen_ = tail_.load(std::memory_order_acquire);
     return head - tail_seen_ == N;
   }
 
-  /// Consumer. False: empty.
+  /// Consumer. Returns false if the ring is empty.
   bool pop(T& item) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;
@@ -51,7 +51,7 @@ class SpscRing {
 
  private:
   alignas(64) std::atomic<std::size_t> head_{0};
-  std::size_t tail_seen_ = 0;  // producer's
+  std::size_t tail_seen_ = 0;  // producer only
   alignas(64) std::atomic<std::size_t> tail_{0};
   alignas(64) std::atomic<std::uint64_t> overruns_{0};
   std::array<T, N> items_{};

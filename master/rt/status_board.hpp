@@ -13,53 +13,55 @@
 
 namespace takt {
 
-/// Who makes SYNC, and whether the cycle keeps to it.
+/// Source of SYNC, and whether the cycle follows it.
 enum class SyncState : std::uint8_t {
-  none,     ///< there is none
-  made,     ///< by the master
-  awaited,  ///< of another device: none has come yet
-  locked,   ///< the cycle keeps to it
+  none,     ///< the network has no SYNC
+  made,     ///< the master makes SYNC
+  awaited,  ///< another device makes SYNC; none has come yet
+  locked,   ///< the cycle follows the SYNC of another device
   lost,
 };
 
-/// Counters of the bus thread, since the start. Trivially copyable: it crosses threads.
+/// Counters of the bus thread since the start. Trivially copyable, because it crosses threads.
 struct BusStatus {
   Time when{};
   std::uint64_t cycle = 0;  ///< number of the newest cycle
-  std::uint64_t beats = 0;  ///< SYNCs sent (cycles run where there is no SYNC)
-  std::uint64_t cycles_missed =
-      0;                          ///< periods without SYNC: skipped, or held while the bus was off
-  std::uint64_t cycles_late = 0;  ///< SYNCs later than a tenth of the period
+  std::uint64_t beats = 0;  ///< SYNCs sent, or cycles run if the network has no SYNC
+  /// Periods without SYNC: skipped, or held back while frames could not leave.
+  std::uint64_t cycles_missed = 0;
+  std::uint64_t cycles_late = 0;      ///< SYNCs that were late by more than a tenth of the period
   std::uint64_t outputs_skipped = 0;  ///< cycles whose outputs could not end before the next SYNC
   std::uint64_t images_incomplete = 0;
   std::uint64_t frames_received = 0;
   std::uint64_t frames_sent = 0;
-  std::uint64_t send_failures = 0;  ///< frames that the interface did not take
-  std::uint64_t wire_bits = 0;      ///< of both, with mean stuffing: for the bus load
+  std::uint64_t send_failures = 0;  ///< frames that the interface refused
+  /// Bits sent and received, with mean stuffing, for the bus load.
+  std::uint64_t wire_bits = 0;
   std::uint64_t events_lost = 0;
   SyncState sync = SyncState::none;
-  std::uint32_t sync_losses = 0;  ///< of a SYNC that another device makes
-  Time sync_period{};             ///< the same, as measured
+  std::uint32_t sync_losses = 0;  ///< losses of a SYNC that another device makes
+  Time sync_period{};             ///< measured period of that SYNC
   StopStage stop = StopStage::running;
   StopResult stop_result = StopResult::none;
   PortNews port;
 };
 static_assert(std::is_trivially_copyable_v<BusStatus>);
 
-/// All that status_t wants, consistent in itself. Front side.
+/// The consistent content of status_t. Front side.
 struct StatusSnapshot {
   BusStatus bus;
-  std::vector<NodeStatus> nodes;  ///< order of BusPlan::nodes
-  std::vector<PdoStatus> tpdos;   ///< order of PdoTable::tpdos
-  std::vector<RpdoStatus> rpdos;  ///< order of PdoTable::rpdos
+  std::vector<NodeStatus> nodes;  ///< in the order of BusPlan::nodes
+  std::vector<PdoStatus> tpdos;   ///< in the order of PdoTable::tpdos
+  std::vector<RpdoStatus> rpdos;  ///< in the order of PdoTable::rpdos
 };
 
-/// State of the bus for the front thread: written every few cycles, read at any time.
+/// State of the bus for the front thread. The bus thread writes it every few cycles; the front
+/// thread may read it at any time.
 class StatusBoard {
  public:
   StatusBoard(std::size_t nodes, std::size_t tpdos, std::size_t rpdos = 0);
 
-  /// Bus thread. `tpdo(row)` gives the status of one TPDO, `rpdo(row)` of one RPDO.
+  /// Bus thread. `tpdo(row)` returns the status of one TPDO, `rpdo(row)` that of one RPDO.
   template <class T, class R>
   void write(const BusStatus& bus, std::span<const NodeStatus> nodes, T&& tpdo, R&& rpdo) noexcept {
     lock_.begin();

@@ -9,8 +9,8 @@ namespace takt {
 namespace {
 
 constexpr int smoothing = 16;             // intervals
-constexpr std::uint8_t odd_limit = 8;     // intervals in a row until the period is told
-constexpr std::uint8_t calm_after = 100;  // SYNCs until an early one is told again
+constexpr std::uint8_t odd_limit = 8;     // intervals in a row before the period is reported
+constexpr std::uint8_t calm_after = 100;  // punctual SYNCs before an early one is reported again
 constexpr Time longest_patience = std::chrono::milliseconds{20};
 
 }  // namespace
@@ -52,7 +52,7 @@ void SyncFollower::on_sync(const StampedFrame& sync) noexcept {
   arrival_ = when;
 }
 
-/// Told once, until a while went without.
+/// Reports an early SYNC once, until enough punctual SYNCs have come.
 bool SyncFollower::too_early(Time interval, Time when) noexcept {
   if (interval >= declared_ / 2) {
     if (early_ != 0) --early_;
@@ -89,8 +89,8 @@ void SyncFollower::measure(Time interval, Time when) noexcept {
   if (!std::exchange(odd_told_, true)) tell(EventKind::sync_period, when, interval.count());
 }
 
-/// One late SYNC waited somewhere and moves no beat: its producer goes on by its own clock, and the
-/// next is on time. A second one in a row is the beat.
+/// A single late SYNC was delayed somewhere and does not move the beat: its producer continues by
+/// its own clock, and the next SYNC is on time. A second late SYNC in a row defines the beat.
 void SyncFollower::place(Time when) noexcept {
   const std::int64_t periods = (when - beat_ + period_ / 2) / period_;
   const Time due = beat_ + std::max<std::int64_t>(periods, 1) * period_;

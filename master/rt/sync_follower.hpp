@@ -12,9 +12,9 @@
 
 namespace takt {
 
-/// Keeps the cycles to the SYNC of another device: which frames begin one, when the next is due,
-/// and whether it is lost. The producer's period is measured, for its clock is not ours. CiA 301,
-/// 7.2.5. Bus thread only.
+/// Follows the SYNC of another device: tells which frames begin a cycle, when the next one is due,
+/// and whether SYNC is lost. The follower measures the producer's period, because the two clocks
+/// differ. CiA 301, 7.2.5. Bus thread only.
 class SyncFollower {
  public:
   /// Keeps a reference to the queue.
@@ -24,27 +24,30 @@ class SyncFollower {
   bool is_sync(const Frame& frame) const noexcept { return used_ && frame.id == id_ && !frame.rtr; }
 
   void on_sync(const StampedFrame& sync) noexcept;
-  /// A SYNC has come that begins the next cycle.
+  /// Returns true if a SYNC has come that begins the next cycle.
   bool arrived() const noexcept { return arrival_.has_value(); }
   Time arrival() const noexcept { return *arrival_; }
-  /// Its time, once.
+  /// Returns the arrival of that SYNC and clears it.
   Time take() noexcept { return *std::exchange(arrival_, std::nullopt); }
-  /// When the newest was due: its arrival, unless that was an exception among punctual ones.
+  /// Time at which the newest SYNC was due: its arrival, unless it was a single late one among
+  /// punctual ones.
   Time beat() const noexcept { return beat_; }
 
-  /// A cycle begins without SYNC. While nodes boot the first one is not missed yet.
+  /// Notes that a cycle begins without SYNC. While nodes boot, the follower does not miss the first
+  /// SYNC yet.
   void on_silence(Time now, std::span<const NodeStatus> nodes) noexcept;
 
-  /// None comes, or none has come by the time that it should have.
+  /// Returns true if SYNC stopped coming, or if the first one did not come in time.
   bool lost() const noexcept { return state_ == State::lost; }
-  /// Every SYNC of the last while came.
+  /// Returns true while SYNC comes without a loss.
   bool locked() const noexcept { return state_ == State::locked; }
-  /// None has come yet, and it is not missed either.
+  /// Returns true before the first SYNC, while it is not yet overdue.
   bool waiting() const noexcept { return state_ == State::waiting; }
   Time period() const noexcept { return period_; }  ///< measured
-  /// So long after its time a cycle begins without SYNC.
+  /// Time after the expected SYNC at which a cycle begins without it.
   Time patience() const noexcept;
-  /// The same as a time, for a SYNC that is expected then; not just before the time-out.
+  /// End of the wait for a SYNC that is expected at `expected`. The end never falls just before the
+  /// time-out of SYNC.
   Time end_of_wait(Time expected) const noexcept;
 
   template <class Archive>
@@ -57,7 +60,7 @@ class SyncFollower {
 
  private:
   enum class State : std::uint8_t {
-    waiting,  ///< for the first one
+    waiting,  ///< no SYNC has come yet
     locked,
     lost,
   };
@@ -79,16 +82,16 @@ class SyncFollower {
   EventQueue& events_;
 
   State state_ = State::waiting;
-  std::optional<Time> arrival_;  ///< of the SYNC that begins the next cycle
+  std::optional<Time> arrival_;  ///< arrival of the SYNC that begins the next cycle
   std::optional<Time> last_;
-  std::optional<Time> idle_since_;  ///< no node boots any more, and no SYNC yet
+  std::optional<Time> idle_since_;  ///< since then no node boots, and no SYNC has come
   Time period_;
   Time beat_{};
-  std::uint8_t counter_ = 0;  ///< of the newest; 0: not known
+  std::uint8_t counter_ = 0;  ///< counter of the newest SYNC; 0 if unknown
   bool jumped_ = false;
-  bool late_ = false;       ///< the newest was
-  std::uint8_t early_ = 0;  ///< good ones until the next early one is told
-  std::uint8_t odd_ = 0;    ///< intervals in a row that are not the declared period
+  bool late_ = false;       ///< the newest SYNC was late
+  std::uint8_t early_ = 0;  ///< punctual SYNCs until the next early one is reported
+  std::uint8_t odd_ = 0;    ///< intervals in a row that differ from the declared period
   bool odd_told_ = false;
 };
 

@@ -7,21 +7,22 @@
 
 namespace takt {
 
-/// Keeps SYNCs and outputs from piling up in the queue of an interface whose bus is off or where
-/// nobody acknowledges: they would all go out at once, and too old, when the bus comes back. While
-/// the echo of the newest SYNC is outstanding the next one is held; now and then one is tried, in
-/// case only the echo was lost. Ports without echo are held by bus-off alone. An interface that
-/// goes down loses its queue: nothing is held for its sake when it is back. Bus thread only.
+/// Keeps SYNCs and outputs from piling up in the queue of an interface that is bus-off or that
+/// nobody acknowledges: they would all go out at once, too old, when the bus comes back. While the
+/// echo of the newest SYNC is outstanding, the gate holds the next SYNC; from time to time it lets
+/// one pass, in case only the echo was lost. For ports without echo, only bus-off closes the gate.
+/// An interface that goes down loses its queue, so the gate is open when the interface comes back.
+/// Bus thread only.
 class SyncGate {
  public:
   explicit SyncGate(Time period) noexcept : tolerance_{period / 4} {}
 
-  /// The newest SYNC has not been seen on the wire.
+  /// Returns true if the newest SYNC has not been seen on the wire.
   bool doubtful(const PortNews& news) const noexcept {
     return news.last_sync_echo > Time{0} && news.last_sync_echo + tolerance_ < last_sent_;
   }
 
-  /// May the frames of this cycle be handed to the interface?
+  /// Returns true if the loop may hand the frames of this cycle to the interface.
   bool open(const PortNews& news, Time now) noexcept {
     if (news.interface_down) last_sent_ = Time{0};
     if (news.interface_down || (!news.bus_off && !doubtful(news))) {
@@ -40,7 +41,7 @@ class SyncGate {
     return true;
   }
 
-  /// A SYNC was handed over.
+  /// Notes that a SYNC was handed over.
   void sent(Time now) noexcept { last_sent_ = now; }
 
   template <class Archive>
@@ -49,7 +50,7 @@ class SyncGate {
   }
 
  private:
-  Time tolerance_;  // of the kernel's stamps against our own clock reading
+  Time tolerance_;  // of kernel time stamps against our own clock
   Time last_sent_{};
   Time try_at_{};
   Time pause_ = waits::held_sync_first;

@@ -9,9 +9,9 @@
 
 namespace takt {
 
-/// Holds back a SYNC with counter until the first node is about to be started. Before that the
-/// devices have not been told of the counter (0x1019): they report each SYNC as one of unexpected
-/// length (EMCY 0x8240, CiA 301, 7.2.5.3), and some then stay out of OPERATIONAL. Bus thread only.
+/// Holds back a SYNC with counter until the first node is about to be started. Before that, the
+/// devices do not know the counter (0x1019): they report each SYNC as one of unexpected length
+/// (EMCY 0x8240, CiA 301, 7.2.5.3), and some then stay out of OPERATIONAL. Bus thread only.
 class SyncHold {
  public:
   explicit SyncHold(const BusPlan& plan) : open_{plan.cycle.sync_overflow == 0} {
@@ -19,7 +19,8 @@ class SyncHold {
     for (const NodePlan& node : plan.nodes) steps_.push_back(last_before_start(node.boot_plan));
   }
 
-  /// May SYNC be sent? Once true it stays so. `nodes` in the order of the plan.
+  /// Returns true if SYNC may be sent; once true, the result stays true. `nodes` has the order of
+  /// the plan.
   bool open(std::span<const NodeStatus> nodes) noexcept {
     if (open_) return true;
     bool booting = false;
@@ -39,7 +40,8 @@ class SyncHold {
   }
 
  private:
-  /// The wait for the first heartbeat, else the start itself; none of them: the end of the plan.
+  /// Index of the wait for the first heartbeat, or of the start itself. Returns the end of the plan
+  /// if there is neither.
   static std::size_t last_before_start(const BootPlan& plan) noexcept {
     const auto start = std::ranges::find_if(plan.steps, [](const BootStep& step) {
       return step.action == BootAction::nmt && step.command == NmtCommand::start;
@@ -49,7 +51,7 @@ class SyncHold {
     return waits ? at - 1 : at;
   }
 
-  std::vector<std::size_t> steps_;  // of each node: from here on it knows the counter
+  std::vector<std::size_t> steps_;  // per node: the step from which on the node knows the counter
   bool open_;
 };
 

@@ -7,20 +7,20 @@
 
 namespace takt {
 
-/// How long frames are on the wire.
+/// Computes how long frames occupy the wire.
 class WireTime {
  public:
   explicit WireTime(std::uint32_t bitrate) noexcept
       : bit_{1'000'000'000 / (bitrate == 0 ? 1'000'000 : bitrate)} {}
 
-  /// Bits with the most stuff bits and the space to the next frame. CiA 301 says nothing of it;
-  /// ISO 11898-1 stuffs after five equal bits.
+  /// Bits of a frame with the most stuff bits, including the interframe space. CiA 301 does not
+  /// specify this; ISO 11898-1 stuffs after five equal bits.
   static constexpr std::int64_t worst_bits(const Frame& frame) noexcept {
     const std::int64_t data = data_bits(frame);
     return frame.id.is_extended() ? 67 + data + (54 + data - 1) / 4
                                   : 47 + data + (34 + data - 1) / 4;
   }
-  /// The same with the stuff bits of random data.
+  /// Bits of a frame with the stuff bits of random data.
   static constexpr std::int64_t mean_bits(const Frame& frame) noexcept {
     const std::int64_t data = data_bits(frame);
     return (frame.id.is_extended() ? 69 : 48) + data + data / 32;
@@ -36,11 +36,11 @@ class WireTime {
     return bit_ * bits;
   }
   std::int64_t bits_in(Time time) const noexcept { return time / bit_; }
-  /// One request of eight bytes and its answer.
+  /// Wire time of one request of eight bytes and its answer.
   Time worst_dialogue() const noexcept { return bit_ * (2 * 135); }
 
  private:
-  /// A remote frame names a length, but has no data.
+  /// A remote frame names a length but carries no data.
   static constexpr std::int64_t data_bits(const Frame& frame) noexcept {
     return frame.rtr ? 0 : 8 * std::int64_t{frame.length};
   }
