@@ -104,7 +104,6 @@ class VirtualApplication final : public Actor {
   };
   std::vector<Course> courses_;  // of each axis
   std::int64_t jump_ = 0;        // of the next command
-  std::uint64_t jumps_ = 0;      // so far
   std::uint64_t images_ = 0;     // used
   bool hears_ = false;           // an image came in this round
   std::uint64_t heard_ = 0;      // rounds with images since the last one that it could use
