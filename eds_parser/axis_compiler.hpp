@@ -8,17 +8,17 @@
 
 namespace takt {
 
-/// The CiA 402 axes of a device as the ordered stop needs them, from the values that the device has
-/// once it has booted: its file, and what the boot plan writes over it. `spec`: its units and
-/// limits.
+/// Returns the CiA 402 axes of a device in the form that the ordered stop needs. The values are
+/// those that the device has after its boot: the values of its device file, overwritten by the boot
+/// plan. `spec` supplies the units and limits of the node.
 std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& device,
                                    const NodeSpec& spec, NetworkReport& report);
 
-/// The longest of `plan`; 0: none is known.
+/// Returns the longest stopping time of all axes of `plan`. 0 means that no stopping time is known.
 Time longest_stopping_time(const BusPlan& plan) noexcept;
 
-/// Warns where the ordered stop gives a drive less time than its ramp needs, and where a drive can
-/// not be confirmed because it coasts.
+/// Warns if the ordered stop gives a drive less time than its ramp needs, and if the standstill of
+/// a drive can not be confirmed because the drive coasts.
 void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& report);
 
 }  // namespace takt

@@ -8,11 +8,12 @@
 
 namespace takt {
 
-/// `rad/s` of `rad` for a velocity, `rad/s^2` for an acceleration.
+/// Returns true if `unit` is the rate of `base` that suits `kind`: for the base `rad` this is
+/// `rad/s` for a velocity and `rad/s^2` for an acceleration.
 bool is_limit_rate(std::string_view unit, const std::string& base, LimitKind kind);
 
-/// Compiles the limits of one axis of a drive: a row for each output that shows them, a line for
-/// each kind.
+/// Compiles the limits of one axis of a drive. The result is one row for each output that a limit
+/// applies to, and one line for each kind of limit.
 class AxisLimits {
  public:
   AxisLimits(const NodeSource& node, std::size_t node_index, std::uint8_t axis, BusPlan& plan,
@@ -33,14 +34,15 @@ class AxisLimits {
   void torque(const Sourced<double>& limit);
   void jerk(const Sourced<double>& limit);
 
-  // Limits that the drive tells in each boot: axis_device_limits.cpp. False: it has no such object,
-  // or no output can be held against it.
+  // These functions compile limits that are read from the drive in each boot; see
+  // axis_device_limits.cpp. They return false if the drive has no such object, or if no output can
+  // be compared with the limit.
   bool device_position();
   bool device_velocity();
   bool device_acceleration();
-  /// A readable object of 32 bits.
+  /// Returns true if the object is a readable integer of 32 bits.
   bool tells(ObjectKey object) const;
-  /// The line that the last limits of the plan belong to.
+  /// Appends the line to which the following limits of the plan belong.
   LimitLine& device_line(LimitKind kind, ObjectKey object, double scale);
   void read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound, double factor);
   double cycle_seconds() const;
@@ -53,10 +55,11 @@ class AxisLimits {
   void ask_for_turn(const Sourced<double>& modulo);
   void warn_of_late_start(const AxisLimitsSpec& limits);
 
-  /// False: the signal counts without a unit, which is reported.
+  /// Returns false and reports an error if the signal has no unit and would count in raw counts.
   bool has_unit(SignalIndex signal, std::string_view kind, SourcePos pos);
   std::string unit_of(LimitKind kind) const;
-  /// The unit of `kind` is that of positions per second, or per second squared.
+  /// Returns true if the unit of `kind` is the unit of positions per second, or per second squared.
+  /// Also returns true if the axis has no position output.
   bool follows_position(LimitKind kind) const;
   void tell_other_unit(LimitKind kind, SourcePos pos);
   LimitLine& line(LimitKind kind, LimitSource source);
@@ -68,8 +71,8 @@ class AxisLimits {
   BusPlan& plan_;
   LimitTable& table_;
   NetworkReport& report_;
-  std::vector<SignalIndex> positions_;   ///< 607A, 60C1:01
-  std::vector<SignalIndex> velocities_;  ///< 60FF, 60B1
+  std::vector<SignalIndex> positions_;   ///< outputs 607A and 60C1:01
+  std::vector<SignalIndex> velocities_;  ///< outputs 60FF and 60B1
 };
 
 }  // namespace takt

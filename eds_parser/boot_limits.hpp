@@ -4,8 +4,9 @@
 
 namespace takt {
 
-/// Warns of every number that the boot writes although the limits of the device file exclude it,
-/// and says so in the purpose of its steps. A value that the file itself has as default passes.
+/// Warns of every number that the boot writes and that lies outside the limits of the device file.
+/// The purpose of the step then mentions the limits as well. A value that the file itself has as
+/// default passes.
 void judge_limits(const NodePdos& node, BootPlan& plan, NetworkReport& report);
 
 }  // namespace takt

@@ -7,7 +7,8 @@
 
 namespace takt {
 
-/// What the parts of a boot plan have in common: whose they are, and where their steps go.
+/// The data that all parts of a boot plan share: the node, its dictionary, and the list that takes
+/// their steps.
 struct BootPart {
   const NodeSpec& spec;
   const ObjectDictionary& dictionary;
@@ -15,10 +16,10 @@ struct BootPart {
   BootSteps& steps;
   NetworkReport& report;
 
-  /// Tells that `key` of the network file needs an object that can't be written.
+  /// Reports that `key` of the network file needs an object that can't be written.
   void missing(SourcePos pos, const std::string& key, ObjectKey object) const;
-  /// Values that follow from the plan are not forced upon a device whose limits exclude them:
-  /// false, and told.
+  /// Returns false and warns if the limits of the device exclude `value`. Values that takt derives
+  /// from the plan are not forced upon such a device.
   bool takes(ObjectKey key, std::int64_t value, SourcePos pos,
              const std::string& consequence) const;
 };

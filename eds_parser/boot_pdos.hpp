@@ -4,8 +4,9 @@
 
 namespace takt {
 
-/// Steps for one PDO: compare what the device has; where something differs, configure it in the
-/// order that devices accept (CiA 301, 7.5.2.36) and read it back. A fixed mapping is only checked.
+/// Appends the steps for one PDO. They compare the PDO with its settings in the device. If anything
+/// differs, they configure the PDO in the order that devices accept (CiA 301, 7.5.2.36) and read it
+/// back. A fixed mapping is only checked.
 void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps);
 
 }  // namespace takt

@@ -5,8 +5,9 @@
 
 namespace takt {
 
-/// Steps that check the version of the device's software and load another one where it differs:
-/// 0x1F56 against 0x1F55, then 0x1F51, 0x1F50, 0x1F57. CiA 302-2 and 302-3.
+/// Appends steps that check the version of the device's software and download another version if it
+/// differs: 0x1F56 is compared with 0x1F55, then 0x1F51, 0x1F50 and 0x1F57 are used. CiA 302-2 and
+/// 302-3.
 void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& report);
 
 }  // namespace takt

@@ -10,7 +10,8 @@
 
 namespace takt {
 
-/// Appends steps to a boot plan; knows the dictionary, so that each step can say what it does.
+/// Appends steps to a boot plan. The class knows the dictionary, so that each step can describe
+/// what it does.
 class BootSteps {
  public:
   BootSteps(const ObjectDictionary& dictionary, Time sdo_timeout)
@@ -18,14 +19,15 @@ class BootSteps {
 
   BootStep& nmt(NmtCommand command, std::string purpose);
   BootStep& wait(BootAction action, Time timeout, char letter, std::string purpose);
-  /// A step on an object with an integer of its width (or of `bytes` bytes where that is unknown).
+  /// Appends a step on an object with an integer of the object's width, or of `bytes` bytes if the
+  /// width is unknown.
   BootStep& integer(BootAction action, ObjectKey object, std::int64_t value, std::string purpose,
                     unsigned bytes = 4);
   BootStep& bytes(BootAction action, ObjectKey object, std::vector<std::byte> value,
                   std::string purpose);
-  /// `skip_if_same` whose target is set by land().
+  /// Appends a `skip_if_same` step and returns its index. land() sets its target.
   std::size_t skip_if_same(std::string purpose);
-  /// The step after the last one is the target of `skip`.
+  /// Makes the step after the last one the target of `skip`.
   void land(std::size_t skip);
 
   bool has(ObjectKey object) const noexcept { return dictionary_.find(object) != nullptr; }
@@ -44,7 +46,7 @@ class BootSteps {
   BootPlan plan_;
 };
 
-/// `value` little endian in `width` bytes.
+/// Returns `value` in `width` bytes, little endian.
 std::vector<std::byte> little_endian(std::int64_t value, unsigned width);
 
 }  // namespace takt

@@ -4,9 +4,9 @@
 
 namespace takt {
 
-/// Steps that write values: ParameterValues of a DCF, the interpolation period of drives, those
-/// of the device data, then the list `sdo:` in its order. Values are checked against type, access
-/// and limits of the EDS.
+/// Appends steps that write values: the ParameterValues of a DCF, the interpolation period of
+/// drives, the values of the device data, then the list `sdo:` in its order. Each value is checked
+/// against the type, access and limits of the EDS.
 void append_values(const NodeSource& node, const BootContext& context, BootSteps& steps,
                    NetworkReport& report);
 

@@ -5,7 +5,8 @@
 
 namespace takt {
 
-/// A string in the room of one pointer, for places of which few hold one. A copy is its own string.
+/// A string that takes the space of one pointer, for a variant that rarely holds a string. A copy
+/// owns a string of its own.
 class BoxedText {
  public:
   BoxedText(std::string text) : text_{std::make_unique<std::string>(std::move(text))} {}
@@ -20,7 +21,7 @@ class BoxedText {
   auto operator<=>(const BoxedText& other) const noexcept { return text() <=> other.text(); }
 
  private:
-  std::unique_ptr<std::string> text_;  ///< null only where it was moved from
+  std::unique_ptr<std::string> text_;  ///< null only after a move
 };
 
 }  // namespace takt

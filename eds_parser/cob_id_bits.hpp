@@ -9,13 +9,13 @@ namespace takt {
 
 /// A numeric `cob_id` of the network file.
 struct FileCobId {
-  bool off = false;         ///< bit 31
-  std::optional<CobId> id;  ///< none: off, or no identifier (reported)
+  bool off = false;         ///< bit 31: the PDO is switched off
+  std::optional<CobId> id;  ///< empty if `off`, or if the number is no identifier (reported)
 };
 
-/// Takes `cob_id` of `spec`, a number, apart and says what its bits 29..31 mean: the file has them
-/// as 0x1800:01 does, but not each can be had. CiA 301, 7.5.2.35. `owner` names the PDO in
-/// findings.
+/// Splits the numeric `cob_id` of `spec` and reports the effect of its bits 29..31. The bits have
+/// the same meaning as in 0x1800:01, but takt can not fulfil each of them. CiA 301, 7.5.2.35.
+/// `owner` names the PDO in findings.
 FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string& owner,
                            NetworkReport& report);
 

@@ -9,20 +9,21 @@
 
 namespace takt {
 
-/// The PDOs of one node while the network is compiled.
+/// The PDOs of one node during the compilation of the network.
 struct NodePdos {
   NodeSource node;
   std::vector<EffectivePdo> pdos;
 };
 
-/// Never for a PDO. CiA 301, 7.3.5, table 40.
+/// Returns true if no PDO may have this CAN-ID. CiA 301, 7.3.5, table 40.
 bool is_restricted(std::uint32_t id) noexcept;
 
-/// Gives every exchanged PDO its COB-ID and reports clashes. Ids of the network file stand; ids of
-/// device files that work are never moved; absolute ids of device files that clash become
-/// node-relative, with a note, unless they are a link: an RPDO with the id of another device's TPDO
-/// is fed by it. `auto`: the predefined set for PDO 1..4, above that the lowest free id in
-/// 0x181..0x57F. `services`: identifiers that no PDO may have, with a word each ("is TIME").
+/// Gives every exchanged PDO its COB-ID and reports clashes. COB-IDs of the network file are never
+/// changed, and neither are COB-IDs of device files that work. An absolute COB-ID of a device file
+/// that clashes becomes node-relative, with a note. The exception is a link: an RPDO with the
+/// COB-ID of another device's TPDO receives that TPDO. `auto` gives PDO 1..4 the predefined
+/// connection set, and other PDOs the lowest free identifier in 0x181..0x57F. `services` holds
+/// identifiers that no PDO may have, each with a phrase for messages ("is TIME").
 void assign_cob_ids(std::span<NodePdos> nodes, const std::map<CobId, std::string>& services,
                     NetworkReport& report);
 

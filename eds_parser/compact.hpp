@@ -9,13 +9,14 @@
 
 namespace takt {
 
-/// Sub-objects that short notations may add to one file. It bounds what a file of CompactSubObj=255
-/// can ask for (about 100 MB); the largest real files need some thousands.
+/// The number of sub-objects that short notations may add to one file. The limit bounds the memory
+/// that a file full of CompactSubObj=255 can demand (about 100 MB). The largest real files need
+/// some thousands.
 class ExpansionBudget {
  public:
   static constexpr std::size_t most = 262'144;
 
-  /// False: the budget is used up; nothing is taken.
+  /// Returns false and takes nothing if the remaining budget is too small.
   bool take(std::size_t count) noexcept {
     if (count > most - used_) return false;
     used_ += count;
@@ -26,20 +27,20 @@ class ExpansionBudget {
   std::size_t used_ = 0;
 };
 
-/// The sub 0 that such notations imply.
+/// Returns the sub 0 that such notations imply.
 SubObject count_sub(const Object& object, std::uint8_t count);
 
-/// Adds sub 0 and `count` copies of `pattern` to an object; subs that are already there stay.
-/// CiA 306, 4.6.3.4.2.
+/// Adds sub 0 and `count` copies of `pattern` to an object. Sub-objects that the object already has
+/// are kept. CiA 306, 4.6.3.4.2.
 void expand_compact_subs(Object& object, const SubObject& pattern, std::uint8_t count);
 
-/// Adds objects that are not among them yet to ascending ones: each moves once at most, those
-/// before the first made one not at all.
+/// Merges new objects into a list in ascending order; no index may occur in both. Each object moves
+/// at most once, and the objects before the first new one do not move at all.
 void merge_objects(std::vector<Object>& objects, std::vector<Object> made);
 
 enum class CompactList : std::uint8_t { names, values, denotations };
 
-/// Applies [xxxxName], [xxxxValue] or [xxxxDenotation]: keys are sub-indices in decimal.
+/// Applies [xxxxName], [xxxxValue] or [xxxxDenotation]. The keys are sub-indices in decimal.
 void apply_compact_list(Object& object, CompactList list, const IniEntries& entries,
                         ValueReader& values, Report& report);
 

@@ -3,8 +3,8 @@
 
 namespace takt {
 
-/// Adds the PDOs that CompactPDO and NrOfRXPDO / NrOfTXPDO imply; those of a DCF are off.
-/// CiA 306, 4.6.3.4.1 and 5.3.3.1.
+/// Adds the PDOs that CompactPDO and NrOfRXPDO / NrOfTXPDO imply. In a DCF these PDOs are switched
+/// off. CiA 306, 4.6.3.4.1 and 5.3.3.1.
 void expand_compact_pdos(ObjectDictionary& dictionary);
 
 }  // namespace takt

@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// One value of a concise DCF, as it goes onto the wire.
+/// One value of a concise DCF with its bytes as they are sent on the wire.
 struct ConciseEntry {
   ObjectKey object;
   std::vector<std::byte> value;
@@ -17,7 +17,7 @@ struct ConciseEntry {
 };
 
 /// Reads the content of 0x1F22: a list of values in the order in which they are to be written.
-/// Surplus bytes are ignored, missing ones are an error in words. CiA 302-3.
+/// Surplus bytes are ignored. If bytes are missing, the function returns an error text. CiA 302-3.
 std::expected<std::vector<ConciseEntry>, std::string> decode_concise_dcf(
     std::span<const std::byte> bytes);
 

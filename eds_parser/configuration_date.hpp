@@ -9,21 +9,22 @@
 
 namespace takt {
 
-/// Lets a boot skip the configuration of a device that has it already: 0x1020 against 0x1F26 and
-/// 0x1F27. The date is the network file's, else the DCF's; `auto` makes it from what is written.
-/// CiA 302-2.
+/// Lets a boot skip the configuration of a device that already has it: 0x1020 is compared with
+/// 0x1F26 and 0x1F27. The date comes from the network file, else from the DCF. `auto` derives it
+/// from the content that is written. CiA 302-2.
 class ConfigurationDate {
  public:
   ConfigurationDate(const NodeSpec& node, const ObjectDictionary& dictionary, BootSteps& steps,
                     NetworkReport& report);
 
-  /// Before the configuration.
+  /// Appends the comparison. Call this before the configuration steps.
   void skip_if_there();
-  /// After it, before it is stored: the device gets the date.
+  /// Appends the write of the date. Call this after the configuration steps and before the
+  /// parameters are stored.
   void enter();
-  /// Behind all that is skipped.
+  /// Ends the skipped part. Call this after the last step that may be skipped.
   void land();
-  /// Some boots skip the configuration.
+  /// Returns true if the boot can skip the configuration.
   bool used() const noexcept { return used_; }
 
  private:
@@ -35,7 +36,7 @@ class ConfigurationDate {
   bool made_ = false;
   std::uint32_t date_ = 0;
   std::uint32_t time_ = 0;
-  std::size_t first_ = 0;  ///< step that compares the date
+  std::size_t first_ = 0;  ///< index of the step that compares the date
   std::size_t skip_ = 0;
 };
 

@@ -8,25 +8,27 @@
 
 namespace takt {
 
-/// When the application can compute: between the publication of the image of SYNC k and the last
-/// moment for its outputs.
+/// The time in which the application can compute: from the publication of the image of SYNC k to
+/// the last moment for its outputs.
 struct TimeBudget {
-  Time inputs_wire{};  ///< SYNC and all synchronous TPDOs, worst stuffing
-  Time
-      outputs_wire{};  ///< RPDOs, worst stuffing; event-driven ones at most a quarter of the period
-  Time earliest{};  ///< worst-case arrival of the last input after SYNC, if devices answer at once
-  Time latest{};    ///< output deadline
-  bool next_sync = true;  ///< outputs act at SYNC k+1; false: at k+2
+  Time inputs_wire{};  ///< time of SYNC and all synchronous TPDOs on the wire, with worst stuffing
+  /// Time of the RPDOs on the wire, with worst stuffing. Event-driven RPDOs count for at most a
+  /// quarter of the period.
+  Time outputs_wire{};
+  /// Worst-case arrival of the last input after SYNC, if all devices answer at once.
+  Time earliest{};
+  Time latest{};          ///< output deadline
+  bool next_sync = true;  ///< Outputs act at SYNC k+1. If false, they act at SYNC k+2.
 };
 
 TimeBudget time_budget(const BusPlan& plan) noexcept;
 
-/// SYNC, the PDOs, and the quiet before the next SYNC are not longer than the period; `taktd`
-/// refuses a network where they are.
+/// Returns true if SYNC, the PDOs and the quiet time before the next SYNC fit into the period. Also
+/// returns true if the network has no SYNC. `taktd` refuses a network for which this is false.
 bool fits_period(const BusPlan& plan) noexcept;
 
-/// Fills `plan.cycle` but for what `spec` says directly; `plan.pdos` are there. Reports cycles that
-/// can't fit.
+/// Fills `plan.cycle`, except for the members that `spec` states directly. `plan.pdos` must be
+/// complete. Reports cycles that can't fit.
 void compile_cycle(const NetworkSpec& spec, std::span<const NodePdos> nodes, BusPlan& plan,
                    NetworkReport& report);
 

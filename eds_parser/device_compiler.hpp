@@ -4,8 +4,8 @@
 
 namespace takt {
 
-/// What a simulated device of this node starts with: the defaults of its EDS (a DCF's values are
-/// for the master to write).
+/// Returns the object table that a simulated device of this node starts with: the default values of
+/// its EDS. The values of a DCF are left for the master to write.
 DeviceTable compile_device(const NodeSource& node);
 
 }  // namespace takt

@@ -14,7 +14,7 @@
 
 namespace takt {
 
-/// From `low` to `high`, both included.
+/// The numbers from `low` to `high`, both included.
 struct NumberRange {
   std::uint32_t low = 0;
   std::uint32_t high = 0xFFFF'FFFF;
@@ -24,14 +24,14 @@ struct NumberRange {
   }
 };
 
-/// What is known of the identity of a node before it is asked.
+/// The identity of a node as far as it is known before the node is asked.
 struct DeviceIdentity {
   std::uint32_t vendor = 0;
   std::uint32_t product = 0;
   std::uint32_t revision = 0;
 };
 
-/// Devices of one family, told by their identity.
+/// The devices of one family, recognized by their identity.
 struct DeviceMatch {
   std::uint32_t vendor = 0;  ///< never 0
   NumberRange product;
@@ -43,41 +43,43 @@ struct DeviceMatch {
   }
 };
 
-/// Where an entry says something, and why: the maker's manual in our words.
+/// The place of a statement in the device data, and its reason: the maker's manual in our words.
 struct DeviceFact {
   SourcePos pos;
   std::string reason;
 };
 
-/// What event timer and events of a TPDO have to do with each other.
+/// How the event timer of a TPDO and its events affect each other.
 enum class TimerMeaning : std::uint8_t {
-  restarts,    ///< every transmission restarts it; CiA 301
-  additional,  ///< it sends besides events, which do not shift it
-  alone,       ///< while it is set, events send nothing
+  restarts,    ///< Every transmission restarts the timer, as CiA 301 demands.
+  additional,  ///< The timer sends in addition to events, and events do not shift it.
+  alone,       ///< While the timer is set, events send nothing.
 };
 
 enum class PdoFunction : std::uint8_t { process_data, parameter_channel };
 
-/// What the PDOs `numbers` of one direction can do.
+/// The capabilities of the PDOs `numbers` of one direction.
 struct PdoRule {
   DeviceFact fact;
   bool is_tpdo = true;
   NumberRange numbers{1, 512};
-  std::vector<NumberRange> types;    ///< transmission types; empty: those of CiA 301
-  bool without_timer = false;        ///< the event timer has to be 0
-  bool without_rtr = false;          ///< no remote requests
-  bool no_more_entries = false;      ///< the mapping takes no more objects than by default
-  bool no_gaps = false;              ///< used only together with the one before
-  std::vector<NumberRange> answers;  ///< types of which a TPDO only answers the RPDO of its number
+  std::vector<NumberRange> types;  ///< allowed transmission types; empty means those of CiA 301
+  bool without_timer = false;      ///< The event timer must be 0.
+  bool without_rtr = false;        ///< The PDO does not support remote requests.
+  bool no_more_entries = false;    ///< The mapping takes no more objects than it has by default.
+  bool no_gaps = false;            ///< A PDO can be used only together with the PDO before it.
+  /// Transmission types with which a TPDO is sent only as the answer to the RPDO of the same
+  /// number.
+  std::vector<NumberRange> answers;
   PdoFunction function = PdoFunction::process_data;
 };
 
-/// How 0x1800:03 counts.
+/// The unit and the range of the inhibit time, 0x1800:03.
 struct InhibitRule {
   DeviceFact fact;
   std::uint32_t unit_us = 100;
-  std::uint32_t least = 0;    ///< units; the device takes shorter times as this
-  std::uint32_t factory = 0;  ///< units; 0: not known
+  std::uint32_t least = 0;    ///< in units of unit_us; the device uses this value for shorter times
+  std::uint32_t factory = 0;  ///< default in units of unit_us; 0 means unknown
 };
 
 struct TimerRule {
@@ -85,13 +87,13 @@ struct TimerRule {
   TimerMeaning meaning = TimerMeaning::restarts;
 };
 
-/// Node ids that its switches can have.
+/// The node-IDs that the switches of the device can set.
 struct NodeIdRule {
   DeviceFact fact;
   NumberRange ids{1, 127};
 };
 
-/// How 0x1016 and 0x1017 count: the device rounds down.
+/// The resolution of 0x1016 and 0x1017. The device rounds times down.
 struct HeartbeatRule {
   DeviceFact fact;
   std::uint16_t multiple_of_ms = 1;
@@ -99,38 +101,39 @@ struct HeartbeatRule {
   constexpr std::uint32_t kept(std::uint32_t ms) const noexcept { return ms - ms % multiple_of_ms; }
 };
 
-/// Written at boot, before what the network file asks for.
+/// A value that each boot writes before the values of the network file.
 struct ValueEdit {
   DeviceFact fact;
   ObjectKey object;
   std::int64_t value = 0;
 };
 
-/// An object that takes its time.
+/// The SDO timeout of an object that answers slowly.
 struct TimeoutEdit {
   DeviceFact fact;
   SdoObjectTimeout timeout;
 };
 
-/// As SYNC producer.
+/// The behaviour of the device as SYNC producer.
 struct SyncRule {
   DeviceFact fact;
-  std::optional<Firmware> own_tpdos_from;  ///< its own SYNC triggers its TPDOs from here on
-  std::uint16_t tx_identifier = 0;  ///< object that has to be the identifier of 0x1005; 0: none
+  std::optional<Firmware> own_tpdos_from;  ///< first firmware whose own SYNC triggers its TPDOs
+  /// Index of the object that must hold the same identifier as 0x1005. 0 means that there is none.
+  std::uint16_t tx_identifier = 0;
 };
 
-/// The device has an object otherwise than its EDS says.
+/// A difference between an object of the device and its EDS.
 struct ObjectEdit {
   DeviceFact fact;
   ObjectKey object;
-  bool whole = true;             ///< all sub-indices
-  std::optional<Access> access;  ///< none: the object is missing
+  bool whole = true;             ///< The edit applies to all sub-indices.
+  std::optional<Access> access;  ///< empty if the object is missing
   std::optional<Firmware> from;
   std::optional<Firmware> below;
 };
 
-/// An SDO server that the device comes with, on these COB-IDs + node id, whether its EDS tells of
-/// it or not.
+/// An SDO server that the device has at delivery, whether its EDS describes it or not. The node-ID
+/// is added to these COB-IDs.
 struct SdoServerFact {
   DeviceFact fact;
   std::uint16_t index = 0;  ///< 0x1201..0x127F
@@ -151,15 +154,16 @@ struct EmcyMeaning {
   std::string text;
 };
 
-/// One entry of the device data: what a device family does otherwise than CiA 301 or its EDS say.
+/// One entry of the device data: the deviations of a device family from CiA 301 or from its EDS.
 struct DeviceData {
-  std::string id;      ///< stem of its file: "lenze8400"
-  std::string file;    ///< as found
+  std::string id;      ///< file name without extension: "lenze8400"
+  std::string file;    ///< path of the file
   std::string name;    ///< "Lenze 8400 HighLine"
-  std::string manual;  ///< where its facts come from
+  std::string manual;  ///< source of the facts
   SourcePos pos;
-  std::vector<DeviceMatch> matches;   ///< none: only `device:` of a node chooses the entry
-  bool revision_is_firmware = false;  ///< 0x1018:03: main version in the upper half
+  std::vector<DeviceMatch> matches;  ///< empty if only `device:` of a node selects the entry
+  /// The upper half of 0x1018:03 is the main version of the firmware.
+  bool revision_is_firmware = false;
   NodeIdRule node_ids;
   HeartbeatRule heartbeat;
   std::vector<ValueEdit> values;
@@ -172,33 +176,36 @@ struct DeviceData {
   std::vector<SdoServerFact> sdo_servers;
   BootTweaks boot;
   std::vector<EmcyMeaning> emcy;
-  std::string on_sync_loss;  ///< what its outputs do when 0x1006 has run out; empty: not known
+  std::string on_sync_loss;  ///< behaviour of the outputs when 0x1006 has expired; empty if unknown
 
-  /// The rule of a PDO; nullptr: as CiA 301.
+  /// Returns the rule of a PDO, or nullptr if the PDO behaves as CiA 301 says.
   const PdoRule* rule(bool is_tpdo, std::uint16_t number) const noexcept;
-  /// "astraada_drv28.yaml:12".
+  /// Returns the file name and the line of a statement: "astraada_drv28.yaml:12".
   std::string place(SourcePos at) const;
-  /// ": reason (astraada_drv28.yaml:12, after its manual)", the end of a message.
+  /// Returns the end of a message: ": reason (astraada_drv28.yaml:12, after its manual)".
   std::string cite(const DeviceFact& fact) const;
 };
 
-/// By the network file; else by 0x1018 of the device file, else by its [DeviceInfo].
+/// Returns the identity from the network file, else from 0x1018 of the device file, else from
+/// [DeviceInfo].
 DeviceIdentity identity_of(const NodeSpec& node, const ObjectDictionary& dictionary) noexcept;
 
-/// What of an entry depends on the firmware; none: nothing does, or the plan knows no firmware.
+/// Returns the rules of an entry that depend on the firmware. Returns std::nullopt if no rule
+/// depends on it, or if the firmware is unknown to the plan.
 std::optional<FirmwarePlan> firmware_plan(const DeviceData& data, std::optional<Firmware> firmware);
 
-/// The entry of a node: the one that `device:` names, else the first one that its identity matches;
-/// nullptr where there is none.
+/// Returns the entry of a node: the entry that `device:` names, else the first entry that matches
+/// the identity of the node. Returns nullptr if there is none.
 const DeviceData* find_device_data(std::span<const DeviceData> entries, const NodeSpec& node,
                                    const ObjectDictionary& dictionary, NetworkReport& report);
 
-/// Firmware of a node: `firmware:`, that of its simulation, or its revision number where the entry
-/// says so; none: unknown.
+/// Returns the firmware of a node: `firmware:`, else that of its simulation, else its revision
+/// number if the entry says that this is the firmware. Returns std::nullopt if the firmware is
+/// unknown.
 std::optional<Firmware> firmware_of(const DeviceData* data, const NodeSpec& node,
                                     const ObjectDictionary& dictionary) noexcept;
 
-/// The dictionary as the device has it.
+/// Returns the dictionary with the corrections of the device data for this firmware.
 ObjectDictionary with_object_edits(const ObjectDictionary& dictionary, const DeviceData& data,
                                    std::optional<Firmware> firmware);
 

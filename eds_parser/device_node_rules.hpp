@@ -4,7 +4,8 @@
 
 namespace takt {
 
-/// The part of judge_by_device_data() that has nothing to do with PDOs; the node has an entry.
+/// Does the part of judge_by_device_data() that does not concern PDOs. The node must have an entry
+/// of the device data.
 void judge_node_by_device_data(const NodeSource& node, NetworkReport& report);
 
 }  // namespace takt

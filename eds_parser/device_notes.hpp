@@ -9,12 +9,13 @@ namespace takt {
 
 struct NumberRange;
 
-/// What the entry of a node says, a line each, for people; empty where there is no entry.
+/// Returns the content of the device data entry of a node as lines for people. The result is empty
+/// if the node has no entry.
 std::vector<std::string> device_notes(const NodePdos& node);
 
-/// "1..240, 254, 255".
+/// Returns the ranges as text: "1..240, 254, 255".
 std::string list_of(const std::vector<NumberRange>& ranges);
-/// "50 ms", "100 us".
+/// Returns a time in microseconds as text: "50 ms", "100 us".
 std::string time_text(std::uint64_t us);
 
 }  // namespace takt

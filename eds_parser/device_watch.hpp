@@ -4,7 +4,8 @@
 
 namespace takt {
 
-/// Whose silence a device notices once its boot plan has run: 0x1016, and 0x100C with 0x100D.
+/// Sets in `node` the producers whose silence the device notices after its boot: by heartbeat
+/// (0x1016) and by life guarding (0x100C with 0x100D).
 void set_device_watch(const ObjectDictionary& dictionary, NodePlan& node);
 
 }  // namespace takt

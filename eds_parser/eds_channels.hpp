@@ -8,8 +8,8 @@
 
 namespace takt {
 
-/// [DynamicChannels] of a programmable device. A segment that can't be read whole is left out.
-/// CiA 302-4, CiA 306, 4.6.3.4.3.
+/// Reads [DynamicChannels] of a programmable device. A segment that can't be read completely is
+/// left out. CiA 302-4, CiA 306, 4.6.3.4.3.
 std::vector<DynamicChannel> read_dynamic_channels(const IniEntries& entries, SourcePos pos,
                                                   ValueReader& values, Report& report);
 

@@ -9,28 +9,29 @@
 
 namespace takt {
 
-/// [FileInfo]. CiA 306, 4.4.
+/// Reads [FileInfo]. CiA 306, 4.4.
 void read_file_info(FileInfo& info, const IniEntries& entries, Report& report);
-/// Line1, Line2 ... of [Comments], in order of the file. CiA 306, 4.6.5.
+/// Reads Line1, Line2 ... of [Comments], in the order of the file. CiA 306, 4.6.5.
 std::vector<std::string> read_comments(const IniEntries& entries, Report& report);
-/// [Tool1].
+/// Reads one section [ToolN].
 VendorTool read_tool(const IniSection& section, const IniEntries& entries, Report& report);
-/// [Tools], where there are `found` sections [ToolN].
+/// Compares [Tools] with `found`, the number of sections [ToolN].
 void check_tools(const IniEntries& entries, std::size_t found, Report& report);
-/// [xxxxObjectLinks] between objects that `is_described` knows. CiA 306, 4.6.4.
+/// Reads [xxxxObjectLinks]. `is_described` tells whether the file describes the object of an index.
+/// CiA 306, 4.6.4.
 ObjectLinks read_links(const IniSection& section, const IniEntries& entries,
                        const std::function<bool(std::uint16_t)>& is_described, Report& report);
 
-/// [DeviceInfo]. CiA 306, 4.5.
+/// Reads [DeviceInfo]. CiA 306, 4.5.
 void read_device_info(DeviceInfo& device, const IniSection& section, const IniEntries& entries,
                       ValueReader& values, Report& report);
-/// [DeviceComissioning]. CiA 306, 5.3.
+/// Reads [DeviceComissioning]. CiA 306, 5.3.
 void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
                         ValueReader& values, Report& report);
-/// [MxModuleInfo]. CiA 306, 6.
+/// Reads [MxModuleInfo]. CiA 306, 6.
 ModuleInfo read_module_info(std::uint16_t number, const IniSection& section,
                             const IniEntries& entries, Report& report);
-/// [DummyUsage]. CiA 306, 4.6.2.
+/// Reads [DummyUsage]. CiA 306, 4.6.2.
 void read_dummy_usage(std::array<bool, 8>& usage, const IniEntries& entries, ValueReader& values,
                       Report& report);
 

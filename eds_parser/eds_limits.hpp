@@ -6,7 +6,8 @@
 
 namespace takt {
 
-/// Below the low or above the high limit. What has no order, texts, is never outside.
+/// Returns true if `value` is below the low limit or above the high limit. Texts have no order and
+/// are never outside.
 inline bool outside_limits(const Value& value, const SubObject& sub) noexcept {
   const auto comparable = [&value](const std::optional<Value>& limit) {
     return limit && limit->index() == value.index() && !std::holds_alternative<BoxedText>(value);

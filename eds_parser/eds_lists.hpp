@@ -14,27 +14,31 @@ namespace takt {
 
 using IndexSet = std::bitset<65536>;
 
-/// `SupportedObjects`, also with blanks inside.
+/// Returns true if the key is `SupportedObjects`, with or without blanks inside.
 bool is_count_key(std::string_view key) noexcept;
-/// Key of an entry of an object list or value list: always decimal, zeros in front do not matter.
+/// Returns the key of an entry of an object list or value list as a number. Such keys are always
+/// decimal, and leading zeros do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
-/// `Line12` with the word `line`: the word and a number as above.
+/// Returns true if the key is the word and a number as above, for example `Line12` with the word
+/// `line`.
 bool is_numbered(std::string_view key, std::string_view lower_word) noexcept;
-/// Entries whose key is a number behind `lower_word`: what NrOfEntries, Lines ... count.
+/// Counts the entries whose key is a number after `lower_word`. NrOfEntries, Lines ... state this
+/// count.
 std::size_t numbered_entries(const IniEntries& entries, std::string_view lower_word = {}) noexcept;
-/// The objects of [MandatoryObjects]. CiA 306, 4.6.3.1.
+/// Returns true if the object belongs to [MandatoryObjects]. CiA 306, 4.6.3.1.
 bool is_mandatory(std::uint16_t index) noexcept;
 
-/// [MandatoryObjects], [OptionalObjects], [ManufacturerObjects] against the sections of the file.
-/// The sections are the truth; the lists only say where an object belongs. CiA 306, 4.6.3.1.
+/// Compares [MandatoryObjects], [OptionalObjects] and [ManufacturerObjects] with the sections of
+/// the file. The sections decide which objects exist; the lists only tell where an object belongs.
+/// CiA 306, 4.6.3.1.
 class ObjectLists {
  public:
-  /// `described`: indices that have a section.
+  /// `described` holds the indices that have a section.
   ObjectLists(const IndexSet& described, Report& report);
 
   void read(ObjectList list, const IniSection& section, const IniEntries& entries);
   ObjectList list_of(std::uint16_t index) const noexcept { return membership_[index]; }
-  /// Tells of an object that no list names.
+  /// Warns if no list names the object.
   void tell_unlisted(const Object& object) const;
   bool any() const noexcept { return any_; }
 

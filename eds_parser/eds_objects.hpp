@@ -12,15 +12,16 @@
 
 namespace takt {
 
-/// One section that belongs to an object: its index, its role there, and its place in the file.
+/// One section that belongs to an object: the index of the object, the role of the section, and its
+/// place in the file.
 struct ObjectSection {
   static constexpr std::uint32_t main_role = 0;
-  static constexpr std::uint32_t first_sub_role = 1;  ///< + sub-index
+  static constexpr std::uint32_t first_sub_role = 1;  ///< the sub-index is added
   static constexpr std::uint32_t first_list_role = 0x101;
 
   static ObjectSection of(const SectionName& name, std::uint32_t section) noexcept;
 
-  std::uint32_t order = 0;  ///< index x 512 + role
+  std::uint32_t order = 0;  ///< index x 512 + role; sorts the sections of a file by object
   std::uint32_t section = 0;
 
   std::uint16_t index() const noexcept { return static_cast<std::uint16_t>(order >> 9); }
@@ -30,18 +31,19 @@ struct ObjectSection {
   std::uint8_t sub() const noexcept { return static_cast<std::uint8_t>(role() - first_sub_role); }
 };
 
-/// What [MxSubExtxxxx] says. CiA 306, 6.
+/// The content of [MxSubExtxxxx]. CiA 306, 6.
 struct SubExtension {
   SubObject pattern;
-  std::string_view count;  ///< Count, as written
-  SourcePos count_pos;     ///< of Count, or of the section
-  unsigned last_sub = 0;   ///< ObjExtend: behind this sub-index the next object goes on; 0: never
+  std::string_view count;  ///< text of Count
+  SourcePos count_pos;     ///< place of Count, or of the section if there is no Count
+  /// ObjExtend: last sub-index before the extension continues in the next object; 0 means never.
+  unsigned last_sub = 0;
 };
 
-/// What a reader does with a CompactSubObj where its ExpansionBudget is used up.
+/// What the reader does with a CompactSubObj when its ExpansionBudget is used up.
 enum class BeyondBudget : std::uint8_t {
-  error,  ///< tells that sub-objects are left out
-  shape,  ///< reads what the section says and makes no sub-objects: for findings alone
+  error,  ///< Reports that sub-objects are left out.
+  shape,  ///< Reads the section only for its findings and makes no sub-objects.
 };
 
 /// Builds objects from their sections.
@@ -51,12 +53,12 @@ class ObjectReader {
                BeyondBudget beyond = BeyondBudget::error) noexcept
       : file_{file}, values_{values}, report_{report}, beyond_{beyond} {}
 
-  /// `group`: all sections of one index in ascending order. A false `Object::subs.empty()` is not
-  /// promised: a record without sub-objects stays in the dictionary.
+  /// Reads one object. `group` holds all sections of one index in ascending order. The object may
+  /// have no sub-objects: a record without them stays in the dictionary.
   Object read(std::span<const ObjectSection> group);
-  /// Those of the objects read so far.
+  /// Returns the domain files of the objects read so far.
   std::vector<DomainFiles> take_domain_files() noexcept { return std::move(domain_files_); }
-  /// Of the objects read so far.
+  /// Returns the ParamRefd entries of the objects read so far.
   std::vector<ParameterReference> take_references() noexcept { return std::move(references_); }
   SubExtension read_extension(const IniSection& section, std::uint16_t index);
 
@@ -64,7 +66,7 @@ class ObjectReader {
   struct Parts;
 
   Parts split(std::span<const ObjectSection> group);
-  /// False: sub-objects were left out, so lists of them say nothing.
+  /// Returns false if sub-objects were left out, so that lists of sub-objects can not be judged.
   bool read_main(Object& object, const Parts& parts);
   void read_single(Object& object, const ObjectFields& fields, const IniSection& section);
   void read_subs(Object& object, const Parts& parts);

@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// What a section of an EDS or DCF is about. CiA 306, 4.4 to 6.
+/// The subject of a section of an EDS or DCF. CiA 306, 4.4 to 6.
 enum class SectionKind : std::uint8_t {
   object,
   sub_object,
@@ -17,7 +17,7 @@ enum class SectionKind : std::uint8_t {
   value_list,       ///< [xxxxValue]
   denotation_list,  ///< [xxxxDenotation]
   object_links,     ///< [xxxxObjectLinks]
-  short_object,     ///< [A0]: a data type of CANFestival, of no use here
+  short_object,     ///< [A0]: a data type of CANFestival, which takt does not use
   file_info,
   device_info,
   dummy_usage,
@@ -27,7 +27,7 @@ enum class SectionKind : std::uint8_t {
   optional_objects,
   manufacturer_objects,
   commissioning,
-  commissioning_two_m,  ///< [DeviceCommissioning]; the standard has one m
+  commissioning_two_m,  ///< [DeviceCommissioning]; the standard spells it with one m
   dynamic_channels,
   supported_modules,
   connected_modules,
@@ -35,7 +35,7 @@ enum class SectionKind : std::uint8_t {
   unknown,
 };
 
-/// A section name taken apart.
+/// The parts of a section name.
 struct SectionName {
   SectionKind kind = SectionKind::unknown;
   std::uint16_t index = 0;
@@ -48,20 +48,21 @@ struct SectionName {
 };
 
 SectionName classify_section(std::string_view name) noexcept;
-/// The same of a section of a file, where the sub-index may be decimal.
+/// Does the same for a section of a file, in which the sub-index may be decimal.
 SectionName classify_section(const IniSection& section) noexcept;
 
-/// Says that a name has a blank in it or around it.
+/// Reports that a name has a blank in it or around it.
 void tell_blank_in_name(const IniSection& section, Report& report);
-/// Says that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
+/// Reports that [xxxxName], [xxxxValue] or [xxxxDenotation] has no object to belong to.
 void tell_lonely_list(const IniSection& list, Report& report);
-/// Says that CiA 306 does not have such a key in `section`.
+/// Reports that CiA 306 does not have such a key in `section`.
 void tell_unknown_key(const IniEntry& entry, std::string_view section, Report& report);
-/// Says that an entry that counts others (`NrOfEntries`, `Lines` ...) has not the number `found`.
+/// Reports that an entry that counts others (`NrOfEntries`, `Lines` ...) differs from the number
+/// `found`.
 void check_entry_count(const IniEntry& count, std::size_t found, std::string_view section,
                        Report& report);
 
-/// Keys of an object's section. CiA 306, 4.6.3.2 and 5.3.3.
+/// Keys of the section of an object. CiA 306, 4.6.3.2 and 5.3.3.
 enum class Keyword : std::uint8_t {
   parameter_name,
   object_type,
@@ -79,15 +80,15 @@ enum class Keyword : std::uint8_t {
   upload_file,
   download_file,
   param_refd,
-  module_count,   ///< Count, of [MxSubExtxxxx]
-  module_extend,  ///< ObjExtend, of [MxSubExtxxxx]
-  other_known,    ///< SRDOMapping, Unit ...: allowed, not used
+  module_count,   ///< Count of [MxSubExtxxxx]
+  module_extend,  ///< ObjExtend of [MxSubExtxxxx]
+  other_known,    ///< SRDOMapping, Unit ...: allowed, but not used by takt
   unknown,
 };
 
 Keyword classify_key(std::string_view key) noexcept;
 
-/// The entries of one object's section by keyword; of a repeated key the first counts.
+/// The entries of one object's section by keyword. If a key is repeated, the first entry counts.
 class ObjectFields {
  public:
   ObjectFields(const IniEntries& entries, std::string_view section, Report& report);
@@ -98,12 +99,12 @@ class ObjectFields {
     if (spot == nullptr) return std::nullopt;
     return spot->entry_in(text_);
   }
-  /// The value as written, empty where the key is missing.
+  /// Returns the value as written. The result is empty if the key is missing.
   std::string_view text(Keyword keyword) const noexcept {
     const auto* spot = slot(keyword);
     return spot == nullptr ? std::string_view{} : spot->value_in(text_);
   }
-  /// Place of a value, or `otherwise` where the key is missing.
+  /// Returns the place of a value, or `otherwise` if the key is missing.
   SourcePos pos(Keyword keyword, SourcePos otherwise) const noexcept {
     const auto* spot = slot(keyword);
     return spot == nullptr ? otherwise : spot->pos_in(text_);

@@ -5,23 +5,27 @@
 
 namespace takt {
 
-/// How the master sees that its nodes live: by heartbeat, else by guarding (CiA 301, 7.2.8).
+/// How the master supervises its nodes: by heartbeat, else by guarding (CiA 301, 7.2.8).
 class ErrorControl {
  public:
   ErrorControl(const NetworkSpec& spec, NetworkReport& report) : spec_{spec}, report_{report} {}
 
-  /// 0x1017 of a node in ms: of the network file; else of the device file; else, where the device
-  /// can, 100 ms or as much as keeps all heartbeats below 2 % of the bus. As the device keeps it.
+  /// Returns 0x1017 of a node in ms: the value of the network file, else of the device file. If
+  /// neither has one and the device can produce a heartbeat, the result is 100 ms, or as much as
+  /// keeps all heartbeats below 2 % of the bus. The value is rounded as the device rounds it.
   std::uint16_t producer_ms(const NodeSource& node) const;
-  /// For how long a device is to take the silence of the master, in ms of 0x1016; 0: no heartbeat.
+  /// Returns the longest silence of the master that a device accepts, in ms of 0x1016. 0 means that
+  /// the master produces no heartbeat.
   std::uint16_t master_consumer_ms(const NodeSource& node) const;
-  /// Of how many heartbeat periods the silence ends a node's life; at least 1.5.
+  /// Returns the number of heartbeat periods of silence after which a node counts as lost; at least
+  /// 1.5.
   double multiplier(const NodeSpec& node) const;
-  /// Zero: no heartbeat is expected.
+  /// Returns zero if no heartbeat is expected.
   Time heartbeat_timeout(const NodeSource& node) const;
-  /// Guarding where the device file or the network file has a guard time and there is no heartbeat.
+  /// Returns the guarding of a node if the device file or the network file has a guard time and
+  /// there is no heartbeat.
   GuardPlan guard(const NodeSource& node);
-  /// Tells of `retry_factor` of `options` where guard() gave it to no node.
+  /// Reports `retry_factor` of `options` if guard() gave it to no node.
   void tell_unused_retry_factor() const;
 
  private:
@@ -32,10 +36,10 @@ class ErrorControl {
   const NetworkSpec& spec_;
   NetworkReport& report_;
   bool guards_ = false;
-  bool uses_retry_factor_ = false;  ///< that of `options`
+  bool uses_retry_factor_ = false;  ///< the retry_factor of `options`
 };
 
-/// A node that is to be kept running has to show its state.
+/// Checks that a node with `reset: keep_alive` shows its state by heartbeat or guarding.
 void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport& report);
 
 }  // namespace takt

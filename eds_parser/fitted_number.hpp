@@ -7,22 +7,25 @@
 
 namespace takt {
 
-/// A number as the value of an integer type.
+/// A number converted to the value of an integer type.
 struct FittedNumber {
-  std::optional<Value> value;  ///< none: the type cannot hold it
-  bool wrapped = false;  ///< a bit pattern for a signed type, or a negative number for an unsigned
+  std::optional<Value> value;  ///< empty if the type cannot hold the number
+  /// A bit pattern for a signed type, or a negative number for an unsigned type.
+  bool wrapped = false;
 };
 
-/// 2^bits - 1, of 1..64 bits.
+/// Returns 2^bits - 1, for 1..64 bits.
 std::uint64_t highest_unsigned(unsigned bits) noexcept;
-/// Of 1..64 bits; a number above the type is taken for the bit pattern of a negative one.
+/// Converts to a signed type of 1..64 bits. A number above the range is taken for the bit pattern
+/// of a negative number.
 FittedNumber fit_signed(const ParsedNumber& number, unsigned bits) noexcept;
-/// Of 1..64 bits; a negative number becomes its bit pattern.
+/// Converts to an unsigned type of 1..64 bits. A negative number becomes its bit pattern.
 FittedNumber fit_unsigned(const ParsedNumber& number, unsigned bits) noexcept;
-/// None where the nearest REAL32 is infinite; decimal texts of the largest are rounded upwards.
+/// Returns std::nullopt if the nearest REAL32 is infinite. Values slightly above the largest REAL32
+/// become that number, because its decimal texts are rounded upwards.
 std::optional<double> fit_real32(double value) noexcept;
-/// Adds the terms $NODEID; false where the node id is needed and unknown, or the sum needs more
-/// than 64 bits.
+/// Adds the terms $NODEID. Returns false if the node-ID is needed but unknown, or if the sum needs
+/// more than 64 bits.
 bool resolve(ParsedNumber& number, std::optional<NodeId> node) noexcept;
 
 }  // namespace takt

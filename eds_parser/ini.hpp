@@ -13,7 +13,7 @@
 
 namespace takt {
 
-/// One `key=value`; both are trimmed, the value still has its inline comment.
+/// One `key=value`. Both are trimmed; the value still contains its inline comment.
 struct IniEntry {
   std::string_view key;
   std::string_view value;
@@ -25,12 +25,12 @@ struct IniEntry {
   SourcePos key_pos() const noexcept { return {line, key_column}; }
 };
 
-/// Where an entry is: offsets into the text. A large file has so many that each byte here counts;
-/// the rest of an IniEntry is found again when it is asked for.
+/// The place of an entry as offsets into the text. A large file has so many entries that each byte
+/// here counts. The rest of an IniEntry is derived from the text on demand.
 struct IniSpot {
   std::uint32_t key = 0;
   std::uint32_t equals = 0;
-  std::uint32_t end = 0;  ///< behind the value
+  std::uint32_t end = 0;  ///< after the last character of the value
   std::uint32_t line = 0;
 
   std::string_view key_in(const char* text) const noexcept {
@@ -50,7 +50,7 @@ struct IniSpot {
   IniEntry entry_in(const char* text) const noexcept;
 
  private:
-  /// Start of the line, before the blanks in front of the key.
+  /// Returns the start of the line, which may begin with blanks before the key.
   const char* line_in(const char* text) const noexcept {
     const char* first = text + key;
     while (first != text && is_blank(first[-1]) && first[-1] != '\n' && first[-1] != '\r') --first;
@@ -58,7 +58,7 @@ struct IniSpot {
   }
 };
 
-/// The entries of a section in order.
+/// The entries of a section in the order of the file.
 class IniEntries {
  public:
   class Iterator {
@@ -100,35 +100,37 @@ class IniEntries {
 };
 
 struct IniSection {
-  std::string_view name;  ///< in the text, between the brackets
+  std::string_view name;  ///< name in the text, between the brackets
   SourcePos pos;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
-  bool closed = true;            ///< by ]
-  bool has_decimal_sub = false;  ///< [2000sub128], see mark_decimal_subs()
+  bool closed = true;            ///< The closing ] is present.
+  bool has_decimal_sub = false;  ///< [2000sub128]; see mark_decimal_subs()
 
-  /// Blanks around the name: [ 2000 ].
+  /// Returns true if there are blanks around the name: [ 2000 ].
   bool padded() const noexcept {
     return name.data()[-1] != '[' || (closed && name.data()[name.size()] != ']');
   }
 };
 
-/// A file of sections, as EDS, DCF and CPJ are. Views point into the text given to read_ini, or
-/// into `recoded` where that was UTF-16. CiA 306, 4.2.
+/// A file of sections, such as an EDS, DCF or CPJ. The views point into the text given to read_ini,
+/// or into `recoded` if that text was UTF-16. CiA 306, 4.2.
 struct IniFile {
-  std::vector<IniSection> sections;  ///< in order of the file, duplicates included
+  std::vector<IniSection> sections;  ///< in the order of the file, including duplicates
   std::vector<IniSpot> spots;
   std::unique_ptr<std::string> recoded;
-  const char* text = nullptr;  ///< what the spots count from
+  const char* text = nullptr;  ///< base of the offsets of the spots
 
   IniEntries entries(const IniSection& section) const noexcept {
     return {text, std::span{spots}.subspan(section.first, section.count)};
   }
 };
 
-/// Splits a text of less than 4 GB into sections and entries. Line ends LF, CR LF, CR, also mixed;
-/// UTF-8 with or without mark, any one-byte page, UTF-16 with mark. Lines that are neither give a
-/// finding. `text` must outlive the result. Time and memory are proportional to the text.
+/// Splits a text of less than 4 GB into sections and entries. Lines may end with LF, CR LF or CR,
+/// also mixed. The text may be UTF-8 with or without a byte order mark, any one-byte code page, or
+/// UTF-16 with a byte order mark. Every other line that is neither blank nor a comment gives a
+/// finding. `text` must outlive the result. Time and memory are proportional to the length of the
+/// text.
 IniFile read_ini(std::string_view text, Report& report);
 
 }  // namespace takt

@@ -6,12 +6,12 @@
 
 namespace takt {
 
-/// None: there is no value, or it is no integer.
+/// Returns std::nullopt if there is no value or the value is no integer.
 inline std::optional<std::int64_t> integer_of(const std::optional<Value>& value) noexcept {
   return value ? as_integer(*value) : std::nullopt;
 }
 
-/// The value that an object has by its file, see SubObject::value().
+/// Returns the value that the file gives to an object; see SubObject::value().
 inline std::optional<std::int64_t> integer_of(const ObjectDictionary& dictionary,
                                               ObjectKey key) noexcept {
   const SubObject* sub = dictionary.find(key);

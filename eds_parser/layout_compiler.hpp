@@ -10,11 +10,12 @@
 
 namespace takt {
 
-/// Fills `plan.pdos` and `plan.layout` from the effective PDOs; `plan.nodes` and
-/// `plan.cycle.period` are already there. `nodes` are in the order of `plan.nodes`.
+/// Fills `plan.pdos` and `plan.layout` from the effective PDOs. `plan.nodes` and
+/// `plan.cycle.period` must be complete. `nodes` must have the order of `plan.nodes`.
 void compile_layout(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report);
 
-/// `Position actual value` -> `position_actual_value`. Never empty, never longer than 60.
+/// Converts a name: `Position actual value` becomes `position_actual_value`. The result is never
+/// empty and has at most 60 characters.
 std::string snake_case(std::string_view text);
 
 }  // namespace takt

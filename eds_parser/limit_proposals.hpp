@@ -5,8 +5,9 @@
 
 namespace takt {
 
-/// Where an axis has no limit of a kind, what `limits:` could say: from what the device file, the
-/// DCF and `sdo:` say of the drive's own limits, else in words.
+/// Proposes an entry of `limits:` for an axis that has no limit of a kind. The proposal follows
+/// from the limits of the drive itself, as the device file, the DCF and `sdo:` state them. If they
+/// state none, the proposal is in words.
 void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
                    const LimitTable& table);
 

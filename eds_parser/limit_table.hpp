@@ -9,37 +9,39 @@
 
 namespace takt {
 
-/// The first and the last value of a bound in raw counts.
+/// The first and the last permitted value in raw counts.
 struct RawRange {
   double low = -OutputLimit::none;
   double high = OutputLimit::none;
 };
 
-/// One row for each limited output while the limits of a bus are compiled.
+/// The rows of the limited outputs, one row for each output, during the compilation of a bus.
 class LimitTable {
  public:
   LimitTable(BusPlan& plan, NetworkReport& report) : plan_{plan}, report_{report} {}
 
-  /// None: the PDOs of the node carry no such object in this direction.
+  /// Returns std::nullopt if no PDO of the node carries the object in this direction.
   std::optional<SignalIndex> find(std::size_t node_index, ObjectKey object, bool output) const;
   const Signal& signal(SignalIndex index) const { return plan_.layout.signals[index]; }
   OutputLimit& row(SignalIndex signal);
-  /// Narrows what may be sent. `pos`: where the file says so.
+  /// Narrows the permitted values of an output. `pos` is the place of the limit in the file.
   void narrow(SignalIndex signal, RawRange range, LimitKind kind, SourcePos pos);
 
-  /// Raw counts of SI values that are absolute; whole where the signal is an integer.
+  /// Converts absolute SI values to raw counts. The result is rounded to whole counts if the signal
+  /// is an integer.
   RawRange raw_range(SignalIndex signal, std::optional<double> low,
                      std::optional<double> high) const;
-  /// Raw counts of a difference or a magnitude.
+  /// Converts a difference or a magnitude to raw counts.
   double raw_size(SignalIndex signal, double si) const;
 
-  /// Sorted by signal; a fallback or a safe value outside its limits is an error.
+  /// Sorts the rows by signal. Reports an error if a fallback or a safe value is outside its
+  /// limits.
   void finish();
 
  private:
   BusPlan& plan_;
   NetworkReport& report_;
-  std::vector<SourcePos> positions_;  ///< beside plan_.limits.outputs
+  std::vector<SourcePos> positions_;  ///< parallel to plan_.limits.outputs
 };
 
 }  // namespace takt

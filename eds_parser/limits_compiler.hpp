@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Fills `plan.limits` from `limits:` of the nodes; `plan.layout` and `plan.cycle.period` are
-/// already there. `nodes` are in the order of `plan.nodes`.
+/// Fills `plan.limits` from `limits:` of the nodes. `plan.layout` and `plan.cycle.period` must be
+/// complete. `nodes` must have the order of `plan.nodes`.
 void compile_limits(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report);
 
 }  // namespace takt

@@ -9,7 +9,8 @@
 
 namespace takt {
 
-/// How a node gets its id by LSS, where the network file wants that. `others`: the nodes before it.
+/// Returns how a node gets its node-ID by LSS, or std::nullopt if the network file does not ask for
+/// LSS. `others` holds the nodes before this one.
 std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary& dictionary,
                                    std::span<const NodePlan> others, NetworkReport& report);
 

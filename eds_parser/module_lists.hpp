@@ -9,19 +9,21 @@
 
 namespace takt {
 
-/// What a module type brings: objects of its own, or sub-indices of objects of the device.
+/// What a module type adds to the device: new objects, or sub-indices of objects that the device
+/// has.
 enum class ModulePart : std::uint8_t { fixed, extension };
 
-/// [SupportedModules], [MxFixedObjects] and [MxSubExtends] against the sections that they count and
-/// name. The sections are the truth; the lists only are judged. CiA 306, 6.
+/// Compares [SupportedModules], [MxFixedObjects] and [MxSubExtends] with the sections that they
+/// count and name. The sections decide what exists; the lists are only checked. CiA 306, 6.
 class ModuleLists {
  public:
   void set_supported(const IniSection& section) noexcept;
   void add_list(std::uint16_t module, ModulePart part, const IniSection& section);
-  /// A section of an object, or of a part of one.
+  /// Adds a section of an object, or of a part of an object.
   void add_object(std::uint16_t module, ModulePart part, std::uint16_t index,
                   const IniSection& section);
-  /// `described`: number of sections [MxModuleInfo].
+  /// Reports what the lists and the sections disagree on. `described` is the number of sections
+  /// [MxModuleInfo].
   void check(const IniFile& file, std::size_t described, Report& report) const;
 
  private:
@@ -34,7 +36,7 @@ class ModuleLists {
     std::uint16_t module = 0;
     ModulePart part = ModulePart::fixed;
     std::uint16_t index = 0;
-    const IniSection* section = nullptr;  ///< the first of the object
+    const IniSection* section = nullptr;  ///< first section of the object
 
     auto order() const noexcept { return std::tuple{module, part, index}; }
     bool operator<(const Object& other) const noexcept { return order() < other.order(); }

@@ -14,26 +14,26 @@
 
 namespace takt {
 
-/// Sections of a modular device: what each module type brings, and which modules are plugged in.
-/// CiA 306, 6.
+/// The sections of a modular device: the objects of each module type, and the modules that are
+/// plugged in. CiA 306, 6.
 class ModuleSections {
  public:
   explicit ModuleSections(const IniFile& file) noexcept : file_{file} {}
 
-  /// A section [Mx...]; others than fixed objects, sub-index extensions and lists of them are of no
-  /// use here.
-  /// False: not one of CiA 306.
+  /// Adds a section [Mx...]. Only fixed objects, sub-index extensions and the lists of both are
+  /// used; other sections of CiA 306 are ignored. Returns false if the section is not one of CiA
+  /// 306.
   bool add(const SectionName& name, std::uint32_t section, Report& report);
   void set_supported(const IniSection& section) noexcept { lists_.set_supported(section); }
   void set_connected(const IniSection& section) noexcept { connected_ = &section; }
 
   /// Adds the objects of the connected modules to a dictionary, in physical order. Without
-  /// [ConnectedModules] (in an EDS) nothing is plugged in.
+  /// [ConnectedModules], as in an EDS, no module is plugged in.
   void expand(ObjectDictionary& dictionary, ObjectReader& reader, Report& report);
-  /// A section of some module, connected or not, is about this object.
+  /// Returns true if a section of any module, connected or not, describes this object.
   bool describes(std::uint16_t index) const { return indices_.contains(index); }
-  /// Judges the lists, and reads the sections of modules that are not connected for their findings
-  /// alone. After expand().
+  /// Checks the lists, and reads the sections of modules that are not connected for their findings
+  /// only. Call this after expand().
   void check(const ObjectDictionary& dictionary, Report& report);
 
  private:
@@ -47,13 +47,13 @@ class ModuleSections {
     auto order() const noexcept { return std::tuple{module, part, object.order}; }
   };
 
-  /// How far the sub-indices of an extended object are filled.
+  /// The progress of filling the sub-indices of an extended object.
   struct Fill {
     std::uint16_t first_index = 0;
     std::uint16_t index = 0;
     unsigned sub = 0;
     unsigned bits_used = 0;
-    unsigned described = 0;  ///< highest sub-index that `index` had before
+    unsigned described = 0;  ///< highest sub-index that `index` had before the extension
   };
 
   struct Slot {
@@ -79,11 +79,11 @@ class ModuleSections {
   const IniFile& file_;
   const IniSection* connected_ = nullptr;
   std::vector<ModuleSection> sections_;
-  std::set<std::uint16_t> indices_;                   ///< of these sections
-  std::map<std::uint32_t, SubExtension> extensions_;  ///< by section
+  std::set<std::uint16_t> indices_;                   ///< indices that `sections_` describe
+  std::map<std::uint32_t, SubExtension> extensions_;  ///< by section number
   ModuleLists lists_;
-  std::vector<Fill> fills_;               ///< ascending first_index
-  std::map<std::uint16_t, Object> made_;  ///< what the dictionary does not have yet
+  std::vector<Fill> fills_;               ///< in ascending order of first_index
+  std::map<std::uint16_t, Object> made_;  ///< objects that the dictionary does not have yet
   ExpansionBudget budget_;
 };
 

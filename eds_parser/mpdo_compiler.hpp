@@ -6,19 +6,21 @@
 
 namespace takt {
 
-/// The objects of a multiplexed PDO, as the network file lists them: of the device's dictionary for
-/// SAM and for what the master sends, of the master's own (`bits` says how wide) for a DAM of the
-/// device.
+/// Compiles the objects of a multiplexed PDO, as the network file lists them. For a SAM MPDO, and
+/// for every MPDO that the master sends, they are objects of the device's dictionary. For a DAM
+/// MPDO that the device sends, they are objects of the master itself, and `bits` gives their width.
 std::vector<EffectiveEntry> compile_mpdo(const NodeSource& node, const EffectivePdo& pdo,
                                          const Sourced<std::vector<MappingSpec>>& wanted,
                                          NetworkReport& report);
 
-/// Bytes 0..3 of the frames that carry this object. What the master sends by source address has the
-/// name under which the device's dispatching list awaits it. CiA 301, 7.2.3.
+/// Returns bytes 0..3 of the frames that carry this object. For a SAM MPDO that the master sends,
+/// they hold the source object under which the device's dispatching list expects it. CiA 301,
+/// 7.2.3.
 std::uint32_t mpdo_header(const NodeSource& node, const EffectivePdo& pdo,
                           const EffectiveEntry& entry, NodeId master);
 
-/// What the master sends by source address has to be in the device's dispatching list.
+/// Reports an error if a SAM MPDO of the master carries an object that the device's dispatching
+/// list does not contain.
 void check_dispatching(const NodeSource& node, const EffectivePdo& pdo, NodeId master,
                        NetworkReport& report);
 

@@ -12,15 +12,15 @@
 
 namespace takt {
 
-/// The tables of a network, and the effective PDOs that they were made from (for printing).
+/// The tables of a network.
 struct CompiledNetwork {
   BusPlan plan;
-  std::vector<DeviceTable> devices;  ///< order of plan.nodes
+  std::vector<DeviceTable> devices;  ///< in the order of plan.nodes
 };
 
-/// Compiles a network. `dictionaries` holds one dictionary a node of `spec`, in its order, read
-/// with that node's id; nullptr where the file could not be read (that node is left out).
-/// `device_data` says what devices do otherwise than their EDS.
+/// Compiles a network. `dictionaries` holds one dictionary for each node of `spec`, in the same
+/// order, read with the node-ID of that node. nullptr means that the file could not be read; that
+/// node is left out. `device_data` holds the deviations of devices from their EDS.
 CompiledNetwork compile_network(const NetworkSpec& spec,
                                 std::span<const ObjectDictionary* const> dictionaries,
                                 Findings& findings, std::span<const DeviceData> device_data = {});

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// Collects the findings of one network file; bounded.
+/// Collects the findings of one network file, up to `max_findings`.
 class NetworkReport {
  public:
   static constexpr std::size_t max_findings = 1000;

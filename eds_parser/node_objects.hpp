@@ -7,9 +7,9 @@
 
 namespace takt {
 
-/// The integer that `sdo:` of the node or its DCF writes into an object in each boot.
+/// Returns the integer that `sdo:` of the node or its DCF writes into an object in each boot.
 std::optional<std::int64_t> written_object(const NodeSource& node, ObjectKey object);
-/// The same, else the default of the device file.
+/// Returns the same integer, else the default of the device file.
 std::optional<std::int64_t> configured_object(const NodeSource& node, ObjectKey object);
 
 }  // namespace takt

@@ -4,8 +4,9 @@
 
 namespace takt {
 
-/// Complaints about `safe_values` and `units: objects:` that would have no effect: objects that the
-/// device has not or that no RPDO of the network file carries, values that do not fit.
+/// Reports entries of `safe_values` and `units: objects:` that would have no effect: objects that
+/// the device does not have or that no RPDO of the network file carries, and values that do not
+/// fit.
 void check_node_values(const NodePdos& node, NetworkReport& report);
 
 }  // namespace takt

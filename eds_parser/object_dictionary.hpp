@@ -15,8 +15,8 @@
 
 namespace takt {
 
-/// A value of the dictionary: signed types as int64, unsigned types and BOOLEAN as uint64, reals as
-/// double, strings and byte types as the bytes themselves.
+/// A value of the dictionary: signed types as int64, unsigned types and BOOLEAN as uint64, real
+/// types as double, strings and byte types as their bytes.
 using Value = std::variant<std::int64_t, std::uint64_t, double, BoxedText>;
 
 /// Object codes. CiA 306, 4.6.3.2.
@@ -30,37 +30,38 @@ enum class ObjectType : std::uint8_t {
   record = 0x09,
 };
 
-/// Which list of the file names the object; `unlisted` objects are read all the same.
+/// The list of the file that names the object. `unlisted` objects are read as well.
 enum class ObjectList : std::uint8_t { mandatory, optional, manufacturer, unlisted };
 
 /// An object that holds a value: a VAR, or one entry of an ARRAY or RECORD. Large files have tens
-/// of thousands: the small members stand together.
+/// of thousands of them, so the small members are placed together to save memory.
 struct SubObject {
   std::uint8_t sub = 0;
   Access access = Access::rw;
   bool pdo_mappable = false;
   DataType type = DataType::unknown;
-  std::uint16_t type_code = 0;  ///< as the file says, also where takt does not know it
+  std::uint16_t type_code = 0;  ///< data type code of the file, also if takt does not know it
   std::uint32_t flags = 0;  ///< ObjFlags: bit 0 refuse write on download, bit 1 refuse read on scan
-  SourcePos pos;            ///< of its section
-  SourcePos default_pos;    ///< of DefaultValue, or of the section
-  SourcePos parameter_pos;  ///< of ParameterValue; 0:0 where there is none
+  SourcePos pos;            ///< place of its section
+  SourcePos default_pos;    ///< place of DefaultValue, or of the section
+  SourcePos parameter_pos;  ///< place of ParameterValue; 0:0 if there is none
   std::string name;         ///< UTF-8
   std::optional<Value> low_limit;
   std::optional<Value> high_limit;
-  std::optional<Value> default_value;    ///< $NODEID resolved; none where the node id is unknown
-  std::optional<Value> parameter_value;  ///< of a DCF
+  std::optional<Value> default_value;    ///< $NODEID is resolved; empty if the node-ID is unknown
+  std::optional<Value> parameter_value;  ///< ParameterValue of a DCF
   std::string default_text;              ///< as written
   std::string parameter_text;
   std::string denotation;
 
-  /// ParameterValue of the DCF, else the default.
+  /// Returns the ParameterValue of the DCF, else the default.
   const std::optional<Value>& value() const noexcept {
     return parameter_value ? parameter_value : default_value;
   }
-  /// Where value() is written.
+  /// Returns the place of value().
   SourcePos value_pos() const noexcept { return parameter_value ? parameter_pos : default_pos; }
-  /// A master writes it: it can be written, and ObjFlags do not forbid that.
+  /// Returns true if a master writes the object: it is writable, and ObjFlags do not forbid the
+  /// write.
   bool is_configurable() const noexcept {
     return access != Access::ro && access != Access::constant && (flags & 1) == 0;
   }
@@ -69,10 +70,10 @@ struct SubObject {
 struct Object {
   std::uint16_t index = 0;
   std::string name;
-  std::string denotation;  ///< of an ARRAY or RECORD as a whole; a VAR has its own in sub 0
+  std::string denotation;  ///< for an ARRAY or RECORD as a whole; a VAR has its denotation in sub 0
   ObjectType type = ObjectType::var;
   ObjectList list = ObjectList::unlisted;
-  std::vector<SubObject> subs;  ///< ascending; a VAR has exactly sub 0
+  std::vector<SubObject> subs;  ///< in ascending order; a VAR has exactly sub 0
   SourcePos pos;
 };
 
@@ -84,18 +85,19 @@ struct DeviceInfo {
   std::uint32_t product_number = 0;
   std::uint32_t revision_number = 0;
   std::string order_code;
-  std::vector<std::uint16_t> baud_rates_kbit;  ///< ascending
+  std::vector<std::uint16_t> baud_rates_kbit;  ///< in ascending order
   bool simple_boot_up_master = false;
   bool simple_boot_up_slave = false;
-  std::uint8_t granularity = 8;  ///< in bits; 0: mapping is fixed, which the records may belie
+  /// In bits; 0 means a fixed mapping, which the mapping records may contradict.
+  std::uint8_t granularity = 8;
   std::uint8_t dynamic_channels = 0;
   bool group_messaging = false;
   std::uint16_t nr_rx_pdo = 0;
   std::uint16_t nr_tx_pdo = 0;
   bool lss_supported = false;
   std::uint8_t compact_pdo = 0;
-  SourcePos pos;            ///< of the section, 0:0 where the file has none
-  SourcePos nr_rx_pdo_pos;  ///< of NrOfRXPDO, or of the section
+  SourcePos pos;            ///< place of the section; 0:0 if the file has none
+  SourcePos nr_rx_pdo_pos;  ///< place of NrOfRXPDO, or of the section
   SourcePos nr_tx_pdo_pos;
   SourcePos granularity_pos;
 };
@@ -104,20 +106,20 @@ struct DeviceInfo {
 struct Commissioning {
   std::optional<NodeId> node_id;
   std::string node_name;
-  std::string node_refd;  ///< NodeRefd: what the node is called elsewhere, in a drawing for example
+  std::string node_refd;  ///< NodeRefd: name of the node elsewhere, for example in a drawing
   std::uint16_t baudrate_kbit = 0;
-  SourcePos baudrate_pos;  ///< 0:0 where there is none
+  SourcePos baudrate_pos;  ///< 0:0 if the file has no baud rate
   std::uint32_t net_number = 0;
   std::string network_name;
   std::string net_refd;
-  bool manager = false;  ///< CANopenManager: this is the master
-  /// LSS_SerialNumber, 0 where it is not known. Only shown: one DCF may serve several devices; the
-  /// boot compares what the network file says.
+  bool manager = false;  ///< CANopenManager: this node is the master
+  /// LSS_SerialNumber; 0 means unknown. It is only displayed, because one DCF may serve several
+  /// devices. The boot compares the serial number of the network file.
   std::uint32_t serial_number = 0;
-  SourcePos pos;  ///< of the section, 0:0 where the file has none
+  SourcePos pos;  ///< place of the section; 0:0 if the file has none
 };
 
-/// [FileInfo], as written. CiA 306, 4.4.
+/// The content of [FileInfo] as written. CiA 306, 4.4.
 struct FileInfo {
   std::string file_name;
   std::string file_version;
@@ -130,7 +132,7 @@ struct FileInfo {
   std::string modification_date;
   std::string modification_time;
   std::string modified_by;
-  std::string last_eds;  ///< of a DCF: the EDS that it was made from
+  std::string last_eds;  ///< for a DCF: the EDS that it was made from
 };
 
 /// [ToolN]: a program of the vendor for this device.
@@ -139,30 +141,30 @@ struct VendorTool {
   std::string command;  ///< may hold $DCF, $EDS, $NODEID
 };
 
-/// What the file says for people and for other programs; nothing of it goes to the device.
+/// Information of the file for people and for other programs. None of it is sent to the device.
 struct FileNotes {
   FileInfo info;
   std::vector<std::string> comments;  ///< lines of [Comments]
   std::vector<VendorTool> tools;
 };
 
-/// Files of a DOMAIN in a DCF. CiA 306, 5.3.
+/// The files of a DOMAIN in a DCF. CiA 306, 5.3.
 struct DomainFiles {
   ObjectKey key;
-  std::string upload;                ///< what is read from the device goes there
-  std::string download;              ///< comes from there
-  SourcePos pos{};                   ///< of DownloadFile, or of UploadFile where there is none
-  std::vector<std::byte> content{};  ///< of `download`, where a network is loaded
+  std::string upload;                ///< file that receives the data read from the device
+  std::string download;              ///< file with the data for the device
+  SourcePos pos{};                   ///< place of DownloadFile, or of UploadFile if there is none
+  std::vector<std::byte> content{};  ///< content of `download`; filled when a network is loaded
 };
 
-/// ParamRefd of a DCF: what an object is called elsewhere. CiA 306-1.
+/// ParamRefd of a DCF: the name of an object elsewhere. CiA 306-1.
 struct ParameterReference {
   std::uint16_t index = 0;
-  std::optional<std::uint8_t> sub;  ///< none: the ARRAY or RECORD as a whole
+  std::optional<std::uint8_t> sub;  ///< empty for the ARRAY or RECORD as a whole
   std::string text;
 };
 
-/// A type of module that a modular device takes. CiA 306, 6.
+/// A module type that a modular device supports. CiA 306, 6.
 struct ModuleInfo {
   std::uint16_t number = 0;  ///< x of [MxModuleInfo]
   std::string product_name;
@@ -177,42 +179,43 @@ struct ObjectLinks {
   std::vector<std::uint16_t> to;
 };
 
-/// A segment of [DynamicChannels]: objects that the program of the device may make.
+/// A segment of [DynamicChannels]: objects that the program of the device may create.
 struct DynamicChannel {
   std::uint16_t type_code = 0;
   DataType type = DataType::unknown;
-  Access direction = Access::ro;  ///< as others see these objects
-  std::uint16_t first = 0;        ///< index
+  Access direction = Access::ro;  ///< as other devices see these objects
+  std::uint16_t first = 0;        ///< first index
   std::uint16_t last = 0;
-  std::uint32_t offset = 0;  ///< PPOffset: in the process picture of the program
-  std::uint32_t most = 0;    ///< MaxCnt: objects; 0: as many as the range has
-  SourcePos pos;             ///< of Range
+  std::uint32_t offset = 0;  ///< PPOffset: offset in the process picture of the program
+  std::uint32_t most = 0;    ///< MaxCnt: highest number of objects; 0 means the size of the range
+  SourcePos pos;             ///< place of Range
 };
 
-/// What an EDS or DCF says of a device.
+/// The content of an EDS or DCF.
 struct ObjectDictionary {
   std::string file;
   bool is_dcf = false;
-  std::optional<NodeId> node_id;  ///< given by the caller, else the file's own
+  std::optional<NodeId> node_id;  ///< node-ID given by the caller, else that of the file
   DeviceInfo device;
   Commissioning commissioning;
   std::array<bool, 8> dummy_usage{};  ///< [n]: data type n may be mapped as a dummy
-  std::vector<Object> objects;        ///< ascending index
+  std::vector<Object> objects;        ///< in ascending order of index
   FileNotes notes;
-  std::vector<DomainFiles> domain_files;                 ///< in order of the file
-  std::vector<ObjectLinks> links;                        ///< in order of the file
-  std::vector<DynamicChannel> channels;                  ///< in order of the file
-  std::vector<ParameterReference> parameter_references;  ///< ascending index
-  std::vector<ModuleInfo> modules;                       ///< ascending number
-  std::vector<std::uint16_t> connected_modules;          ///< numbers, in order of places
+  std::vector<DomainFiles> domain_files;                 ///< in the order of the file
+  std::vector<ObjectLinks> links;                        ///< in the order of the file
+  std::vector<DynamicChannel> channels;                  ///< in the order of the file
+  std::vector<ParameterReference> parameter_references;  ///< in ascending order of index
+  std::vector<ModuleInfo> modules;                       ///< in ascending order of number
+  std::vector<std::uint16_t> connected_modules;  ///< module numbers in the order of the slots
 
   const Object* find(std::uint16_t index) const noexcept;
   const SubObject* find(ObjectKey key) const noexcept;
 };
 
-/// Integer of a value, where it is one (reals and strings are not).
+/// Returns the value as an integer, or std::nullopt for reals and strings.
 std::optional<std::int64_t> as_integer(const Value& value) noexcept;
-/// A value as its bytes on the wire: little endian, as wide as `type` (strings as they are).
+/// Returns the bytes of a value on the wire: little endian, with the width of `type`. Strings are
+/// returned unchanged.
 std::vector<std::byte> to_bytes(const Value& value, DataType type);
 
 }  // namespace takt

@@ -6,17 +6,20 @@
 
 namespace takt {
 
-/// How an object of CiA 402 counts.
+/// How the raw counts of a CiA 402 object relate to its quantity.
 struct ObjectQuantity {
   Quantity quantity = Quantity::position;
-  bool directed = true;   ///< `sign` turns it; false: a magnitude, such as a limit or a window
-  bool absolute = false;  ///< `offset` shifts it; false: a difference
+  /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.
+  bool directed = true;
+  bool absolute = false;  ///< `offset` applies. If false, the value is a difference.
 };
 
-/// Quantity of a CiA 402 object, of any axis of a device (0x6000 + 0x800 n); none: not one of them.
+/// Returns the quantity of a CiA 402 object of any axis of a device (0x6000 + 0x800 n), or
+/// std::nullopt if the object has none.
 std::optional<ObjectQuantity> quantity_of(ObjectKey object) noexcept;
 
-/// The object of axis 1 (0x607A for 0x687A); other indices stay.
+/// Returns the index of the same object for axis 1 (0x607A for 0x687A). Other indices are returned
+/// unchanged.
 constexpr std::uint16_t first_axis(std::uint16_t index) noexcept {
   return index >= 0x6000 && index < 0xA000 ? static_cast<std::uint16_t>(0x6000 + index % 0x800)
                                            : index;

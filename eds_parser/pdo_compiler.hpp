@@ -6,14 +6,14 @@
 
 namespace takt {
 
-/// The PDOs of one node: RPDOs, then TPDOs, each in ascending number. COB-IDs that follow from the
-/// whole network are left to assign_cob_ids().
+/// Compiles the PDOs of one node: first the RPDOs, then the TPDOs, each in ascending number.
+/// COB-IDs that depend on the whole network are left to assign_cob_ids().
 std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& report);
 
-/// Overlays the dictionary with what `sdo:` writes into PDO parameters (0x1400..0x1BFF), so that
-/// the PDOs are compiled as the device will have them.
+/// Returns a copy of the dictionary with the values that `sdo:` writes into PDO parameters
+/// (0x1400..0x1BFF). The PDOs are then compiled as the device will have them.
 ObjectDictionary with_pdo_writes(const ObjectDictionary& dictionary, const NodeSpec& spec);
-/// An object of the PDO parameter records.
+/// Returns true for an index of the PDO parameter records.
 constexpr bool is_pdo_parameter(std::uint16_t index) noexcept {
   return index >= 0x1400 && index <= 0x1BFF;
 }

@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// Warns of event timers and inhibit times that can't both hold, and of inhibit times that are
-/// shorter than the frame on the wire. `bitrate` in bit/s.
+/// Warns of event timers that contradict the inhibit time, and of inhibit times that are shorter
+/// than the frame on the wire. `bitrate` is in bit/s.
 void judge_pdo_times(const NodePdos& node, std::uint32_t bitrate, NetworkReport& report);
 
 }  // namespace takt

@@ -7,22 +7,24 @@
 
 namespace takt {
 
-/// Collects the findings of one file. Each rule may speak `limit_per_rule` times, so that a broken
-/// file of many megabytes has a bounded report; the last one says that more were left out.
+/// Collects the findings of one file. Each rule may report `limit_per_rule` findings, so that the
+/// report of a broken file of many megabytes stays bounded. The last finding of a rule says that
+/// further ones were left out.
 class Report {
  public:
   static constexpr std::size_t limit_per_rule = 1000;
 
   explicit Report(std::string file) : file_{std::move(file)} {}
 
-  /// `rule` must be a string literal. False: the rule has already said enough, spare the message.
+  /// Returns false if the rule has reached its limit, so that the caller need not build the
+  /// message. `rule` must be a string literal.
   bool wants(std::string_view rule) const noexcept;
   void note(SourcePos pos, std::string_view rule, std::string message);
   void warning(SourcePos pos, std::string_view rule, std::string message);
   void error(SourcePos pos, std::string_view rule, std::string message);
 
   const std::string& file() const noexcept { return file_; }
-  /// All findings in order of their place in the file; the report is empty afterwards.
+  /// Returns all findings in the order of their place in the file. The report is empty afterwards.
   Findings take();
 
  private:

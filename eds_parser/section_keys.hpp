@@ -10,17 +10,17 @@
 
 namespace takt {
 
-/// The entries of a section by key; of a repeated key the first counts. Keys are given in lower
-/// case.
+/// The entries of a section by key. If a key is repeated, the first entry counts. Keys must be
+/// passed in lower case.
 class SectionKeys {
  public:
   SectionKeys(const IniEntries& entries, Report& report);
 
   const IniEntry* get(std::string_view key) const;
-  /// As UTF-8, empty where the key is missing.
+  /// Returns the value as UTF-8. The result is empty if the key is missing.
   std::string text(std::string_view key) const;
   void flag(bool& out, std::string_view key, ValueReader& values) const;
-  /// Tells the keys that nobody has asked for, but those that are `reserved`.
+  /// Reports the keys that no call has asked for, except for the `reserved` ones.
   void tell_unknown(std::string_view section, bool (*reserved)(std::string_view)) const;
 
   template <class T>

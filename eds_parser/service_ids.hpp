@@ -9,15 +9,17 @@
 
 namespace takt {
 
-/// COB-IDs that services of the network use, each with a word for messages: "is TIME".
+/// COB-IDs that services of the network use, each with a phrase for messages: "is TIME".
 using ServiceIds = std::map<CobId, std::string>;
 
-/// SYNC, TIME, EMCY and the SDO channels of the nodes; two users of one identifier are reported.
-/// What CiA 301 reserves for all networks (is_restricted()) is not listed.
+/// Returns the COB-IDs of SYNC, TIME, EMCY and the SDO channels of the nodes. Two users of one
+/// identifier are reported. Identifiers that CiA 301 reserves in all networks (is_restricted()) are
+/// not listed.
 ServiceIds service_ids(const NetworkSpec& spec, std::span<const NodePdos> nodes,
                        NetworkReport& report);
 
-/// EMCY of a node: of the network file, else of the device file; none: the predefined 0x080 + id.
+/// Returns the EMCY identifier of a node from the network file, else from the device file. Returns
+/// std::nullopt for the predefined 0x080 + node-ID, and if EMCY is off.
 std::optional<CobId> emcy_cob_id(const NodeSource& node);
 
 }  // namespace takt

@@ -6,19 +6,20 @@
 
 namespace takt {
 
-/// Scale, offset and unit of a signal from `units:` of its node.
+/// Sets scale, offset and unit of a signal from `units:` of its node.
 void apply_units(const NodeSource& node, Signal& signal);
 
-/// What an output does when its command has grown old, and its safe value. `cia402`: the node is a
-/// drive; its default is a quick stop after 3 cycles. Others hold, and their commands expire after
-/// 100 ms, so that another sender can take over.
+/// Sets the fallback of an output, for the time when its command is too old, and its safe value.
+/// `cia402` means that the node is a drive; the default of a drive is a quick stop after 3 cycles.
+/// Other nodes hold their outputs, and their commands expire after 100 ms, so that another sender
+/// can take over.
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal);
 
-/// The input that gives an output its first value, on the same axis (6064 for 607A, 6061 for 6060);
-/// 0: none.
+/// Returns the index of the input that gives an output its first value, on the same axis (6064 for
+/// 607A, 6061 for 6060). 0 means that there is none.
 std::uint16_t seed_object(std::uint16_t output_index) noexcept;
 
-/// Complaints about `on_timeout` and `safe_values` as a whole.
+/// Reports errors in `on_timeout` and `safe_values` that concern the node as a whole.
 void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report);
 
 }  // namespace takt

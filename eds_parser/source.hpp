@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// A place in a text file; line and column count from 1, 0 = the file as a whole.
+/// A place in a text file. Line and column count from 1; 0 means the file as a whole.
 struct SourcePos {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
@@ -14,24 +14,25 @@ struct SourcePos {
 };
 
 enum class Severity : std::uint8_t {
-  note,     ///< style
+  note,     ///< a matter of style
   warning,  ///< a deviation that can be read in only one way
-  error,    ///< the device would refuse it, or takt would do something else than the author meant
+  error,    ///< The device would refuse the value, or takt would not do what the author meant.
 };
 
-/// One thing to tell about a file.
+/// One statement about a file.
 struct Finding {
   std::string file;
   SourcePos pos;
   Severity severity = Severity::warning;
-  std::string_view rule;  ///< stable name, "unknown-key"; a string literal
-  std::string message;    ///< what is wrong, what was assumed, what would be right
+  /// Stable name of the rule, such as "unknown-key"; must be a string literal.
+  std::string_view rule;
+  std::string message;  ///< the fault, the assumption that was made, and the correct form
 };
 
 using Findings = std::vector<Finding>;
 
 std::string_view name(Severity severity) noexcept;
-/// `file:line:column: severity: message [rule]`.
+/// Returns the finding as `file:line:column: severity: message [rule]`.
 std::string to_string(const Finding& finding);
 bool has_error(const Findings& findings) noexcept;
 

@@ -4,10 +4,11 @@
 
 namespace takt {
 
-/// Data type that CiA 301 gives to a communication object; unknown where it does not say.
+/// Returns the data type that CiA 301 gives to a communication object, or `unknown` if CiA 301 does
+/// not define one.
 DataType standard_type(ObjectKey key) noexcept;
 
-/// Of a DataType code; `unknown` where CiA 301 has none.
+/// Returns the data type of a DataType code, or `unknown` if CiA 301 does not define the code.
 DataType data_type_of(std::uint32_t code) noexcept;
 
 }  // namespace takt

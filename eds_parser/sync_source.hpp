@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Who makes SYNC, where that is not the master: `sync_source`, its time-out and what its loss
-/// does.
+/// Compiles `sync_source`, its timeout and the reaction to a loss of SYNC, if the master does not
+/// produce SYNC itself.
 void compile_sync_source(const NetworkSpec& spec, const std::vector<NodePdos>& nodes, BusPlan& plan,
                          NetworkReport& report);
 

@@ -5,7 +5,8 @@
 
 namespace takt {
 
-/// Blanks, tabs, control characters: NUL and Ctrl-Z at the end of old files too.
+/// Returns true for blanks, tabs and control characters. These include NUL and Ctrl-Z, which some
+/// old files have at the end.
 constexpr bool is_blank(char c) noexcept { return static_cast<unsigned char>(c) <= 0x20; }
 
 constexpr char fold(char c) noexcept {
@@ -18,7 +19,7 @@ constexpr std::string_view trim(std::string_view text) noexcept {
   return text;
 }
 
-/// ASCII, not case sensitive; `lower` must be in lower case.
+/// Compares ASCII text without regard to case. `lower` must be in lower case.
 constexpr bool same_word(std::string_view text, std::string_view lower) noexcept {
   if (text.size() != lower.size()) return false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -27,25 +28,26 @@ constexpr bool same_word(std::string_view text, std::string_view lower) noexcept
   return true;
 }
 
-/// Value of a hex digit, or -1.
+/// Returns the value of a hexadecimal digit, or -1 if `c` is none.
 constexpr int hex_digit(char c) noexcept {
   if (c >= '0' && c <= '9') return c - '0';
   const char low = fold(c);
   return low >= 'a' && low <= 'f' ? low - 'a' + 10 : -1;
 }
 
-/// Without an inline comment (`;...` or `#...`). Not for texts, where both are part of the value.
+/// Returns the value without an inline comment (`;...` or `#...`). Do not use it for texts, in
+/// which both characters are part of the value.
 std::string_view without_comment(std::string_view value) noexcept;
 
 bool is_utf8(std::string_view text) noexcept;
-/// The text as UTF-8; what is not UTF-8 already is taken for Windows-1252.
+/// Returns the text as UTF-8. A text that is not UTF-8 already is read as Windows-1252.
 std::string to_utf8(std::string_view text);
-/// Without surrogate pairs' worth of care: unpaired surrogates become U+FFFD.
+/// Converts UTF-16 to UTF-8. Unpaired surrogates become U+FFFD.
 std::string utf16_to_utf8(std::string_view bytes, bool big_endian);
-/// For UNICODE_STRING on the wire: UTF-16, little endian.
+/// Converts UTF-8 to UTF-16, little endian, for UNICODE_STRING on the wire.
 std::string utf8_to_utf16le(std::string_view text);
 
-/// `text` cut to a length that fits a message, in quotes.
+/// Returns `text` in quotes, shortened so that it fits into a message.
 std::string quoted(std::string_view text);
 
 }  // namespace takt

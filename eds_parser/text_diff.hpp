@@ -8,28 +8,31 @@
 
 namespace takt {
 
-/// One line of two texts beside each other.
+/// One line of the comparison of two texts.
 struct DiffLine {
   enum class Kind : std::uint8_t { same, removed, added };
   Kind kind = Kind::same;
   std::string_view text{};
 };
 
-/// The lines of a text without their ends; LF, CRLF and CR end lines.
+/// Returns the lines of a text without their ends. LF, CR LF and CR end a line.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-/// How `before` becomes `after`. Lines that occur once in both hold the two together; work is
-/// bounded: where many lines differ without such, all of them count as changed.
+/// Returns the steps from `before` to `after`. Lines that occur once in both texts align them. The
+/// work is bounded: if many lines differ and none of them occurs once in both texts, all of them
+/// count as changed.
 std::vector<DiffLine> diff_lines(std::span<const std::string_view> before,
                                  std::span<const std::string_view> after);
 
-/// Hunks as `diff -u` prints them, with `context` lines around; empty where nothing differs.
-/// `heading`: which lines are named behind `@@` of the hunks that follow.
+/// Returns the hunks as `diff -u` prints them, with `context` lines around each change. The result
+/// is empty if nothing differs. `heading` selects the lines that are repeated after `@@` of the
+/// following hunks.
 std::string unified_hunks(std::span<const DiffLine> lines, bool (*heading)(std::string_view),
                           std::size_t context = 3);
 
-/// The whole of `diff -u`, for `patch --binary`: each line with the end it has; empty where nothing
-/// differs. Texts whose lines end with CR alone would be one line: theirs is only to be read.
+/// Returns the complete output of `diff -u`, for use with `patch --binary`: each line keeps its
+/// end. The result is empty if nothing differs. If a text ends its lines with CR alone, it would be
+/// one line for `patch`; the output is then only for reading.
 std::string unified_diff(std::string_view before, std::string_view after,
                          const std::string& before_name, const std::string& after_name,
                          bool (*heading)(std::string_view));

@@ -10,24 +10,25 @@
 
 namespace takt {
 
-/// Where a text stands, for findings: "2001:02 DefaultValue".
+/// The place of a text for findings: "2001:02 DefaultValue".
 struct ValuePlace {
   ObjectKey key;
-  std::string_view what;  ///< "DefaultValue", a literal
+  std::string_view what;  ///< the key, such as "DefaultValue"; must be a literal
   SourcePos pos;
-  Severity misfit = Severity::error;  ///< of a number that the type cannot hold
+  Severity misfit = Severity::error;  ///< severity if the type cannot hold the number
   Severity unreadable = Severity::warning;
 };
 
-/// Turns texts of a file into values of a data type, and says what was odd about them. A text that
-/// cannot be read gives no value and a finding: never a clipped or guessed one.
+/// Converts texts of a file to values of a data type, and reports what is unusual about them. A
+/// text that cannot be read gives a finding and no value; values are never clipped or guessed.
 class ValueReader {
  public:
   ValueReader(Report& report, std::optional<NodeId> node) noexcept : report_{report}, node_{node} {}
 
-  /// Value of `type`; none where the text is empty, unreadable or needs an unknown node id.
+  /// Returns the value as `type`. Returns std::nullopt if the text is empty, unreadable, or needs
+  /// an unknown node-ID.
   std::optional<Value> read(std::string_view text, DataType type, const ValuePlace& place);
-  /// A number of the file's own structure (SubNumber, list entries ...), at most `highest`.
+  /// Reads a number of the structure of the file (SubNumber, list entries ...), at most `highest`.
   std::optional<std::uint32_t> read_count(std::string_view text, std::uint32_t highest,
                                           std::string_view key, SourcePos pos);
   bool read_flag(std::string_view text, std::string_view key, SourcePos pos);
@@ -41,7 +42,7 @@ class ValueReader {
   bool flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
                SourcePos pos);
   void tell_quirks(std::uint16_t quirks, std::string_view text, const ValuePlace& place);
-  /// The text before a comment; that there is one is told.
+  /// Returns the text before a comment, and reports that there is a comment.
   std::string_view without_told_comment(std::string_view text, const ValuePlace& place);
   void exceeds(std::string_view text, DataType type, const ValuePlace& place);
   void tell_wrapped(std::string_view text, DataType type, const Value& value,
@@ -52,7 +53,7 @@ class ValueReader {
   std::optional<NodeId> node_;
 };
 
-/// "2001:02 DefaultValue".
+/// Returns the place as text: "2001:02 DefaultValue".
 std::string to_string(const ValuePlace& place);
 
 }  // namespace takt

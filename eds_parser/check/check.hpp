@@ -4,9 +4,10 @@
 
 namespace takt {
 
-/// Judges what a dictionary says: values against types and limits, PDOs against objects and
-/// CAN identifiers, the objects that CiA 301 and the device's profile demand. What concerns the
-/// text itself was already told by the reader. Findings are in order of their place in the file.
+/// Judges the content of a dictionary: values against types and limits, PDOs against objects and
+/// CAN identifiers, and the objects that CiA 301 and the device profile demand. The reader has
+/// already reported findings about the text itself. The findings are in the order of their place in
+/// the file.
 Findings check(const ObjectDictionary& dictionary);
 
 }  // namespace takt

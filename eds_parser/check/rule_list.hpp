@@ -6,15 +6,15 @@
 
 namespace takt {
 
-/// What a rule is about, for people.
+/// The description of a rule for people.
 struct RuleInfo {
   std::string_view name;
-  Severity severity;  ///< the usual one
+  Severity severity;  ///< usual severity
   std::string_view meaning;
   std::string_view example;
 };
 
-/// All rules of the EDS reader and of check(), by name.
+/// Returns all rules of the EDS reader and of check(), sorted by name.
 std::span<const RuleInfo> eds_rules() noexcept;
 
 }  // namespace takt

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// The families of rules that check() runs; one file each.
+/// The families of rules that check() runs. Each family has a file of its own.
 void check_values(const ObjectDictionary& dictionary, Report& report);
 void check_mandatory(const ObjectDictionary& dictionary, Report& report);
 void check_identity(const ObjectDictionary& dictionary, Report& report);
@@ -14,11 +14,12 @@ void check_pdos(const ObjectDictionary& dictionary, Report& report);
 void check_mapping(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report);
 void check_cob_ids(const ObjectDictionary& dictionary, Report& report);
 
-/// "TPDO2".
+/// Returns the name of a PDO, such as "TPDO2".
 std::string pdo_name(const PdoDescription& pdo);
-/// "1A00sub2", as the section is called.
+/// Returns the name of the section of an object, such as "1A00sub2".
 std::string section_name(ObjectKey key);
-/// Value of an object as an unsigned number; none where it has no integer value.
+/// Returns the value of an object as an unsigned number, or std::nullopt if the object has no
+/// integer value.
 std::optional<std::uint64_t> number_of(const ObjectDictionary& dictionary, ObjectKey key);
 
 }  // namespace takt
