@@ -14,84 +14,104 @@
 
 namespace takt {
 
+/// Options of a Master.
 struct MasterOptions {
-  bool observe = false;              ///< listen only: nothing at all is sent
-  Controller* controller = nullptr;  ///< runs inside the bus thread; outlives the master
+  bool observe = false;              ///< The master only listens and sends nothing.
+  Controller* controller = nullptr;  ///< Runs inside the bus thread; nullptr means no controller.
+                                     ///< It must outlive the master.
 };
 
-/// Starts a thread that runs `body`; where real time comes from (takt_linux knows how).
+/// Starts a thread that runs `body`. The library takt_linux has one that gives the thread real-time
+/// priority.
 using StartThread = std::function<std::thread(std::function<void()> body)>;
 
-/// A plain thread of no priority.
+/// Starts a thread with the default scheduling policy.
 std::thread start_plain_thread(std::function<void()> body);
 
-/// A CANopen master for one bus: runs a plan on a port. The bus thread is its own; everything
-/// public here belongs to one other thread, the front thread.
+/// A CANopen master for one bus: it runs a plan on a port. The bus thread belongs to the master;
+/// all public functions must be called from one other thread, the front thread.
 class Master {
  public:
   explicit Master(BusPlan plan, MasterOptions options = {});
-  ~Master();  ///< asks for the ordered stop and waits for it
+  ~Master();  ///< Requests the ordered stop and waits for its end.
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// The bus. `port` outlives the master.
+  /// Connects the master to its bus; call this once, before start() or begin(). `port` must outlive
+  /// the master.
   template <Port P>
   void attach(P& port) {
     runner_ = std::make_unique<Runner<P>>(plan_, port, *exchange_, options_);
   }
 
-  /// Runs the cycles on a thread of their own until the ordered stop is over.
+  /// Runs the cycles on the bus thread until the ordered stop is over.
   void start(const StartThread& start_thread = start_plain_thread);
-  /// Instead of start(): the calling thread begins, then makes one cycle at a time (virtual time).
+  /// Replaces start() when the calling thread runs the cycles itself, for example in virtual time.
   void begin() noexcept { runner_->start(); }
+  /// Runs one cycle after begin(). Returns false when the ordered stop is over.
   bool cycle() noexcept;
 
-  /// Begins the ordered stop; finished() tells its end, within BusPlan::stop_timeout.
+  /// Begins the ordered stop. finished() returns true when it is over, within
+  /// BusPlan::stop_timeout.
   void request_stop() noexcept { exchange_->stop_requested.store(true); }
-  /// What request_stop() sets: for a signal handler. Lives as long as the master.
+  /// The flag that request_stop() sets, for use in a signal handler. It lives as long as the
+  /// master.
   std::atomic<bool>& stop_requested() noexcept { return exchange_->stop_requested; }
+  /// Returns true when the ordered stop is over.
   bool finished() const noexcept { return exchange_->finished.load(std::memory_order_acquire); }
   /// Waits for the bus thread to end.
   void join();
 
   const BusPlan& plan() const noexcept { return plan_; }
 
-  /// The next image in order, or only the newest; valid until the next call.
+  /// Takes the next process image in order. Returns false if there is none. The image is valid
+  /// until the next call of take() or take_newest().
   bool take(ImageView& image) noexcept { return exchange_->images.take(image); }
+  /// Takes the newest process image and drops the older ones. Returns false if there is none.
   bool take_newest(ImageView& image) noexcept { return exchange_->images.take_newest(image); }
+  /// Takes the next event in order. Returns false if there is none.
   bool take(Event& event) noexcept { return exchange_->events.pop(event); }
+  /// Takes the next reply to a request. Returns false if there is none.
   bool take(Reply& reply) noexcept { return exchange_->replies.pop(reply); }
-  /// When the next image will be there: sleep to it instead of being woken. Read it before looking
-  /// for images: each image that was there before the prediction was made is seen by a take() that
-  /// comes after this call.
+  /// The predicted time of the next image, on the monotonic clock. The front thread sleeps until
+  /// then, because the bus thread does not wake it. Read this time before you look for images: a
+  /// take() after this call sees every image that was there before the prediction was made.
   Time next_publish() const noexcept {
     return Time{exchange_->next_publish.load(std::memory_order_acquire)};
   }
 
-  /// Stages the command of one output; `signal` counts in the whole layout. False: no output.
+  /// Stages the command of one output; publish_outputs() hands it over. `signal` is the index in
+  /// the whole layout. `value` is raw. `time_to_live` is in cycles; 0 means the configured one.
+  /// Returns false if `signal` is no output.
   bool set(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live = 0) noexcept;
+  /// A command of set_group().
   struct Command {
     SignalIndex signal = 0;
     std::int64_t value = 0;
   };
-  /// Stages `commands` and hands them over as one set, with what was staged before: those for
-  /// synchronous RPDOs (types 0..240) become valid with one and the same SYNC. Where their frames
-  /// find no room in a cycle, all wait for the next. False: one is no output, nothing is handed
-  /// over.
+  /// Stages `commands` and hands them over as one set, together with all commands that were staged
+  /// before. Commands for synchronous RPDOs (transmission types 0..240) become valid with the same
+  /// SYNC. If their frames do not fit into one cycle, all of them wait for the next. Returns false,
+  /// and hands nothing over, if one of the signals is no output.
   bool set_group(std::span<const Command> commands, Time now,
                  std::uint32_t time_to_live = 0) noexcept;
-  /// Hands all staged commands to the bus thread, as one set.
+  /// Hands all staged commands to the bus thread as one set. `now` is on the monotonic clock.
   void publish_outputs(Time now) noexcept { exchange_->set_points.publish(now); }
 
-  /// False: too many at once, ask again later. Each accepted request is answered exactly once.
+  /// Hands a request to the bus thread. Returns false if too many requests wait; submit it again
+  /// later. Each accepted request is answered exactly once.
   bool submit(const Request& request) noexcept { return exchange_->requests.push(request); }
 
-  /// Buffers for values that are too long for a request; they live as long as the master.
+  /// Buffers for SDO values that are too long for a request. They live as long as the master.
   std::span<SdoTransfer> transfers() noexcept { return exchange_->transfers; }
 
+  /// Copies the status of the master and of all nodes.
   void status(StatusSnapshot& snapshot) const { exchange_->status.read(snapshot); }
+  /// Histograms of the times in the cycle.
   const TimingHistograms& timing() const noexcept { return exchange_->timing; }
+  /// Images that were lost because the front thread did not take them in time.
   std::uint64_t image_overruns() const noexcept { return exchange_->images.overruns(); }
+  /// Events that were lost because the front thread did not take them in time.
   std::uint64_t event_overruns() const noexcept { return exchange_->events.overruns(); }
 
  private:

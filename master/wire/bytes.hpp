@@ -7,12 +7,13 @@
 
 namespace takt {
 
-/// A byte as frames (std::uint8_t) or values (std::byte) hold it.
+/// A type of byte: frames hold std::uint8_t, values hold std::byte.
 template <class B>
 concept WireByte = sizeof(B) == 1 && (std::same_as<std::remove_const_t<B>, std::byte> ||
                                       std::same_as<std::remove_const_t<B>, std::uint8_t>);
 
-/// The first sizeof(T) bytes, least significant first; missing bytes are zero. CiA 301, 7.1.4.
+/// Reads an integer from the first sizeof(T) bytes, least significant byte first. Missing bytes
+/// count as zero. CiA 301, 7.1.4.
 template <std::unsigned_integral T, WireByte B, std::size_t N>
 constexpr T load_le(std::span<B, N> bytes) noexcept {
   T value = 0;
@@ -22,7 +23,7 @@ constexpr T load_le(std::span<B, N> bytes) noexcept {
   return value;
 }
 
-/// Writes `value` to the first sizeof(T) bytes, least significant first.
+/// Writes `value` to the first sizeof(T) bytes, least significant byte first.
 template <std::unsigned_integral T, WireByte B, std::size_t N>
 constexpr void store_le(std::span<B, N> bytes, T value) noexcept {
   assert(bytes.size() >= sizeof(T));

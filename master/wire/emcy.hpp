@@ -8,14 +8,16 @@
 
 namespace takt {
 
-/// Emergency message on 0x080 + node. CiA 301, 7.2.7.
+/// Emergency message (EMCY) on COB-ID 0x080 + node-ID. CiA 301, 7.2.7.
 struct Emcy {
   NodeId node;
-  std::uint16_t code = 0;           ///< 0x0000: error reset or no error
-  std::uint8_t error_register = 0;  ///< 0x1001
+  std::uint16_t code = 0;           ///< 0x0000 means "error reset or no error"
+  std::uint8_t error_register = 0;  ///< content of object 0x1001
+  /// Manufacturer-specific bytes 3..7.
   std::array<std::uint8_t, 5> manufacturer{};
 };
 
+/// COB-ID of the EMCY of a node in the predefined connection set.
 constexpr CobId emcy_cob_id(NodeId node) noexcept { return CobId::base(0x080U + node.value()); }
 
 constexpr Frame encode(const Emcy& emcy) noexcept {
@@ -28,7 +30,8 @@ constexpr Frame encode(const Emcy& emcy) noexcept {
   return frame;
 }
 
-/// Any length is taken, missing bytes are zero. For devices with an identifier of their own.
+/// Decodes an EMCY of any length; missing bytes count as zero. This function is for devices whose
+/// EMCY has another COB-ID than that of the predefined connection set.
 constexpr Emcy emcy_of(NodeId node, const Frame& frame) noexcept {
   std::array<std::uint8_t, 8> bytes{};
   for (std::size_t i = 0; i < frame.length && i < bytes.size(); ++i) bytes[i] = frame.data[i];
@@ -38,7 +41,7 @@ constexpr Emcy emcy_of(NodeId node, const Frame& frame) noexcept {
               .manufacturer = {bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]}};
 }
 
-/// None: another frame than those of the predefined set.
+/// Decodes an EMCY of the predefined connection set. Returns std::nullopt if the frame is not one.
 constexpr std::optional<Emcy> decode_emcy(const Frame& frame) noexcept {
   if (frame.id.is_extended() || frame.rtr || (frame.id.id() & ~0x7FU) != 0x080) return {};
   const auto node = NodeId::from(frame.id.id() & 0x7F);

@@ -12,8 +12,8 @@ struct EmcyText {
   std::string_view text;
 };
 
-// Codes of CiA 301 (table 26) and CiA 402; the first row that covers a code wins, so the narrow
-// rows stand before the classes.
+// Codes of CiA 301 (table 26) and CiA 402. The first row that covers a code wins, so the narrow
+// rows come before the classes.
 constexpr std::array texts{
     EmcyText{0x2110, 0x2113, "short circuit or earth leakage, input side"},
     EmcyText{0x2120, 0x2123, "earth leakage, input side"},

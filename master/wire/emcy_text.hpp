@@ -5,11 +5,12 @@
 
 namespace takt {
 
-/// An EMCY error code (also 0x603F of drives) in words: the most specific entry of CiA 301 and
-/// CiA 402 that covers it. Never empty.
+/// Describes an EMCY error code (also 0x603F of drives) in words, by the most specific entry of CiA
+/// 301 and CiA 402 that covers it. The text is never empty.
 std::string_view emcy_text(std::uint16_t code) noexcept;
 
-/// Names of the bits set in the error register 0x1001: "generic, voltage"; "none" for zero.
+/// Names the bits that are set in the error register 0x1001, for example "generic, voltage". The
+/// text is "none" if no bit is set.
 std::string error_register_text(std::uint8_t error_register);
 
 }  // namespace takt

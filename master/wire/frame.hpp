@@ -9,10 +9,11 @@
 
 namespace takt {
 
-/// One classic CAN frame. Trivially copyable: it crosses threads.
+/// One classic CAN frame. It is trivially copyable because it is passed between threads.
 struct Frame {
   CobId id;
   std::uint8_t length = 0;  ///< 0..8
+  /// Remote frame.
   bool rtr = false;
   std::array<std::uint8_t, 8> data{};
 
@@ -21,7 +22,7 @@ struct Frame {
 };
 static_assert(sizeof(Frame) == 16);
 
-/// A frame from its bytes, at most eight.
+/// Makes a data frame from its bytes; bytes after the eighth are dropped.
 constexpr Frame make_frame(CobId id, std::initializer_list<std::uint8_t> bytes) noexcept {
   Frame frame{.id = id};
   for (const std::uint8_t byte : bytes) {
@@ -31,7 +32,8 @@ constexpr Frame make_frame(CobId id, std::initializer_list<std::uint8_t> bytes) 
   return frame;
 }
 
-/// A frame and when it was on the wire (monotonic; the kernel's stamp where there is one).
+/// A frame and the time when it was on the wire, on the monotonic clock. The time is the timestamp
+/// of the kernel if there is one.
 struct StampedFrame {
   Frame frame;
   Time when{};

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// NMT state as the heartbeat codes it. CiA 301, table 107; `unknown` before the first sign of
-/// life.
+/// NMT state as a heartbeat codes it. CiA 301, table 107. `unknown` means that no sign of life has
+/// come yet.
 enum class NmtState : std::uint8_t {
   bootup = 0,
   stopped = 4,
@@ -17,10 +17,10 @@ enum class NmtState : std::uint8_t {
   unknown = 255,
 };
 
-/// NMT node control. CiA 301, 7.2.8.2.1.
+/// NMT node control message. CiA 301, 7.2.8.2.1.
 struct NmtMessage {
   NmtCommand command = NmtCommand::start;
-  std::uint8_t node = 0;  ///< 0: all nodes
+  std::uint8_t node = 0;  ///< node-ID, 0 means all nodes
   constexpr bool operator==(const NmtMessage&) const noexcept = default;
 };
 
@@ -34,7 +34,8 @@ constexpr Frame encode(const NmtMessage& message) noexcept {
   return make_frame(nmt_cob_id, {static_cast<std::uint8_t>(message.command), message.node});
 }
 
-/// None: not an NMT command, or one that no node obeys (unknown command, node above 127).
+/// Decodes an NMT command. Returns std::nullopt if the frame is no NMT command, or one that no node
+/// obeys (unknown command specifier, node-ID above 127).
 constexpr std::optional<NmtMessage> decode_nmt(const Frame& frame) noexcept {
   if (frame.id != nmt_cob_id || frame.rtr || frame.length != 2 || frame.data[1] > 127) return {};
   const auto command = static_cast<NmtCommand>(frame.data[0]);

@@ -10,20 +10,23 @@
 
 namespace takt {
 
-/// Parameters of a frequency converter over a pair of PDOs, as the CANopen cards of INVT's GD
-/// family (Astraada DRV-28) have them: RPDO1 asks, TPDO1 answers. All numbers little endian.
+/// Access to the parameters of a frequency converter over a pair of PDOs, as the CANopen cards of
+/// INVT's GD family (Astraada DRV-28) offer it: RPDO1 carries the request, TPDO1 the answer. All
+/// numbers are little endian.
 namespace parameter_channel {
 
 using Bytes8 = std::array<std::uint8_t, 8>;
 
 enum class Command : std::uint16_t { read = 1, write = 2 };
 
+/// An answer of the converter.
 struct Answer {
   bool done = false;
-  std::uint16_t error = 0;  ///< 0: none
+  std::uint16_t error = 0;  ///< 0 means no error; error_text() describes it
   std::uint32_t value = 0;
 };
 
+/// Makes the data of RPDO1.
 constexpr Bytes8 request(Command command, std::uint16_t address, std::uint32_t value) noexcept {
   Bytes8 bytes{};
   store_le(std::span{bytes}.first(2), static_cast<std::uint16_t>(command));
@@ -32,7 +35,8 @@ constexpr Bytes8 request(Command command, std::uint16_t address, std::uint32_t v
   return bytes;
 }
 
-/// None: not an answer (too short, or "no request").
+/// Decodes the data of TPDO1. Returns std::nullopt if they are no answer (fewer than eight bytes,
+/// or the code is neither "done" nor "error").
 constexpr std::optional<Answer> answer(std::span<const std::uint8_t> bytes) noexcept {
   if (bytes.size() < 8) return std::nullopt;
   const auto code = load_le<std::uint16_t>(bytes.first(2));
@@ -42,7 +46,7 @@ constexpr std::optional<Answer> answer(std::span<const std::uint8_t> bytes) noex
                 .value = load_le<std::uint32_t>(bytes.subspan(4, 4))};
 }
 
-/// The error code of an answer in words.
+/// Describes the error code of an answer in words.
 constexpr std::string_view error_text(std::uint16_t error) noexcept {
   constexpr std::array<std::string_view, 10> texts{"no error",
                                                    "invalid command",

@@ -11,7 +11,7 @@ struct AbortText {
   std::string_view text;
 };
 
-// Ascending by code.
+// The rows are in ascending order of the code.
 constexpr std::array texts{
     AbortText{0x0503'0000, "the toggle bit did not change"},
     AbortText{0x0504'0000, "SDO time-out"},

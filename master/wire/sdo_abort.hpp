@@ -4,7 +4,7 @@
 
 namespace takt {
 
-/// SDO abort codes that takt itself sends or looks for. CiA 301, 7.2.4.3.17, table 22.
+/// SDO abort codes that takt itself sends or evaluates. CiA 301, 7.2.4.3.17, table 22.
 namespace abort_code {
 inline constexpr std::uint32_t toggle_not_alternated = 0x0503'0000;
 inline constexpr std::uint32_t timeout = 0x0504'0000;
@@ -37,8 +37,8 @@ inline constexpr std::uint32_t device_state = 0x0800'0022;
 inline constexpr std::uint32_t no_data = 0x0800'0024;
 }  // namespace abort_code
 
-/// The code in words; "unknown abort code" for others than those of CiA 301 and the ones of
-/// EtherCAT that CANopen devices are seen to use.
+/// Describes an abort code in words. It knows the codes of CiA 301, and those of EtherCAT that some
+/// CANopen devices use; all others are an "unknown abort code".
 std::string_view abort_text(std::uint32_t code) noexcept;
 
 }  // namespace takt

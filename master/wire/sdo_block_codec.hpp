@@ -13,47 +13,53 @@
 
 namespace takt {
 
-/// SDO block transfer. CiA 301, 7.2.4.3.9 to 7.2.4.3.16. `channel` is the identifier of the side
-/// that sends.
+/// SDO block transfer, CiA 301, 7.2.4.3.9 to 7.2.4.3.16: the largest number of segments in a
+/// sub-block. The parameter `channel` of the functions below is the COB-ID on which the sender of
+/// the frame transmits.
 inline constexpr std::uint8_t most_block_segments = 127;
+/// Data bytes of one segment.
 inline constexpr std::size_t segment_bytes = 7;
 
 constexpr bool valid_block_size(std::uint8_t segments) noexcept {
   return segments >= 1 && segments <= most_block_segments;
 }
 
-/// Initiate of the side with the data: client in a download, server in an upload.
+/// Initiate frame of the side that sends the data: the client in a download, the server in an
+/// upload.
 struct SdoBlockInitiate {
   ObjectKey object;
-  bool crc = false;                     ///< this side can
-  std::optional<std::uint32_t> size{};  ///< none: not indicated
+  bool crc = false;                     ///< this side supports the CRC
+  std::optional<std::uint32_t> size{};  ///< std::nullopt if the size is not indicated; bytes
 };
 
-/// Initiate of the side that receives.
+/// Initiate frame of the side that receives the data.
 struct SdoBlockAccept {
   ObjectKey object;
   bool crc = false;
-  std::uint8_t segments = 0;   ///< of the next sub-block
-  std::uint8_t threshold = 0;  ///< upload request only: bytes, 0 = no switch of the protocol
+  std::uint8_t segments = 0;  ///< size of the next sub-block
+  /// only in upload requests: protocol switch threshold in bytes, 0 means never switch
+  std::uint8_t threshold = 0;
 };
 
-/// One segment; the last of all is filled up, the end of the transfer tells with how many bytes.
+/// One segment. The last segment of a transfer is padded; the end frame indicates how many of its
+/// bytes are unused.
 struct SdoBlockSegment {
   std::uint8_t number = 0;  ///< 1..127
   bool last = false;
   std::array<std::uint8_t, segment_bytes> data{};
 };
 
-/// Confirmation of a sub-block.
+/// Confirmation of a sub-block by the side that receives.
 struct SdoBlockConfirm {
-  std::uint8_t received = 0;  ///< number of the last segment that came in sequence
-  std::uint8_t segments = 0;  ///< of the next sub-block
+  std::uint8_t received = 0;  ///< sequence number of the last segment that was received in sequence
+  std::uint8_t segments = 0;  ///< size of the next sub-block, in segments
 
   bool operator==(const SdoBlockConfirm&) const = default;
 };
 
+/// End of a block transfer.
 struct SdoBlockEnd {
-  std::uint8_t unused = 0;  ///< bytes of the last segment, 0..7
+  std::uint8_t unused = 0;  ///< bytes of the last segment that carry no data, 0..7
   std::uint16_t crc = 0;
 };
 
@@ -80,13 +86,13 @@ constexpr Frame block_accept(CobId channel, const SdoBlockAccept& accept) noexce
 
 }  // namespace sdo_detail
 
-// from the side with the data: client in a download, server in an upload
+// Frames of the side that sends the data: the client in a download, the server in an upload.
 
 constexpr Frame block_initiate(CobId channel, const SdoBlockInitiate& begin) noexcept {
   return sdo_detail::block_begin(channel, begin);
 }
 
-/// The next segment of what is left of a value.
+/// Makes the next segment from the bytes that are still to be sent.
 template <WireByte B>
 constexpr Frame block_segment(CobId channel, std::uint8_t number, std::span<B> left) noexcept {
   Frame out{.id = channel, .length = 8};
@@ -103,7 +109,7 @@ constexpr Frame block_end(CobId channel, const SdoBlockEnd& end) noexcept {
   return out;
 }
 
-// from the side that receives
+// Frames of the side that receives the data.
 
 constexpr Frame block_accept(CobId channel, const SdoBlockAccept& accept) noexcept {
   return sdo_detail::block_accept(channel, accept);
@@ -121,7 +127,8 @@ constexpr Frame block_end_confirm(CobId channel) noexcept {
   return sdo_detail::bare(channel, 0xA1);
 }
 
-// What a frame is; which of them it can be follows from the state of the transfer.
+// Classification of a received frame. Several of these functions may accept the same frame; the
+// state of the transfer decides which of them applies.
 
 constexpr bool is_block_initiate(const Frame& frame) noexcept {
   return (frame.data[0] & 0xE1) == 0xC0;

@@ -12,29 +12,32 @@
 
 namespace takt {
 
-/// SDO on the default channel, expedited and segmented. CiA 301, 7.2.4.3. All frames have eight
-/// bytes; unused ones are sent as zero and ignored on reception, or missing in frames of others.
+/// COB-ID of the frames of a client on the default channel of a server. CiA 301, 7.2.4.3 has the
+/// expedited and segmented transfers that this file codes. All frames are sent with eight bytes,
+/// and unused bytes are sent as zero. Unused bytes of received frames are ignored and may be
+/// missing.
 constexpr CobId sdo_request_cob_id(NodeId server) noexcept {
   return CobId::base(0x600U + server.value());
 }
+/// COB-ID of the frames of a server on its default channel.
 constexpr CobId sdo_answer_cob_id(NodeId server) noexcept {
   return CobId::base(0x580U + server.value());
 }
 
-/// Identifier of a client's frames: of a channel, or of the default channel of a server.
+/// COB-ID of a client's frames, either given or that of the default channel of a server.
 struct SdoRequestId {
   CobId value;
   constexpr SdoRequestId(NodeId server) noexcept : value{sdo_request_cob_id(server)} {}
   constexpr SdoRequestId(CobId id) noexcept : value{id} {}
 };
-/// The same of a server's frames.
+/// COB-ID of a server's frames, either given or that of the default channel of a server.
 struct SdoAnswerId {
   CobId value;
   constexpr SdoAnswerId(NodeId server) noexcept : value{sdo_answer_cob_id(server)} {}
   constexpr SdoAnswerId(CobId id) noexcept : value{id} {}
 };
 
-/// What the client asks: its command specifier, bits 7..5 of byte 0.
+/// Client command specifier, bits 7..5 of byte 0.
 enum class SdoRequest : std::uint8_t {
   download_segment = 0,
   download_initiate = 1,
@@ -46,7 +49,7 @@ enum class SdoRequest : std::uint8_t {
   reserved = 7,
 };
 
-/// What the server answers: its command specifier, bits 7..5 of byte 0.
+/// Server command specifier, bits 7..5 of byte 0.
 enum class SdoAnswer : std::uint8_t {
   upload_segment = 0,
   download_segment = 1,
@@ -58,37 +61,40 @@ enum class SdoAnswer : std::uint8_t {
   reserved = 7,
 };
 
+/// Client command specifier of a frame.
 constexpr SdoRequest sdo_request(const Frame& frame) noexcept {
   return static_cast<SdoRequest>(frame.data[0] >> 5);
 }
+/// Server command specifier of a frame.
 constexpr SdoAnswer sdo_answer(const Frame& frame) noexcept {
   return static_cast<SdoAnswer>(frame.data[0] >> 5);
 }
 
-/// Object of an initiate frame or of an abort.
+/// Index and sub-index in an initiate frame or an abort.
 constexpr ObjectKey sdo_object(const Frame& frame) noexcept {
   return {load_le<std::uint16_t>(std::span{frame.data}.subspan(1)), frame.data[3]};
 }
 
-/// Beginning of a transfer as the side with the data sends it: the client in a download, the server
-/// in an upload. Four bytes or fewer travel in it (expedited), of more only the size.
+/// Initiate frame of the side that sends the data: the client in a download, the server in an
+/// upload. It carries up to four bytes itself (expedited transfer); for longer values it only
+/// indicates the size.
 struct SdoInitiate {
   ObjectKey object;
   bool expedited = false;
-  std::optional<std::uint32_t> size{};  ///< none: not indicated
-  std::array<std::uint8_t, 4> data{};   ///< expedited only
+  std::optional<std::uint32_t> size{};  ///< std::nullopt if the size is not indicated; bytes
+  std::array<std::uint8_t, 4> data{};   ///< only valid in expedited transfers
 
-  /// Expedited data; all four bytes where the size is not indicated.
+  /// The expedited data. These are all four bytes if the size is not indicated.
   constexpr std::span<const std::uint8_t> payload() const noexcept {
     return std::span{data}.first(std::min<std::size_t>(size.value_or(4), 4));
   }
 };
 
-/// One segment of up to seven bytes.
+/// One segment with up to seven bytes.
 struct SdoSegment {
   bool toggle = false;
   bool last = false;
-  std::uint8_t size = 0;  ///< 0..7
+  std::uint8_t size = 0;  ///< number of data bytes, 0..7
   std::array<std::uint8_t, 7> data{};
 
   constexpr std::span<const std::uint8_t> payload() const noexcept {
@@ -128,7 +134,7 @@ constexpr Frame segment(CobId id, const SdoSegment& part) noexcept {
 
 }  // namespace sdo_detail
 
-/// Bytes of either kind as the beginning of a transfer.
+/// Makes the initiate frame for a value: expedited for 1..4 bytes, else segmented.
 template <WireByte B>
 constexpr SdoInitiate sdo_initiate(ObjectKey object, std::span<B> value) noexcept {
   SdoInitiate begin{.object = object,
@@ -140,7 +146,7 @@ constexpr SdoInitiate sdo_initiate(ObjectKey object, std::span<B> value) noexcep
   return begin;
 }
 
-/// The next segment of what is left of a value.
+/// Makes the next segment from the bytes that are still to be sent.
 template <WireByte B>
 constexpr SdoSegment sdo_segment(std::span<B> left, bool toggle) noexcept {
   SdoSegment part{.toggle = toggle,
@@ -150,7 +156,7 @@ constexpr SdoSegment sdo_segment(std::span<B> left, bool toggle) noexcept {
   return part;
 }
 
-// client to server
+// Frames from client to server.
 
 constexpr Frame upload_request(SdoRequestId channel, ObjectKey object) noexcept {
   return sdo_detail::frame(channel.value, 0x40, object);
@@ -165,7 +171,7 @@ constexpr Frame download_segment_request(SdoRequestId channel, const SdoSegment&
   return sdo_detail::segment(channel.value, part);
 }
 
-// server to client
+// Frames from server to client.
 
 constexpr Frame upload_answer(SdoAnswerId channel, const SdoInitiate& begin) noexcept {
   return sdo_detail::initiate(channel.value, 0x40, begin);
@@ -180,9 +186,10 @@ constexpr Frame download_segment_answer(SdoAnswerId channel, bool toggle) noexce
   return sdo_detail::frame(channel.value, toggle ? 0x30 : 0x20, {});
 }
 
-// both ways
+// Frames in both directions.
 
-/// `channel`: sdo_request_cob_id when the client aborts, sdo_answer_cob_id when the server does.
+/// Makes an abort. `channel` is the COB-ID on which the sender transmits: sdo_request_cob_id if the
+/// client aborts, sdo_answer_cob_id if the server does.
 constexpr Frame sdo_abort(CobId channel, ObjectKey object, std::uint32_t code) noexcept {
   Frame out = sdo_detail::frame(channel, 0x80, object);
   store_le(std::span{out.data}.subspan(4), code);
@@ -192,7 +199,7 @@ constexpr std::uint32_t sdo_abort_code(const Frame& frame) noexcept {
   return load_le<std::uint32_t>(std::span{frame.data}.subspan(4));
 }
 
-/// Of a download request or an upload answer.
+/// Decodes the initiate frame of a download request or of an upload answer.
 constexpr SdoInitiate decode_initiate(const Frame& frame) noexcept {
   SdoInitiate begin{.object = sdo_object(frame), .expedited = (frame.data[0] & 2) != 0};
   std::ranges::copy(std::span{frame.data}.subspan(4), begin.data.begin());
@@ -203,7 +210,7 @@ constexpr SdoInitiate decode_initiate(const Frame& frame) noexcept {
   return begin;
 }
 
-/// Of a download segment request or an upload segment answer.
+/// Decodes a download segment request or an upload segment answer.
 constexpr SdoSegment decode_segment(const Frame& frame) noexcept {
   SdoSegment part{.toggle = (frame.data[0] & 0x10) != 0,
                   .last = (frame.data[0] & 1) != 0,
@@ -215,8 +222,8 @@ constexpr SdoSegment decode_segment(const Frame& frame) noexcept {
 /// Toggle bit of any segment frame, request or answer.
 constexpr bool sdo_toggle(const Frame& frame) noexcept { return (frame.data[0] & 0x10) != 0; }
 
-/// Bytes of a server's frame that say something, segments of a block apart; some devices send no
-/// more.
+/// Number of bytes of a server's frame that have a meaning, except for segments of a block upload.
+/// Some devices send no more than these.
 constexpr std::size_t sdo_answer_bytes(const Frame& frame) noexcept {
   const unsigned subcommand = frame.data[0] & 3U;
   switch (sdo_answer(frame)) {
@@ -230,9 +237,10 @@ constexpr std::size_t sdo_answer_bytes(const Frame& frame) noexcept {
     case SdoAnswer::download_initiate:
     case SdoAnswer::abort:
       return 4;
-    case SdoAnswer::block_download:  // accepted with a block size, the end confirmed, or a block
+    case SdoAnswer::block_download:  // initiate with a block size, confirmation of the end, or
+                                     // confirmation of a sub-block
       return subcommand == 0 ? 5 : (subcommand == 1 ? 1 : 3);
-    case SdoAnswer::block_upload:  // begin, or end with the checksum
+    case SdoAnswer::block_upload:  // initiate, or end with the CRC
       return subcommand == 0 ? 4 : 3;
     case SdoAnswer::download_segment:
     case SdoAnswer::reserved:

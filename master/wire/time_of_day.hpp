@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// TIME_OF_DAY: days since 1984-01-01, milliseconds since midnight. CiA 301, 7.1.6.6. takt sends
-/// UTC; the standard names no zone.
+/// Value of the type TIME_OF_DAY: days since 1984-01-01 and milliseconds since midnight. CiA
+/// 301, 7.1.6.6. takt sends UTC, because the standard does not name a time zone.
 struct TimeOfDay {
   std::uint16_t days = 0;
   std::uint32_t ms = 0;  ///< 0..86,399,999
@@ -23,7 +23,8 @@ constexpr std::int64_t ms_a_day = 86'400'000;
 constexpr std::int64_t first_day = 5113;  ///< 1984-01-01, in days since 1970-01-01
 }  // namespace time_detail
 
-/// `unix_time` since 1970-01-01 UTC; none: before 1984 or after day 65535 (2163-06-06).
+/// Converts a time since 1970-01-01 UTC. Returns std::nullopt before 1984 and after day 65535
+/// (2163-06-06).
 constexpr std::optional<TimeOfDay> time_of_day(Time unix_time) noexcept {
   using namespace time_detail;
   const std::int64_t ms = std::chrono::floor<std::chrono::milliseconds>(unix_time).count();
@@ -33,12 +34,13 @@ constexpr std::optional<TimeOfDay> time_of_day(Time unix_time) noexcept {
                    .ms = static_cast<std::uint32_t>(ms % ms_a_day)};
 }
 
-/// Since 1970-01-01 UTC.
+/// Converts to a time since 1970-01-01 UTC.
 constexpr Time unix_time(TimeOfDay time) noexcept {
   using namespace time_detail;
   return std::chrono::milliseconds{(time.days + first_day) * ms_a_day + time.ms};
 }
 
+/// Makes a TIME message.
 constexpr Frame time_frame(CobId id, TimeOfDay time) noexcept {
   Frame frame{.id = id, .length = 6};
   store_le(std::span{frame.data}, time.ms);
@@ -46,7 +48,8 @@ constexpr Frame time_frame(CobId id, TimeOfDay time) noexcept {
   return frame;
 }
 
-/// None: too short. Bits 28 to 31 are reserved and left out.
+/// Decodes a TIME message. Returns std::nullopt if the frame has fewer than six bytes. Bits 28 to
+/// 31 are reserved and are ignored.
 constexpr std::optional<TimeOfDay> decode_time(const Frame& frame) noexcept {
   if (frame.length < 6) return std::nullopt;
   return TimeOfDay{.days = load_le<std::uint16_t>(std::span{frame.data}.subspan(4)),
