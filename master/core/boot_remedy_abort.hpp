@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// What to try where a device answers a step of its boot with an SDO abort code.
+/// Says what the user can try when a device has answered a step of its boot with an SDO abort code.
 std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure);
 
 }  // namespace takt

@@ -9,31 +9,33 @@
 
 namespace takt {
 
-// Records of the bus thread in words. Front side: everything here allocates.
+// Texts for the records of the bus thread. These functions allocate, so only the front side may
+// call them.
 
-/// The whole story of a failed boot in several lines: which node, step n of m and its purpose, what
-/// was sent, what came back, abort code and status letter in words, what the EDS says, what to try.
+/// Explains a failed boot in several lines: the node, the step (n of m) and its purpose, the frame
+/// that was sent, the frame that was received, the abort code and the status letter in words, what
+/// the EDS says, and what the user can try.
 std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailure& failure);
 
-/// What to try against a failed boot, made for its cause.
+/// Says what the user can try against the cause of a failed boot.
 std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure& failure);
 
-/// Error status of CiA 302-2 in words: "vendor id differs".
+/// Describes the error status of CiA 302-2 in words, for example "vendor id differs".
 std::string_view letter_text(char letter) noexcept;
 
-/// "node 5 'shoulder'"; 0: "bus 'lift'".
+/// Names the subject of a message: "node 5 'shoulder'", or "bus 'lift'" for node 0.
 std::string subject(const BusPlan& plan, std::uint8_t node);
 
-/// One line for any event; the explanation for boot_failed.
+/// Describes an event in one line; for boot_failed, returns the explanation of several lines.
 std::string describe(const BusPlan& plan, const Event& event);
 
-/// "boot_failed", "emcy" ...
+/// Name of a kind of event: "boot_failed", "emcy" ...
 std::string_view name(EventKind kind) noexcept;
-/// "boot-up", "OPERATIONAL" ...
+/// Name of an NMT state: "boot-up", "OPERATIONAL" ...
 std::string_view name(NmtState state) noexcept;
-/// "ready", "lost" ...
+/// Name of a boot state: "ready", "lost" ...
 std::string_view name(BootState state) noexcept;
-/// "timeout", "aborted by the device" ...
+/// Name of an SDO fault: "timeout", "aborted by the device" ...
 std::string_view name(SdoFault fault) noexcept;
 
 }  // namespace takt

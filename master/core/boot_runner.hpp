@@ -16,84 +16,99 @@
 
 namespace takt {
 
-/// Runs the BootPlan of one node over its SDO client: a small interpreter of the steps. Uploads
-/// that get no answer are repeated, downloads never. Every wait has a deadline. CiA 302-2.
+/// Runs the BootPlan of one node over its SDO client, as an interpreter of the steps. Uploads
+/// without an answer are repeated, downloads never. Every wait has a deadline. Bus thread only. CiA
+/// 302-2.
 class BootRunner {
  public:
   enum class State : std::uint8_t { idle, running, done, failed };
+  /// Where a boot begins.
   enum class From : std::uint8_t {
     beginning,
-    bootup,    ///< the node has just said boot-up: the reset at the beginning isn't needed
-    silent,    ///< it may be OPERATIONAL: its error control is set up first, then `beginning`
-    identity,  ///< it was another device: it is only asked who it is; the right one: `beginning`
+    bootup,  ///< The node has just sent its boot-up message, so the boot skips the reset at its
+             ///< beginning.
+    silent,  ///< The node may be OPERATIONAL: its error control is set up first, then the boot goes
+             ///< on as with `beginning`.
+    identity,  ///< The last boot has found another device: only the identity is read. If it is
+               ///< right, the boot goes on as with `beginning`.
   };
 
-  /// `plan` must outlive the runner. The client is lent to each call, always the same one.
+  /// `plan` must outlive the runner. The caller passes the SDO client to each call; it must always
+  /// be the same one.
   explicit BootRunner(const BootPlan& plan) noexcept;
 
   void start(From from, Time now) noexcept;
   void stop() noexcept { state_ = State::idle; }
 
-  /// A boot-up message: awaited, or the node has restarted and its plan runs anew.
+  /// Handles a boot-up message. Either the current step waits for it, or the node has restarted and
+  /// the plan begins again.
   void on_bootup(Time now, SdoClient& client) noexcept;
   void on_heartbeat(NmtState state) noexcept;
-  /// Goes as far as it can; takes the results of the client.
+  /// Takes the results of the client and runs the plan until a step has to wait.
   void on_time(Time now, SdoClient& client) noexcept;
-  /// Of its own waits; the client has its own.
+  /// The deadline of the waits of the runner; the client has its own deadline.
   Time deadline() const noexcept;
-  /// The master itself was away for so long: nothing that is awaited is late by that.
+  /// Extends all deadlines by the time for which the master itself did not run.
   void excuse(Time away) noexcept;
 
-  /// NMT command that waits to be sent to the node; nmt_sent tells that it was. Besides those of
-  /// the plan: PRE-OPERATIONAL before something is written, unless the node says that it is.
+  /// The NMT command that waits to be sent to the node; call nmt_sent() after it was sent. Besides
+  /// the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the node is
+  /// known to be in that state.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
   void nmt_sent(Time now, SdoClient& client) noexcept;
 
   State state() const noexcept { return state_; }
-  /// Asks whether the node is there at all: it owes no answer.
+  /// Returns true while the runner probes whether the node exists. The node may then remain silent.
   bool probing() const noexcept {
     return step_ < plan_->steps.size() && current().action == BootAction::probe;
   }
+  /// The current step, as an index into BootPlan::steps.
   std::uint16_t step() const noexcept {
     return asks_ ? static_cast<std::uint16_t>(after_reset_) : step_;
   }
+  /// When this boot began.
   Time began() const noexcept { return began_; }
+  /// This boot has sent a reset to the node.
   bool reset_sent() const noexcept { return reset_sent_; }
-  /// NMT start was sent: PDOs may come, its mapping is verified.
+  /// NMT start was sent. PDOs may arrive, because their mapping is verified.
   bool started() const noexcept { return started_; }
-  /// The node was OPERATIONAL and is left as it is. CiA 302-2, status L.
+  /// The node was OPERATIONAL and the boot leaves it in that state. CiA 302-2, status L.
   bool keeps_running() const noexcept { return running_; }
-  /// The node was OPERATIONAL when it was told PRE-OPERATIONAL, and was not started since.
+  /// The node was OPERATIONAL when this boot sent it to PRE-OPERATIONAL, and was not started since.
   bool took_out() const noexcept { return took_out_ && !started_; }
-  /// Only the identity is asked for. Still true when this has failed.
+  /// The boot has read nothing but the identity so far (From::identity). The value stays true if
+  /// the identity was wrong.
   bool identifies() const noexcept { return identifies_; }
-  /// Objects of such a node that differ from the plan, and the first of them.
+  /// Number of objects that differ from the plan in a node that was left OPERATIONAL.
   std::uint16_t left_alone() const noexcept { return left_alone_; }
+  /// The first object that left_alone() counts.
   ObjectKey first_left_alone() const noexcept { return first_left_alone_; }
+  /// Serial number of the device, if the plan reads it.
   std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
-  /// As the device tells it, where the plan asks.
+  /// Firmware version of the device, if the plan reads it.
   std::optional<Firmware> firmware() const noexcept { return firmware_; }
-  /// What this boot has read of the limits of the device.
+  /// The limits of the device that this boot has read.
   std::span<const LimitReading> limits() const noexcept {
     return std::span{limits_}.first(limits_read_);
   }
-  /// Bytes of the program that is being downloaded; 0: none is.
+  /// Size in bytes of the program that is being downloaded; 0 means no download.
   std::size_t program_size() const noexcept;
-  /// The plan has come to where the node is guarded.
+  /// The plan has reached the step from which the node is guarded.
   bool guards() const noexcept { return guards_; }
+  /// The record of the failure, valid in State::failed.
   const BootFailure& failure() const noexcept { return failure_; }
 
  private:
   enum class Phase : std::uint8_t {
-    enter,        // the step has not begun
-    nmt,          // its command waits to be sent
-    preop,        // PRE-OPERATIONAL waits to be sent; then the transfer goes on at `after_preop_`
-    wait,         // for time or a message
-    upload_next,  // an upload is to begin as soon as the client is idle
+    enter,  // The step has not begun.
+    nmt,    // The NMT command of the step waits to be sent.
+    preop,  // PRE-OPERATIONAL waits to be sent. Then the transfer continues with `after_preop_`.
+    wait,   // The step waits for a time or a message.
+    upload_next,  // An upload begins as soon as the client is idle.
     upload,
     download_next,
     download,
-    confirm_next,  // a write that was refused as redundant, or not answered, is read back
+    confirm_next,  // A write that was refused as redundant, or not answered, is read back.
     confirm,
   };
   static constexpr std::uint8_t max_restarts = 5;
@@ -107,7 +122,7 @@ class BootRunner {
   bool skips(const BootStep& step) const noexcept;
   static bool asks(const BootStep& step) noexcept;
   bool needs_preop() const noexcept;
-  // False: has to wait.
+  // Runs one part of a step. Returns false if the runner has to wait.
   bool proceed(Time now, SdoClient& client) noexcept;
   bool begin_transfer(Time now, SdoClient& client) noexcept;
   bool end_wait(Time now, const SdoClient& client) noexcept;
@@ -136,7 +151,7 @@ class BootRunner {
   }
 
   const BootPlan* plan_;
-  std::size_t after_reset_;  // first step behind the reset that the plan may begin with
+  std::size_t after_reset_;  // first step after the reset with which the plan may begin
   State state_ = State::idle;
   Phase phase_ = Phase::enter;
   Phase after_preop_ = Phase::enter;
@@ -148,16 +163,18 @@ class BootRunner {
   bool started_ = false;
   bool guards_ = false;
   bool running_ = false;
-  bool asks_ = false;            // From::silent, until a sign of life
+  bool asks_ = false;            // From::silent, until a sign of life comes
   bool identifies_ = false;      // From::identity, until the identity is right
-  bool preoperational_ = false;  // it was told so or says so, and said nothing else since
-  bool took_out_ = false;        // of OPERATIONAL
+  bool preoperational_ = false;  // the node was commanded to or reports PRE-OPERATIONAL, and has
+                                 // reported no other state since
+  bool took_out_ = false;        // the boot has taken the node out of OPERATIONAL
   bool wrote_ = false;
   std::uint16_t left_alone_ = 0;
   ObjectKey first_left_alone_;
   std::optional<std::uint32_t> serial_number_;
   std::optional<Firmware> firmware_;
-  std::vector<LimitReading> limits_;  // as many as the plan reads, of which so many are there:
+  // Room for all limits that the plan reads; limits_read_ of them are valid.
+  std::vector<LimitReading> limits_;
   std::size_t limits_read_ = 0;
   bool bootup_seen_ = false;
   bool bootup_in_step_ = false;
@@ -165,13 +182,13 @@ class BootRunner {
   NmtState heard_ = NmtState::unknown;
   bool heartbeat_seen_ = false;
   Time began_{};
-  Time deadline_ = never;                   // of the step
-  Time wait_until_ = never;                 // of the wait in it
-  std::optional<ObjectKey> cob_id_object_;  // of the COB-ID entry that was read last
+  Time deadline_ = never;                   // deadline of the step
+  Time wait_until_ = never;                 // end of a wait within the step
+  std::optional<ObjectKey> cob_id_object_;  // the COB-ID object that was read or written last
   std::uint32_t cob_id_ = 0;
   std::span<const std::byte> to_write_;
   std::array<std::byte, 4> cob_id_bytes_{};
-  SdoResult refused_;  // why the write that is being confirmed failed
+  SdoResult refused_;  // result of the write that is being read back
   Frame refused_sent_;
   Frame refused_received_;
   std::size_t received_ = 0;

@@ -10,13 +10,14 @@
 
 namespace takt {
 
+/// Returns true if all bytes are zero.
 inline bool all_zero(std::span<const std::byte> value) noexcept {
   return std::ranges::all_of(value, [](std::byte byte) { return byte == std::byte{0}; });
 }
 
-/// Is what the device gave what is wanted? Numbers are compared by their low bytes under the
-/// mask, because devices answer with more or fewer bytes than the EDS says; strings and other long
-/// values without trailing zeros.
+/// Compares the value of the device (`got`) with the expected one (`want`). Numbers are compared by
+/// their low bytes under `mask`, because some devices answer with more or fewer bytes than the EDS
+/// says. Strings and other long values are compared without trailing zeros.
 inline bool same_value(std::span<const std::byte> got, std::span<const std::byte> want,
                        std::uint32_t mask) noexcept {
   if (want.size() <= 4) {
@@ -31,20 +32,21 @@ inline bool same_value(std::span<const std::byte> got, std::span<const std::byte
          all_zero(want.subspan(common)) && all_zero(got.subspan(common));
 }
 
-/// An absent object is as good as a zero in it: optional steps only.
+/// In optional steps that expect zero, an absent object counts as zero.
 inline bool may_be_missing(const BootStep& step, std::uint32_t code) noexcept {
   return step.optional && all_zero(step.value) &&
          (code == abort_code::no_object || code == abort_code::no_sub_index);
 }
 
-/// Codes that devices give for writing what is there already: worth a look at what is there.
+/// Abort codes with which devices refuse to write a value that the object already has. The object
+/// is then read back.
 inline bool may_be_redundant(const BootStep& step, std::uint32_t code) noexcept {
   return step.optional && (code == abort_code::access_unsupported ||
                            code == abort_code::read_only || code == abort_code::no_sub_index ||
                            code == abort_code::invalid_value || code == abort_code::device_state);
 }
 
-/// The device is alive but not ready to say it: asked again while it boots.
+/// The device is alive but not ready to answer. While it boots, the request is repeated.
 inline bool means_busy(std::uint32_t code) noexcept {
   return code >> 16 == 0x0503 || code >> 16 == 0x0504 || code == abort_code::resource_unavailable ||
          code == abort_code::cannot_store || code == abort_code::local_control ||

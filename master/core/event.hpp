@@ -12,151 +12,171 @@ namespace takt {
 /// Why an SDO transfer ended without its data. CiA 301, 7.2.4.
 enum class SdoFault : std::uint8_t {
   none,
-  aborted_by_device,  ///< abort_code says why
-  aborted_by_master,  ///< protocol error of the device; abort_code is what was sent
-  timeout,            ///< the device fell silent; 0504 0000 was sent
-  too_long,           ///< the answer does not fit into the buffer; 0504 0005 was sent
-  cancelled,          ///< the node was reset or the master stops
-  no_such_node,       ///< requests: the network file has no such node
-  refused,            ///< requests: the master only observes
-  no_such_pdo,        ///< PDO requests: the network file has no such PDO of the node
-  not_exchanging,     ///< PDO requests: the node is not operational
-  lss_failed,         ///< LSS requests: the last LssResult of the reply says why
-  lss_refused,        ///< LSS requests: nonsense, or a service that a running master does not offer
-  wrong_length,       ///< PDO requests: the RPDO is mapped with another number of bytes
-  axes_not_stopped,   ///< NMT requests: obeyed, but some axis was not seen at standstill before
+  aborted_by_device,  ///< The device has aborted the transfer; abort_code says why.
+  aborted_by_master,  ///< The device has broken the protocol; abort_code is the code that the
+                      ///< master has sent.
+  timeout,   ///< The device has not answered in time; the master has sent abort code 0504 0000.
+  too_long,  ///< The answer does not fit into the buffer; the master has sent abort code 0504 0005.
+  cancelled,  ///< The node was reset, the master stops, or the sender has called the request off.
+  no_such_node,    ///< Requests: the network file has no such node.
+  refused,         ///< Requests: the master only observes.
+  no_such_pdo,     ///< PDO requests: the network file has no such PDO of the node.
+  not_exchanging,  ///< PDO requests: the node is not OPERATIONAL.
+  lss_failed,      ///< LSS requests: the last LssResult of the reply says why.
+  lss_refused,   ///< LSS requests: the request is malformed, or a running master does not offer the
+                 ///< service.
+  wrong_length,  ///< PDO requests: the RPDO is mapped with another number of bytes.
+  axes_not_stopped,  ///< NMT requests: the command was sent, but some axis was not seen at
+                     ///< standstill before.
 };
 
-/// The one record of a failed boot: all that is needed to explain it. boot_report turns it into
-/// text on the front side. Bytes are as on the wire.
+/// The record of a failed boot, with all data that are needed to explain it. boot_report turns the
+/// record into text on the front side. Bytes are in wire order.
 struct BootFailure {
   std::uint16_t step = 0;  ///< index into BootPlan::steps
   BootAction action = BootAction::write;
-  char letter = 'J';
-  SdoFault fault = SdoFault::none;  ///< none: the value was read but is another one
-  bool downloading = false;         ///< the failing transfer was a download
+  char letter = 'J';                ///< error status of CiA 302-2
+  SdoFault fault = SdoFault::none;  ///< `none` means that the value was read and differs
+  bool downloading = false;         ///< the failed transfer was a download
   std::uint32_t abort_code = 0;
   ObjectKey object;
-  std::uint8_t received_size = 0;  ///< of the last frame of the transfer; 0: nothing came
+  /// Size of the last frame of the device in the transfer; 0 means no frame came.
+  std::uint8_t received_size = 0;
   std::array<std::uint8_t, 8> received{};
-  std::uint8_t sent_size = 0;
+  std::uint8_t sent_size = 0;  ///< size of the last frame of the master in the transfer
   std::array<std::uint8_t, 8> sent{};
-  std::uint32_t moved = 0;                  ///< bytes of a long transfer that were through
-  std::uint16_t value_size = 0;             ///< of the value that was read
-  std::array<std::uint8_t, 8> value{};      ///< its first bytes
-  NmtState node_state = NmtState::unknown;  ///< heard last in this boot; unknown: silent
-  bool bootup_seen = false;
-  std::uint8_t attempts = 0;  ///< uploads of the failing step
-  std::uint8_t restarts = 0;  ///< the node restarted so often while it was booted
-  bool running = false;       ///< the node was OPERATIONAL and left so
-  std::uint16_t emcy = 0;     ///< newest error code that came during this boot, 0 = none
-  Time elapsed{};             ///< since the boot began
-  Time late{};  ///< how late answers come of requests that have timed out; 0: none has come
-  ObjectKey answered{};  ///< the object of an answer that came for another one; index 0: none
+  std::uint32_t moved = 0;                  ///< bytes of a long transfer that were transferred
+  std::uint16_t value_size = 0;             ///< size of the value that was read, in bytes
+  std::array<std::uint8_t, 8> value{};      ///< first bytes of the value that was read
+  NmtState node_state = NmtState::unknown;  ///< the newest state in this boot; `unknown` means that
+                                            ///< the node was silent
+  bool bootup_seen = false;                 ///< a boot-up message came during this boot
+  std::uint8_t attempts = 0;                ///< number of uploads that the failed step has tried
+  std::uint8_t restarts = 0;                ///< how often the node has restarted during this boot
+  bool running = false;                     ///< the node was OPERATIONAL and was left in that state
+  std::uint16_t emcy = 0;  ///< newest EMCY error code during this boot, 0 means none
+  Time elapsed{};          ///< time since the boot began
+  Time late{};  ///< longest time until the answer to a request that had timed out; 0 means that no
+                ///< such answer came
+  ObjectKey answered{};  ///< object of an answer that did not fit the request; index 0 means none
 };
 
+/// Kind of an event. It defines the meaning of Event::value, Event::detail and Event::bytes.
 enum class EventKind : std::uint8_t {
   // nodes
   boot_started,
-  boot_done,    ///< value 1: it was already operational and was not reset; detail: ms; bytes: how
-                ///< many objects differ and were left alone (2), the first of them (index 2, sub 1)
-  boot_failed,  ///< failure; detail: how often in a row by the same cause (told at 1, 2, 4, 8 ...)
-  node_state,   ///< value: new NmtState
+  boot_done,  ///< value: 1 if the node was already OPERATIONAL and was not reset; detail: ms;
+              ///< bytes: number of objects that differ and were left alone (2 bytes), the first of
+              ///< them (index 2 bytes, sub-index 1 byte)
+  boot_failed,       ///< `failure` is valid; detail: number of failures in a row by the same cause
+                     ///< (reported at 1, 2, 4, 8 ...)
+  node_state,        ///< value: the new NmtState
   heartbeat_lost,    ///< value: ns of silence
-  heartbeat_back,    ///< of a node that is only watched; lost ones that are managed boot again
-  guarding_lost,     ///< value: ns without a good answer
-  guarding_toggle,   ///< the toggle bit of a guarding answer repeats; told when it begins
-  bootup_again,      ///< a boot-up message of a node that was ready
-  node_replaced,     ///< another serial number than before; value: new, detail: old
-  firmware_differs,  ///< from what the device data were taken for; value: Firmware::packed
-  no_sdo_block,      ///< its SDO server knows none: all goes by segments until it is reset; value:
-                     ///< abort code, 0: it gave no answer; detail: index << 8 | sub
-  limit_read,  ///< of a drive, in its boot; value: as the device says, of a range the lower end in
-               ///< its upper half; detail: place in LimitsPlan::lines << 8 | LimitVerdict
-  program_progress,  ///< value: bytes that the device has taken, detail: of how many
-  lss_assigned,      ///< the node had no id and has got it; value: its serial number
-  lss_not_assigned,  ///< it was found without id, but did not take it, or (outcome nobody) others
-                     ///< were; bytes: op, outcome, error, specific of the LssResult; told when that
-                     ///< changes
-  unlisted_node,     ///< value: id of a node that is not in the network file (status A)
-  network_ready,     ///< all mandatory nodes have booted; the master is operational
-  network_late,      ///< mandatory nodes still missing after the boot time; detail: how many
-  duplicate_node,    ///< two devices seem to have this id; value: DuplicateSign
-  loss_reaction,     ///< value: LossReaction, of which this node was the cause
-  mandatory_lost,    ///< a mandatory node was lost; value 1: all are stopped, 0: all are reset
-  emcy,  ///< bytes: the eight bytes of the EMCY frame; value: how many before it were not told
+  heartbeat_back,    ///< The heartbeat of a node that is only watched is back. Managed nodes boot
+                     ///< again instead.
+  guarding_lost,     ///< value: ns without a valid answer
+  guarding_toggle,   ///< The toggle bit of a guarding answer repeats; reported when that begins.
+  bootup_again,      ///< A node that was ready has sent a boot-up message.
+  node_replaced,     ///< The node has another serial number than before; value: new, detail: old.
+  firmware_differs,  ///< The firmware differs from the one for which the device data were made;
+                     ///< value: Firmware::packed.
+  no_sdo_block,  ///< The SDO server supports no block transfer; all transfers are segmented until
+                 ///< the node is reset. value: abort code, 0 if it gave no answer; detail: index <<
+                 ///< 8 | sub-index
+  limit_read,  ///< The boot of a drive has read a limit. value: as the device gives it, for a range
+               ///< the lower end is in the upper half; detail: index into LimitsPlan::lines << 8 |
+               ///< LimitVerdict
+  program_progress,  ///< value: bytes that the device has accepted, detail: size of the program in
+                     ///< bytes
+  lss_assigned,  ///< The node had no node-ID and has received it by LSS; value: its serial number.
+  lss_not_assigned,  ///< The node was found without node-ID but did not accept it, or (outcome
+                     ///< `nobody`) only other devices without node-ID have answered; bytes: op,
+                     ///< outcome, error, specific of the LssResult; reported when that changes.
+  unlisted_node,   ///< value: node-ID of a node that is not in the network file (CiA 302-2, status
+                   ///< A)
+  network_ready,   ///< All mandatory nodes have booted, and the master is operational.
+  network_late,    ///< Mandatory nodes are still missing after the boot time; detail: their number.
+  duplicate_node,  ///< Two devices seem to have this node-ID; value: DuplicateSign.
+  loss_reaction,   ///< value: the LossReaction that the loss of this node has caused
+  mandatory_lost,  ///< A mandatory node was lost; value: 1 if all nodes are stopped, 0 if all are
+                   ///< reset.
+  emcy,  ///< bytes: data of the EMCY frame, detail: their number; value: number of EMCYs before
+         ///< this one that were not reported
   // the cycle
-  pdo_missing,      ///< value: TPDO number; told when it begins
+  pdo_missing,      ///< value: TPDO number; reported when it begins
   pdo_back,         ///< value: TPDO number
-  pdo_late,         ///< value: TPDO number, detail: us after SYNC; told when it begins
+  pdo_late,         ///< value: TPDO number, detail: us after SYNC; reported when it begins
   pdo_length,       ///< value: TPDO number, detail: received length
-  cycles_missed,    ///< value: how many periods were skipped
+  cycles_missed,    ///< value: number of skipped periods, detail: MissedBecause
   receive_overrun,  ///< value: frames lost by the kernel
-  // a SYNC that another device makes
-  sync_lost,    ///< value: ns of silence, 0: none has come at all; detail: SyncLoss
-  sync_back,    ///< value: ns without it, 0: the first one; detail: SyncLoss
-  sync_jump,    ///< its counter; value: received (-1: none), detail: expected; told when it begins
-  sync_early,   ///< value: ns after the one before; told when it begins
-  sync_period,  ///< it keeps another period than the network file says; value: ns
+  // SYNC of another device
+  sync_lost,    ///< value: ns of silence, 0 if no SYNC has come at all; detail: SyncLoss
+  sync_back,    ///< value: ns without SYNC, 0 for the first SYNC; detail: SyncLoss
+  sync_jump,    ///< The counter jumps. value: received counter (-1 if the frame has none), detail:
+                ///< expected counter; reported when it begins.
+  sync_early,   ///< value: ns after the previous SYNC; reported when it begins
+  sync_period,  ///< The period differs from that of the network file; value: measured period in ns.
   // outputs
   command_refused,  ///< value: signal, detail: RefusedBecause
-  fallback_begun,   ///< value: signal whose command outlived its time to live
+  fallback_begun,   ///< value: the signal whose command has outlived its time to live
   fallback_ended,   ///< value: signal
-  outputs_held,    ///< value: RPDO number that lacks a commanded, safe or seeded value; detail: the
-                   ///< signal of the actual position that a limited set-point waits for, plus 1; 0:
-                   ///< it waits for none
-  limit_exceeded,  ///< a command isn't sent, its node's outputs take their fallback; value: as
-                   ///< commanded, raw; detail: signal << 8 | LimitKind; bytes: what was measured
-                   ///< and its limit, each a float in SI
-  // the bus
+  outputs_held,  ///< An RPDO is not sent because a signal lacks a commanded, safe or seeded value.
+                 ///< value: RPDO number; detail: index of the signal whose actual position a
+                 ///< limited set-point waits for, plus 1; 0 means it waits for none
+  limit_exceeded,  ///< A command is not sent, and the outputs of its node take their fallback.
+                   ///< value: the raw command; detail: signal << 8 | LimitKind; bytes: the measured
+                   ///< value and its limit, each a float in SI units
+  // CAN controller and interface
   bus_error_passive,
   bus_error_active,
   bus_off,
   bus_recovered,
-  send_buffer_full,  ///< ENOBUFS; value: frames not sent
+  send_buffer_full,  ///< ENOBUFS; value: number of frames that were not sent, detail: SendTrouble
   interface_down,    ///< detail: errno
   interface_up,
   foreign_sync,
   foreign_nmt,       ///< bytes: the command
-  duplicate_cob_id,  ///< value: COB-ID seen from somebody else
+  duplicate_cob_id,  ///< value: COB-ID of the master's frames that another device also uses
   // the ordered stop
-  axis_not_stopped,  ///< An axis is not confirmed. detail: AxisVerdict, axis << 8, 1 << 16 by
-                     ///< differences of 0x6064; value: ns without an answer (silent, lost), else
-                     ///< the raw velocity
-  still_armed,  ///< the device did not take the write that disarms it; detail: index << 8 | sub,
-                ///< value: abort code, 0: not confirmed, negative: ns that it gave no answer
+  axis_not_stopped,  ///< An axis is not confirmed. detail: AxisVerdict | axis << 8 | 1 << 16 if the
+                     ///< velocity comes from differences of 0x6064; value: ns without an answer
+                     ///< (silent, lost), else the raw velocity
+  still_armed,  ///< The device did not accept its disarming. detail: index << 8 | sub-index; value:
+                ///< abort code, 0 if not confirmed, negative: ns without an answer
   // the master
   stopping,
   stopped,
 };
 
-/// What gave two devices of one id away.
+/// How the master has noticed that two devices use one node-ID.
 enum class DuplicateSign : std::uint8_t {
-  heartbeats,  ///< more heartbeats than one producer sends
-  answers,     ///< several answers to one SDO request
+  heartbeats,  ///< More heartbeats come than one producer sends.
+  answers,     ///< Several answers come to one SDO request.
 };
 
-/// What a limit that a device tells is good for.
+/// Whether a limit that was read from a device can be used.
 enum class LimitVerdict : std::uint8_t {
   good,
-  implausible,  ///< it is ignored
+  implausible,  ///< The limit is ignored.
 };
 
+/// Why a command was refused: Event::detail of `command_refused`.
 enum class RefusedBecause : std::uint8_t {
   not_an_output,
-  other_session,  ///< the node's outputs belong to another sender
-  stale_session,  ///< a daemon session that has ended: a replayed log
+  other_session,  ///< The outputs of the node belong to another sender.
+  stale_session,  ///< The command belongs to a session of the daemon that has ended, for example in
+                  ///< a replayed log.
   node_not_ready,
   out_of_range,
   observing,
 };
 
-/// One thing worth telling. Trivially copyable: made by the bus thread, told by the front thread.
+/// One event. It is trivially copyable: the bus thread makes it, and the front thread reports it.
 struct Event {
   Time when{};
   std::uint64_t cycle = 0;
   EventKind kind = EventKind::node_state;
-  std::uint8_t node = 0;  ///< 0: the bus itself
+  std::uint8_t node = 0;  ///< node-ID, 0 means the bus itself
   std::uint32_t detail = 0;
   std::int64_t value = 0;
   std::array<std::uint8_t, 8> bytes{};

@@ -4,7 +4,7 @@
 
 namespace takt {
 
-/// Events of one cycle on their way to the front thread's ring. Bus thread only.
+/// The events of one cycle until they move to the ring of the front thread. Bus thread only.
 using EventQueue = FixedQueue<Event, 256>;
 
 }  // namespace takt

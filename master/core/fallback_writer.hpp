@@ -9,27 +9,30 @@
 
 namespace takt {
 
-/// While SYNC is lost, a synchronous RPDO waits in the device for the next one. This writes the
-/// fallbacks in such RPDOs by SDO as well, controlwords first: they act at once. Devices that take
-/// no SDO writes to mapped objects keep what they have until SYNC is back. Bus thread only.
+/// Writes fallbacks by SDO while SYNC is lost, because a synchronous RPDO takes effect only at the
+/// next SYNC. It writes the fallbacks of all outputs in such RPDOs, controlwords first; they take
+/// effect at once. Devices that refuse SDO writes to mapped objects keep their values until SYNC is
+/// back. Bus thread only.
 class FallbackWriter {
  public:
   explicit FallbackWriter(const BusPlan& plan);
 
-  /// The commanded ones of these outputs have taken their fallback.
+  /// Begins to write the fallbacks of those outputs that were commanded.
   void begin(const PdoOutputs& outputs) noexcept;
   void stop() noexcept { next_ = values_.size(); }
 
+  /// A write waits to be submitted.
   bool waits() const noexcept { return next_ < values_.size(); }
-  /// Node index of the one that waits.
+  /// Node index of the write that waits.
   std::size_t node_index() const noexcept { return values_[next_].node_index; }
-  /// The write that waits.
+  /// The request of the write that waits.
   const Request& request() noexcept;
+  /// The network has accepted request().
   void submitted() noexcept;
 
-  /// The answer to one of these requests: nobody else asked.
+  /// Returns true if the reply belongs to a request of this class.
   static bool owns(const Reply& reply) noexcept { return reply.id == request_id; }
-  /// Of all its requests.
+  /// The id of all requests of this class.
   static constexpr std::uint64_t request_id = 1ULL << 61;
 
  private:

@@ -6,7 +6,8 @@
 
 namespace takt {
 
-/// A device has another firmware than its device data were taken for: what follows, what to write.
+/// Describes that a device has another firmware than the one for which its device data were made:
+/// the consequences, and what the user can write in the network file.
 std::string firmware_text(const FirmwarePlan& plan, const Firmware& is);
 
 }  // namespace takt

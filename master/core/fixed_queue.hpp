@@ -5,7 +5,8 @@
 
 namespace takt {
 
-/// Queue of fixed room within one thread. A full queue refuses and counts.
+/// Queue of fixed capacity for use within one thread. A full queue refuses further items and counts
+/// them.
 template <class T, std::size_t N>
 class FixedQueue {
   static_assert(N >= 2 && (N & (N - 1)) == 0);
@@ -24,9 +25,10 @@ class FixedQueue {
     item = items_[tail_++ & (N - 1)];
     return true;
   }
-  /// Only where it is not empty.
+  /// The oldest item. The queue must not be empty.
   const T& front() const noexcept { return items_[tail_ & (N - 1)]; }
   bool empty() const noexcept { return head_ == tail_; }
+  /// Number of refused items.
   std::uint64_t lost() const noexcept { return lost_; }
 
  private:

@@ -17,9 +17,10 @@
 
 namespace takt {
 
-/// Walks through what a machine knows, a word a value, so that another one made of the same plan
-/// can go on from there. Each machine names its values in `keep(state)`: only those that matter
-/// while nothing is under way, and none that follow from the plan. `Words` lends the words.
+/// Saves or restores the state of a machine as a sequence of words, so that another machine with
+/// the same plan can continue from it. Each machine lists its values in `keep(state)`: only those
+/// that matter while nothing is under way, and none that follow from the plan. The derived class
+/// `Words` provides the words.
 template <class Words>
 class KeptState {
  public:
@@ -27,28 +28,32 @@ class KeptState {
   void operator()(T&... values) noexcept {
     (one(values), ...);
   }
-  /// A position below `end`; 0 where it is none.
+  /// A position below `end`. A restored value that is not below `end` becomes 0.
   template <std::unsigned_integral T>
   void position(T& value, std::size_t end) noexcept {
     one(value);
     if (value >= end) put(value, T{0});
   }
-  /// A span of time that something is divided by, or that is added in each cycle.
+  /// A time span that is used as a divisor or is added in each cycle; it is restored as a positive
+  /// value.
   void period(Time& value) noexcept {
     one(value);
     put(value, std::clamp(value, Time{1}, longest_period));
   }
 
  private:
-  static constexpr std::int64_t longest = std::int64_t{1} << 56;  // ns; sums stay in range
-  static constexpr Time longest_period{std::int64_t{1} << 42};    // 73 min, beyond 0x1006's longest
-  static constexpr std::int64_t largest = 1 << 30;                // of a small signed count
+  /// Nanoseconds. Sums of such times do not overflow.
+  static constexpr std::int64_t longest = std::int64_t{1} << 56;
+  /// 73 min, longer than the longest period that 0x1006 can hold.
+  static constexpr Time longest_period{std::int64_t{1} << 42};
+  /// Largest absolute value of a signed count.
+  static constexpr std::int64_t largest = 1 << 30;
 
   std::uint64_t word(std::uint64_t value) noexcept {
     return static_cast<Words&>(*this).next(value);
   }
 
-  /// Only a reader changes the machine that it walks through.
+  /// Sets a value. Only a reader changes the machine; the other archives leave it as it is.
   template <class T>
   static void put(T& value, T read) noexcept {
     if constexpr (Words::restores) value = read;
@@ -78,10 +83,11 @@ class KeptState {
   void one(Time& value) noexcept {
     std::int64_t count = value.count();
     one(count);
-    // Everything but `never` can be subtracted from any time, whatever a damaged checkpoint holds.
+    // Except for `never`, every time can be subtracted from any other, whatever a damaged
+    // checkpoint holds.
     put(value, count == never.count() ? never : Time{std::clamp(count, -longest, longest)});
   }
-  /// An infinite value is a limit that does not exist.
+  /// An infinite value means that there is no limit.
   void one(double& value) noexcept {
     const auto read = std::bit_cast<double>(word(std::bit_cast<std::uint64_t>(value)));
     put(value, std::isnan(read) ? 0.0 : read);
@@ -118,7 +124,7 @@ class KeptState {
   }
 };
 
-/// Counts the words that a machine's state takes.
+/// Counts the words that the state of a machine needs.
 class StateSize : public KeptState<StateSize> {
  public:
   static constexpr bool restores = false;
@@ -133,7 +139,7 @@ class StateSize : public KeptState<StateSize> {
   std::size_t count_ = 0;
 };
 
-/// Writes them where there is room for so many.
+/// Writes the words to memory that has room for all of them.
 class StateWriter : public KeptState<StateWriter> {
  public:
   static constexpr bool restores = false;
@@ -145,7 +151,8 @@ class StateWriter : public KeptState<StateWriter> {
   std::uint64_t* to_;
 };
 
-/// Puts them in place. Any words are safe; of too few the rest is as it was.
+/// Restores the state from words. Any content of the words is safe. If there are too few words, the
+/// remaining values stay as they were.
 class StateReader : public KeptState<StateReader> {
  public:
   static constexpr bool restores = true;

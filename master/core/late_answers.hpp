@@ -9,8 +9,8 @@
 
 namespace takt {
 
-/// Measures how late an SDO server answers requests that have timed out: a slow server is told from
-/// a mute one by that.
+/// Measures how late an SDO server answers requests that have timed out. This distinguishes a slow
+/// server from one that does not answer.
 class LateAnswers {
  public:
   /// The request for `object`, which was sent at `sent`, has timed out.
@@ -19,7 +19,8 @@ class LateAnswers {
     open_[count_++] = {object, sent};
   }
 
-  /// An answer of the server. True: it answers one of those requests, whatever is asked now.
+  /// Takes an answer of the server. Returns true if it answers one of the requests that have timed
+  /// out, whatever request is under way now.
   bool take(const Frame& frame, Time now) noexcept {
     const SdoAnswer kind = sdo_answer(frame);
     const bool has_object = kind == SdoAnswer::upload_initiate ||
@@ -34,7 +35,8 @@ class LateAnswers {
     return false;
   }
 
-  /// The longest time from a request that had timed out to its answer; 0: none has come.
+  /// The longest time from a request that had timed out to its answer; 0 means that no such answer
+  /// has come.
   Time longest() const noexcept { return longest_; }
   void reset() noexcept {
     count_ = 0;

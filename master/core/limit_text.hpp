@@ -6,9 +6,9 @@
 
 namespace takt {
 
-/// The line of a `limit_exceeded` event: signal, what was measured, its limit, what was commanded.
+/// The line for a `limit_exceeded` event: signal, measured value, its limit, and the command.
 std::string limit_text(const BusPlan& plan, const Event& event);
-/// The line of a `limit_read` event.
+/// The line for a `limit_read` event.
 std::string read_limit_text(const BusPlan& plan, const Event& event);
 
 }  // namespace takt

@@ -9,21 +9,23 @@
 
 namespace takt {
 
-/// The LSS master: one service at a time, each with a deadline. CiA 305. Where several devices may
-/// answer, the wait lasts its full time; within a scan it shrinks to what the devices need, and is
-/// full again where a reaction was doubtful.
+/// The LSS master: runs one service at a time, each with a deadline. If several devices may answer,
+/// it waits for the full time-out. Within a scan it shortens the waits to what the devices need,
+/// and goes back to the full time-out after a doubtful reaction. Bus thread only. CiA 305.
 class LssMaster {
  public:
-  static constexpr Time gap = std::chrono::milliseconds{1};  ///< between two frames of the master
+  /// Minimum time between two frames of the master.
+  static constexpr Time gap = std::chrono::milliseconds{1};
 
-  /// Only when idle. `timeout` of each answer; 0: the default of the service.
+  /// Begins a service; the master must be idle. `timeout` applies to each answer; 0 means the
+  /// default of the service.
   void begin(const LssCommand& command, Time timeout, Time now) noexcept;
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
-  /// Once, when it is over.
+  /// Returns the result once, when the service is over.
   std::optional<LssResult> take_result() noexcept;
-  /// Gives up; there will be no result.
+  /// Cancels the service; it gives no result.
   void cancel() noexcept { phase_ = Phase::idle; }
   bool idle() const noexcept { return phase_ == Phase::idle; }
   /// The newest fast scan may have brought a device into configuration state, whatever its outcome.
@@ -53,16 +55,16 @@ class LssMaster {
   LssSlowScan slow_;
   Phase phase_ = Phase::idle;
   Wait wait_for_ = Wait::none;
-  std::array<Frame, 6> frames_{};  // of this question
+  std::array<Frame, 6> frames_{};  // frames of the current question
   std::uint8_t count_ = 0;
   std::uint8_t next_ = 0;
   bool answered_ = false;
-  bool patient_ = false;  // waits of a scan are full
+  bool patient_ = false;  // the waits of a scan last for the full time-out
   Time timeout_{};
   Time send_at_{};
   Time asked_at_{};
   Time wait_until_ = never;
-  Time slowest_{};  // answer of this scan
+  Time slowest_{};  // the slowest answer of this scan
 };
 static_assert(Machine<LssMaster>);
 

@@ -8,26 +8,29 @@
 
 namespace takt {
 
-/// Runs a list of LSS services, one after the other, until one is not done. A list that has
-/// brought devices into configuration state and fails ends by sending all of them to waiting.
+/// Runs a list of LSS services one after the other, until one of them fails. If a list has brought
+/// devices into configuration state and then fails, the runner sends all devices to waiting state.
+/// Bus thread only.
 class LssRunner {
  public:
   static constexpr std::size_t most_commands = 28;
 
-  /// `commands` beyond most_commands are not run. `timeout` of each answer; 0: the defaults.
+  /// Begins a list. Commands after the first most_commands are not run. `timeout` applies to each
+  /// answer; 0 means the defaults of the services.
   void begin(std::span<const LssCommand> commands, Time timeout) noexcept;
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
-  /// Gives up the list. Where a device may be in configuration state, all are sent to waiting
-  /// first: running() until that frame is out.
+  /// Cancels the list. If a device may be in configuration state, the runner first sends all
+  /// devices to waiting state; running() stays true until that frame was sent.
   void leave(Time now) noexcept;
 
   bool running() const noexcept { return state_ == State::running || state_ == State::leaving; }
-  /// Of the services that were run; the last of them says why where not all of them are done.
+  /// Results of the services that were run. If the list has failed, the last result says why.
   std::span<const LssResult> results() const noexcept {
     return std::span{results_}.first(results_count_);
   }
+  /// All services of the list have succeeded.
   bool done() const noexcept { return state_ == State::done; }
 
   template <class Archive>
@@ -50,7 +53,7 @@ class LssRunner {
   Time timeout_{};
   State state_ = State::idle;
   bool configuring_ = false;  // this list has brought some device into configuration state
-  bool left_there_ = false;   // and so has one that is over
+  bool left_there_ = false;   // an earlier list has left a device in configuration state
 };
 static_assert(Machine<LssRunner>);
 

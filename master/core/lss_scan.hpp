@@ -8,31 +8,33 @@
 
 namespace takt {
 
+/// State of a scan.
 enum class LssScanState : std::uint8_t { running, found, nobody, lost };
 
-/// Finds the LSS address of a device without node id, bit by bit; of several the lowest. It is then
-/// in configuration state. CiA 305, 3.9.5.
+/// Finds the LSS address of a device without node-ID bit by bit; of several devices, it finds the
+/// one with the lowest address. That device is then in configuration state. CiA 305, 3.9.5.
 class LssFastScan {
  public:
-  /// Nobody has answered: that many questions.
+  /// Number of questions in a scan that no device answers.
   static constexpr std::uint32_t frames_of_silence = 2;
 
   LssFastScan() = default;
-  /// Bits of `mask` are known and need no question.
+  /// The scan does not ask for the bits in `mask`; it takes them from `known`.
   LssFastScan(const LssAddress& known, const LssAddress& mask) noexcept
       : known_{known}, mask_{mask} {}
 
-  /// What to ask next, while running.
+  /// The next question, valid while the scan is running.
   lss::FastScan question() const noexcept { return question_; }
-  /// Somebody has answered it, or nobody has.
+  /// Tells the scan whether a device has answered the question.
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
   const LssAddress& address() const noexcept { return address_; }
-  /// A device that heard the last question is in configuration state, even where its answer was
-  /// lost.
+  /// A device may be in configuration state because it has received the last question, even if its
+  /// answer was lost.
   bool may_have_switched() const noexcept { return may_have_switched_; }
-  /// Wait for as long as may be: a question had a reaction that can't be, or this is the end,
-  /// where a late answer would confirm a wrong address or leave a device in configuration state.
+  /// Wait for the full time-out, because a question had an impossible reaction, or because this is
+  /// the last question. There, a late answer would confirm a wrong address or leave a device in
+  /// configuration state.
   bool doubtful() const noexcept { return doubtful_ || at_the_end(); }
 
  private:
@@ -51,22 +53,24 @@ class LssFastScan {
   LssScanState state_ = LssScanState::running;
   bool confirming_ = false;
   bool doubtful_ = false;
-  std::uint8_t confirmed_ = 0;  // parts of address_
+  std::uint8_t confirmed_ = 0;  // number of confirmed parts of address_
   std::uint8_t restarts_ = 0;
-  std::optional<LssAddress> unheard_;  // the lowest that nobody has confirmed
+  std::optional<LssAddress> unheard_;  // the lowest address that no device has confirmed
   bool may_have_switched_ = false;
 };
 
-/// Finds the lowest LSS address in ranges of revision and serial number of one product, by halving
-/// them; devices with a node id answer as well and stay as they are. CiA 305, 3.9.4.
+/// Finds the lowest LSS address in ranges of revision number and serial number of one product by
+/// halving the ranges. Devices with a node-ID answer as well; their state does not change. CiA
+/// 305, 3.9.4.
 class LssSlowScan {
  public:
   LssSlowScan() = default;
-  /// `ranges`: vendor, product, revision from and to, serial from and to.
+  /// `ranges`: vendor-ID, product code, lowest and highest revision number, lowest and highest
+  /// serial number.
   explicit LssSlowScan(const std::array<std::uint32_t, 6>& ranges) noexcept
       : left_{ranges}, question_{ranges} {}
 
-  /// The six numbers to ask for next, while running.
+  /// The six numbers of the next question, valid while the scan is running.
   const std::array<std::uint32_t, 6>& question() const noexcept { return question_; }
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
@@ -75,7 +79,7 @@ class LssSlowScan {
  private:
   void ask() noexcept;
 
-  std::array<std::uint32_t, 6> left_{};  // where the device is
+  std::array<std::uint32_t, 6> left_{};  // the ranges that still contain the device
   std::array<std::uint32_t, 6> question_{};
   LssScanState state_ = LssScanState::running;
   bool first_ = true;

@@ -14,21 +14,22 @@
 
 namespace takt {
 
-/// LSS of a running network: the requests of applications, and between them ids for nodes that the
-/// network file lets get one, as long as they show no sign of life. Bus thread only.
+/// LSS in a running network. It serves the requests of applications. Between these, it assigns
+/// node-IDs to nodes that the network file allows to receive one, as long as they show no sign of
+/// life. Bus thread only.
 class LssService {
  public:
   LssService(const BusPlan& plan, RequestTable& requests, EventQueue& events);
 
-  /// Begins to look for nodes without id.
+  /// Begins to search for nodes without node-ID.
   void start(Time now) noexcept;
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
   void on_time(Time now, Outbox& out, std::span<const NodeStatus> nodes) noexcept;
   Time deadline() const noexcept;
-  /// Gives up; the network answers its requests. No device stays in configuration state.
+  /// Cancels all work; the network answers the requests. No device stays in configuration state.
   void stop(Time now) noexcept;
   bool stopped() const noexcept { return stopping_ && !runner_.running(); }
-  /// Nobody is looked for, and no request is under way.
+  /// No search and no request is under way.
   bool idle() const noexcept {
     return !runner_.running() && searched_ == nullptr && request_ == nullptr && !stopping_;
   }
@@ -48,8 +49,8 @@ class LssService {
   struct Candidate {
     std::uint8_t node = 0;  // index into plan.nodes
     Time next_look = never;
-    std::uint32_t told = 0;      // last failure
-    bool others_answer = false;  // without id; none of them was it
+    std::uint32_t told = 0;      // the failure that was reported last
+    bool others_answer = false;  // other devices without node-ID have answered
   };
 
   void finish(Time now) noexcept;
@@ -65,9 +66,9 @@ class LssService {
   EventQueue& events_;
   LssRunner runner_;
   std::vector<Candidate> candidates_;
-  std::size_t turn_ = 0;            // candidate that is looked for next
-  Candidate* searched_ = nullptr;   // who is looked for
-  RequestSlot* request_ = nullptr;  // whose services run
+  std::size_t turn_ = 0;            // candidate of the next search
+  Candidate* searched_ = nullptr;   // candidate of the running search; nullptr if there is none
+  RequestSlot* request_ = nullptr;  // request of the running services; nullptr if there is none
   bool stopping_ = false;
 };
 

@@ -10,26 +10,28 @@
 
 namespace takt {
 
-/// Whether somebody answers a frame soon: the bus loop leaves time for it.
+/// Whether an answer to a frame comes soon. The bus loop reserves time on the wire for it.
 enum class Answer : std::uint8_t {
+  /// An answer comes soon.
   comes,
-  by_server,  ///< of SDO: however late it is, the machine waits for it
+  by_server,  ///< An SDO server answers, possibly late; the machine waits for its answer.
   none,
-  stream,  ///< many frames one after another: nothing of less priority gets through beside them
-  after_stream,  ///< none, to a device that may still be in the middle of one
+  stream,        ///< Many frames come one after another; meanwhile no frame of lower priority gets
+                 ///< through.
+  after_stream,  ///< No answer comes, but the device may still be in the middle of a stream.
 };
 
-/// Frames that machines want to send, in order; fixed room. Bus thread only.
+/// Frames that machines want to send, in order, with a fixed capacity. Bus thread only.
 class Outbox {
  public:
   static constexpr std::size_t capacity = 256;
 
-  /// From now on at most `frames` frames in all; the budget of a cycle.
+  /// Limits the outbox to `frames` frames in total: the budget of a cycle.
   void set_limit(std::size_t frames) noexcept { limit_ = frames < capacity ? frames : capacity; }
   std::size_t limit() const noexcept { return limit_; }
   std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
 
-  /// False: full; the frame is not taken and the machine has to come back.
+  /// Adds a frame. Returns false if the outbox is full; the machine then has to try again later.
   bool push(const Frame& frame, Answer answer = Answer::comes) noexcept {
     if (room() == 0) return false;
     answers_[size_] = answer;
@@ -37,7 +39,7 @@ class Outbox {
     return true;
   }
   std::span<const Frame> frames() const noexcept { return {frames_.data(), size_}; }
-  /// In the order of frames().
+  /// The answers that the frames expect, in the order of frames().
   std::span<const Answer> answers() const noexcept { return {answers_.data(), size_}; }
   bool empty() const noexcept { return size_ == 0; }
   void clear() noexcept { size_ = 0; }
@@ -52,8 +54,8 @@ class Outbox {
 /// The deadline of a machine that has something to do now.
 inline constexpr Time at_once{};
 
-/// A protocol machine: takes frames and time, gives frames and the time it wants to be called
-/// next. Reads no clock, allocates nothing.
+/// A protocol machine: it takes frames and times, and gives frames and the time of its next call.
+/// It does not read a clock and does not allocate.
 template <class M>
 concept Machine = requires(M machine, const M constant, const Frame& frame, Time now, Outbox& out) {
   { machine.on_frame(frame, now, out) } noexcept;

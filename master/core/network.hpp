@@ -25,60 +25,69 @@
 
 namespace takt {
 
-/// When an NMT command leaves that ends the PDO exchange of axes.
+/// When the master sends an NMT command that ends the PDO exchange of axes.
 enum class NmtStop : std::uint8_t {
+  /// The command is sent at once.
   immediate,
-  after_axes,  ///< when axes_at_rest() says that the axes which it reaches were stopped
+  after_axes,  ///< The command is sent when axes_at_rest() reports that the axes which it reaches
+               ///< were stopped.
 };
 
-/// How the axes are for which an NMT command has waited.
+/// State of the axes for which an NMT command has waited.
 enum class AxesAtRest : std::uint8_t {
-  confirmed,    ///< each was seen at standstill and disabled, or was disabled before
-  unconfirmed,  ///< some was not: the command leaves, and its answer says so
+  confirmed,    ///< Each axis was seen at standstill and disabled, or was disabled before.
+  unconfirmed,  ///< Some axis was not. The command is sent nevertheless, and its answer says so.
 };
 
+/// Options of a Network.
 struct NetworkOptions {
-  bool observe = false;  ///< listen only: nothing is ever sent
+  bool observe = false;  ///< The master only listens and sends nothing.
   NmtStop nmt_stop = NmtStop::immediate;
 };
 
 /// The NMT master: owns the machines of all nodes, routes service frames to them and shares the
 /// frame budget between them. Bus thread only; nothing allocates after construction. `plan` must
-/// outlive it.
+/// outlive the network.
 class Network {
  public:
   explicit Network(const BusPlan& plan, NetworkOptions options = {});
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
 
-  /// Begins to boot all nodes (not when observing).
+  /// Begins to boot all nodes, unless the master only observes.
   void start(Time now) noexcept;
-  /// Takes service frames of nodes (SDO and LSS answers, heartbeats, EMCY); others are ignored.
-  /// O(1). What it makes the master say leaves with on_time, within the budget; `out` is not used.
+  /// Takes service frames of nodes (SDO and LSS answers, heartbeats, EMCY) and ignores all others.
+  /// O(1). The frames that the master sends in reaction leave with on_time(), within the budget;
+  /// `out` is not used.
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
-  /// Time-outs, new SDO requests, heartbeat of the master, NMT, LSS. Pushes at most
-  /// `service_frames` frames, fewer where `out` has less room.
+  /// Handles time-outs, new SDO requests, the heartbeat of the master, NMT and LSS. Adds at most
+  /// `service_frames` frames, or fewer if `out` has less room.
   void on_time(Time now, Outbox& out) noexcept;
-  /// When on_time is to be called; in the past while frames wait to be sent.
+  /// The time at which on_time() has to be called. It is in the past while frames wait to be sent.
   Time deadline() const noexcept;
 
-  /// False: queue full, the caller answers. Every accepted request is answered exactly once.
+  /// Accepts a request. Returns false if the queue is full; then the caller answers the request.
+  /// Every accepted request is answered exactly once.
   bool submit(const Request& request, Time now) noexcept;
+  /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
   /// An SDO download to this object of the node is not answered yet.
   bool writes(std::uint8_t node, ObjectKey object) const noexcept {
     return requests_.has_download(node, object);
   }
-  /// Answers the requests of this id of which nothing was sent so far.
+  /// Cancels and answers the requests with this id of which nothing was sent so far.
   void withdraw(std::uint64_t id) noexcept;
+  /// Takes the next event. Returns false if there is none.
   bool take(Event& event) noexcept;
+  /// Number of events that were lost because the queue was full.
   std::uint64_t events_lost() const noexcept { return events_.lost(); }
 
-  /// In the order of plan.nodes.
+  /// The status of all nodes, in the order of plan.nodes.
   std::span<const NodeStatus> nodes() const noexcept;
-  /// Booted and, as far as is known, OPERATIONAL.
+  /// The node is booted and, as far as is known, OPERATIONAL.
   bool exchanges_pdos(std::size_t node_index) const noexcept;
-  /// Its boot has started it: it may be OPERATIONAL some time before it says so.
+  /// The boot of the node has sent NMT start. The node may be OPERATIONAL some time before it
+  /// reports that state.
   bool starts(std::size_t node_index) const noexcept;
 
   /// See NodeSession::boot_refused.
@@ -86,57 +95,63 @@ class Network {
     return sessions_[node_index].boot_refused();
   }
 
-  /// What the newest boot of this node has read of its limits.
+  /// The limits that the newest boot of this node has read.
   std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
 
-  /// The loss of some node stops drives.
+  /// The loss of some node of the plan stops drives.
   bool stops_drives() const noexcept { return stops_drives_; }
-  /// Loss of a node demands that the drives of this node stop. LossReaction::quick_stop.
+  /// A node is lost, and its loss demands a quick stop of the drives of this node.
+  /// LossReaction::quick_stop.
   bool demands_quick_stop(std::size_t node_index) const noexcept;
-  /// A block transfer is under way: frames come without a request for each.
+  /// A block transfer is under way; frames come without a request for each.
   bool streams() const noexcept { return streaming_ != 0; }
-  /// Sub-blocks of block uploads that were asked for, frames still to be sent included.
+  /// Number of sub-blocks of block uploads that were requested, including requests that are still
+  /// to be sent.
   std::size_t awaited_sub_blocks() const noexcept;
-  /// SDO answers that servers owe, to frames still to be sent included.
+  /// Number of SDO answers that are outstanding, including answers to frames that are still to be
+  /// sent.
   std::size_t awaited_answers() const noexcept { return awaited_; }
 
-  /// The master has left Stopped, or begins anew: the counter of its SYNC starts at 1; told once.
-  /// CiA 301, 7.2.5.2.
+  /// The master has left the NMT state STOPPED or was reset, so the counter of its SYNC starts
+  /// at 1. The function returns true once. CiA 301, 7.2.5.2.
   bool take_sync_restart() noexcept { return std::exchange(sync_restarts_, false); }
 
-  /// The SYNC of another device is gone: NMT stop to every node but that one. SyncLoss::stop.
+  /// Handles the loss of the SYNC of another device: NMT stop goes to every other node.
+  /// SyncLoss::stop.
   void on_sync_loss() noexcept;
-  /// It is back: they are started again.
+  /// Handles the return of that SYNC: the nodes are started again.
   void on_sync_back() noexcept;
 
-  /// The bus thread did not run for so long: that is no silence of a node.
+  /// Tells that the bus thread did not run for this time, which does not count as silence of a
+  /// node.
   void on_absence(Time away) noexcept;
 
-  /// NMT part of the ordered stop: pending requests are answered, nodes get their last command.
-  /// With reset communication those of `keep_alive` go to pre-operational all the same.
+  /// NMT part of the ordered stop: answers all pending requests and sends the last command to the
+  /// nodes. Nodes with `keep_alive` go to PRE-OPERATIONAL in any case.
   void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
-  /// NMT stop, or enter pre-operational, of this node (0: of all, or NMT stop of the master, which
-  /// ends SYNC) waits for axes_at_rest().
+  /// The node whose NMT stop or enter pre-operational command waits for axes_at_rest(). 0 stands
+  /// for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.
+  /// std::nullopt means that no command waits.
   std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
-  /// The axes of the command that waits were stopped, or their time is over: it may leave.
+  /// Lets the waiting command go, because its axes were stopped or their time is over.
   void axes_at_rest(AxesAtRest how) noexcept {
     axes_at_rest_ = awaits_axes_;
     rest_ = how;
   }
-  /// Every axis was stopped, for the rest of an ordered stop: no command waits any more.
+  /// Every axis was stopped by an ordered stop; until its end, no command waits for axes.
   void every_axis_at_rest(AxesAtRest how) noexcept {
     axes_at_rest_ = 0;
     rest_ = how;
   }
-  /// An ordered stop begins: the command that waits for its axes is answered and never leaves.
+  /// An ordered stop begins: a command that waits for its axes is answered and never sent.
   void drop_awaiting() noexcept;
-  /// An ordered stop begins: nodes that never were ready are not booted any more.
+  /// An ordered stop begins: the boots of nodes that were never ready are given up.
   void give_up_boots(Time now) noexcept;
-  /// The master itself, as NMT has commanded it.
+  /// The NMT state of the master itself.
   NmtState own_state() const noexcept { return own_state_; }
-  /// All frames of the stop have been handed out.
+  /// All frames of the stop have been passed to the outbox.
   bool stopped() const noexcept;
-  /// Nothing is under way: keep() has all that is known.
+  /// Nothing is under way, so keep() covers the whole state.
   bool idle() const noexcept;
 
   template <class Archive>
@@ -178,31 +193,32 @@ class Network {
   bool observe_;
   NmtStop nmt_stop_;
   std::optional<std::uint8_t> awaits_axes_;   // node of the command that waits for its axes
-  std::optional<std::uint8_t> axes_at_rest_;  // the same; it may leave
-  AxesAtRest rest_ = AxesAtRest::confirmed;   // of axes_at_rest_
+  std::optional<std::uint8_t> axes_at_rest_;  // node of the command that may be sent
+  AxesAtRest rest_ = AxesAtRest::confirmed;   // belongs to axes_at_rest_
   bool stopping_ = false;
-  bool stops_drives_ = false;  // some node's loss does
+  bool stops_drives_ = false;  // the loss of some node stops drives
   EventQueue events_;
   RequestTable requests_;
   LssService lss_;
   NmtGate nmt_gate_;
   NetworkStart start_;
-  FixedQueue<NmtMessage, 4> broadcasts_;  // of the master itself
-  std::vector<NodeSession> sessions_;     // order of plan.nodes
-  std::vector<NodeStatus> statuses_;      // copies, one block for the reader
-  std::vector<bool> streams_;             // of the sessions
-  std::size_t streaming_ = 0;             // how many of them
-  std::vector<bool> awaits_;              // an SDO answer, of the sessions
-  std::size_t awaited_ = 0;               // how many of them
-  std::vector<Time> deadlines_;           // of the sessions, one block to search
-  std::array<std::uint8_t, 128> index_;   // node id -> session
-  std::vector<std::pair<CobId, std::uint8_t>>
-      emcy_ids_;                            // other than 0x080 + id, and their session
-  std::bitset<128> strangers_;              // ids that were told
+  FixedQueue<NmtMessage, 4> broadcasts_;  // broadcasts of the master itself
+  std::vector<NodeSession> sessions_;     // in the order of plan.nodes
+  // Copies of the statuses of the sessions, contiguous for the reader.
+  std::vector<NodeStatus> statuses_;
+  std::vector<bool> streams_;            // by session: a block transfer is under way
+  std::size_t streaming_ = 0;            // number of true entries in streams_
+  std::vector<bool> awaits_;             // by session: an SDO answer is outstanding
+  std::size_t awaited_ = 0;              // number of true entries in awaits_
+  std::vector<Time> deadlines_;          // by session, contiguous for the search
+  std::array<std::uint8_t, 128> index_;  // node-ID -> session
+  // COB-IDs of EMCYs other than 0x080 + node-ID, and their sessions.
+  std::vector<std::pair<CobId, std::uint8_t>> emcy_ids_;
+  std::bitset<128> strangers_;              // unlisted node-IDs that were reported
   std::array<std::uint8_t, 2048> answers_;  // COB-ID of an SDO answer -> session
   OwnDictionary dictionary_;
   SdoServer server_;
-  std::size_t turn_ = 0;            // session that sends first, round robin
+  std::size_t turn_ = 0;            // session that may send first (round robin)
   RequestSlot* command_ = nullptr;  // NMT request that waits to be sent
   NmtState own_state_ = NmtState::bootup;
   bool sync_restarts_ = false;

@@ -8,21 +8,23 @@
 
 namespace takt {
 
-/// Start-up of the whole network: it is ready when every mandatory node has booted. CiA 302-2,
-/// NMT start-up (0x1F80, 0x1F89).
+/// Start-up of the whole network. The network is ready when every mandatory node has booted. CiA
+/// 302-2, NMT start-up (0x1F80, 0x1F89).
 class NetworkStart {
  public:
   explicit NetworkStart(const BusPlan& plan) noexcept : plan_{&plan} {}
 
   void begin(Time now) noexcept;
   bool ready() const noexcept { return ready_; }
-  /// True: it is ready just now.
+  /// Returns true once, when the network has become ready.
   bool update(std::span<const NodeStatus> nodes) noexcept;
-  /// True, once: the boot time is over and mandatory nodes are missing.
+  /// Returns true once, when the boot time is over and mandatory nodes are missing.
   bool late(Time now) noexcept;
   Time deadline() const noexcept { return ready_ ? never : late_at_; }
+  /// Number of mandatory nodes that are not ready.
   std::size_t missing(std::span<const NodeStatus> nodes) const noexcept;
-  /// Somebody waits for it, so it is worth telling.
+  /// The readiness of the network is worth an event, because nodes are mandatory or are started
+  /// together.
   bool matters() const noexcept;
 
   template <class Archive>

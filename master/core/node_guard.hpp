@@ -7,33 +7,35 @@
 
 namespace takt {
 
-/// Node guarding of one node: when to ask for its state, and what its answers are worth. CiA 301,
-/// 7.2.8.3.2.1.
+/// Node guarding of one node: it decides when to ask for the NMT state, and checks the answers. Bus
+/// thread only. CiA 301, 7.2.8.3.2.1.
 class NodeGuard {
  public:
   explicit NodeGuard(const GuardPlan& plan) noexcept : plan_{plan} {}
 
   bool running() const noexcept { return next_request_ != never; }
-  /// The first request is due at once; the node's life time begins.
+  /// Begins guarding: the first request is due at once, and the life time of the node begins.
   void start(Time now) noexcept;
   void stop() noexcept { next_request_ = silent_from_ = never; }
-  /// The first answer after a boot-up message has toggle bit 0.
+  /// Stops guarding. The first answer after a boot-up message has toggle bit 0.
   void node_was_reset() noexcept;
 
   bool wants_request(Time now) const noexcept { return now >= next_request_; }
   void request_sent(Time now) noexcept;
 
-  /// False: the toggle bit repeats, the answer counts as not received.
+  /// Takes a guarding answer. Returns false if the toggle bit repeats; such an answer counts as not
+  /// received.
   bool on_answer(bool toggle, Time now) noexcept;
-  /// Answers whose toggle bit repeated, in a row.
+  /// Number of answers in a row whose toggle bit repeats.
   std::uint32_t repeated() const noexcept { return repeated_; }
 
-  /// The master itself was away for so long: nobody is silent for that.
+  /// Does not count the time for which the master itself did not run as silence of the node.
   void excuse(Time away) noexcept {
     if (silent_from_ != never) silent_from_ += away;
   }
 
-  /// Time of silence when the life time is over, told once; an answer arms it again.
+  /// Returns the time of silence once, when the life time is over. The next answer starts the
+  /// supervision again.
   std::optional<Time> on_time(Time now) noexcept;
   Time deadline() const noexcept;
 
@@ -49,8 +51,8 @@ class NodeGuard {
 
   GuardPlan plan_;
   Time next_request_ = never;
-  Time silent_from_ = never;         // since the last good answer
-  std::optional<bool> last_toggle_;  // none: the first answer may have either
+  Time silent_from_ = never;         // time of the last valid answer
+  std::optional<bool> last_toggle_;  // std::nullopt: the first answer may have either value
   std::uint32_t repeated_ = 0;
 };
 

@@ -18,7 +18,7 @@
 
 namespace takt {
 
-/// Keeps NMT commands apart. 0x102A, CiA 302-2.
+/// Keeps the inhibit time between NMT commands. 0x102A, CiA 302-2.
 class NmtGate {
  public:
   explicit NmtGate(Time inhibit) noexcept : inhibit_{inhibit} {}
@@ -35,75 +35,80 @@ class NmtGate {
   Time next_{};
 };
 
+/// Whether the master manages a node.
 enum class Managed : std::uint8_t {
-  no,   ///< only watched: the master sends nothing by itself
-  yes,  ///< booted, started, booted again when it comes back
+  no,   ///< The node is only watched; the master sends it nothing by itself.
+  yes,  ///< The master boots and starts the node, and boots it again when it comes back.
 };
 
-/// All that the master has to do with one node: boots it, watches it, boots it again when it was
-/// lost or has restarted, and works off the requests of applications between that.
+/// All work of the master for one node: it boots the node, watches it, boots it again after a loss
+/// or a restart, and serves the requests of applications in between. Bus thread only.
 class NodeSession {
  public:
-  /// What all sessions share, owned by the network.
+  /// Objects that all sessions share; the network owns them.
   struct Shared {
     EventQueue& events;
     RequestTable& requests;
     NmtGate& nmt_gate;
-    std::uint8_t sub_block_segments;  ///< of a block upload
+    std::uint8_t sub_block_segments;  ///< size of a sub-block of block uploads, in segments
   };
 
   NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
 
   void start(Time now) noexcept;
   void on_sdo_answer(const Frame& frame, Time now) noexcept;
-  /// Heartbeat, guarding answer or boot-up message.
+  /// Takes a heartbeat, guarding answer or boot-up message.
   void on_heartbeat(const Heartbeat& sign, Time now) noexcept;
   void on_emcy(const Frame& frame, Time now) noexcept;
   /// A request for this node has been accepted.
   void on_request(Time now) noexcept;
-  /// Answers the request of this id that has its turn but was not sent so far; false: there is
-  /// none.
+  /// Cancels and answers the active request if it has this id and nothing of it was sent so far.
+  /// Returns false if there is no such request.
   bool withdraw(std::uint64_t id) noexcept;
   /// An NMT command that covers this node has been sent for an application.
   void on_commanded(NmtCommand command, Time now) noexcept;
-  /// False: it had nothing to send, or `out` has no room.
+  /// Handles time-outs and sends frames. Returns false if nothing was sent, because there was
+  /// nothing to send or `out` has no room.
   bool on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
-  /// The master itself was away for so long: no time-out of an answer or a heartbeat counts it.
+  /// Extends all time-outs of answers and heartbeats by the time for which the master itself did
+  /// not run.
   void excuse(Time away) noexcept;
 
+  /// The limits that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
-  /// The boot has started the node and waits for a sign of that.
+  /// The boot has sent NMT start and waits for the confirmation.
   bool starts() const noexcept { return booting() && runner_.started(); }
-  /// The network is started: nodes that come later are started as soon as they are ready.
+  /// The network is started. Nodes that boot later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
-  /// The network begins anew: nobody is started until it is complete.
+  /// The network starts up again. No node is started until the network is complete.
   void on_network_reset() noexcept { network_started_ = status_.boot_tried = false; }
-  /// A node that was ready has fallen silent; told once.
+  /// Returns true once if the node was ready and has become silent.
   bool take_loss() noexcept { return std::exchange(loss_, false); }
-  /// NMT stop, and no boot until an application resets or starts the node.
+  /// Sends NMT stop; the node is not booted until an application resets or starts it.
   void halt() noexcept;
-  /// The same without the command: it went to all nodes.
+  /// As halt(), but without the command, because a broadcast has stopped the node.
   void await_command() noexcept;
 
-  /// An ordered stop has begun: a node that never was ready is not booted any more, so that its
-  /// axes can be asked.
+  /// An ordered stop has begun: a node that was never ready is no longer booted, so that the stop
+  /// can read the state of its axes.
   void give_up_boot() noexcept;
 
-  /// NMT stop to a node that is operational, until resume() starts it again.
+  /// Sends NMT stop to an OPERATIONAL node, until resume() starts it again.
   void pause() noexcept;
   void resume() noexcept;
 
-  /// Gives up what is running and leaves the node with this command. A node that is kept alive goes
-  /// to pre-operational instead of a reset.
+  /// Ends all running work and sends this last command to the node. A node with `keep_alive` goes
+  /// to PRE-OPERATIONAL in any case.
   void begin_stop(NmtCommand last) noexcept;
   bool stopped() const noexcept;
 
   /// A block transfer is under way.
   bool streams() const noexcept { return client_.streams(); }
-  /// The node sends a sub-block of a block upload, or was asked to.
+  /// The node was requested to send a sub-block of a block upload, or is sending one.
   bool awaits_sub_block() const noexcept { return client_.awaits_sub_block(); }
-  /// Its SDO server owes an answer. A node that is probed may not be there at all.
+  /// An answer of the SDO server is outstanding. Probes do not count, because the node may not
+  /// exist.
   bool awaits_answer() const noexcept {
     return client_.awaits_answer() && !(booting() && runner_.probing());
   }
@@ -128,7 +133,7 @@ class NodeSession {
     state(same_failures_, failed_boots_, counter_excused_, serial_number_, progress_told_,
           bootups_);
     state(bootups_since_, silent_, halted_, paused_, network_started_);
-    BootFailure& last = last_failure_;  // what the next one is compared with
+    BootFailure& last = last_failure_;  // The next failure is compared with these values.
     state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
   }
 
@@ -178,24 +183,27 @@ class NodeSession {
   NodeWatch watch_;
   NodeGuard guard_;
   RequestSlot* active_ = nullptr;
-  Time next_look_ = never;  // at a transfer, whether it is still wanted
+  Time next_look_ = never;  // when to look next whether the sender still wants the transfer
   Time retry_at_ = never;
   BootRunner::From retry_from_ = BootRunner::From::beginning;
-  NmtState wanted_ = NmtState::unknown;  // by the newest NMT command
-  int heartbeats_out_ = 0;               // in a row, of a ready node that should be operational
+  NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands
+  // Heartbeats in a row in which a ready node is not OPERATIONAL although it should be.
+  int heartbeats_out_ = 0;
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
-  std::uint32_t same_failures_ = 0;  // in a row
-  std::uint8_t failed_boots_ = 0;    // in a row, since a boot-up message or a command
-  bool counter_excused_ = false;     // it was booted again for a SYNC that came too early
+  std::uint32_t same_failures_ = 0;  // failures in a row by the same cause
+  std::uint8_t failed_boots_ = 0;    // failures in a row since a boot-up message or a command
+  // The node was booted again because a SYNC with counter came too early.
+  bool counter_excused_ = false;
   BootFailure last_failure_;
   TwinWatch twins_;
-  std::optional<std::uint32_t> serial_number_;  // of the device that was booted last
-  std::uint32_t progress_told_ = 0;             // tenths of the program
-  std::uint32_t bootups_ = 0;                   // since bootups_since_
+  std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
+  std::uint32_t progress_told_ = 0;             // tenths of the program that were reported
+  std::uint32_t bootups_ = 0;                   // number of boot-up messages since bootups_since_
   Time bootups_since_{};
-  std::optional<NmtCommand> own_command_;  // not of the boot plan, waits to be sent
-  bool silent_ = false;                    // heartbeat lost and not back
+  // Command that is not in the boot plan and waits to be sent.
+  std::optional<NmtCommand> own_command_;
+  bool silent_ = false;  // the heartbeat is lost
   bool stopping_ = false;
   bool halted_ = false;
   bool paused_ = false;

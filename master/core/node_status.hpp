@@ -8,29 +8,31 @@
 
 namespace takt {
 
-/// Where a node stands in its boot. Every node is always in one of these.
+/// Boot state of a node. Every node is always in exactly one of these states.
 enum class BootState : std::uint8_t {
-  idle,     ///< nothing asked of it (watched only, or observe mode)
-  booting,  ///< its plan is running
-  ready,    ///< its plan has succeeded; its PDOs are exchanged
-  failed,   ///< its plan has failed; tried again after a pause or with the next boot-up message
-  lost,     ///< it was ready and has fallen silent, or out of OPERATIONAL; booted again
+  idle,  ///< The master does not boot the node (it is only watched, or the master only observes).
+  booting,  ///< The boot plan is running.
+  ready,    ///< The boot plan has succeeded; PDOs are exchanged.
+  failed,   ///< The boot plan has failed. It runs again after a pause or with the next boot-up
+            ///< message.
+  lost,  ///< The node was ready and has become silent or has left OPERATIONAL. It is booted again.
 };
 
-/// What is known of one node. Trivially copyable: it crosses threads.
+/// Status of one node. It is trivially copyable because it is passed between threads.
 struct NodeStatus {
   NmtState nmt = NmtState::unknown;
   BootState boot = BootState::idle;
-  bool boot_tried = false;      ///< a boot has ended, well or not, since the network began
-  char boot_letter = 0;         ///< status of CiA 302-2 of the newest boot: A..O, 0 = good
-  std::uint16_t boot_step = 0;  ///< of the plan, counted from 0
+  bool boot_tried = false;  ///< a boot has succeeded or failed since the network began
+  /// Error status of CiA 302-2 of the newest boot: 'A'..'O', 0 means success.
+  char boot_letter = 0;
+  std::uint16_t boot_step = 0;  ///< step of the boot plan, counted from 0
   std::uint8_t error_register = 0;
   std::uint16_t last_emcy = 0;  ///< error code of the newest EMCY
   std::uint32_t emcy_count = 0;
-  std::uint32_t boot_count = 0;      ///< boots that ended well
-  std::uint32_t heartbeat_lost = 0;  ///< times
+  std::uint32_t boot_count = 0;      ///< number of successful boots
+  std::uint32_t heartbeat_lost = 0;  ///< number of losses
   std::uint32_t sdo_aborts = 0;
-  Time last_heartbeat{};  ///< 0: never
+  Time last_heartbeat{};  ///< monotonic clock; 0 means never
 
   template <class Archive>
   void keep(Archive& state) noexcept {

@@ -9,32 +9,36 @@
 
 namespace takt {
 
-/// What a node tells of itself: NMT state by heartbeat, silence, EMCY. Writes it to the NodeStatus.
+/// Evaluates what a node reports about itself (NMT state by heartbeat, silence, EMCY) and writes it
+/// to the NodeStatus. Bus thread only.
 class NodeWatch {
  public:
-  /// `heartbeat_timeout`: longest silence, 0 = not watched.
+  /// `heartbeat_timeout` is the longest permitted silence; 0 means that the heartbeat is not
+  /// supervised.
   explicit NodeWatch(Time heartbeat_timeout) noexcept : timeout_{heartbeat_timeout} {}
 
   enum class Sign : std::uint8_t { bootup, same_state, new_state };
 
-  /// The consumer is armed by the first heartbeat; a boot-up message is none and disarms it. CiA
-  /// 301, 7.2.8.2.2.
+  /// Takes a heartbeat or a boot-up message. The first heartbeat starts the heartbeat consumer. A
+  /// boot-up message is not a heartbeat and stops the consumer. CiA 301, 7.2.8.2.2.
   Sign on_heartbeat(NmtState state, Time now, NodeStatus& status) noexcept;
-  /// The node was told to reset, or silence is expected for another reason.
+  /// Stops the supervision, because the node was reset or silence is expected for another reason.
   void disarm() noexcept { deadline_ = never; }
-  /// The master itself was away for so long: nobody is silent for that.
+  /// Does not count the time for which the master itself did not run as silence of the node.
   void excuse(Time away) noexcept {
     if (deadline_ != never) deadline_ += away;
   }
   Time deadline() const noexcept { return deadline_; }
-  /// Time of silence when the heartbeat is lost, told once; the next heartbeat arms it again.
+  /// Returns the time of silence once, when the heartbeat is lost. The next heartbeat starts the
+  /// supervision again.
   std::optional<Time> on_time(Time now, NodeStatus& status) noexcept;
-  /// The node is silent, as another way of watching it has found out.
+  /// Notes that the node is silent, as another supervision (node guarding) has found out.
   void note_loss(NodeStatus& status) noexcept;
 
-  /// Counts it. True: worth telling; a node that floods is told of ten times a second at most.
+  /// Counts an EMCY. Returns true if it is to be reported; at most ten EMCYs of a node are reported
+  /// in a second.
   bool on_emcy(const Emcy& emcy, Time now, NodeStatus& status) noexcept;
-  /// EMCYs that were not told since the last call.
+  /// Number of EMCYs that were not reported since the last call.
   std::uint32_t take_untold_emcys() noexcept;
 
   template <class Archive>

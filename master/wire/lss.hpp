@@ -47,7 +47,7 @@ constexpr Frame request(Service service, std::uint32_t value = 0,
 
 /// One question of the fastscan. CiA 305, 3.9.5.
 struct FastScan {
-  /// value of bit_check: all devices without node-ID answer
+  /// Value of bit_check: all devices without node-ID answer.
   static constexpr std::uint8_t everybody = 0x80;
 
   std::uint32_t number = 0;
@@ -70,7 +70,7 @@ struct Answer {
   std::uint8_t code = 0;      ///< command specifier
   std::uint8_t error = 0;     ///< answers to configure and store: 0 means success
   std::uint8_t specific = 0;  ///< manufacturer-specific code, valid if `error` is 255
-  /// the answer to `inquire_...`; `inquire_node_id` uses its lowest byte
+  /// The answer to `inquire_...`; `inquire_node_id` uses its lowest byte.
   std::uint32_t number = 0;
 
   constexpr bool is(Service service, std::uint8_t offset = 0) const noexcept {

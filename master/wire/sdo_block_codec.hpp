@@ -37,7 +37,7 @@ struct SdoBlockAccept {
   ObjectKey object;
   bool crc = false;
   std::uint8_t segments = 0;  ///< size of the next sub-block
-  /// only in upload requests: protocol switch threshold in bytes, 0 means never switch
+  /// Only in upload requests: protocol switch threshold in bytes; 0 means never switch.
   std::uint8_t threshold = 0;
 };
 
