@@ -3,7 +3,7 @@
 
 namespace takt::sim {
 
-/// SDO abort codes that a simulated device gives. CiA 301, table 22.
+/// SDO abort codes that a simulated device sends. CiA 301, table 22.
 enum class Abort : std::uint32_t {
   none = 0,
   toggle = 0x0503'0000,

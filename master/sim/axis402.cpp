@@ -40,7 +40,7 @@ void Axis402::reset(Time now) noexcept {
   publish();
 }
 
-/// Nothing will change until somebody writes an object.
+/// True if nothing changes until an object is written.
 bool Axis402::idle() const noexcept {
   return settled_ && !is_powered(state_) && motor_.stands() && state_ != DriveState::not_ready;
 }
@@ -127,7 +127,7 @@ void Axis402::follow_controlword() noexcept {
   if (mode_ == DriveMode::homing) homing_.on_controlword(before, controlword_, demand_);
 }
 
-/// Some ways out of Operation enabled lead over a ramp.
+/// Enters the next state. Some transitions out of Operation enabled first stop the motor on a ramp.
 void Axis402::go(DriveState next) noexcept {
   if (state_ != DriveState::operation_enabled) {
     if (next != state_) enter(next);
@@ -171,7 +171,7 @@ void Axis402::fail(std::uint16_t code) noexcept {
   publish();
 }
 
-/// 0x6007 abort connection option code.
+/// Reacts as the abort connection option code 0x6007 says.
 void Axis402::connection_lost() noexcept {
   if (!is_powered(state_) || state_ == DriveState::fault_reaction) return;
   switch (objects_.abort_connection.get()) {

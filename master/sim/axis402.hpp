@@ -14,7 +14,7 @@
 
 namespace takt::sim {
 
-/// Modes of operation that an axis knows. CiA 402-2, 0x6060.
+/// Modes of operation that an axis can support. CiA 402-2, 0x6060.
 enum class DriveMode : std::int8_t {
   none = 0,
   profile_position = 1,
@@ -48,7 +48,7 @@ class Axis402 {
 
  private:
   bool idle() const noexcept;
-  /// The axis, from 1, in the first manufacturer byte of its EMCYs.
+  /// The first manufacturer byte of an EMCY is the number of the axis, counted from 1.
   EmcyProducer::Detail axis_detail() const noexcept {
     return {static_cast<std::uint8_t>(number_ + 1)};
   }
@@ -88,13 +88,13 @@ class Axis402 {
   CyclicPosition cyclic_;
   Motor motor_;
   Demand demand_;
-  double rated_acceleration_ = 0;  ///< at rated torque
+  double rated_acceleration_ = 0;  ///< acceleration at rated torque
   DriveState state_ = DriveState::not_ready;
-  DriveState stopping_to_ = DriveState::operation_enabled;  ///< where a ramp to rest leads
+  DriveState stopping_to_ = DriveState::operation_enabled;  ///< state after the ramp to standstill
   DriveMode mode_ = DriveMode::none;
   std::uint16_t controlword_ = 0;
   std::uint16_t fault_code_ = 0;
-  bool settled_ = false;  ///< the controlword asks for nothing more
+  bool settled_ = false;  ///< the controlword requests no further transition
   bool following_error_ = false;
   bool on_target_ = false;
   bool target_waits_ = false;

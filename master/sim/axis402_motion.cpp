@@ -12,8 +12,8 @@ constexpr std::uint16_t following_error_code = 0x8611;
 constexpr std::uint16_t halt_bit = 0x100;
 constexpr double default_ramp = 1e6;
 constexpr double fastest = 2e9;
-constexpr double friction = 0.02;  // of the rated torque
-constexpr double peak = 10;        // of the rated torque
+constexpr double friction = 0.02;  // times the rated torque
+constexpr double peak = 10;        // times the rated torque
 
 std::int64_t rounded(double value) noexcept {
   return static_cast<std::int64_t>(value + std::copysign(0.5, value));
@@ -170,7 +170,8 @@ bool Axis402::controls_position() const noexcept {
          mode_ == DriveMode::interpolated_position || mode_ == DriveMode::homing;
 }
 
-/// 0x6065 and 0x6066; a window of 0 or 0xFFFFFFFF is none.
+/// Supervises the following error with the window 0x6065 and the timeout 0x6066. A window of 0 or
+/// 0xFFFFFFFF disables the supervision.
 void Axis402::supervise_following_error(Time span) noexcept {
   const std::int64_t window = objects_.following_window.get();
   const double error = std::abs(demand_.position - motor_.position);
@@ -221,7 +222,7 @@ std::uint16_t Axis402::mode_bits() const noexcept {
     case DriveMode::cyclic_position:
     case DriveMode::cyclic_velocity:
     case DriveMode::cyclic_torque:
-      return 0x1000;  // follows the command
+      return 0x1000;  // drive follows the command value
     case DriveMode::profile_torque:
       return 0x0400;
     case DriveMode::none:

@@ -5,7 +5,7 @@
 
 namespace takt::sim {
 
-/// A number of the dictionary, or a constant where the device does not have the object.
+/// A numeric object of the dictionary, or a constant if the device does not have the object.
 class Slot {
  public:
   Slot(ObjectStore& store, ObjectKey key, std::int64_t missing = 0)
@@ -13,7 +13,7 @@ class Slot {
     if (object_ != nullptr && object_->is_bytes()) object_ = nullptr;
   }
   std::int64_t get() const noexcept { return object_ == nullptr ? missing_ : object_->number(); }
-  /// As get(), but an unset (zero) parameter counts as missing.
+  /// Returns the value, or `other` if the parameter is missing or not above zero (unset).
   double positive_or(double other) const noexcept {
     const std::int64_t value = get();
     return value > 0 ? static_cast<double>(value) : other;
@@ -29,7 +29,7 @@ class Slot {
   std::int64_t missing_;
 };
 
-/// The objects of one axis; axis n lies 0x800 x n above the first. CiA 402-2.
+/// The objects of one axis. The objects of axis n lie 0x800 x n above those of axis 0. CiA 402-2.
 class AxisObjects {
  private:
   Slot at(unsigned index, std::uint8_t sub = 0, std::int64_t missing = 0) const;

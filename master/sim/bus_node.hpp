@@ -10,16 +10,17 @@ namespace takt::sim {
 
 /// Which of its queued frames a controller offers to the bus.
 enum class QueueOrder : std::uint8_t {
-  fifo,      ///< the oldest, as SocketCAN does
-  priority,  ///< the one with the lowest identifier, as a controller with many mailboxes does
+  fifo,      ///< the oldest frame, as in a SocketCAN queue
+  priority,  ///< the frame with the lowest identifier, as in a controller with many mailboxes
 };
 
 struct BusNodeOptions {
   QueueOrder order = QueueOrder::priority;
   std::size_t capacity = 64;  ///< frames
-  Time restart = Time{};      ///< after bus-off, besides 128 x 11 bits; `never`: stays off
-  /// Its frames have been on a wire elsewhere: they have won, so that nobody's can collide with
-  /// them.
+  Time restart = Time{};  ///< delay after bus-off in addition to 128 x 11 bits; with `never` the
+                          ///< node stays off
+  /// The frames of this node have already won arbitration on another wire, so no other frame can
+  /// collide with them.
   bool relays = false;
 };
 
@@ -34,13 +35,14 @@ struct SenderFaults {
 /// A frame that waits for the wire.
 struct QueuedFrame {
   Frame frame{};
-  std::uint32_t rank = 0;   ///< arbitration: the lowest wins
-  bool repetition = false;  ///< made by a fault
+  std::uint32_t rank = 0;   ///< rank in arbitration; the lowest wins
+  bool repetition = false;  ///< a fault has made this copy
   Time ready{};
   Time expires = never;
 };
 
-/// Bits in the order of arbitration: identifier, RTR or SRR, IDE, rest of the identifier, RTR.
+/// Returns the bits in the order of arbitration: identifier, RTR or SRR, IDE, rest of the
+/// identifier, RTR.
 constexpr std::uint32_t arbitration_rank(const Frame& frame) noexcept {
   const std::uint32_t id = frame.id.id();
   const std::uint32_t rtr = frame.rtr ? 1 : 0;
@@ -57,24 +59,26 @@ class BusNode {
 
   bool push(const QueuedFrame& frame) noexcept;
   QueuedFrame take(std::size_t position) noexcept;
-  /// Before all others: a frame that was destroyed on the wire.
+  /// Puts a frame that was destroyed on the wire back at the front of the queue.
   void put_back(const QueuedFrame& frame) noexcept;
   void clear() noexcept { queue_.clear(); }
   bool empty() const noexcept { return queue_.empty(); }
-  /// How many there were.
+  /// Drops the frames that have expired and returns their number.
   std::size_t drop_expired(Time now) noexcept;
-  /// Position of the frame that is offered to the bus at `now`, else `none`.
+  /// Returns the position of the frame that the node offers to the bus at `now`, or `none`.
   std::size_t offered(Time now) const noexcept;
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
-  /// When the earliest of the queued frames may be offered.
+  /// Returns the earliest time at which the node may offer a queued frame; `never` if the queue is
+  /// empty.
   Time earliest() const noexcept;
 
   bool on_bus() const noexcept { return powered && !bus_off; }
   bool error_passive(std::uint64_t frames) const noexcept {
     return transmit_errors > 127 || receive_errors(frames) > 127;
   }
-  /// Counts down with each good frame on the bus (`frames` so far).
+  /// Returns the receive error counter. It counts down with each good frame on the bus; `frames` is
+  /// the number of good frames since the start.
   std::uint32_t receive_errors(std::uint64_t frames) const noexcept {
     const std::uint64_t good = frames - receive_errors_at_;
     return good >= receive_errors_ ? 0 : receive_errors_ - static_cast<std::uint32_t>(good);
@@ -89,15 +93,15 @@ class BusNode {
   BusNodeOptions options;
   SenderFaults faults;
   std::uint32_t transmit_errors = 0;
-  std::uint32_t error_frames = 0;  ///< seen while on the bus
+  std::uint32_t error_frames = 0;  ///< error frames seen while on the bus
   std::uint32_t times_bus_off = 0;
   bool powered = true;
   bool bus_off = false;
   Time recovers = never;
-  Time suspended_until{};  ///< error-passive nodes wait after a frame of their own
+  Time suspended_until{};  ///< end of the pause of an error-passive node after its own frame
 
  private:
-  std::vector<QueuedFrame> queue_;  ///< never beyond its first capacity
+  std::vector<QueuedFrame> queue_;  ///< never grows beyond its first capacity
   bool may_expire_ = false;
   std::uint32_t receive_errors_ = 0;
   std::uint64_t receive_errors_at_ = 0;

@@ -5,14 +5,15 @@
 
 namespace takt::sim {
 
-/// Cyclic synchronous and interpolated position: a straight line from one set-point to the next.
+/// The modes cyclic synchronous position and interpolated position: the demand follows a straight
+/// line from one set-point to the next.
 class CyclicPosition {
  public:
   void start(const Demand& demand) noexcept {
     end_ = demand.position;
     left_ = slope_ = 0;
   }
-  /// A set-point, to be reached in `period` seconds, not faster than `limit`.
+  /// Takes a set-point that the demand reaches in `period` seconds, but not faster than `limit`.
   void take(const Demand& demand, double target, double period, double limit) noexcept {
     const double wanted = (target - demand.position) / period;
     slope_ = std::clamp(wanted, -limit, limit);

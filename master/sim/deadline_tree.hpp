@@ -6,7 +6,7 @@
 
 namespace takt::sim {
 
-/// The earliest of many deadlines: O(1) to ask, O(log n) to change. A tournament tree.
+/// A tournament tree that finds the earliest deadline: a query takes O(1), a change O(log n).
 class DeadlineTree {
  public:
   explicit DeadlineTree(std::size_t count) {
@@ -27,7 +27,7 @@ class DeadlineTree {
     }
   }
   Time earliest() const noexcept { return times_[1]; }
-  /// Who has the earliest deadline; of equal ones the lowest index.
+  /// Returns the index with the earliest deadline; of equal deadlines, the lowest index.
   std::size_t first() const noexcept {
     std::size_t at = 1;
     while (at < leaves_) at = 2 * at + (times_[2 * at] <= times_[2 * at + 1] ? 0 : 1);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uint16_t pdos_a_direction = 512;
 constexpr std::uint16_t sdo_servers = 128;
-constexpr Time fast_tick = std::chrono::milliseconds{1};   // while event-driven TPDOs want changes
-constexpr Time slow_tick = std::chrono::milliseconds{10};  // the longest time a model sleeps
+constexpr Time fast_tick = std::chrono::milliseconds{1};   // for event-driven TPDOs
+constexpr Time slow_tick = std::chrono::milliseconds{10};  // between updates of a model
 
 }  // namespace
 
@@ -112,7 +112,7 @@ void Device::begin_reset(Time startup, Time now) noexcept {
   routes_changed_ = true;
 }
 
-/// The end of Initialising: boot-up message, then PRE-OPERATIONAL. CiA 301, 7.3.2.2.
+/// Ends Initialising: sends the boot-up message and enters PRE-OPERATIONAL. CiA 301, 7.3.2.2.
 void Device::boot(Time now) noexcept {
   boots_at_ = never;
   if (speaks_only_lss()) return build_routes();
@@ -175,7 +175,7 @@ void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept
   }
 }
 
-/// A remote frame.
+/// Handles a remote frame.
 void Device::on_request(const Route& route, Time now) noexcept {
   if (route.kind == RouteKind::tpdo_request && !faults_.mute_pdo) {
     model_->advance(now);
@@ -213,7 +213,7 @@ void Device::enter(DeviceState state, Time now) noexcept {
   const DeviceState old = std::exchange(state_, state);
   if (old == DeviceState::operational) {
     stop_pdos();
-    sync_.reset();  // who is told to leave does not miss SYNC
+    sync_.reset();  // outside OPERATIONAL the device does not report a missing SYNC
     model_->advance(now);
     model_->connection_lost(now);
   }
@@ -252,7 +252,7 @@ void Device::on_time(Time now) noexcept {
   finish_call(now);
 }
 
-/// 0x1029:01, CiA 301, 7.5.2.32.
+/// Reacts to a communication error as 0x1029:01 says. CiA 301, 7.5.2.32.
 void Device::communication_error(Time now) noexcept {
   model_->advance(now);
   model_->connection_lost(now);
@@ -286,7 +286,7 @@ void Device::fail(std::uint16_t emcy_code, Time now) noexcept {
   finish_call(now);
 }
 
-/// After every call: errors are told, and the next deadline is known.
+/// Ends every call: sends waiting EMCYs and computes the next deadline.
 void Device::finish_call(Time now) noexcept {
   emcy_.on_time(now, communicates(), out_);
   if (lss_ && lss_->switching()) out_.clear();
@@ -325,7 +325,7 @@ void Device::ask(SdoServer& server, const Frame& frame, Time now) noexcept {
   server.on_frame(frame, now, out_);
 }
 
-/// A channel exists where bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
+/// An SDO channel exists if bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
 void Device::route_sdo_servers() noexcept {
   for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
     if (n != 0) {
@@ -363,7 +363,7 @@ void Device::build_routes() noexcept {
     if (!record.valid() || !record.rtr_allowed()) continue;
     routes_.push_back({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
   }
-  // Each is another one, so that a sort in place, which allocates nothing, keeps their order.
+  // All keys differ, so an in-place sort, which allocates nothing, gives a definite order.
   std::ranges::sort(routes_, {}, [](const Route& route) {
     return std::tuple{route.id, route.kind, route.index};
   });

@@ -33,7 +33,8 @@
 
 namespace takt::sim {
 
-/// NMT state of a device. The values from 4 on are those of the heartbeat. CiA 301, 7.3.2.
+/// NMT state of a device. The values from 4 on are the state values of the heartbeat. CiA 301,
+/// 7.3.2.
 enum class DeviceState : std::uint8_t {
   off = 1,
   initialising = 0,
@@ -42,18 +43,18 @@ enum class DeviceState : std::uint8_t {
   preoperational = 127,
 };
 
-/// How long a device computes.
+/// Times that a device needs for its work.
 struct DeviceTimes {
-  Time startup = std::chrono::milliseconds{50};  ///< power on or reset node, to the boot-up message
+  Time startup = std::chrono::milliseconds{50};  ///< from power-on or reset to boot-up
   Time communication_reset = std::chrono::milliseconds{5};
-  Time sdo = std::chrono::microseconds{200};      ///< request to answer
-  Time pdo = std::chrono::microseconds{30};       ///< SYNC to TPDO
-  Time segment = std::chrono::microseconds{112};  ///< of a block upload, to the next
+  Time sdo = std::chrono::microseconds{200};      ///< from the request to the answer
+  Time pdo = std::chrono::microseconds{30};       ///< from SYNC to the TPDO
+  Time segment = std::chrono::microseconds{112};  ///< between upload block segments
 };
 
-/// A CANopen device made from its tables. Takes frames and its own time, hands out frames; knows no
-/// bus and no clock. The world calls on_time when deadline() has come and empties out() after each
-/// call.
+/// A CANopen device built from its tables. The device takes frames and its local time and hands out
+/// frames; it knows neither a bus nor a clock. The world calls on_time() at deadline() and empties
+/// out() after each call.
 class Device final : private Dictionary {
  public:
   Device(const DeviceTable& table, Random random, DeviceTimes times = {});
@@ -68,7 +69,8 @@ class Device final : private Dictionary {
   Time deadline() const noexcept { return deadline_; }
   Transmitter& out() noexcept { return out_; }
 
-  /// Identifiers it listens to. Changed since the last look: take_routes_changed().
+  /// Visits the identifiers that the device receives. take_routes_changed() tells whether they have
+  /// changed since its last call.
   template <class Visit>
   void visit_ids(Visit visit) const {
     for (const Route& route : routes_) visit(route.id);
@@ -78,28 +80,29 @@ class Device final : private Dictionary {
 
   void on_bus_off(Time now) noexcept;
   void on_bus_recovered(Time now) noexcept;
-  /// Resets by itself, as after a watchdog.
+  /// The device resets itself, as after a watchdog timeout.
   void reset_node(Time now) noexcept;
   void fail(std::uint16_t emcy_code, Time now) noexcept;
   /// DeviceFaults::storm_period has been changed.
   void start_storm(Time now) noexcept;
 
-  /// The id that the network file gives it.
+  /// Node-ID from the network file.
   NodeId node() const noexcept { return node_; }
-  /// The one that it has: LSS may have changed it. None: it has none, and speaks LSS only.
+  /// Returns the present node-ID, which LSS may have changed. Returns std::nullopt if the device
+  /// has no node-ID and therefore responds to LSS only.
   std::optional<NodeId> address() const noexcept;
-  /// kbit/s; 0: that of the bus.
+  /// Bit rate in kbit/s; 0 means the bit rate of the bus.
   unsigned bit_rate() const noexcept { return lss_ ? lss_->bit_rate() : 0; }
   DeviceState state() const noexcept { return state_; }
   ObjectStore& objects() noexcept { return store_; }
   const ObjectStore& objects() const noexcept { return store_; }
   DeviceFaults& faults() noexcept { return faults_; }
-  /// Null: it has no LSS.
+  /// Returns nullptr if the device does not support LSS.
   LssSlave* lss() noexcept { return lss_ ? &*lss_ : nullptr; }
   const TimeConsumer& time_of_day() const noexcept { return time_; }
 
  private:
-  /// In the order in which those of one identifier hear a frame.
+  /// If several routes have the same identifier, they receive a frame in this order.
   enum class RouteKind : std::uint8_t {
     nmt,
     sync,
@@ -167,7 +170,7 @@ class Device final : private Dictionary {
   Transmitter out_;
   DeviceFaults faults_;
   EmcyProducer emcy_;
-  std::vector<SdoServer> sdo_;  ///< 0x1200, 0x1201 ...
+  std::vector<SdoServer> sdo_;  ///< servers 0x1200, 0x1201 ...
   SyncConsumer sync_;
   SyncProducer sync_producer_;
   TimeConsumer time_;
@@ -176,12 +179,12 @@ class Device final : private Dictionary {
   GuardingResponder guarding_;
   ParameterStorage storage_;
   ProgramMemory program_;
-  std::optional<LssSlave> lss_;  ///< quirks "lss" and "no_node_id"
+  std::optional<LssSlave> lss_;  ///< present with the quirk "lss" or "no_node_id"
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;
   MultiplexedPdos multiplexed_;
   std::unique_ptr<Model> model_;
-  std::vector<Route> routes_;  ///< ascending identifier
+  std::vector<Route> routes_;  ///< sorted by ascending identifier
   bool routes_changed_ = true;
   DeviceState state_ = DeviceState::off;
   Time boots_at_ = never;

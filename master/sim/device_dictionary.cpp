@@ -93,7 +93,7 @@ Abort Device::check_write(const Object& object, std::uint64_t raw) const noexcep
   return Abort::none;
 }
 
-/// The identifiers of a server that is on stay as they are. CiA 301, 7.5.2.33.
+/// The identifiers of an enabled server can't be changed. CiA 301, 7.5.2.33.
 Abort Device::check_sdo_server(const Object& object, std::uint64_t raw) const noexcept {
   if (object.key.sub != 1 && object.key.sub != 2) return Abort::none;
   if (has_stray_bits(raw)) return Abort::value;
@@ -104,7 +104,7 @@ Abort Device::check_sdo_server(const Object& object, std::uint64_t raw) const no
   return stays_on && raw != object.value ? Abort::value : Abort::none;
 }
 
-/// Whatever changes a configuration makes its date and time zero. CiA 301, 7.5.2.23.
+/// A change of the configuration sets its date and time to zero. CiA 301, 7.5.2.23.
 void Device::forget_configuration_date(const Object& changed) noexcept {
   const std::uint16_t index = changed.key.index;
   const bool exempt = index == 0x1003 || index == 0x1020 || between(index, 0x1F50, 0x1F57);

@@ -12,9 +12,9 @@
 
 namespace takt::sim {
 
-/// What is wrong with a device at the moment.
+/// The faults that are active in a device.
 struct DeviceFaults {
-  /// What becomes of an SDO access to one object.
+  /// Effect of a fault on SDO access to one object.
   enum class Answer : std::uint8_t { mute, refuse, refuse_write, ignore_write };
   struct Access {
     ObjectKey key;
@@ -33,8 +33,8 @@ struct DeviceFaults {
   bool fixed_mapping = false;
   SdoFaults sdo{};
   Time bootup_delay{};
-  Time sdo_delay{};     ///< of an answer, at most
-  Time storm_period{};  ///< of boot-up messages; 0 = no storm
+  Time sdo_delay{};     ///< longest extra delay of an answer
+  Time storm_period{};  ///< period of boot-up messages; 0 means no storm
 
   void add(Access access) noexcept {
     if (count_ < accesses_.size()) accesses_[count_++] = access;

@@ -1,11 +1,11 @@
 #include "master/sim/device.hpp"
 
-// What LSS changes of a device.
+// The changes that LSS makes to a device.
 
 namespace takt::sim {
 namespace {
 
-/// An entry that holds the COB-ID of a communication object. CiA 301, 7.3.3.
+/// True if the entry holds the COB-ID of a communication object. CiA 301, 7.3.3.
 bool holds_cob_id(ObjectKey key) noexcept {
   if (key.index == 0x1014) return key.sub == 0;
   if (key.index >= 0x1200 && key.index <= 0x127F) return key.sub == 1 || key.sub == 2;
@@ -14,7 +14,8 @@ bool holds_cob_id(ObjectKey key) noexcept {
   return pdo && key.sub == 1;
 }
 
-/// Identifiers of the predefined set follow the node id; others stay. CiA 301, 7.3.5.
+/// Identifiers of the predefined connection set follow the node-ID; others do not change. CiA 301,
+/// 7.3.5.
 std::uint64_t moved(std::uint64_t cob_id, NodeId from, NodeId to) noexcept {
   constexpr std::uint64_t extended = 1u << 29;
   if ((cob_id & extended) != 0 || (cob_id & 0x7F) != from.value()) return cob_id;
@@ -33,7 +34,7 @@ void Device::on_lss(const Frame& frame, Time now) noexcept {
   if (lss_->take_start()) reset_communication(now);
 }
 
-/// At each reset: what LSS has configured counts from here on.
+/// Activates the node-ID that LSS has configured. Called at each reset.
 void Device::take_address() noexcept {
   if (!lss_) return;
   lss_->reset();

@@ -32,7 +32,7 @@ void Device::stop_pdos() noexcept {
   multiplexed_.clear();
 }
 
-/// Inputs are sampled first, then what was received since the last SYNC takes effect.
+/// Samples the inputs first, then applies the data received since the last SYNC.
 void Device::on_sync(const Frame& frame, Time now) noexcept {
   const std::uint8_t counter = sync_.on_sync(frame, now);
   model_->advance(now);
@@ -82,7 +82,8 @@ void Device::answer(std::uint16_t number, Time now) noexcept {
   }
 }
 
-/// A controller does not receive its own frames: whether the device acts on them is its own affair.
+/// A CAN controller does not receive its own frames, so the model decides whether the device reacts
+/// to its own SYNC.
 void Device::make_sync(Time now) noexcept {
   const auto frame = sync_producer_.on_time(now, model_->sync_transmit_id());
   if (!frame) return;

@@ -7,8 +7,8 @@
 
 namespace takt::sim {
 
-/// A drive with one to eight axes: axis n where the dictionary has a controlword 0x800 x n above
-/// 0x6040. CiA 402-2.
+/// A drive with one to eight axes. Axis n exists if the dictionary has a controlword 0x800 x n
+/// above 0x6040. CiA 402-2.
 class Drive402 final : public Model {
  public:
   Drive402(ObjectStore& store, EmcyProducer& emcy, Random random);

@@ -15,11 +15,12 @@ enum class DriveState : std::uint8_t {
   fault,
 };
 
-/// What a controlword asks for, whatever the state. Words with bit 7 ask for nothing.
+/// The command in a controlword, independent of the state. A controlword with bit 7 set holds no
+/// command.
 enum class DriveCommand : std::uint8_t {
   none,
   shutdown,          ///< xxxx x110
-  switch_on,         ///< xxxx 0111, in Operation enabled: disable operation
+  switch_on,         ///< xxxx 0111; in Operation enabled this disables operation
   enable_operation,  ///< xxxx 1111
   disable_voltage,   ///< xxxx xx0x
   quick_stop,        ///< xxxx x01x
@@ -56,12 +57,13 @@ constexpr std::uint16_t state_bits(DriveState state) noexcept {
   return 0;
 }
 
-/// Where a command leads, one transition a call. `stays`: option codes 5 to 8 of 0x605A keep the
-/// drive in Quick stop active until it is enabled again. Transitions 2 to 12 and 16; those that
-/// nobody commands (0, 1, 12 after the ramp, 13, 14) and the fault reset (15) are the axis' own.
+/// Returns the state after a command; each call makes at most one transition. `stays` is true if
+/// option codes 5 to 8 of 0x605A keep the drive in Quick stop active until it is enabled again.
+/// This function covers transitions 2 to 12 and 16. Axis402 makes the transitions without a command
+/// (0, 1, 12 after the ramp, 13, 14) and the fault reset (15).
 DriveState commanded(DriveState state, DriveCommand command, bool stays) noexcept;
 
-/// The power stage is on.
+/// True if the power stage is on in this state.
 constexpr bool is_powered(DriveState state) noexcept {
   return state == DriveState::operation_enabled || state == DriveState::quick_stop ||
          state == DriveState::fault_reaction;

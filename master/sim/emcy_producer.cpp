@@ -64,7 +64,7 @@ void EmcyProducer::push(std::uint16_t code, Detail detail) noexcept {
   if (waiting_ < queue_.size()) queue_[waiting_++] = {code, error_register(), detail};
 }
 
-/// Newest in sub 1; the last falls out.
+/// Enters the code in sub-index 1 of the history and drops the oldest entry if the history is full.
 void EmcyProducer::remember(std::uint16_t code) noexcept {
   Object* count = store_.find({history, 0});
   if (count == nullptr) return;
@@ -111,7 +111,8 @@ Abort EmcyProducer::check_read(ObjectKey key) const noexcept {
 Abort EmcyProducer::check_write(const Object& object, std::uint64_t raw) const noexcept {
   if (object.key == ObjectKey{history, 0}) return raw == 0 ? Abort::none : Abort::value;
   if (object.key == ObjectKey{0x1014, 0}) {
-    // a device whose limits forbid bit 31 can't be told to switch EMCY off first
+    // If the limits of the object forbid bit 31, a client can't disable EMCY before it changes the
+    // COB-ID.
     const bool has_off_bit = !object.high || *object.high >= std::int64_t{cob_invalid};
     const bool stays_valid = ((object.value | raw) & cob_invalid) == 0;
     if (has_off_bit && stays_valid && raw != object.value) return Abort::value;

@@ -22,26 +22,27 @@ enum class ErrorBit : std::uint8_t {
   manufacturer = 0x80,
 };
 
-/// Tells errors when they come and when they go: EMCY frames, error register 0x1001, history
-/// 0x1003, inhibit time 0x1015. CiA 301, 7.2.7.
+/// Reports the start and the end of errors: sends EMCY frames with the inhibit time 0x1015, and
+/// keeps the error register 0x1001 and the history 0x1003. CiA 301, 7.2.7.
 class EmcyProducer {
  public:
   using Detail = std::array<std::uint8_t, 5>;
 
   EmcyProducer(ObjectStore& store, NodeId node);
-  /// LSS has given the device another node id.
+  /// LSS has given the device another node-ID.
   void set_node(NodeId node) noexcept { node_ = node; }
 
   void reset() noexcept;
-  /// Told once; again only after it has gone. The first byte of the detail tells errors of one
-  /// code apart: the number of the PDO, the silent node.
+  /// Reports an error once, and again only after clear(). The first byte of the detail
+  /// distinguishes errors with the same code, for example by the number of the PDO or of the silent
+  /// node. At most 16 errors can be active; further ones are dropped.
   void raise(std::uint16_t code, ErrorBit bit, Detail detail = {}) noexcept;
   void clear(std::uint16_t code, std::uint8_t source = 0) noexcept;
-  /// Told, but not remembered as a present error.
+  /// Sends an EMCY and enters the error in the history, but not in the list of active errors.
   void tell(std::uint16_t code, Detail detail = {}) noexcept;
   bool is_active(std::uint16_t code, std::uint8_t source = 0) const noexcept;
 
-  /// Sends what waits, as far as the inhibit time lets it.
+  /// Sends the waiting messages as far as the inhibit time allows.
   void on_time(Time now, bool may_send, Transmitter& out) noexcept;
   Time deadline() const noexcept { return waiting_ == 0 ? never : allowed_from_; }
 

@@ -16,7 +16,7 @@ Encoder406::Encoder406(ObjectStore& store, EmcyProducer& emcy, Random random)
       range_{store, {0x6002, 0}},
       speed_{store, {0x6030, 1}} {
   const std::int64_t units = units_.get() > 0 ? units_.get() : default_units;
-  steps_a_second_ = units * (500 + random.below(1500)) / 1000;  // 0.5 to 2 turns a second
+  steps_a_second_ = units * (500 + random.below(1500)) / 1000;  // 0.5 to 2 turns per second
 }
 
 void Encoder406::reset(Time now) noexcept {
@@ -31,7 +31,7 @@ void Encoder406::advance(Time now) noexcept {
   publish();
 }
 
-/// To and fro, ten seconds each way; in steps.
+/// Returns the position of the shaft in steps. The shaft turns ten seconds in each direction.
 std::int64_t Encoder406::shaft(Time now) const noexcept {
   const std::int64_t us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
   const std::int64_t period = 2 * turn_back_ms * 1000;

@@ -4,8 +4,8 @@
 
 namespace takt::sim {
 
-/// An encoder on a shaft that turns to and fro at a seeded speed. Position 0x6004, preset 0x6003,
-/// speed 0x6030:01. CiA 406.
+/// An encoder on a shaft that turns back and forth. The speed depends on the seed. Position 0x6004,
+/// preset 0x6003, speed 0x6030:01. CiA 406.
 class Encoder406 final : public Model {
  public:
   Encoder406(ObjectStore& store, EmcyProducer& emcy, Random random);

@@ -7,7 +7,7 @@
 
 namespace takt::sim {
 
-/// The begins and ends of faults in the order of time.
+/// The starts and ends of faults in the order of time.
 class FaultSchedule {
  public:
   struct Edge {
@@ -27,7 +27,7 @@ class FaultSchedule {
   void insert(const Edge& edge);
 
   Faults faults_;
-  std::vector<Edge> edges_;  ///< ascending; of one time in the order they were added
+  std::vector<Edge> edges_;  ///< by time, then by order of addition
   std::size_t next_ = 0;
 };
 

@@ -33,10 +33,11 @@ constexpr RunStep follow(Run run, bool bit) {
   const int length = run % 4 + 1;
   if (bit != last) return {static_cast<Run>(bit ? 4 : 0), 0};
   if (length < 4) return {static_cast<Run>(run + 1), 0};
-  return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a run of its own
+  return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a new run
 }
 
-/// For each run and each 1 to 8 bits (with a leading one bit as length mark): what follows.
+/// The next run and the stuff bits for each run and each 1 to 8 bits (with a leading one bit as
+/// length mark).
 constexpr auto run_table = [] {
   std::array<std::array<RunStep, 512>, 8> table{};
   for (Run start = 0; start < 8; ++start) {
@@ -54,7 +55,7 @@ constexpr auto run_table = [] {
   return table;
 }();
 
-/// CRC and stuff bits of a growing row of bits; SOF is already in.
+/// Computes CRC and stuff bits of a growing row of bits, which already contains SOF.
 class BitRow {
  public:
   void byte(std::uint32_t value) noexcept {
@@ -64,7 +65,7 @@ class BitRow {
   void check(std::uint32_t value) noexcept {
     crc_ = ((crc_ << 8) ^ crc_table[((crc_ >> 7) ^ value) & 0xFF]) & 0x7FFF;
   }
-  /// The lowest `count` bits, 1..8.
+  /// Appends the lowest `count` bits, 1..8.
   void stuff(std::uint32_t bits, int count) noexcept {
     const std::uint32_t mark = 1u << count;
     const RunStep step = run_table[run_][mark | (bits & (mark - 1))];

@@ -8,15 +8,18 @@ namespace takt::sim {
 
 enum class ChannelRead : std::uint8_t { frame, nothing, closed };
 
-/// Frames to and from a bus outside: a socket pair, SocketCAN, a unix bus. Used by one thread.
+/// A channel for frames to and from a bus outside the simulation: a socket pair, SocketCAN or a
+/// unix bus. Only one thread may use it.
 class FrameChannel {
  public:
   virtual ~FrameChannel() = default;
-  /// False: the channel is closed for good. A frame that finds no room is dropped.
+  /// Returns false if the channel is closed permanently. Drops the frame if there is no room for
+  /// it.
   virtual bool send(const Frame& frame) noexcept = 0;
-  /// Waits at most `timeout` (0: not at all) for one frame.
+  /// Waits at most `timeout` for one frame; 0 means no wait.
   virtual ChannelRead receive(Frame& frame, Time timeout) noexcept = 0;
-  /// The same with the monotonic time when the frame was on the bus; 0: not known.
+  /// Like receive(), and also gives the monotonic time at which the frame was on the bus; 0 means
+  /// unknown.
   virtual ChannelRead receive_stamped(StampedFrame& stamped, Time timeout) noexcept {
     stamped.when = Time{};
     return receive(stamped.frame, timeout);

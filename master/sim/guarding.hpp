@@ -9,22 +9,22 @@
 
 namespace takt::sim {
 
-/// The device's half of guarding: answers the master's remote frames, and notices when they stop
-/// coming for 0x100C x 0x100D ms (life guarding). CiA 301, 7.2.8.3.2.1.
+/// The device side of guarding. Answers the remote frames of the master and detects (life guarding)
+/// that no request has come for 0x100C x 0x100D ms. CiA 301, 7.2.8.3.2.1.
 class GuardingResponder {
  public:
   enum class Fault : std::uint8_t { none, mute, stuck_toggle };
 
   GuardingResponder(ObjectStore& store, EmcyProducer& emcy, NodeId node);
-  /// LSS has given the device another node id.
+  /// LSS has given the device another node-ID.
   void set_node(NodeId node) noexcept { node_ = node; }
 
   CobId id() const noexcept { return CobId::base(0x700u + node_.value()); }
-  /// Communication was reset: the next answer has toggle bit 0.
+  /// Communication was reset, so the next answer has toggle bit 0.
   void reset() noexcept;
-  /// A remote frame of the master. A device that produces heartbeats does not answer.
+  /// Handles a remote frame of the master. A device that produces heartbeats does not answer.
   void on_request(std::uint8_t state, Fault fault, Time now, Transmitter& out) noexcept;
-  /// True: the master has stopped asking just now.
+  /// Returns true if the life time has just expired without a request of the master.
   bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
   /// 0x100C or 0x100D was written.

@@ -16,7 +16,7 @@ class HeartbeatProducer {
  public:
   HeartbeatProducer(ObjectStore& store, NodeId node)
       : period_{store.find({0x1017, 0})}, node_{node} {}
-  /// LSS has given the device another node id.
+  /// LSS has given the device another node-ID.
   void set_node(NodeId node) noexcept { node_ = node; }
 
   /// The boot-up message counts as the first heartbeat.
@@ -31,25 +31,26 @@ class HeartbeatProducer {
   Time next_ = never;
 };
 
-/// Watches the heartbeats of the nodes in 0x1016. Begins with the first heartbeat of each.
+/// Monitors the heartbeats of the nodes in 0x1016. Monitoring of a node begins with its first
+/// heartbeat.
 class HeartbeatConsumer {
  public:
   HeartbeatConsumer(ObjectStore& store, EmcyProducer& emcy);
 
-  /// After reset and after 0x1016 has been written.
+  /// To be called after a reset and after a write to 0x1016.
   void configure() noexcept;
   void forget() noexcept;
   void on_heartbeat(std::uint8_t node, std::uint8_t state, Time now) noexcept;
-  /// True: a node has fallen silent just now.
+  /// Returns true if the heartbeat of a node has just timed out.
   bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept;
 
   struct Watch {
     const Object* entry = nullptr;
-    std::uint8_t node = 0;  ///< 0: not used
+    std::uint8_t node = 0;  ///< node-ID; 0 means that the entry is not used
     Time timeout{};
-    Time deadline = never;  ///< never: not yet heard
+    Time deadline = never;  ///< `never` until the first heartbeat
   };
   const std::vector<Watch>& watches() const noexcept { return watches_; }
 

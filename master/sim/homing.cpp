@@ -10,9 +10,10 @@ constexpr std::uint16_t reached = 0x0400;
 constexpr std::uint16_t attained = 0x1000;
 constexpr std::uint16_t error = 0x2000;
 constexpr double default_speed = 10'000;
-constexpr double index_time = 0.02;  // s at the slow speed from the switch to the index pulse
+constexpr double index_time = 0.02;  // seconds at the slow speed from the switch to the index pulse
 
-/// Where a method moves first; none: not known.
+/// Returns the first direction of motion of a method, or std::nullopt if the method is not
+/// supported.
 std::optional<double> direction_of(std::int64_t method) noexcept {
   if (method == 33 || method == 34) return method == 33 ? -1.0 : 1.0;
   if (method >= 17 && method <= 30) method -= 16;
@@ -65,7 +66,7 @@ bool Homing::step(Demand& demand, double deceleration, double h) noexcept {
   return false;
 }
 
-/// Fast to the switch, slowly back off it, and on to the index pulse where the method has one.
+/// Moves fast to the switch, slowly back off it, and on to the index pulse if the method uses one.
 bool Homing::seek(Demand& demand, const Ramps& ramps, double h) noexcept {
   const double slow = objects_.homing_speed_zero.positive_or(default_speed / 10);
   if (stage_ == Stage::seek) {

@@ -7,20 +7,22 @@
 
 namespace takt::sim {
 
-/// Homing mode. The switch that a method looks for stands somewhere ahead, a third to a whole
-/// second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37.
+/// Homing mode. The switch that a method seeks lies ahead at a random distance, a third of a second
+/// to one second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37.
 class Homing {
  public:
   Homing(const AxisObjects& objects, Random random) : objects_{objects}, random_{random} {}
 
-  /// The mode is entered: nothing has been started.
+  /// Enters the mode; homing has not been started yet.
   void start() noexcept { stage_ = Stage::idle; }
   void on_controlword(std::uint16_t before, std::uint16_t now, const Demand& demand) noexcept;
-  /// True: the reference has been found; shift() moves the coordinates.
+  /// Returns true when the reference has been found and the axis stands still. Then shift() gives
+  /// the shift of the coordinates.
   bool step(Demand& demand, double deceleration, double h) noexcept;
-  /// What is to be added to positions so that the reference reads minus 0x607C.
+  /// Returns the value to add to positions so that the reference reads minus the home offset
+  /// 0x607C.
   double shift() const noexcept;
-  /// Bits 10, 12 and 13.
+  /// Returns bits 10, 12 and 13 of the statusword.
   std::uint16_t status_bits(bool stands) const noexcept;
   bool on_switch() const noexcept { return stage_ == Stage::leave; }
 

@@ -6,7 +6,7 @@
 
 namespace takt::sim {
 
-/// A device in its place on the bus: with its clock and what the world has changed of it.
+/// A device on the bus, with its clock and the state that the world keeps for it.
 struct HostedDevice {
   HostedDevice(const DeviceTable& table, Random random, DeviceTimes times)
       : device{table, random, times} {
@@ -15,8 +15,8 @@ struct HostedDevice {
 
   Device device;
   LocalClock clock;
-  std::vector<CobId> ids;          ///< identifiers that are routed to it
-  std::vector<Object> overridden;  ///< as they were
+  std::vector<CobId> ids;          ///< identifiers that are routed to the device
+  std::vector<Object> overridden;  ///< the original objects
 };
 
 }  // namespace takt::sim

@@ -3,14 +3,14 @@
 
 namespace takt::sim {
 
-/// A device's clock that runs a little fast or slow. |ppm| below 100,000.
+/// The clock of a device, which may run slightly fast or slow. |ppm| must be below 100,000.
 class LocalClock {
  public:
   Time local(Time world) const noexcept {
     if (ppm_ == 0) return world + offset_;
     return base_ + offset_ + (world - base_) + part(world - base_, million);
   }
-  /// The earliest world time at which the local clock shows `local_time` or more.
+  /// Returns the earliest world time at which the local clock shows `local_time` or more.
   Time world(Time local_time) const noexcept {
     if (local_time == never) return never;
     if (ppm_ == 0) return local_time - offset_;
@@ -30,7 +30,7 @@ class LocalClock {
  private:
   static constexpr Time::rep million = 1'000'000;
 
-  /// span * ppm / whole without overflow.
+  /// Computes span * ppm / whole without overflow.
   Time part(Time span, Time::rep whole) const noexcept {
     return span / whole * ppm_ + span % whole * ppm_ / whole;
   }

@@ -13,7 +13,7 @@ std::uint32_t word_of(const Frame& frame) noexcept {
          static_cast<std::uint32_t>(frame.data[4]) << 24;
 }
 
-/// kbit/s of the entries of table 0; 0: not offered.
+/// Bit rates of table 0 in kbit/s; 0 means that the bit rate is not supported.
 constexpr std::array<std::uint16_t, 10> table_of_rates{1000, 800, 500, 250, 125, 0, 50, 20, 10, 0};
 
 }  // namespace
@@ -66,7 +66,7 @@ void LssSlave::on_frame(const Frame& frame, Time now, Transmitter& out) noexcept
   }
 }
 
-/// A device without node id that has got one starts with it.
+/// A device without a node-ID starts when it leaves the configuration state with a new node-ID.
 void LssSlave::switch_to(State state) noexcept {
   const bool leaves = state_ == State::configuration && state == State::waiting;
   state_ = state;
@@ -79,7 +79,7 @@ void LssSlave::on_select(const Frame& frame, Time now, Transmitter& out) noexcep
   const auto part = static_cast<std::uint8_t>(frame.data[0] - 0x40);
   if (part == 0) selected_ = 0;
   if (part != selected_ || word_of(frame) != identity(part)) {
-    selected_ = 0xFF;  // until the next vendor id
+    selected_ = 0xFF;  // no match until the next vendor-ID
     return;
   }
   if (++selected_ < 4) return;

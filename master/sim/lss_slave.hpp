@@ -10,38 +10,40 @@
 
 namespace takt::sim {
 
-/// The device's half of LSS: node id and bit rate of a device, and how they are changed. CiA 305.
+/// The device side of LSS: keeps and changes the node-ID and the bit rate of a device. CiA 305.
 class LssSlave {
  public:
-  static constexpr std::uint8_t none = 255;  ///< as node id: it has none
+  static constexpr std::uint8_t none = 255;  ///< node-ID value that means "no node-ID"
 
   struct Faults {
-    bool silent = false;         ///< answers nothing
-    bool refuses_store = false;  ///< error 2
+    bool silent = false;         ///< the slave does not answer
+    bool refuses_store = false;  ///< store configuration fails with error code 2
   };
 
-  /// `node_id` of the very first power-on; its bit rate is that of the bus. The identity is 0x1018.
+  /// `node_id` is the node-ID at the first power-on, when the bit rate is that of the bus. The
+  /// identity comes from 0x1018.
   LssSlave(ObjectStore& store, std::uint8_t node_id);
 
   static CobId id() noexcept { return CobId::base(0x7E5); }
 
-  /// Takes what was stored.
+  /// Activates the stored configuration.
   void power_on() noexcept;
-  /// NMT reset: what was configured counts from here on.
+  /// Activates the pending node-ID at an NMT reset.
   void reset() noexcept;
   void on_frame(const Frame& frame, Time now, Transmitter& out) noexcept;
-  /// The bit rate is changed in the middle of two pauses of equal length.
+  /// Changes the bit rate between two pauses of equal length.
   void on_time(Time now) noexcept;
   Time deadline() const noexcept {
     return switching() ? (switched_ ? ends_at_ : switch_at_) : never;
   }
 
   std::uint8_t node_id() const noexcept { return active_; }
-  /// kbit/s; 0: never changed
+  /// Bit rate in kbit/s; 0 means that LSS has never changed it.
   std::uint16_t bit_rate() const noexcept { return rate_; }
-  /// Nothing is sent or heard: a change of the bit rate is under way.
+  /// True while a change of the bit rate is in progress and the device neither sends nor receives.
   bool switching() const noexcept { return ends_at_ != never; }
-  /// True once: a device without node id has got one and leaves configuration state.
+  /// Returns true once after a device without a node-ID has received one and left the configuration
+  /// state.
   bool take_start() noexcept { return std::exchange(start_, false); }
   Faults& faults() noexcept { return faults_; }
   bool in_configuration() const noexcept { return state_ == State::configuration; }
@@ -69,9 +71,9 @@ class LssSlave {
   std::uint16_t rate_ = 0;
   std::uint16_t pending_rate_ = 0;
   std::uint16_t stored_rate_ = 0;
-  std::uint8_t selected_ = 0;  ///< parts of the selection that have matched in order
-  std::uint8_t in_range_ = 0;  ///< parts of an identification that have matched in order
-  std::uint8_t scanned_ = 0;   ///< part that the fastscan is at
+  std::uint8_t selected_ = 0;  ///< matched parts of a selective switch, in order
+  std::uint8_t in_range_ = 0;  ///< matched parts of an identify request, in order
+  std::uint8_t scanned_ = 0;   ///< part of the identity that fastscan has reached
   bool start_ = false;
   bool switched_ = false;
   Time switch_at_ = never;

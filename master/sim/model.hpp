@@ -13,51 +13,52 @@
 
 namespace takt::sim {
 
-/// What a device does besides communicating: a drive, inputs and outputs, an encoder. It reads and
-/// writes objects of the dictionary; its time is the device's own.
+/// The application of a device besides its communication: a drive, inputs and outputs, or an
+/// encoder. A model reads and writes objects of the dictionary. All times are local times of the
+/// device.
 class Model {
  public:
   virtual ~Model() = default;
-  /// Power on and reset node: the objects hold their power-on values.
+  /// Called at power-on and reset node, when the objects hold their power-on values.
   virtual void reset(Time now) noexcept = 0;
-  /// The world goes on up to `now`; inputs are written into the dictionary.
+  /// Advances the model to `now` and writes its inputs into the dictionary.
   virtual void advance(Time now) noexcept = 0;
-  /// Objects have been written by RPDO or SDO.
+  /// Called after an RPDO or SDO has written objects.
   virtual void outputs(Time now) noexcept = 0;
-  /// SYNC in OPERATIONAL, after inputs were sampled and outputs taken over.
+  /// Called at SYNC in OPERATIONAL after the inputs were sampled and the received outputs applied.
   virtual void on_sync(Time) noexcept {}
-  /// May this value be written by SDO? Called after the checks of the dictionary itself.
+  /// Checks an SDO write of this value. Called after the checks of the dictionary itself.
   virtual Abort check_write(const Object&, std::uint64_t) const noexcept { return Abort::none; }
-  /// May this value be written to a communication object (0x1000..0x1FFF)? Called before the checks
-  /// of CiA 301.
+  /// Checks an SDO write of this value to a communication object (0x1000..0x1FFF). Called before
+  /// the checks of CiA 301.
   virtual Abort check_communication(const Object&, std::uint64_t) const noexcept {
     return Abort::none;
   }
-  /// A communication object has been written by SDO.
+  /// Called after an SDO has written a communication object.
   virtual void communication_written(const Object&) noexcept {}
-  /// An RPDO of this number (from 1) was taken over; outputs() follows.
+  /// Called after the RPDO with this number (from 1) was applied; outputs() follows.
   virtual void received(std::uint16_t, Time) noexcept {}
-  /// An RPDO of this number has fewer bytes than its mapping. True: the device answers that itself,
-  /// without EMCY.
+  /// Called if a frame of the RPDO with this number is shorter than its mapping. Returns true if
+  /// the model answers the error itself, without an EMCY.
   virtual bool takes_short(std::uint16_t) noexcept { return false; }
-  /// SYNC stayed away for longer than 0x1006 lets it.
+  /// Called when SYNC is overdue according to 0x1006.
   virtual void sync_lost(Time) noexcept {}
-  /// How the device deviates from CiA 301; constant from construction on.
+  /// Returns the deviations from CiA 301; constant after construction.
   virtual DeviceTraits traits() const noexcept { return {}; }
-  /// A SYNC that the device itself has sent acts on its own PDOs.
+  /// True if a SYNC that the device has sent acts on its own PDOs.
   virtual bool obeys_own_sync() const noexcept { return false; }
-  /// Identifier of the SYNC it sends, where that is not 0x1005.
+  /// Identifier of the SYNC that the device sends, if it differs from 0x1005.
   virtual std::optional<CobId> sync_transmit_id() const noexcept { return {}; }
-  /// Heartbeat lost, bus-off or OPERATIONAL left.
+  /// Called when a heartbeat is lost, at bus-off, and when the device leaves OPERATIONAL.
   virtual void connection_lost(Time) noexcept {}
-  /// A fault: the device reports this error by EMCY and behaves accordingly.
+  /// Injects a fault: the device reports this error by EMCY and behaves accordingly.
   virtual void fail(std::uint16_t, Time) noexcept {}
-  /// When inputs may change next by themselves; `never`: they don't.
+  /// Next time at which inputs may change by themselves; `never` if they don't.
   virtual Time next_change() const noexcept { return never; }
 };
 
-/// The model of this name (one of sim_models); anything else: a plain device. What a model needs
-/// and the dictionary lacks is left out.
+/// Makes the model that the table names (one of sim_models); any other name gives a plain device. A
+/// model leaves out functions whose objects the dictionary lacks.
 std::unique_ptr<Model> make_model(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy,
                                   Random random);
 

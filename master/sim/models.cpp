@@ -12,7 +12,8 @@
 namespace takt::sim {
 namespace {
 
-/// Only communicates; its objects keep what is written into them.
+/// A model without an application: the device only communicates, and its objects keep the values
+/// written to them.
 class PlainModel final : public Model {
  public:
   explicit PlainModel(EmcyProducer& emcy) : emcy_{emcy} {}

@@ -4,20 +4,21 @@
 
 namespace takt::sim {
 
-/// What the drive's control loop is told to follow. User units and user units per second.
+/// Set-point of the drive's control loop, in user units and user units per second.
 struct Demand {
   double position = 0;
   double velocity = 0;
 };
 
-/// Accelerations of a profile, user units per second squared; all positive.
+/// Velocity (user units per second) and accelerations (user units per second squared) of a profile;
+/// all positive.
 struct Ramps {
   double velocity = 0;
   double acceleration = 0;
   double deceleration = 0;
 };
 
-/// Lets the demanded velocity grow or shrink towards `target` for `h` seconds.
+/// Moves the demanded velocity towards `target` for `h` seconds.
 inline void ramp_velocity(Demand& demand, double target, const Ramps& ramps, double h) noexcept {
   const double old = demand.velocity;
   const bool slower = std::abs(target) < std::abs(old) || target * old < 0;
@@ -26,7 +27,8 @@ inline void ramp_velocity(Demand& demand, double target, const Ramps& ramps, dou
   demand.position += (old + demand.velocity) / 2 * h;
 }
 
-/// One step of a trapezoidal profile towards `target`. True: it is there and stands.
+/// Makes one step of `h` seconds on a trapezoidal profile towards `target`. Returns true when the
+/// demand has reached the target and stands still.
 inline bool approach(Demand& demand, double target, const Ramps& ramps, double h) noexcept {
   const double way = target - demand.position;
   const double half = ramps.deceleration * h / 2;
@@ -41,15 +43,15 @@ inline bool approach(Demand& demand, double target, const Ramps& ramps, double h
   return false;
 }
 
-/// A motor with its load under velocity and position control: first-order lag of the velocity,
-/// second-order of the position.
+/// A motor with its load under velocity and position control. The velocity has a first-order lag,
+/// the position a second-order lag.
 class Motor {
  public:
   double position = 0;
   double velocity = 0;
   double acceleration = 0;
 
-  /// `demand` is for the end of the step.
+  /// `demand` is the set-point at the end of the step.
   void follow_position(const Demand& demand, double limit, double h) noexcept {
     const double error = demand.position - (position + velocity * h);
     follow_velocity(demand.velocity + position_gain * error, limit, h);
@@ -58,7 +60,7 @@ class Motor {
     const double wanted = (velocity * lag + target * h) / (lag + h);
     move(std::clamp(wanted, velocity - limit * h, velocity + limit * h), h);
   }
-  /// Without power: friction brings it to rest.
+  /// Without power, friction brings the motor to rest.
   void coast(double friction, double h) noexcept {
     const double lost = std::min(std::abs(velocity), friction * h);
     move(velocity - std::copysign(lost, velocity), h);

@@ -7,10 +7,10 @@ constexpr std::uint16_t first_scanner = 0x1FA0;
 constexpr std::uint16_t last_scanner = 0x1FCF;
 constexpr std::uint16_t first_dispatcher = 0x1FD0;
 constexpr std::uint16_t last_dispatcher = 0x1FFF;
-constexpr std::uint8_t destination = 0x80;  ///< with node 0: for all
+constexpr std::uint8_t destination = 0x80;  ///< with node-ID 0, the frame is for all nodes
 constexpr std::uint16_t too_short = 0x8210;
 constexpr std::uint16_t not_available = 0x8230;
-constexpr unsigned widest = 4;  ///< bytes of data in a frame
+constexpr unsigned widest = 4;  ///< most data bytes in a frame
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void MultiplexedPdos::add_source(const PdoRecord& tpdo, ObjectKey key,
   sources_.push_back({.object = object, .id = tpdo.id(), .address = address});
 }
 
-/// Entries: block size << 24 | index << 8 | sub.
+/// An entry of the scanner list is block size << 24 | index << 8 | sub-index.
 void MultiplexedPdos::add_scanned(const PdoRecord& tpdo) noexcept {
   for (const Object& list : store_.range(first_scanner, last_scanner)) {
     if (list.key.sub == 0 || list.value == 0) continue;
@@ -101,7 +101,8 @@ bool MultiplexedPdos::write(ObjectKey key, std::uint32_t data) noexcept {
   return true;
 }
 
-/// Entries: block << 56 | local index << 40 | local sub << 32 | index << 16 | sub << 8 | node.
+/// An entry of the dispatcher list is block size << 56 | local index << 40 | local sub-index << 32
+/// | index << 16 | sub-index << 8 | node-ID.
 bool MultiplexedPdos::dispatch(const Frame& frame, std::uint32_t data) noexcept {
   bool any = false;
   for (const Object& entry : store_.range(first_dispatcher, last_dispatcher)) {

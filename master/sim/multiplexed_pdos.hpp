@@ -13,30 +13,32 @@
 
 namespace takt::sim {
 
-/// The multiplexed PDOs (MPDO) of a device. Sends objects of its scanner list (0x1FA0..) by source
-/// address, and mapped ones by destination address to all, whenever they change. Takes what is
-/// addressed to it, and what its dispatcher list (0x1FD0..) names. CiA 301, 7.2.3.
+/// The multiplexed PDOs (MPDO) of a device. The device sends objects of its scanner list (0x1FA0..)
+/// by source address, and mapped objects by destination address to all nodes, whenever they change.
+/// It accepts frames addressed to it and frames that its dispatcher list (0x1FD0..) names. CiA 301,
+/// 7.2.3.
 class MultiplexedPdos {
  public:
   MultiplexedPdos(ObjectStore& store, NodeId node);
-  /// LSS has given the device another node id.
+  /// LSS has given the device another node-ID.
   void set_node(NodeId node) noexcept { node_ = node; }
 
-  /// OPERATIONAL is entered, or an object of a PDO was written: `tpdos` anew.
+  /// Clears the list of sources. Called on entering OPERATIONAL and after a write to an object of a
+  /// PDO, before add().
   void clear() noexcept { sources_.clear(); }
   void add(const PdoRecord& tpdo) noexcept;
   bool wants_events() const noexcept { return !sources_.empty(); }
-  /// Mapped values may have changed.
+  /// Sends the values that have changed since the last call.
   void notice(Time now, Transmitter& out) noexcept;
 
-  /// True: an object was written.
+  /// Returns true if the frame has written an object.
   bool on_frame(const PdoRecord& rpdo, const Frame& frame, EmcyProducer& emcy) noexcept;
 
  private:
   struct Source {
     const Object* object = nullptr;
     CobId id;
-    std::uint8_t address = 0;  ///< byte 0
+    std::uint8_t address = 0;  ///< byte 0 of the frame
     bool sent = false;
     std::uint64_t last = 0;
   };

@@ -6,7 +6,8 @@
 
 namespace takt::sim {
 
-/// 0x1010 store and 0x1011 restore parameters. CiA 301, 7.5.2.13 and .14.
+/// The objects 0x1010 (store parameters) and 0x1011 (restore parameters). CiA 301, 7.5.2.13 and
+/// .14.
 class ParameterStorage {
  public:
   explicit ParameterStorage(ObjectStore& store) : store_{store} {}
@@ -14,7 +15,8 @@ class ParameterStorage {
   static bool owns(ObjectKey key) noexcept {
     return (key.index == 0x1010 || key.index == 0x1011) && key.sub != 0;
   }
-  /// The signature is not kept: the objects go on telling what the device can do.
+  /// Stores or restores if the signature is right. The objects do not keep the signature; they
+  /// still show the capabilities of the device.
   Abort execute(ObjectKey key, std::uint64_t signature) noexcept;
 
  private:

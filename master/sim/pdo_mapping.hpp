@@ -10,21 +10,22 @@ namespace takt::sim {
 
 enum class PdoDirection : std::uint8_t { receive, transmit };
 
-/// What a device lets be mapped.
+/// What a device allows in a PDO mapping.
 struct MappingRules {
   PdoDirection direction = PdoDirection::transmit;
-  std::uint8_t dummy_usage = 0;  ///< bit n: data type n may be a dummy in an RPDO
+  std::uint8_t dummy_usage = 0;  ///< bit n is set if data type n may be a dummy in an RPDO
 };
 
-/// May this entry (index << 16 | sub << 8 | bits) be mapped? CiA 301, 7.5.2.36 and .38.
+/// Checks whether the device allows a mapping entry (index << 16 | sub << 8 | bits). CiA 301,
+/// 7.5.2.36 and .38.
 Abort check_entry(const ObjectStore& store, const MappingRules& rules,
                   std::uint64_t entry) noexcept;
 
-/// A mapping ready to run: where each object lies in the frame.
+/// A compiled mapping, which holds the place of each object in the frame.
 class PdoMapping {
  public:
   void clear() noexcept { count_ = bits_ = 0; }
-  /// False: no more room (64 entries, 64 bits).
+  /// Returns false if there is no more room (64 entries, 64 bits).
   bool add(ObjectStore& store, std::uint64_t entry) noexcept;
 
   std::uint64_t pack() const noexcept;
@@ -33,7 +34,7 @@ class PdoMapping {
 
  private:
   struct Place {
-    Object* object = nullptr;  ///< nullptr: a dummy
+    Object* object = nullptr;  ///< nullptr for a dummy
     std::uint64_t mask = 0;
     std::uint8_t shift = 0;
   };

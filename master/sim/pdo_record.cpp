@@ -45,7 +45,7 @@ Abort PdoRecord::check_write(const MappingRules& rules, const Object& object,
     if (&object == start_ && (raw > 240 || (valid() && raw != object.value))) return Abort::value;
     return Abort::none;
   }
-  // Where the COB-ID can't be written a PDO can't be switched off before it is mapped anew.
+  // If the COB-ID can't be written, a client can't disable the PDO before it changes the mapping.
   if (valid() && cob_->writable()) return Abort::unsupported_access;
   if (&object == count_) return check_count(rules, raw);
   if (count_ != nullptr && count_->value != 0) return Abort::unsupported_access;
@@ -68,7 +68,7 @@ Abort PdoRecord::check_type(PdoDirection direction, std::uint64_t raw) const noe
   return raw >= 241 && raw <= last_reserved ? Abort::value : Abort::none;
 }
 
-/// The device looks at the whole mapping when it is switched on.
+/// Checks the whole mapping when a write to sub-index 0 enables it.
 Abort PdoRecord::check_count(const MappingRules& rules, std::uint64_t raw) const noexcept {
   if (raw == source_mark || raw == destination_mark) return Abort::none;
   if (raw > 64) return Abort::value;
@@ -78,7 +78,7 @@ Abort PdoRecord::check_count(const MappingRules& rules, std::uint64_t raw) const
         {static_cast<std::uint16_t>(communication_ + 0x200), static_cast<std::uint8_t>(sub)});
     if (entry == nullptr) return Abort::pdo_length;
     const bool own = entry->value != 0 &&
-                     entry->value == entry->factory;  // a device takes back what it came with
+                     entry->value == entry->factory;  // a device always accepts its factory mapping
     const Abort refused = own ? Abort::none : check_entry(store_, rules, entry->value);
     if (refused != Abort::none) return refused;
     bits += entry->value & 0xFF;

@@ -14,11 +14,11 @@ namespace takt::sim {
 /// How the frames of a multiplexed PDO are addressed. CiA 301, 7.2.3.
 enum class Multiplex : std::uint8_t { none, source, destination };
 
-/// The communication and mapping objects of one PDO in the dictionary, and the checks that a
-/// device makes when they are written. CiA 301, 7.5.2.35 to .38.
+/// The communication and mapping objects of one PDO in the dictionary, and the checks of a device
+/// when these objects are written. CiA 301, 7.5.2.35 to .38.
 class PdoRecord {
  public:
-  /// `number` counts from 1. Usable only where exists().
+  /// `number` counts from 1. The record may be used only if exists() is true.
   PdoRecord(ObjectStore& store, PdoDirection direction, std::uint16_t number);
 
   static bool exists(const ObjectStore& store, PdoDirection direction, std::uint16_t number);
@@ -30,7 +30,8 @@ class PdoRecord {
   std::uint16_t mapping_index() const noexcept {
     return static_cast<std::uint16_t>(communication_ + 0x200);
   }
-  /// Sub 0 of the mapping is 0xFE or 0xFF instead of a number of entries.
+  /// A PDO is multiplexed if sub-index 0 of its mapping is 0xFE or 0xFF instead of a number of
+  /// entries.
   Multiplex multiplex() const noexcept {
     const std::uint64_t count = count_ == nullptr ? 0 : count_->value;
     if (count == source_mark) return Multiplex::source;
@@ -41,18 +42,18 @@ class PdoRecord {
   }
   bool synchronous() const noexcept { return type() <= 240 || type() == 252; }
   Time inhibit() const noexcept;
-  Time event_timer() const noexcept;  ///< of an RPDO: its deadline
+  Time event_timer() const noexcept;  ///< for an RPDO, its deadline
   std::uint8_t sync_start() const noexcept {
     return start_ == nullptr ? 0 : static_cast<std::uint8_t>(start_->value);
   }
 
-  /// Objects of this PDO: 0x1400.. or 0x1800.., and the mapping 0x200 above.
+  /// True for the objects of this PDO: 0x1400.. or 0x1800.., and the mapping 0x200 above.
   bool owns(ObjectKey key) const noexcept {
     return key.index == communication_ || key.index == communication_ + 0x200;
   }
   Abort check_write(const MappingRules& rules, const Object& object,
                     std::uint64_t raw) const noexcept;
-  /// The mapping as it is in the dictionary now; empty while its sub 0 is 0.
+  /// Compiles the present mapping of the dictionary; the result is empty while sub-index 0 is 0.
   void compile(PdoMapping& mapping) const noexcept;
 
  private:

@@ -6,7 +6,8 @@
 
 namespace takt::sim {
 
-/// Profile position mode: set-point handshake with a buffer of one, trapezoidal profile. CiA 402-2.
+/// Profile position mode: set-point handshake with a buffer for one set-point, and a trapezoidal
+/// profile. CiA 402-2.
 class ProfilePosition {
  public:
   explicit ProfilePosition(const AxisObjects& objects) : objects_{objects} {}
@@ -31,7 +32,8 @@ class ProfilePosition {
   bool limited_ = false;
 };
 
-/// Software position limits 0x607D; none where both are 0 or crossed.
+/// Clamps `target` to the software position limits 0x607D. There are no limits if both are 0 or if
+/// the lower one is above the upper one.
 double within_limits(const AxisObjects& objects, double target, bool& limited) noexcept;
 
 }  // namespace takt::sim

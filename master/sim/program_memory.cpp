@@ -12,7 +12,7 @@ constexpr std::size_t version_bytes = 4;
 }  // namespace
 
 bool ProgramMemory::has_program() const noexcept {
-  if (!cleared_ && !loaded_) return true;  // the one from the factory
+  if (!cleared_ && !loaded_) return true;  // factory program
   const Object* data = store_.find({0x1F50, 1});
   return loaded_ && data != nullptr && data->bytes.size() >= version_bytes;
 }
@@ -68,7 +68,7 @@ void ProgramMemory::set_flash(std::uint8_t status) noexcept {
   if (Object* flash = store_.find({0x1F57, 1})) flash->set(status);
 }
 
-/// Survives a reset.
+/// Sets the version and its power-on value, so that the version survives a reset.
 void ProgramMemory::set_version(std::uint32_t version) noexcept {
   Object* object = store_.find({0x1F56, 1});
   if (object == nullptr) return;

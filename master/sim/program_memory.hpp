@@ -8,19 +8,20 @@
 
 namespace takt::sim {
 
-/// The program of a device and its download: data 0x1F50, control 0x1F51, version 0x1F56, flash
-/// status 0x1F57. The first four bytes of a program are its version. CiA 302-3.
+/// The program memory of a device and its download: data 0x1F50, control 0x1F51, version 0x1F56,
+/// flash status 0x1F57. The first four bytes of a program are its version. CiA 302-3.
 class ProgramMemory {
  public:
   explicit ProgramMemory(ObjectStore& store) : store_{store} {}
 
-  /// Is this write possible now? A program is stopped, cleared, loaded, started.
+  /// Checks whether the write is allowed now. The order is: stop the program, clear it, load it,
+  /// start it.
   Abort check_data() const noexcept;
   Abort check_control(const Object& object, std::uint64_t raw) const noexcept;
   void data_written(Time now) noexcept;
   void control_written(const Object& object, Time now) noexcept;
 
-  /// The flash memory is done with what it does.
+  /// Called when the flash memory has finished its work.
   void on_time(Time now) noexcept;
   Time deadline() const noexcept { return busy_until_; }
 
@@ -38,7 +39,7 @@ class ProgramMemory {
 
   ObjectStore& store_;
   bool cleared_ = false;
-  bool loaded_ = false;  ///< since it was cleared
+  bool loaded_ = false;  ///< data was written since the last clear
   Time busy_until_ = never;
 };
 

@@ -3,7 +3,8 @@
 
 namespace takt::sim {
 
-/// Pseudo-random numbers that are the same with every library and on every machine: SplitMix64.
+/// SplitMix64, a generator of pseudo-random numbers that are the same with every library and on
+/// every machine.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t seed) noexcept : state_{seed} {}
@@ -14,17 +15,18 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94D0'49BB'1331'11EB;
     return z ^ (z >> 31);
   }
-  /// 0 .. limit - 1; 0 where limit is 0.
+  /// Returns a number in 0 .. limit - 1, or 0 if `limit` is 0.
   constexpr std::uint32_t below(std::uint32_t limit) noexcept {
     return static_cast<std::uint32_t>(((next() >> 32) * limit) >> 32);
   }
-  /// True with this probability; draws no number where the answer is certain.
+  /// Returns true with this probability. Draws no number if the probability is 0 or 1.
   constexpr bool chance(double probability) noexcept {
     if (probability <= 0.0) return false;
     if (probability >= 1.0) return true;
     return static_cast<double>(next() >> 11) * 0x1.0p-53 < probability;
   }
-  /// A generator of its own for a part, so that parts do not disturb one another.
+  /// Returns a separate generator for one part of the simulation, so that parts do not disturb one
+  /// another.
   constexpr Random fork(std::uint64_t salt) const noexcept {
     Random child{state_ ^ (salt * 0xD6E8'FEB8'6659'FD93)};
     return Random{child.next()};

@@ -36,7 +36,7 @@ void RealtimeWorld::run() noexcept {
   start_ = monotonic();
   while (!stop_.load(std::memory_order_acquire)) {
     const Time behind = monotonic() - start_ - world_.now();
-    if (behind > longest_stall) start_ += behind;  // this process was stopped: so were the devices
+    if (behind > longest_stall) start_ += behind;  // this process and the devices stood still
     const Time wait =
         std::clamp(world_.next_event() - (monotonic() - start_), Time{}, longest_wait);
     if (!carry_in(wait) || !carry_out()) break;
@@ -44,8 +44,8 @@ void RealtimeWorld::run() noexcept {
   failed_.store(!stop_.load(std::memory_order_acquire), std::memory_order_release);
 }
 
-/// Frames first, each at its own time, then the time that is over by itself: a thread that wakes
-/// late does not let the devices miss what was on the bus in time.
+/// Delivers the received frames, each at its own time, and then advances to the present. So the
+/// devices get every frame in time even if the thread wakes up late.
 bool RealtimeWorld::carry_in(Time wait) noexcept {
   StampedFrame stamped;
   ChannelRead read = channel_.receive_stamped(stamped, wait);

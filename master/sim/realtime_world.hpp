@@ -10,21 +10,21 @@
 
 namespace takt::sim {
 
-/// The devices of a World in real time: a thread that advances it with the monotonic clock and
-/// carries frames between it and a channel. The virtual bus between them delays frames as a wire of
-/// the configured bit rate would.
+/// Runs the devices of a World in real time. A thread advances the World with the monotonic clock
+/// and carries frames between the World and a channel. The virtual bus between them delays frames
+/// as a wire of the configured bit rate would.
 class RealtimeWorld {
  public:
-  /// The channel must outlive this.
+  /// The channel must outlive this object.
   RealtimeWorld(std::span<const DeviceTable> devices, WorldOptions options, FrameChannel& channel);
   ~RealtimeWorld();
   RealtimeWorld(const RealtimeWorld&) = delete;
   RealtimeWorld& operator=(const RealtimeWorld&) = delete;
 
   void start();
-  /// Ends the thread within about 10 ms. Also done by the destructor.
+  /// Ends the thread within about 10 ms. The destructor does the same.
   void stop() noexcept;
-  /// The channel is gone (interface removed, peer closed) and the thread has ended.
+  /// True if the channel is gone (interface removed, peer closed) and the thread has ended.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
 
  private:

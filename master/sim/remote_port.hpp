@@ -14,17 +14,18 @@
 namespace takt::sim {
 
 struct RemotePortOptions {
-  std::size_t tx_queue = 128;       ///< frames; SocketCAN's txqueuelen. Full: ENOBUFS
-  std::size_t rx_queue = 1024;      ///< frames; full: receive_overruns
-  CobId sync = CobId::base(0x080);  ///< own frames of this identifier are told as SYNC echo
-  Time restart = std::chrono::milliseconds{100};  ///< after bus-off; `never`: stays off
+  std::size_t tx_queue = 128;   ///< frames, like SocketCAN's txqueuelen; a full queue gives ENOBUFS
+  std::size_t rx_queue = 1024;  ///< frames; a full queue counts receive_overruns
+  CobId sync = CobId::base(0x080);  ///< an own frame with this identifier counts as SYNC echo
+  Time restart = std::chrono::milliseconds{100};  ///< after bus-off; `never` means no restart
   bool relays = false;                            ///< as in BusNodeOptions
   Time epoch = std::chrono::days{20454};  ///< time of day at the world's time 0: 2026-01-01 UTC
   Time wake_jitter{};                     ///< sleep_until and wait_frame come back up to this late
   Time spin_jitter{};                     ///< sleep_precisely_until comes back up to this late
 };
 
-/// The controller of somebody outside the world: queues as SocketCAN has them.
+/// The CAN controller of a node outside the world, such as the master. Its queues behave as those
+/// of SocketCAN.
 class RemotePort {
  public:
   RemotePort(VirtualBus& bus, BusNodeIndex node, RemotePortOptions options, Random random);
@@ -36,10 +37,10 @@ class RemotePort {
   BusNodeIndex node() const noexcept { return node_; }
   const RemotePortOptions& options() const noexcept { return options_; }
 
-  /// When somebody who sleeps until `until` wakes up: jitter and stalls added.
+  /// Returns the time at which a sleep until `until` really ends: adds jitter and stalls.
   Time wake_time(Time until, Time jitter) noexcept;
 
-  // called by the world
+  // The world calls the following functions.
   void on_wire(const WireFrame& wire) noexcept;
   void stall(Time from, Time until) noexcept {
     stalled_from_ = from;

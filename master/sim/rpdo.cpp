@@ -36,7 +36,8 @@ bool Rpdo::on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer&
   return !synchronous_;
 }
 
-/// A short frame is thrown away whole, of a long one the first bytes count. CiA 301, 7.2.2.5.
+/// The device discards a frame that is too short, and uses the first bytes of a frame that is too
+/// long. CiA 301, 7.2.2.5.
 bool Rpdo::length_is_good(const Frame& frame, EmcyProducer& emcy) noexcept {
   const auto number = static_cast<std::uint8_t>(record_.number());
   if (frame.length < mapping_.bytes()) {

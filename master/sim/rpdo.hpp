@@ -8,24 +8,24 @@
 
 namespace takt::sim {
 
-/// One RPDO of a device: taken over at once or at the next SYNC, its length checked, its deadline
-/// watched. CiA 301, 7.2.2 and 7.5.2.35.
+/// One RPDO of a device. The RPDO checks the length of each frame, applies it at once or at the
+/// next SYNC, and monitors the deadline. CiA 301, 7.2.2 and 7.5.2.35.
 class Rpdo {
  public:
   explicit Rpdo(PdoRecord record) : record_{record} {}
 
   const PdoRecord& record() const noexcept { return record_; }
-  /// Bytes that its mapping takes.
+  /// Length of the mapping in bytes.
   std::uint8_t length() const noexcept { return mapping_.bytes(); }
   void start() noexcept;
   void stop() noexcept { running_ = false; }
   void reconfigure() noexcept;
 
-  /// True: the frame acts at once; call apply().
+  /// Returns true if the frame acts at once; the caller then calls apply().
   bool on_frame(const Frame& frame, Time now, Time window_end, EmcyProducer& emcy) noexcept;
-  /// Something waits for SYNC.
+  /// True if received data waits for SYNC.
   bool waits() const noexcept { return full_ && synchronous_; }
-  /// Writes what was received into the mapped objects.
+  /// Writes the received data into the mapped objects.
   void apply() noexcept;
   void on_time(Time now, EmcyProducer& emcy) noexcept;
   Time deadline() const noexcept { return deadline_; }

@@ -7,7 +7,7 @@ namespace takt::sim {
 namespace {
 
 constexpr Time session_limit = std::chrono::seconds{1};
-constexpr Time block_patience = std::chrono::milliseconds{700};  // in the middle of a sub-block
+constexpr Time block_patience = std::chrono::milliseconds{700};  // within a sub-block
 constexpr std::size_t buffer_limit = 1 << 20;
 constexpr std::uint8_t toggle_bit = 0x10;
 
@@ -69,7 +69,7 @@ void SdoServer::on_frame(const Frame& frame, Time now, Transmitter& out) noexcep
   }
 }
 
-/// A new request within a transfer ends that transfer; the client has to repeat.
+/// A new request within a transfer aborts the transfer; the client has to repeat its request.
 void SdoServer::on_initiate(const Frame& frame, Time now, Transmitter& out) noexcept {
   if (state_ != State::idle) return abort(Abort::command, now, out);
   key_ = {static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8), frame.data[3]};
@@ -285,7 +285,7 @@ void SdoServer::answer(std::uint8_t command, std::span<const std::byte> data, Ti
   send(frame, now, out);
 }
 
-/// Only the answer to an initiate names the object. CiA 301, 7.2.4.3.
+/// Sends a confirmation. Only the answer to an initiate names the object. CiA 301, 7.2.4.3.
 void SdoServer::confirm(std::uint8_t command, Time now, Transmitter& out) noexcept {
   if (command == 0x60) return answer(command, {}, now, out);
   send(make_frame(answer_id_, {command, 0, 0, 0, 0, 0, 0, 0}), now, out);

@@ -15,11 +15,11 @@
 
 namespace takt::sim {
 
-/// One SDO server of a device: expedited, segmented and block transfers both ways, one at a time.
-/// CiA 301, 7.2.4.
+/// One SDO server of a device. It handles expedited, segmented and block transfers in both
+/// directions, one at a time. CiA 301, 7.2.4.
 class SdoServer {
  public:
-  /// On the default channel until set_channel.
+  /// The server uses the default channel until set_channel() is called.
   SdoServer(Dictionary& dictionary, NodeId node, const SdoFaults& faults);
 
   void set_channel(CobId request, CobId answer) noexcept {
@@ -27,16 +27,17 @@ class SdoServer {
     answer_id_ = answer;
   }
   CobId request_id() const noexcept { return request_id_; }
-  /// Silent: NMT stopped or reset.
+  /// Ends a transfer without an abort message, as in NMT stopped or reset.
   void reset() noexcept;
-  /// Answers are ready after `latency`, the time that the device computes; segments of a block
-  /// follow each other after `segment`.
+  /// Sets the computing time of the device: an answer is ready after `latency`, the next segment of
+  /// a block after `segment`.
   void set_times(Time latency, Time segment) noexcept {
     latency_ = latency;
     segment_time_ = segment;
   }
   void on_frame(const Frame& frame, Time now, Transmitter& out) noexcept;
-  /// The client has fallen silent within a transfer, or the next segment of a block is due.
+  /// Called when the client has been silent too long within a transfer, or the next segment of a
+  /// block is due.
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_ < next_segment_ ? deadline_ : next_segment_; }
 
@@ -46,9 +47,9 @@ class SdoServer {
     uploading,
     downloading,
     block_receiving,
-    block_offered,  // an upload whose start is awaited
+    block_offered,  // the server has answered the initiate of an upload and waits for its start
     block_sending,
-    block_ended,  // the end of an upload waits for its confirmation
+    block_ended,  // the server has sent the end of an upload and waits for its confirmation
   };
 
   void on_initiate(const Frame& frame, Time now, Transmitter& out) noexcept;

@@ -16,20 +16,21 @@ std::uint16_t block_crc(std::span<const std::byte> data) noexcept;
 
 using SdoBytes = std::array<std::uint8_t, 8>;
 
-/// A block download as a server sees it, from the accepted initiate to the end. CiA 301, 7.2.4.3.9.
+/// The server side of a block download, from the accepted initiate to the end. CiA 301, 7.2.4.3.9.
 class BlockReceiver {
  public:
   enum class Then : std::uint8_t {
-    wait,     ///< for more
+    wait,     ///< wait for more segments
     confirm,  ///< send confirmation()
-    finish,   ///< all is there: write it, then confirm the end
-    abort,    ///< with code()
+    finish,   ///< all data is there: write it, then confirm the end
+    abort,    ///< abort with code()
   };
 
   void begin(bool crc, std::uint8_t segments, bool size_known, std::size_t size) noexcept;
   Then on_segment(const SdoBytes& frame, const SdoFaults& faults, std::vector<std::byte>& data);
   Then on_end(const SdoBytes& frame, std::vector<std::byte>& data);
-  /// What was received so far is confirmed; the client is silent in the middle of a sub-block.
+  /// Handles silence of the client in the middle of a sub-block. The server confirms the segments
+  /// received so far; if there are none, it aborts with a timeout.
   Then on_silence() noexcept;
 
   bool awaits_end() const noexcept { return all_ && !in_block_; }
@@ -41,23 +42,24 @@ class BlockReceiver {
 
   bool crc_ = false;
   bool size_known_ = false;
-  bool all_ = false;       // the last segment has come in sequence
-  bool in_block_ = false;  // a confirmation is owed
-  bool deaf_once_ = true;  // a segment is still to be lost, by a fault
+  bool all_ = false;       // the last segment was received in sequence
+  bool in_block_ = false;  // a sub-block has begun and needs a confirmation
+  bool deaf_once_ = true;  // a fault may still lose one segment
   std::uint8_t segments_ = 0;
   std::uint8_t got_ = 0;
   std::size_t size_ = 0;
-  unsigned total_ = 0;  // segments that were heard
+  unsigned total_ = 0;  // segments seen in all
   Abort code_ = Abort::none;
 };
 
-/// A block upload as a server sees it. CiA 301, 7.2.4.3.13.
+/// The server side of a block upload. CiA 301, 7.2.4.3.13.
 class BlockSender {
  public:
   void begin(bool crc, std::uint8_t segments, std::size_t size) noexcept;
-  /// Segments of the next sub-block, in order.
+  /// Makes the next segment of the present sub-block. Returns false if the sub-block is complete.
   bool next(std::span<const std::byte> data, const SdoFaults& faults, SdoBytes& segment) noexcept;
-  /// Moves on after a confirmation. False: it is nonsense, see code().
+  /// Handles a confirmation. Returns false if the confirmation is invalid; then code() gives the
+  /// abort code.
   bool on_confirm(const SdoBytes& frame) noexcept;
   bool all_confirmed() const noexcept { return all_confirmed_; }
   SdoBytes end(std::span<const std::byte> data, const SdoFaults& faults) const noexcept;
@@ -68,7 +70,7 @@ class BlockSender {
   bool all_confirmed_ = false;
   bool lose_once_ = true;
   std::uint8_t segments_ = 0;
-  std::uint8_t sent_ = 0;  // of this sub-block
+  std::uint8_t sent_ = 0;  // segments sent in this sub-block
   std::size_t size_ = 0;
   std::size_t base_ = 0;  // first byte of this sub-block
   unsigned total_ = 0;    // segments sent in all

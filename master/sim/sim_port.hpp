@@ -9,8 +9,9 @@
 
 namespace takt::sim {
 
-/// The Port of the bus loop in virtual time: to sleep or to wait is what makes time pass.
-/// Computing takes no time. Frames leave in the order they were sent, as from a SocketCAN queue.
+/// The Port of the bus loop in virtual time. Time passes only while the caller sleeps or waits;
+/// computing takes no time. Frames leave in the order in which they were sent, as from a SocketCAN
+/// queue.
 class SimPort {
  public:
   explicit SimPort(World& world, RemotePortOptions options = {})

@@ -10,7 +10,8 @@ namespace {
 constexpr std::uint16_t sync_missing = 0x8100;
 constexpr std::uint16_t sync_length = 0x8240;
 
-/// 1.5 periods, but not less: SYNCs of a master without real time come that late.
+/// SYNC is overdue after 1.5 periods, but not earlier than this time after the period: a master
+/// without real-time scheduling may send SYNC that late.
 constexpr Time least_patience = std::chrono::milliseconds{20};
 
 std::uint64_t value_of(const Object* object) noexcept {

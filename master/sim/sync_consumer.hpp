@@ -10,7 +10,7 @@
 
 namespace takt::sim {
 
-/// The SYNC side of a device: identifier 0x1005, supervision 0x1006, window 0x1007, counter
+/// The SYNC consumer of a device: identifier 0x1005, supervision 0x1006, window 0x1007, counter
 /// overflow 0x1019. CiA 301, 7.2.5.
 class SyncConsumer {
  public:
@@ -19,12 +19,13 @@ class SyncConsumer {
   void set_may_produce(bool may) noexcept { may_produce_ = may; }
   void reset() noexcept;
   CobId id() const noexcept;
-  /// Counter of this SYNC; 0: it has none, or one that was not expected (EMCY 8240).
+  /// Returns the counter of this SYNC. Returns 0 if the SYNC has no counter, or if its length is
+  /// not as expected (EMCY 8240).
   std::uint8_t on_sync(const Frame& frame, Time now) noexcept;
-  /// True: SYNC has stayed away for longer than 0x1006 lets it.
+  /// Returns true if SYNC has just become overdue according to 0x1006.
   bool on_time(Time now) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// End of the synchronous window of the newest SYNC; `never`: no window.
+  /// End of the synchronous window of the newest SYNC; `never` means no window.
   Time window_end() const noexcept { return window_end_; }
   Time last_sync() const noexcept { return last_sync_; }
 

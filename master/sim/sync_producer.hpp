@@ -9,17 +9,18 @@
 
 namespace takt::sim {
 
-/// The SYNC that a device makes itself: bit 30 of 0x1005, period 0x1006, counter 0x1019. CiA 301,
-/// 7.2.5 and 7.5.2.5.
+/// The SYNC producer of a device: bit 30 of 0x1005, period 0x1006, counter overflow 0x1019. CiA
+/// 301, 7.2.5 and 7.5.2.5.
 class SyncProducer {
  public:
   explicit SyncProducer(ObjectStore& store);
 
-  /// After a change of 0x1005, 0x1006 or 0x1019, and when communication begins. The first SYNC
-  /// comes one period later.
+  /// Starts the producer when communication begins and after a change of 0x1005, 0x1006 or 0x1019.
+  /// The first SYNC comes one period later.
   void start(Time now) noexcept;
   void stop() noexcept { next_ = never; }
-  /// The frame of a SYNC that is due; `id` where the device has an identifier of its own for it.
+  /// Returns the SYNC frame if one is due. `id` replaces the identifier in 0x1005 if the device
+  /// sends SYNC with another one.
   std::optional<Frame> on_time(Time now, std::optional<CobId> id) noexcept;
   Time deadline() const noexcept { return next_; }
 

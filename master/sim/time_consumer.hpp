@@ -11,13 +11,14 @@
 
 namespace takt::sim {
 
-/// A device's clock of the day, set by TIME: bit 31 of 0x1012. CiA 301, 7.2.6 and 7.5.2.15.
+/// The time of day of a device. TIME sets it if bit 31 of 0x1012 is set. CiA 301, 7.2.6 and
+/// 7.5.2.15.
 class TimeConsumer {
  public:
   explicit TimeConsumer(ObjectStore& store) : cob_{store.find({0x1012, 0})} {}
 
   void reset() noexcept { set_.reset(); }
-  /// Where it listens; none: it does not.
+  /// Identifier of TIME; empty if the device does not consume TIME.
   std::optional<CobId> id() const noexcept {
     if (cob_ == nullptr || (cob_->value & consumes) == 0) return {};
     return cob_id(cob_->value & ~std::uint64_t{consumes | cob_bit30});
@@ -28,13 +29,14 @@ class TimeConsumer {
     for (unsigned i = 0; i < 6; ++i) raw |= std::uint64_t{frame.data[i]} << (8 * i);
     set_ = Setting{.heard = now, .ms = (raw >> 32) * ms_a_day + (raw & 0x0FFF'FFFF)};
   }
-  /// Milliseconds since 1984-01-01; none: no TIME has come.
+  /// Milliseconds since 1984-01-01; empty until the first TIME.
   std::optional<std::uint64_t> now_ms(Time now) const noexcept {
     if (!set_) return {};
     return set_->ms +
            static_cast<std::uint64_t>((now - set_->heard) / std::chrono::milliseconds{1});
   }
-  /// The identifier is fixed while TIME is consumed or produced; nothing here produces it.
+  /// Checks a write to 0x1012. The identifier can't change while TIME is consumed. Production of
+  /// TIME (bit 30) is refused because the device does not support it.
   Abort check_write(const Object& object, std::uint64_t raw) const noexcept {
     if (&object != cob_) return Abort::none;
     const bool moves = ((raw ^ object.value) & 0x3FFF'FFFF) != 0;

@@ -62,7 +62,8 @@ void Tpdo::on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitte
   }
 }
 
-/// The SYNC whose counter is the start value is the first; from there every n-th.
+/// True if the TPDO is due at this SYNC: at the SYNC whose counter equals the start value, and from
+/// there at every n-th.
 bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
   const std::uint8_t start = record_.sync_start();
   if (start != 0 && counter != 0 && !started_) {
@@ -76,7 +77,7 @@ bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
   return true;
 }
 
-/// An event-driven PDO that is asked for keeps its inhibit time: the request is one more event.
+/// For an event-driven PDO a remote request is one more event, so the inhibit time applies.
 void Tpdo::on_request(Time ready, Transmitter& out) noexcept {
   if (!active() || !record_.rtr_allowed() || !traits_.answers_rtr) return;
   if (type_ == 252) {
@@ -112,11 +113,11 @@ void Tpdo::on_time(Time now, Transmitter& out) noexcept {
     timer_ += record_.event_timer();
     if (traits_.timer == DeviceTraits::Timer::alone) allowed_from_ = Time{};
   }
-  if (type_ == 0) return update_deadline();  // SYNC comes first
+  if (type_ == 0) return update_deadline();  // the event waits for SYNC
   event(now, out);
 }
 
-/// Within the inhibit time an event is put off, not lost; several become one frame.
+/// Within the inhibit time an event is delayed, not lost; several events become one frame.
 void Tpdo::event(Time ready, Transmitter& out) noexcept {
   if (ready >= allowed_from_) send(mapping_.pack(), ready, never, out);
   update_deadline();

@@ -8,34 +8,35 @@
 
 namespace takt::sim {
 
-/// One TPDO of a device: sampled and sent by SYNC, by event, by timer or on request. CiA 301,
-/// 7.2.2 and 7.5.2.37.
+/// One TPDO of a device, which is sampled and sent by SYNC, by event, by timer or on request. CiA
+/// 301, 7.2.2 and 7.5.2.37.
 class Tpdo {
  public:
   explicit Tpdo(PdoRecord record) : record_{record} {}
 
   void set_traits(const DeviceTraits& traits) noexcept { traits_ = traits; }
   const PdoRecord& record() const noexcept { return record_; }
-  /// Back to the state on entering OPERATIONAL: an event is pending, counters are zero.
+  /// Enters the state that a TPDO has on entering OPERATIONAL: an event is pending (unless the
+  /// traits say otherwise) and counters are zero.
   void start(Time now) noexcept;
   void stop() noexcept { running_ = false; }
-  /// After a write to one of its objects.
+  /// To be called after a write to one of the objects of this TPDO.
   void reconfigure(Time now) noexcept;
 
-  /// `ready`: when the frame may be on the wire; `window_end`: dropped after it.
+  /// The frame may be on the wire from `ready` on; after `window_end` the frame is dropped.
   void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
   void on_request(Time ready, Transmitter& out) noexcept;
-  /// The RPDO of its number has come.
+  /// The RPDO with the same number was received.
   void answer(Time ready, Transmitter& out) noexcept;
-  /// Mapped values may have changed.
+  /// Called when mapped values may have changed.
   void notice(Time now, Transmitter& out) noexcept;
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
-  /// Changes of its values are events.
+  /// True if changes of mapped values are events.
   bool wants_events() const noexcept;
 
  private:
-  /// A multiplexed PDO is not sent as a whole.
+  /// False for a multiplexed PDO, which is not sent as a whole.
   bool active() const noexcept {
     return running_ && record_.valid() && record_.multiplex() == Multiplex::none;
   }
@@ -53,14 +54,14 @@ class Tpdo {
   std::uint8_t type_ = 255;
   bool running_ = false;
   bool pending_ = false;    ///< an event that has not been sent yet
-  bool sampled_ = false;    ///< type 252: sample_ holds something
+  bool sampled_ = false;    ///< type 252: sample_ is valid
   bool started_ = false;    ///< the SYNC start value has been seen
   std::uint8_t count_ = 0;  ///< SYNCs since the last transmission
   std::uint64_t last_ = 0;  ///< data of the newest frame
-  std::uint64_t seen_ = 0;  ///< data of the newest look
+  std::uint64_t seen_ = 0;  ///< data at the newest check for changes
   std::uint64_t sample_ = 0;
-  Time allowed_from_{};  ///< inhibit time
-  Time timer_ = never;   ///< event timer
+  Time allowed_from_{};  ///< end of the inhibit time
+  Time timer_ = never;   ///< expiry of the event timer
   Time deadline_ = never;
 };
 

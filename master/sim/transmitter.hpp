@@ -8,14 +8,14 @@
 
 namespace takt::sim {
 
-/// A frame that a device hands to its controller, in the device's own time.
+/// A frame that a device hands to its CAN controller. Times are local times of the device.
 struct Transmission {
   Frame frame{};
   Time ready{};
   Time expires = never;
 };
 
-/// What one call of a device wants to send. The world takes it after each call.
+/// The frames that a device wants to send after one call. The world takes them after each call.
 class Transmitter {
  public:
   void send(const Frame& frame, Time ready, Time expires = never) noexcept {
@@ -23,11 +23,11 @@ class Transmitter {
   }
   std::span<const Transmission> pending() const noexcept { return {items_.data(), size_}; }
   void clear() noexcept { size_ = 0; }
-  /// Takes back what was handed over since there were `size`.
+  /// Removes all frames behind the first `size`.
   void shrink(std::size_t size) noexcept { size_ = size; }
 
  private:
-  /// 512 PDOs in answer to one SYNC, and what else there may be.
+  /// Room for 512 PDOs in answer to one SYNC, and for other frames.
   std::array<Transmission, 576> items_{};
   std::size_t size_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::uint32_t error_flag_bits = 6;  // up to 12 with the echoes of the others
+constexpr std::uint32_t error_flag_bits = 6;  // up to 12 with the error flags of the other nodes
 constexpr std::uint32_t error_delimiter_bits = 8;
 constexpr std::uint32_t suspend_bits = 8;
 constexpr std::uint32_t recovery_bits = 128 * 11;
@@ -112,7 +112,8 @@ void VirtualBus::schedule() noexcept {
   }
 }
 
-/// Of all controllers that offer a frame, the lowest rank wins. ISO 11898-1, 10.4.
+/// Selects the sender: of all controllers that offer a frame, the lowest rank wins. ISO 11898-1,
+/// 10.4.
 void VirtualBus::arbitrate(Time now) noexcept {
   sender_ = rival_ = nobody;
   std::size_t position = BusNode::none;
@@ -165,7 +166,7 @@ void VirtualBus::begin(Time now) noexcept {
   busy_ = true;
 }
 
-/// Bits of the frame until it is destroyed, with the error frame behind it.
+/// Returns the number of bits of the frame until it is destroyed, plus those of the error frame.
 std::uint32_t VirtualBus::bits_until_error(std::uint32_t frame_length) noexcept {
   const std::uint32_t error_frame = error_flag_bits + error_delimiter_bits;
   if (wire_.result == WireResult::unacknowledged) return frame_length - 8 + error_frame;
@@ -230,7 +231,8 @@ void VirtualBus::repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept {
 void VirtualBus::punish(BusNodeIndex index, Time now) noexcept {
   BusNode& node = nodes_[index];
   if (!node.on_bus()) return;
-  // an error-passive node without acknowledge does not count on: a lone node never goes bus-off
+  // The counter of an error-passive node does not grow without an acknowledge, so a lone node never
+  // goes bus-off.
   const bool alone = wire_.result == WireResult::unacknowledged;
   if (alone && node.transmit_errors > 127) return;
   node.transmit_errors += 8;

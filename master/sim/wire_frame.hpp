@@ -6,28 +6,30 @@
 
 namespace takt::sim {
 
-/// What became of a frame on the wire.
+/// Result of the transmission of a frame.
 enum class WireResult : std::uint8_t {
   sent,
-  destroyed,       ///< an error frame followed; the sender repeats it
-  unacknowledged,  ///< nobody else on the bus; the sender repeats it
-  lost,            ///< sent, but by a fault nobody took it
+  destroyed,       ///< an error frame followed; the sender repeats the frame
+  unacknowledged,  ///< no other node is on the bus; the sender repeats the frame
+  lost,            ///< sent, but because of a fault no node received it
 };
 
 /// Position of a sender or receiver on the virtual bus.
 using BusNodeIndex = std::uint16_t;
 
-/// A frame as it was on the wire. `end` is the last bit of EOF; the interframe space follows.
+/// A frame as it was on the wire. `end` is the end of the last bit of EOF; the interframe space
+/// follows.
 struct WireFrame {
   Frame frame{};
   Time start{};
   Time end{};
   BusNodeIndex sender = 0;
   WireResult result = WireResult::sent;
-  std::uint16_t bits = 0;  ///< without interframe space; with error frame where destroyed
+  std::uint16_t bits = 0;  ///< without interframe space, with the error frame if destroyed
 };
 
-/// Hears everything that is on the wire, errors included. Must not call back into the world.
+/// Receives everything that is on the wire, including errors. An observer must not call back into
+/// the world.
 class BusObserver {
  public:
   virtual ~BusObserver() = default;

@@ -8,9 +8,9 @@
 namespace takt::sim {
 namespace {
 
-constexpr std::uint32_t shortest_segment_bits = 112;  // eight bytes, hardly any stuff bit
+constexpr std::uint32_t shortest_segment_bits = 112;  // eight data bytes, few stuff bits
 
-/// What a quirk of this name means where nobody gives numbers.
+/// Returns the fault for a quirk with this name, with default values.
 Fault quirk(FaultKind kind, NodeId node) {
   Fault fault{.kind = kind, .node = node};
   if (kind == FaultKind::late_bootup) fault.time = std::chrono::seconds{2};
@@ -30,7 +30,8 @@ World::World(std::span<const DeviceTable> devices, WorldOptions options)
   words_ = devices.size() / 64 + 1;
   takers_.assign(2048 * words_, 0);
   for (const DeviceTable& table : devices) {
-    // The wire is always a little slower than a device with segments to send.
+    // The time between segments is the shortest frame time, so the wire is always slightly slower
+    // than the device.
     devices_.push_back(std::make_unique<HostedDevice>(
         table, random_.fork(100 + table.node.value()),
         DeviceTimes{.segment = bus_.bit_time(shortest_segment_bits)}));
@@ -75,8 +76,8 @@ bool World::advance_until_frame(RemotePort& port, Time until) noexcept {
   return true;
 }
 
-/// Faults first, then the devices, then the bus: who offers a frame at this time takes part in the
-/// arbitration of this time.
+/// Processes faults first, then the devices, then the bus, so that a frame offered at this time
+/// takes part in the arbitration at this time.
 void World::step(Time at) noexcept {
   now_ = std::max(now_, at);
   if (schedule_.next() <= at) {
@@ -111,7 +112,7 @@ void World::run_device(std::size_t index) noexcept {
   hosted.device.on_time(local);
   after_call(index);
   if (timers_.earliest() <= now_ && timers_.first() == index) {
-    timers_.set(index, now_ + std::chrono::microseconds{1});  // time goes on in any case
+    timers_.set(index, now_ + std::chrono::microseconds{1});  // time must advance in any case
   }
 }
 

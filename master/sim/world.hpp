@@ -24,13 +24,13 @@ struct WorldOptions {
   std::uint64_t seed = 1;
   std::uint32_t bitrate = 1'000'000;
   Faults faults{};
-  bool one_bit_rate = true;  ///< a device whose bit rate is not that of the bus is deaf and mute
-  Time power_on_spread{};    ///< devices are switched on at random times within this
+  bool one_bit_rate = true;  ///< a device with another bit rate than the bus is deaf and mute
+  Time power_on_spread{};    ///< devices are switched on at random times within this time
 };
 
-/// A bus with devices in virtual time. Time stands still unless somebody advances it. The same
-/// tables, options and calls give the same frames at the same times, to the byte. Nothing allocates
-/// after construction, except a fault with values when it begins.
+/// A bus with devices in virtual time. Time passes only when the caller advances it. The same
+/// tables, options and calls give exactly the same frames at the same times. Nothing allocates
+/// memory after construction, except the start of a fault with values.
 class World {
  public:
   World(std::span<const DeviceTable> devices, WorldOptions options);
@@ -39,27 +39,31 @@ class World {
   World& operator=(const World&) = delete;
 
   Time now() const noexcept { return now_; }
-  /// When something happens next by itself; `never`: nothing at all.
+  /// Time of the next event that happens by itself; `never` if there is none.
   Time next_event() const noexcept;
-  /// Everything up to and including this time happens.
+  /// Processes all events up to and including this time.
   void advance_to(Time until) noexcept;
 
-  /// A controller of somebody outside: the master, a tool. Lives as long as the world.
+  /// Attaches the CAN controller of a node outside the simulation: the master or a tool. It lives
+  /// as long as the world.
   RemotePort& attach(RemotePortOptions options = {});
-  /// As advance_to, but stops as soon as `port` has something to receive. True: it has.
+  /// Like advance_to(), but stops as soon as `port` has a frame to receive. Returns true in that
+  /// case.
   bool advance_until_frame(RemotePort& port, Time until) noexcept;
 
-  /// nullptr: no such device.
+  /// Returns nullptr if there is no such device.
   Device* device(NodeId node) noexcept;
   void power(NodeId node, bool on) noexcept;
-  /// A fault from now on, on top of the schedule.
+  /// Adds a fault to the schedule.
   void add(const Fault& fault);
 
   void observe(BusObserver* observer) noexcept { observer_ = observer; }
   const VirtualBus& bus() const noexcept { return bus_; }
-  /// Everybody but the devices, whom LSS changes, has another bit rate from now on.
+  /// Changes the bit rate of the bus and of all nodes outside the simulation. The devices keep
+  /// their bit rates, which only LSS changes.
   void set_bitrate(std::uint32_t bitrate) noexcept { bus_.set_bitrate(bitrate); }
-  /// Node of a device by its position on the bus; 0: a remote port or a babbler.
+  /// Returns the node-ID of a device by its position on the bus; 0 means a remote port or a
+  /// babbler.
   std::uint8_t node_of(BusNodeIndex sender) const noexcept;
 
  private:
@@ -93,9 +97,9 @@ class World {
   Frame babble_;
   Time babble_period_{};
   Time next_babble_ = never;
-  DeadlineTree timers_;  ///< of the devices; behind them the babbler
+  DeadlineTree timers_;  ///< timers of the devices, followed by that of the babbler
   FaultSchedule schedule_;
-  std::size_t words_ = 1;              ///< of a set of devices
+  std::size_t words_ = 1;              ///< size of a set of devices in 64-bit words
   std::vector<std::uint64_t> takers_;  ///< 11-bit identifier -> set of devices
   BusObserver* observer_ = nullptr;
 };

@@ -17,7 +17,7 @@ constexpr std::uint16_t no_request = 0;
 constexpr std::uint16_t done = 1;
 constexpr std::uint16_t failed = 3;
 
-// The low byte of the control word, and of the status word.
+// Values of the low byte of the control word, then of the status word.
 constexpr std::uint64_t run_forward = 1;
 constexpr std::uint64_t run_reverse = 2;
 constexpr std::uint64_t stop_by_ramp = 5;
@@ -58,7 +58,8 @@ DeviceTraits AstraadaDrv28::traits() const noexcept {
           .inhibit_floor = std::chrono::milliseconds{50}};
 }
 
-/// Types 0, 252 and 253 do not occur; TPDO1 answers RPDO1 and nothing else.
+/// The inverter does not support the types 0, 252 and 253. TPDO1 only answers RPDO1, so its type is
+/// 255 and its event timer is 0.
 Abort AstraadaDrv28::check_communication(const Object& object, std::uint64_t raw) const noexcept {
   if (!is_tpdo(object.key.index)) return Abort::none;
   const bool first = object.key.index == 0x1800;

@@ -9,8 +9,8 @@ namespace takt::sim {
 
 /// An Astraada DRV-28 inverter with its CANopen card. PDO1 reads and writes parameters of the
 /// inverter. TPDO types: 1..240; 254 on change, at most once in the disabled time (ms, at least
-/// 50); 255 in answer to the RPDO of the same number; with an event timer both are sent by it
-/// alone.
+/// 50); 255 in answer to the RPDO of the same number. With an event timer, only the timer sends
+/// types 254 and 255.
 class AstraadaDrv28 final : public Model {
  public:
   AstraadaDrv28(ObjectStore& store, EmcyProducer& emcy);
@@ -27,7 +27,7 @@ class AstraadaDrv28 final : public Model {
   DeviceTraits traits() const noexcept override;
 
  private:
-  /// Request and response of PDO1, commands and states of the inverter.
+  /// The objects for request and response of PDO1, and for commands and states of the inverter.
   struct Slots {
     Object* request_code;
     Object* request_address;
@@ -52,7 +52,7 @@ class AstraadaDrv28 final : public Model {
   EmcyProducer& emcy_;
   Slots slots_;
   Drv28Parameters parameters_;
-  Ramp frequency_;  ///< 0.01 Hz
+  Ramp frequency_;  ///< output frequency in 0.01 Hz
   bool fault_ = false;
 };
 

@@ -3,9 +3,9 @@
 
 namespace takt::sim {
 
-/// Digital and analogue terminals behind a bus coupler, as an FC5101 sees them: type 0 is sampled
-/// at SYNC and sent only if the sample has changed; where SYNC stays away for longer than 0x1006
-/// says, the outputs go to their error state (0x6206/0x6207, 0x6443/0x6444).
+/// Digital and analogue terminals behind a bus coupler, as an FC5101 sees them. A TPDO of type 0 is
+/// sampled at SYNC and sent only if the sample has changed. If SYNC is overdue according to 0x1006,
+/// the outputs go to their error state (0x6206/0x6207, 0x6443/0x6444).
 class BeckhoffIo final : public Model {
  public:
   BeckhoffIo(ObjectStore& store, EmcyProducer& emcy, Random random, bool loopback)

@@ -14,12 +14,13 @@ const Drv28Parameters::Parameter* Drv28Parameters::find(std::uint16_t address) c
   return found == parameters_.end() ? nullptr : &*found;
 }
 
-/// A password of 0 protects nothing.
+/// True if a password protects the parameters. A password of 0 protects nothing.
 bool Drv28Parameters::locked() const noexcept {
   return find(password_address)->value != 0 && !unlocked_;
 }
 
-/// One function of an input terminal can't be given to two of them; 0 is none.
+/// True if another input terminal already has this function. Function 0 means no function and may
+/// be repeated.
 bool Drv28Parameters::is_taken(const Parameter& terminal, std::uint32_t value) const noexcept {
   return value != 0 && std::ranges::any_of(parameters_, [&](const Parameter& other) {
            return other.change == Change::terminal && &other != &terminal && other.value == value;
@@ -32,7 +33,8 @@ Drv28Parameters::Answer Drv28Parameters::read(std::uint16_t address) const noexc
   return {.value = parameter->change == Change::password ? 0 : parameter->value};
 }
 
-/// Sets it where there is none; else unlocks, or locks where the number is another one.
+/// Sets the password if there is none. Otherwise the right password unlocks the parameters and a
+/// wrong one locks them.
 Drv28Parameters::Answer Drv28Parameters::enter_password(Parameter& password,
                                                         std::uint32_t value) noexcept {
   if (password.value == 0) {

@@ -4,7 +4,7 @@
 
 namespace takt::sim {
 
-/// What the parameter channel answers in its error code.
+/// Error codes of the parameter channel.
 enum class Drv28Error : std::uint16_t {
   none = 0,
   invalid_command = 1,
@@ -18,7 +18,8 @@ enum class Drv28Error : std::uint16_t {
   locked = 9,
 };
 
-/// The function codes of the inverter, P15.13 at address 0x0F0D. Only as many as show each answer.
+/// The function codes (parameters) of the inverter; P15.13 has the address 0x0F0D. The set is only
+/// large enough to show each error code.
 class Drv28Parameters {
  public:
   struct Answer {
@@ -52,7 +53,7 @@ class Drv28Parameters {
       {0x0502, Change::terminal, 4, 63},       // P05.02 function of terminal 2
       {0x0700, Change::password, 0, 65535},    // P07.00 password
       {0x0F0D, Change::free, 0, 65535},        // P15.13
-      {0x1100, Change::never, 5000, 40000},    // P17.00 frequency that is set, 0.01 Hz
+      {0x1100, Change::never, 5000, 40000},    // P17.00 present set frequency, 0.01 Hz
       {0x1D00, Change::never, 0, 0},           // P29.00
   }};
   bool unlocked_ = true;

@@ -5,7 +5,8 @@
 
 namespace takt::sim {
 
-/// What came in from the bus goes out again: entries `first` and up of `from` into those of `to`.
+/// Copies received values back to the bus: the sub-indices from `first` on of `from` to those of
+/// `to`.
 inline void echo(ObjectStore& store, std::uint16_t from, std::uint16_t to,
                  std::uint8_t first = 1) noexcept {
   for (const Object& in : store.range(from, from)) {

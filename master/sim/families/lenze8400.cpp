@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint16_t words_in = 0x5C9D;
 constexpr std::uint16_t words_out = 0x5C9B;
 constexpr std::uint8_t first_free_word = 3;
-constexpr ObjectKey code_sync_in{0x5E90, 0};   // C00367: codes lie at 0x5FFF - number
+constexpr ObjectKey code_sync_in{0x5E90, 0};   // C00367: index 0x5FFF - number
 constexpr ObjectKey code_sync_out{0x5E8F, 0};  // C00368
 
 constexpr std::uint64_t bit_enable = 0x0001;
@@ -17,7 +17,7 @@ constexpr std::uint64_t bit_reset_fault = 0x0080;
 constexpr std::uint64_t status_ready = 0x0001;
 constexpr std::uint64_t status_enabled = 0x0002;
 constexpr std::uint64_t status_fault = 0x0008;
-constexpr std::int64_t counts_a_second = 16384;  // nominal speed in one second
+constexpr std::int64_t counts_a_second = 16384;  // from standstill to nominal speed in one second
 
 constexpr Firmware newest{{16, 0, 0}};
 constexpr Firmware obeys_itself{{16, 0, 0}};
@@ -86,13 +86,13 @@ void Lenze8400::publish() noexcept {
   status_->set((fault_ ? status_fault : status_ready) | (enabled() ? status_enabled : 0));
 }
 
-/// 29-bit identifiers are not supported: bits 11 to 29 have to be 0.
+/// The drive does not support 29-bit identifiers: bits 11 to 29 have to be 0.
 Abort Lenze8400::check_communication(const Object& object, std::uint64_t raw) const noexcept {
   if (is_cob_id(object.key) && (raw & cob_extended) != 0) return Abort::value;
   return Abort::none;
 }
 
-/// 0x1005 sets both identifiers; C00368 alone may be changed afterwards.
+/// A write to 0x1005 sets both identifiers; afterwards C00368 may be changed alone.
 void Lenze8400::communication_written(const Object& object) noexcept {
   if (object.key != ObjectKey{0x1005, 0}) return;
   if (sync_in_ != nullptr) sync_in_->set(object.value & 0x7FF);

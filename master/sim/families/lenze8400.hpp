@@ -6,9 +6,10 @@
 
 namespace takt::sim {
 
-/// A Lenze 8400 HighLine on its system bus: types 254 and 255 mean the same, a cycle time sends in
-/// addition to events, type 0 is SYNC AND event. As SYNC producer it obeys its own SYNC, as if it
-/// were received, from firmware 16.00.00 on, where it sends and receives SYNC with one identifier.
+/// A Lenze 8400 HighLine on its system bus. Types 254 and 255 mean the same, the cycle time sends
+/// in addition to events, and type 0 needs SYNC and an event. From firmware 16.00.00 on, a SYNC
+/// producer reacts to its own SYNC as to a received one, if it sends and receives SYNC with the
+/// same identifier.
 class Lenze8400 final : public Model {
  public:
   Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy);

@@ -3,14 +3,14 @@
 
 namespace takt::sim {
 
-/// How a device may read 0x1800:05.
+/// Interpretations of the event timer 0x1800:05.
 enum class EventTimerReading : std::uint8_t {
-  restarts,    ///< as CiA 301: every transmission restarts it
-  own_raster,  ///< only its own expiry restarts it
+  restarts,    ///< every transmission restarts the timer, as in CiA 301
+  own_raster,  ///< only expiry restarts the timer
 };
 
-/// A device of an older CiA 301: PDO parameters 1, 2, 3 and 5 only. What is written to 0x2001 comes
-/// back in 0x2101, by sub-index; 0x2102 counts tenths of a second.
+/// A device for an older CiA 301, with the PDO parameters 1, 2, 3 and 5 only. Values written to
+/// 0x2001 come back in the same sub-index of 0x2101; 0x2102 counts tenths of a second.
 class Plain301 final : public Model {
  public:
   Plain301(ObjectStore& store, EmcyProducer& emcy, EventTimerReading reading);

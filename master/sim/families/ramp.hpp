@@ -6,7 +6,7 @@
 
 namespace takt::sim {
 
-/// A speed that follows its set-point with a limited slope. In counts of the device.
+/// A speed that follows its set-point with a limited slope, in counts of the device.
 class Ramp {
  public:
   explicit Ramp(std::int64_t counts_a_second) : slope_{counts_a_second} {}
@@ -18,7 +18,7 @@ class Ramp {
   void aim(std::int64_t target) noexcept { target_ = target; }
   void drop() noexcept { value_ = target_ = 0; }
 
-  /// Whole steps of 1 ms; the rest waits for the next call.
+  /// Advances in whole steps of 1 ms; the remaining time waits for the next call.
   void advance(Time now) noexcept {
     const std::int64_t steps = (now - last_) / step;
     if (steps <= 0) return;
