@@ -16,7 +16,8 @@ bool same_identifier(const TrafficFrame& a, const TrafficFrame& b) noexcept {
   return a.cob_id == b.cob_id && a.remote_request == b.remote_request;
 }
 
-/// Frames that come whenever they may, and those of the cycle as they look to them.
+/// Bounds of the frames outside the cycle, which may come at any time. Frames of the cycle count as
+/// streams with jitter.
 class Others {
  public:
   Others(const BusTraffic& traffic, const CycleBounds& cycle, const BusPlan& plan,
@@ -27,7 +28,7 @@ class Others {
     const auto sync = std::ranges::find(traffic_.frames, Traffic::sync, &TrafficFrame::kind);
     if (sync != traffic_.frames.end()) {
       const auto end = cycle_.ends[static_cast<std::size_t>(sync - traffic_.frames.begin())];
-      // Behind a SYNC that comes at any time the TPDOs do, too.
+      // If SYNC has no bound, the TPDOs that follow it have none, either.
       if (!end) return Bounds(traffic_.frames.size());
       sync_end_ = *end;
       sync_frame_ = sync->frame;
@@ -36,7 +37,7 @@ class Others {
     const Time bit = wire_time(1, plan_.bitrate);
     if (company_.services == Services::apart)
       return worst_responses(streams_, bit, options_.errors);
-    // Those of one queue all wait for what goes before the lowest of them.
+    // In one queue all service frames wait for the frames that go before the lowest of them.
     const auto services = with_services_together();
     const Bounds together = worst_responses(services, bit, options_.errors);
     for (std::size_t i = 0; i < streams_.size(); ++i) {
@@ -111,7 +112,8 @@ Bounds bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOption
   return std::move(cycle.ends);
 }
 
-/// While no event-driven output changes. Those themselves end with the last that go out.
+/// Bounds while no event-driven output changes. An event-driven output itself gets the bound of the
+/// last output that is sent.
 Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options) {
   const auto changes = [](const TrafficFrame& frame) {
     return frame.in_cycle && frame.on_change && frame.kind == Traffic::rpdo;
@@ -133,7 +135,7 @@ Bounds steady_bounds(const BusTraffic& traffic, const BusPlan& plan, const Budge
   return all;
 }
 
-/// The next SYNC is queued then at the earliest, in the time of the rows.
+/// The earliest time at which the next SYNC is queued, on the time scale of the rows.
 Time next_sync(const BusPlan& plan, const std::optional<Time>& sync_end) {
   if (plan.cycle.makes_sync()) return plan.cycle.period;
   return plan.cycle.period - std::min(sync_end.value_or(Time{0}), plan.cycle.period);
@@ -156,7 +158,8 @@ void set_limits(BudgetRow& row, const BusPlan& plan, Time next) {
     return;
   }
   row.cycle = next;
-  // They leave the same queue as SYNC, in order: it is late, by what the master tells as late.
+  // Outputs leave the same queue as SYNC and may delay it, up to the delay that the master reports
+  // as late.
   if (row.frame.kind == Traffic::rpdo) row.tolerance = plan.cycle.period / 10;
   if (row.frame.kind == Traffic::tpdo) limit_input(row, plan.cycle);
   const Time window = plan.cycle.sync_window;
@@ -171,7 +174,8 @@ bool asks_for(const TrafficFrame& request, const TrafficFrame& answer) noexcept 
   return request.remote_request && request.cob_id == answer.cob_id;
 }
 
-/// Who asked waits since the request.
+/// The limit of an answer counts from its request, because the sender of the request waits since
+/// then.
 void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
   for (auto& answer : frames) {
     if (!answer.answers || !answer.limit) continue;
@@ -182,7 +186,7 @@ void limit_answers(std::vector<TrafficFrame>& frames, const Bounds& worst) {
   }
 }
 
-/// All but the columns that are no verdict.
+/// Computes everything except the columns that do not affect the verdict.
 BusBudget judged(BusTraffic traffic, const BusPlan& plan, const BudgetOptions& options) {
   const Bounds quiet = bounds(traffic, plan, options, {});
   const Bounds steady = steady_bounds(traffic, plan, options);

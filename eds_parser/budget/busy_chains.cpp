@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-constexpr int longest_chain = 32;  // cycles
+constexpr int longest_chain = 32;  // in cycles
 
 }  // namespace
 
@@ -34,7 +34,7 @@ Time BusyChains::from_devices(std::size_t first, std::size_t end, int rounds, Ti
 }
 
 Time BusyChains::behind_next_sync(const Busy& busy, Time waited) const {
-  // Behind late outputs the master's own SYNC waits, too.
+  // The master's own SYNC also waits behind late outputs.
   if (!busy.input && (!busy.output || plan_.cycle.makes_sync())) return Time{0};
   const Time until = busy.since + waited + bit_ + sync_jitter_;
   Time sum{};

@@ -9,39 +9,42 @@
 
 namespace takt {
 
-/// How long the bus may be busy without a pause: since SYNC, since the outputs of a cycle before,
-/// or for many cycles.
+/// Computes how long the bus may be busy without a pause: since SYNC, since the outputs of an
+/// earlier cycle, or for many cycles.
 class BusyChains : protected CycleFrames {
  protected:
   using CycleFrames::CycleFrames;
 
-  /// Frames that come by themselves since then, up to a priority, delay one of the cycle. The bus
-  /// is busy with these and with what certainly goes before it all the time.
+  /// A period in which the bus is busy without a pause before one frame of the cycle. The bus is
+  /// busy with the frames that certainly go before it, and with those of higher priority that come
+  /// by themselves in this period.
   struct Busy {
-    std::size_t at = 0;  ///< what is before it in `frames_` goes first
-    Time since{};
-    Time work{};  ///< that certainly goes before it
-    Time own{};
-    std::optional<std::size_t> input{};  ///< of a TPDO: the SYNC that it follows
+    std::size_t at = 0;  ///< frames at lower positions of `frames_` go first
+    Time since{};        ///< begin of the period
+    Time work{};         ///< bus time of the frames that certainly go before the frame
+    Time own{};          ///< bus time of the frame itself
+    std::optional<std::size_t> input{};  ///< for a TPDO: number of the SYNC that it follows
     bool output = false;
-    int rounds = 0;  ///< no more SDO answers than those to so many rounds of requests; 0: any
+    int rounds = 0;  ///< rounds of SDO requests whose answers may come; 0 = no limit
   };
 
-  /// What to make of it that outputs may end behind the next SYNC, which leaves the same queue.
+  /// How the analysis treats outputs that may end after the next SYNC is due. SYNC leaves the same
+  /// transmit queue.
   enum class LateSync : std::uint8_t {
-    in_time,      ///< they do not
-    follows_up,   ///< a chain of them, each with the time that the devices take to answer
-    at_any_time,  ///< each for itself is as late as it may
+    in_time,      ///< no output ends that late
+    follows_up,   ///< a chain of late SYNCs, each followed by the device time
+    at_any_time,  ///< each SYNC by itself is as late as possible
   };
 
   std::optional<Time> end_of(const Busy& busy) const;
 
-  /// What comes by itself, with no more SDO answers than those to so many rounds of requests (0:
-  /// any). A round is that of one cycle, or longer. A server is late by one of them at most, and
-  /// has no other request then.
+  /// Bus time of the frames [first, end) of `frames_` that come by themselves within `within`. It
+  /// includes only the SDO answers to `rounds` rounds of requests (0 = no limit). A round lasts one
+  /// cycle or longer. A server is late by at most one round, and has no other request meanwhile.
   Time from_devices(std::size_t first, std::size_t end, int rounds, Time within) const;
 
-  /// What comes with the outputs and the next SYNC, and goes before a frame that is as late.
+  /// Bus time of the frames that come with the outputs and with later SYNCs, and that go before a
+  /// frame that has waited for `waited`.
   Time behind_next_sync(const Busy& busy, Time waited) const;
 
   static std::optional<Time> later(std::optional<Time> a, std::optional<Time> b) {
@@ -52,33 +55,37 @@ class BusyChains : protected CycleFrames {
     return a && b ? std::optional{std::min(*a, *b)} : a ? a : b;
   }
 
-  /// The bus has been busy since the outputs so many cycles ago: with them, with SYNC, and with all
-  /// of the cycles between; with the service frames before them, or as if there were none.
+  /// The bus has been busy since the outputs `cycles` cycles ago: with these outputs, with SYNC and
+  /// with all frames of the cycles between. If `services` is set, the period begins with the
+  /// service frames that were queued before those outputs.
   Busy busy_since_outputs(std::size_t at, int cycles, bool services) const;
 
-  /// The bus has been busy since SYNC so many cycles ago, and the devices have computed since.
+  /// The bus has been busy since the SYNC `cycles` cycles ago. The period includes the device time.
   Busy busy_since_sync(std::size_t at, int cycles) const;
 
-  /// The bus has been busy since SYNC, too, but with no more service frames than fitted in before
-  /// those outputs with their answers.
+  /// The bus has been busy since the SYNC `cycles` cycles ago, but with no more service frames than
+  /// fitted in before the outputs of that cycle together with their answers.
   Busy busy_until_outputs(std::size_t at, int cycles) const;
 
-  /// In each of the cycles the time that devices need, and what may begin in it, but for the last
-  /// beginning; and what goes before the lowest of the master's queue, though not before `at`.
+  /// Additional bus time of a chain of late SYNCs: the device time of each cycle, the frame that
+  /// may begin during it (in all cycles but one), and the frames that go before the lowest frame of
+  /// the master's queue although they do not go before `at`.
   Time follow_up(const Busy& busy, int cycles) const;
 
-  /// SYNC waits behind the outputs before it: they leave one queue.
+  /// How late SYNC may be. It waits behind the outputs of the cycle before in the same transmit
+  /// queue.
   Time sync_late() const noexcept {
     if (!plan_.cycle.makes_sync()) return Time{0};
     return std::max(std::max(outputs_end_, services_end_) - plan_.cycle.period, Time{0});
   }
 
-  /// The frames of one queue go as far down as its lowest.
+  /// Whether the frame at `at` waits for all service frames: it has a lower priority than the
+  /// lowest of them. One queue makes all its frames wait as long as its lowest frame.
   bool waits_for_services(std::size_t at) const noexcept {
     return services_in_queue() && at >= lowest_service_;
   }
 
-  /// Or what waits for SYNC, which leaves that queue.
+  /// Also covers frames that wait behind SYNC in the same transmit queue.
   bool services_count(std::size_t at) const noexcept {
     return waits_for_services(at) || (services_in_queue() && late_ == LateSync::follows_up);
   }
@@ -87,8 +94,8 @@ class BusyChains : protected CycleFrames {
     return std::max(services_end_ - plan_.cycle.output_deadline, Time{0});
   }
 
-  /// What SYNC may wait for. A service frame that goes out right behind the SYNC before is still
-  /// there only if the period is that short.
+  /// Bus time for which SYNC may have to wait. A service frame that follows the SYNC before is
+  /// still in the queue only if the period is short enough.
   Time sync_blocking() const noexcept {
     const Time begun = std::max(sync_blocking_, late_input_);
     const Time relieved = sync_late() + begun + sync_frame() + services_before_sync_;
@@ -100,24 +107,25 @@ class BusyChains : protected CycleFrames {
            plan_.cycle.output_deadline;
   }
 
-  /// The lowest of what leaves the master's queue.
+  /// Position of the frame with the lowest priority in the master's queue.
   std::size_t lowest_queued() const noexcept {
     return services_in_queue() ? std::max(lowest_output_, lowest_service_) : lowest_output_;
   }
 
-  /// What may begin while devices compute; in a chain that is not counted anyway.
+  /// The longest frame that may begin while the devices compute, unless the chain counts it anyway.
   Time gap_blocking() const {
     if (options_.device_time == Time{0}) return Time{0};
     const bool counted = services_in_queue() && late_ == LateSync::follows_up;
     return counted ? queue_blocking_ : outputs_blocking_;
   }
 
-  /// Where the bus is busy for longer than a cycle, the worst need not be in the first one.
-  /// None: it may be busy for ever.
+  /// All busy periods that may precede the frame at `at`. If the bus is busy for longer than a
+  /// cycle, the worst case may lie in any of these cycles. Returns std::nullopt if the bus may be
+  /// busy for ever.
   std::optional<std::vector<Busy>> busy_before(std::size_t at) const;
 
-  Time sync_jitter_{};  ///< of the arrival of another device's SYNC
-  Time outputs_end_{};  ///< at the latest
+  Time sync_jitter_{};  ///< jitter of the arrival of another device's SYNC
+  Time outputs_end_{};  ///< latest end of the outputs
   Time services_end_{};
   Time late_input_{};  ///< the longest TPDO that may have begun just before the next SYNC
   LateSync late_ = LateSync::in_time;

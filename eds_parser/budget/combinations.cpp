@@ -14,13 +14,13 @@ constexpr std::size_t turns_by_level[] = {2, 4, 8, 16, 32};
 constexpr unsigned factors_by_level[] = {2, 4, 8, 16, 32, 64};
 constexpr unsigned percents_by_level[] = {115, 130, 150, 200, 300, 400, 800};
 
-/// One kind of change, from little to much of it.
+/// One kind of change in ascending levels.
 struct Ladder {
-  unsigned cost = 0;  ///< of having it at all
+  unsigned cost = 0;  ///< cost of using this kind of change at all
   std::vector<Suggestion> levels{};
 };
 
-/// How much of each ladder: 0 is none.
+/// The level of each ladder; 0 means that the ladder is not used.
 using Levels = std::array<std::size_t, 5>;
 
 class Combinations {
@@ -114,7 +114,8 @@ class Combinations {
     return sum;
   }
 
-  /// As little of that one as is enough, if more of it is never worse.
+  /// Finds the lowest sufficient level of ladder `which`, provided that a higher level is never
+  /// worse.
   void lower(Levels& levels, std::size_t which, std::size_t least) {
     std::size_t low = least;
     while (low < levels[which]) {
@@ -144,7 +145,8 @@ class Combinations {
     if (best) found_.push_back(*best);
   }
 
-  /// Of all there is, as little as possible, the dearest first.
+  /// Starts with the highest levels of all ladders and lowers each as far as possible, the most
+  /// expensive first.
   void try_all() {
     Levels levels{};
     for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = ladders_[i].levels.size();

@@ -9,8 +9,9 @@ namespace takt {
 /// Whether a network with these changes fits.
 using ChangeFits = std::function<bool(const WhatIf&)>;
 
-/// Two changes, or as many as it takes, that only together make a network fit; the cheapest first,
-/// at most three. Each was tried; no more than a few hundred are.
+/// Returns at most three combinations of changes, the cheapest first. Each combines two or more
+/// changes that make the network fit only together. Each combination was tried; the search tries a
+/// few hundred at most.
 std::vector<Suggestion> cheapest_combinations(const BusPlan& plan, const WhatIf& base,
                                               const ChangeFits& fits);
 

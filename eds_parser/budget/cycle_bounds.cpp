@@ -28,7 +28,7 @@ class CycleAnalysis : BusyChains {
   }
 
  private:
-  /// The master's own frames leave one queue: outputs delay SYNC.
+  /// Bounds SYNC. Outputs delay it, because all frames of the master leave one queue.
   void bound_sync() {
     if (!sync_) return;
     const Time longest = frames_[*sync_].frame;
@@ -51,7 +51,7 @@ class CycleAnalysis : BusyChains {
     }
   }
 
-  /// TPDOs follow SYNC: each of higher priority goes before it once.
+  /// Bounds one TPDO. TPDOs follow SYNC, so each TPDO of higher priority goes before it once.
   std::optional<Time> input_end(std::size_t at, std::size_t cycle) const {
     return end_of_input(at, cycle, input_work(at, cycle));
   }
@@ -63,8 +63,9 @@ class CycleAnalysis : BusyChains {
     return others + inputs_before(at, cycle);
   }
 
-  /// One frame of lower priority may have begun while the device computed; or the one that the
-  /// master sends right behind SYNC, when servers or a full cycle leave no room for long.
+  /// Bus time of the frame that may have begun before the TPDO is ready. It is either a frame of
+  /// lower priority that began while the device computed, or the service frame that the master
+  /// sends right behind SYNC when slow servers or full cycles have left no room for a long time.
   Time begun_before_input(std::size_t at, std::size_t cycle) const {
     Time begun{};
     for (std::size_t k = 0; k < at; ++k) {
@@ -92,8 +93,9 @@ class CycleAnalysis : BusyChains {
     return end;
   }
 
-  /// A SYNC that is waited for is not told from one that was queued later: those before and behind
-  /// it are so much nearer. False: there is no end to it.
+  /// Finds the jitter of another device's SYNC. The analysis cannot distinguish a SYNC that waits
+  /// for the bus from one that was queued later, so the SYNCs before and behind it may be nearer by
+  /// this wait. Returns false if the wait has no bound.
   bool find_sync_jitter() {
     if (!sync_ || plan_.cycle.makes_sync()) return true;
     const auto wait = end_of({.at = *sync_, .work = sync_blocking()});
@@ -101,7 +103,7 @@ class CycleAnalysis : BusyChains {
     return wait.has_value();
   }
 
-  /// False: there is no end to it.
+  /// Bounds the outputs. Returns false if they have no bound.
   bool find_outputs() {
     for (const auto late : {LateSync::in_time, LateSync::follows_up, LateSync::at_any_time}) {
       late_ = late;
@@ -111,7 +113,8 @@ class CycleAnalysis : BusyChains {
     return false;
   }
 
-  /// They may delay SYNC, and that those of the next cycle.
+  /// Iterates, because the outputs may delay SYNC, and a late SYNC delays the outputs of the next
+  /// cycle.
   bool settle_outputs() {
     for (int round = 0; round < most_rounds; ++round) {
       const std::tuple before{outputs_end_, services_end_, late_input_};
@@ -124,7 +127,7 @@ class CycleAnalysis : BusyChains {
     return false;
   }
 
-  /// Those of the queue that the outputs find before them.
+  /// Bounds the service frames that are in the queue before the outputs.
   bool bound_services() {
     if (!services_in_queue()) return true;
     const auto end = end_in_queue(Time{0}, Time{0});
@@ -133,9 +136,9 @@ class CycleAnalysis : BusyChains {
     return services_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
 
-  /// The end of an output, or of nothing, behind the service frames of its cycle. They and the
-  /// answers to them would be through before the outputs, were it not for what comes by itself
-  /// meanwhile.
+  /// The end of an output behind the service frames of its cycle, or the end of these if `before`
+  /// and `own` are 0. The service frames and their answers would end before the outputs if no other
+  /// frames came by themselves meanwhile.
   std::optional<Time> end_in_queue(Time before, Time own) const {
     const std::size_t at = lowest_queued();
     const Time inputs = inputs_around(at);
@@ -168,8 +171,9 @@ class CycleAnalysis : BusyChains {
     return end;
   }
 
-  /// Outputs go out at the output deadline from one queue, in the order of their identifiers:
-  /// what has priority over the lowest of those before may come between.
+  /// Bounds the outputs. The master sends them at the output deadline from one queue in the order
+  /// of their identifiers. Frames with priority over the lowest output sent so far may come
+  /// between.
   bool bound_outputs() {
     Time before{};
     std::size_t lowest = 0;
@@ -181,7 +185,8 @@ class CycleAnalysis : BusyChains {
       if (!bounds_[i]) return false;
       outputs_end_ = std::max(outputs_end_, *bounds_[i]);
     }
-    // Behind those of the cycle before they would wait for what has priority over the last.
+    // Outputs that queue behind those of the cycle before would wait for all frames that have
+    // priority over the last of these.
     return outputs_end_ <= plan_.cycle.period + plan_.cycle.output_deadline;
   }
 
@@ -212,7 +217,7 @@ class CycleAnalysis : BusyChains {
     return std::max(begun, longest_late_input(lowest));
   }
 
-  /// TPDOs that need not have begun before the outputs.
+  /// Finds the TPDOs that may begin after the outputs.
   void find_late_inputs() {
     late_inputs_.assign(frames_.size(), false);
     for (std::size_t i = 0; i < frames_.size(); ++i) {
@@ -231,7 +236,7 @@ class CycleAnalysis : BusyChains {
     return longest;
   }
 
-  /// TPDOs of its cycle that an output may meet.
+  /// Bus time of the TPDOs of the same cycle that an output may meet.
   Time inputs_around(std::size_t lowest) const {
     Time inputs = blocking(lowest, [this](const TrafficFrame& other) {
       return comes_by_itself(other) || is_input(other);
@@ -243,8 +248,8 @@ class CycleAnalysis : BusyChains {
   }
 
   std::vector<std::optional<Time>> bounds_;
-  std::vector<bool> late_inputs_;                  ///< before the outputs are
-  std::optional<std::vector<Busy>> before_queue_;  ///< that may be, as of this round
+  std::vector<bool> late_inputs_;                  ///< TPDOs that may end after the output deadline
+  std::optional<std::vector<Busy>> before_queue_;  ///< busy periods of the current round
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// Frames that count, besides those of the cycle.
+/// Which EMCYs the analysis counts.
 enum class Emcys : std::uint8_t {
   none,
   one_of_each,  ///< every node sends one at the same moment
@@ -15,11 +15,11 @@ enum class Emcys : std::uint8_t {
 
 /// Whether the service frames of the master delay what it sends behind them.
 enum class Services : std::uint8_t {
-  apart,     ///< in a queue of their own, as far as they have not begun
-  in_queue,  ///< one queue for all that it sends, as SocketCAN has it
+  apart,     ///< no: they wait in a separate queue unless they have already begun
+  in_queue,  ///< yes: one queue holds all frames of the master, as in SocketCAN
 };
 
-/// What is on the bus besides the cycle.
+/// The frames that the analysis counts besides those of the cycle.
 struct Company {
   Emcys emcys = Emcys::none;
   Services services = Services::apart;
@@ -27,15 +27,17 @@ struct Company {
 
 struct CycleBounds {
   std::vector<std::optional<Time>> ends;  ///< in the order of `traffic.frames`
-  Time outputs_wait{};                    ///< in_queue: behind service frames
+  Time outputs_wait{};  ///< in_queue: how long the outputs wait behind service frames
 };
 
-/// The latest end of each frame of a cycle; none: no bound, or no frame of the cycle. Times count
-/// from the moment at which the master queues SYNC; where it follows that of another device, from
-/// its arrival (SYNC itself: from being queued).
+/// Returns the latest end of each frame of a cycle. An end is empty if there is no bound or if the
+/// frame does not belong to the cycle. Times count from the moment at which the master queues SYNC.
+/// If the master follows the SYNC of another device, they count from the arrival of that SYNC, and
+/// for SYNC itself from being queued.
 ///
-/// Frames of a cycle are bounded within it: nothing of the cycle before is left, TPDOs become
-/// ready together, outputs go out at the output deadline. All others come whenever they may.
+/// The analysis bounds the frames of a cycle within that cycle: no frame of the cycle before is
+/// left, all TPDOs become ready together, and the outputs are sent at the output deadline. All
+/// other frames may come at any time.
 CycleBounds cycle_bounds(const BusTraffic& traffic, const BusPlan& plan,
                          const BudgetOptions& options, Company company);
 

@@ -37,7 +37,7 @@ void CycleFrames::find_ends_of_cycle() {
   std::ranges::stable_sort(queue_, {}, [this](std::size_t i) { return frames_[i].cob_id; });
   for (const std::size_t i : queue_) lowest_output_ = std::max(lowest_output_, i);
   const auto by_itself = [this](const TrafficFrame& other) { return comes_by_itself(other); };
-  // Another device's SYNC does not wait for what is late of the cycle before.
+  // The SYNC of another device may come while late frames of the cycle before are still being sent.
   const auto meets_sync = [&](const TrafficFrame& other) {
     return by_itself(other) || (other.in_cycle && !plan_.cycle.makes_sync());
   };
@@ -105,7 +105,8 @@ Time CycleFrames::services_in(int cycles) const noexcept {
   return (cycles + cycles_to_relief - 1) / cycles_to_relief * longest_service_;
 }
 
-/// Each kind once a cycle at most; what has a longer period comes once, and once each period.
+/// A frame with a period of at least one cycle comes at most once in a cycle: once at any time, and
+/// then once in each period.
 Time CycleFrames::services_due(int cycles) const noexcept {
   Time sum{};
   for (const auto& frame : frames_) {

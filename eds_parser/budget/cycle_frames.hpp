@@ -8,11 +8,12 @@
 
 namespace takt {
 
-/// The frames of a bus as they meet in a cycle: sums of those that may go before another, without
-/// a word of when.
+/// The frames of a bus as they meet in a cycle. Its functions sum up the bus time of frames that
+/// may go before another frame; they do not compute points in time.
 class CycleFrames {
  protected:
-  static constexpr std::size_t most_turns = 240;  ///< SYNCs until the cycles repeat
+  static constexpr std::size_t most_turns =
+      240;  ///< greatest number of SYNCs until the cycles repeat
   static constexpr std::size_t any_cycle = 1'000'000;
 
   CycleFrames(const BusTraffic& traffic, const BusPlan& plan, const BudgetOptions& options,
@@ -24,7 +25,7 @@ class CycleFrames {
   bool is_output(const TrafficFrame& frame) const noexcept {
     return frame.in_cycle && frame.kind == Traffic::rpdo;
   }
-  /// What the master sends beside the cycle.
+  /// Whether the master sends this frame outside the cycle.
   bool is_service(const TrafficFrame& frame) const noexcept {
     return frame.from_master && !frame.in_cycle;
   }
@@ -33,7 +34,7 @@ class CycleFrames {
            (frame.kind != Traffic::emcy || company_.emcys == Emcys::one_of_each);
   }
 
-  /// The longest frame of lower priority than `at` that may just have begun.
+  /// Bus time of the longest frame of lower priority than `at` that may just have begun.
   template <class MayBlock>
   Time blocking(std::size_t at, MayBlock may_block) const {
     Time longest{};
@@ -43,38 +44,42 @@ class CycleFrames {
     return longest;
   }
 
-  /// The cycle, and what may go before its last frame, need the whole bus.
+  /// Whether the cycle, with all frames that may go before its last one, needs the whole bus.
   bool is_overloaded() const noexcept;
   bool has_turn(const TrafficFrame& frame, std::size_t cycle) const noexcept;
   Time by_themselves(std::size_t first, std::size_t end, Time within) const;
-  /// The master waits no longer for what is late: what else it has to send comes.
+  /// Bus time of the master's frames outside the cycle that go before `at`. They come when the
+  /// master no longer waits for a late TPDO.
   Time by_master(std::size_t at) const;
   Time inputs_before(std::size_t at, std::size_t cycle) const;
-  /// What goes out with the outputs before a TPDO that is as late as they. In its own cycle one of
-  /// lower priority may have begun.
+  /// Bus time of the outputs that go before a TPDO that is still waiting when they are sent. In the
+  /// TPDO's own cycle an output of lower priority may have begun, too.
   Time outputs_before(std::size_t at, std::size_t cycles_later) const;
-  /// Service frames that the master hands over in so many cycles. It looks for room for each and
-  /// its answer before the outputs; in cycles without any it sends one now and then.
+  /// Bus time of the service frames that the master sends in `cycles` cycles. The master sends one
+  /// only if it and its answer fit in before the outputs. If no cycle has room for that, the master
+  /// sends one now and then.
   Time services_in(int cycles) const noexcept;
-  /// The same of one cycle, if TPDOs that are late keep the master until the end of its window.
+  /// The same for one cycle in which late TPDOs keep the master waiting until its receive window
+  /// ends.
   Time services_behind_window() const noexcept;
-  /// Cycles have room for a dialogue.
+  /// Whether a cycle has room for a request with its answer.
   bool has_room_for_services() const noexcept { return room_for_services() >= longest_service_; }
   bool is_answer(const TrafficFrame& frame) const noexcept {
     return frame.kind == Traffic::sdo && !frame.from_master;
   }
-  /// SDO answers to the requests of so many rounds.
+  /// Bus time of the SDO answers to the requests of `rounds` rounds.
   Time answers_in(int rounds) const noexcept;
-  /// Those to the requests of an earlier round: of each node one at most.
+  /// Bus time of the SDO answers to requests of an earlier round: at most one from each node.
   Time late_answers() const noexcept;
   bool services_in_queue() const noexcept {
     return company_.services == Services::in_queue && services_work_ > Time{0};
   }
   Time sync_frame() const noexcept { return sync_ ? frames_[*sync_].frame : Time{0}; }
-  /// As from the arrival of a SYNC that the master follows.
+  /// What to subtract from times so that they count from the arrival of a SYNC that the master
+  /// follows.
   Time origin() const noexcept { return plan_.cycle.makes_sync() ? Time{0} : sync_frame(); }
 
-  /// So many cycles are looked at.
+  /// Number of cycles that the analysis examines.
   std::size_t turns() const noexcept { return turns_ < most_turns ? turns_ : most_turns; }
 
   const std::vector<TrafficFrame>& frames_;
@@ -83,25 +88,26 @@ class CycleFrames {
   Company company_;
   Time bit_;
   std::optional<std::size_t> sync_;
-  std::vector<std::size_t> queue_;  ///< outputs, as they go out
+  std::vector<std::size_t> queue_;  ///< outputs in the order of sending
   std::size_t lowest_output_ = 0;
   Time inputs_work_{};
   Time outputs_work_{};
   Time outputs_blocking_{};
-  Time queue_blocking_{};  ///< services and outputs
+  Time queue_blocking_{};  ///< for service frames and outputs
   Time sync_blocking_{};
-  Time services_work_{};  ///< all kinds, once
+  Time services_work_{};  ///< bus time of all service frames, each once
   Time longest_service_{};
   std::size_t lowest_service_ = 0;
-  Time services_before_sync_{};  ///< of the master, should one be there when SYNC comes
+  Time services_before_sync_{};  ///< of the master's service frames that go before SYNC
 
  private:
-  /// For requests; as much is left for their answers.
+  /// Time for requests in a cycle. The same time is left for their answers.
   Time room_for_services() const noexcept;
   Time services_due(int cycles) const noexcept;
-  /// SYNC, the queue of the outputs, and what may have begun when they are ready.
+  /// Finds SYNC, the queue of the outputs, and the frames that may block them.
   void find_ends_of_cycle();
-  /// The cycles differ where the turns of TPDOs are certain.
+  /// Counts the cycles until they repeat. They differ from each other if the turns of TPDOs are
+  /// certain.
   void count_turns();
 
   std::size_t turns_ = 1;

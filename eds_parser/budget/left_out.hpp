@@ -6,8 +6,9 @@
 
 namespace takt {
 
-/// TPDOs that are on in their devices and may be sent, though the master does not exchange them:
-/// the plan does not know them, the budget does not count them. A sentence each.
+/// Returns one sentence for each TPDO that is enabled in its device but that the master does not
+/// exchange. The device may send it, but the plan does not contain it and the budget does not count
+/// it.
 std::vector<std::string> left_out_tpdos(const Findings& findings);
 
 }  // namespace takt

@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-/// PDOs as they are met, small values in many zeros, have about 2 + 0.9 n stuff bits.
+/// Typical PDOs of n bytes, with small values and many zeros, have about 2 + 0.9 n stuff bits.
 double typical_bits(const TrafficFrame& frame) noexcept {
   return shortest_frame_bits(frame.bytes, frame.cob_id.is_extended()) + 2.0 + 0.9 * frame.bytes;
 }

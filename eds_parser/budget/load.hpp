@@ -3,11 +3,11 @@
 
 namespace takt {
 
-/// Shares of the bus; 1 is all of it.
+/// Shares of the bus capacity; 1 is the whole capacity.
 struct BusLoad {
-  double typical = 0;  ///< SYNC, PDOs, error control and TIME, with as many stuff bits as they have
-  double worst = 0;    ///< the same with worst stuffing
-  double services = 0;  ///< what the master gives to SDO at most, on top of `worst`
+  double typical = 0;   ///< SYNC, PDOs, error control and TIME, with a usual number of stuff bits
+  double worst = 0;     ///< the same with worst stuffing
+  double services = 0;  ///< greatest share of SDO, in addition to `worst`
 };
 
 BusLoad bus_load(const BusTraffic& traffic, std::uint32_t bitrate) noexcept;

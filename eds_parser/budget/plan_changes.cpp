@@ -17,14 +17,14 @@ PdoChange change_of(const BusPlan& plan, const PdoRow& row) {
   return {.node = plan.nodes[row.node_index].name, .tpdo = true, .number = row.number};
 }
 
-/// 100, 200, 500 us or ms steps, as people write periods.
+/// Returns the step, in us, to which people usually round a period of this length.
 std::uint32_t step_of(std::uint32_t period_us) {
   return period_us < 5'000 ? 50 : period_us < 20'000 ? 200 : 1'000;
 }
 
 bool is_event_driven(const PdoRow& row) { return !row.synchronous() && !row.multiplexed(); }
 
-/// As the budget counts it.
+/// The shortest distance of two frames as the budget counts it.
 Time least_distance(const PdoRow& row, Time cycle) {
   if (row.inhibit > Time{0}) return row.inhibit;
   return row.event_timer > Time{0} ? std::min(row.event_timer, cycle) : cycle;

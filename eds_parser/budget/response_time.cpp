@@ -5,14 +5,14 @@
 namespace takt {
 namespace {
 
-constexpr Time longest_busy_period = std::chrono::seconds{10};  // beyond it there is no bound
-constexpr Time::rep recovery_bits = 31;  // after an error, until the bus is free
+constexpr Time longest_busy_period = std::chrono::seconds{10};  // no bound beyond this
+constexpr Time::rep recovery_bits = 31;  // from an error until the bus is free
 
 Time::rep ceil_div(Time time, Time by) noexcept {
   return time <= Time{0} ? 0 : (time.count() + by.count() - 1) / by.count();
 }
 
-/// All frames of a stream that may be queued within `time`.
+/// Bus time of all frames of a stream that may be queued within `time`.
 Time queued_within(Time time, const FrameStream& stream) noexcept {
   return ceil_div(time + stream.jitter, stream.period) * stream.burst * stream.frame;
 }
@@ -68,7 +68,7 @@ class Analysis {
 
   Time errors_within(Time time) const noexcept { return error_time(time, errors_, bit_, longest_); }
 
-  /// Length of the longest time in which the bus is busy with this priority and those above.
+  /// The longest time for which the bus may be busy with this priority and those above it.
   std::optional<Time> busy_period() const noexcept {
     Time time = own_.frame;
     for (;;) {
@@ -80,7 +80,7 @@ class Analysis {
     }
   }
 
-  /// How long the last of instance q waits for the bus.
+  /// How long the last frame of instance q waits for the bus.
   std::optional<Time> queueing(Time::rep q) const noexcept {
     const Time before = ((q + 1) * own_.burst - 1) * own_.frame;
     Time wait = blocking_ + before;

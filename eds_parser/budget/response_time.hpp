@@ -8,28 +8,31 @@
 
 namespace takt {
 
-/// Frames of one identifier: when they come at most, and how long each is on the wire.
+/// Frames of one identifier: how often they come at most, and how long each takes on the wire.
 struct FrameStream {
-  std::uint64_t priority = 0;  ///< the smaller goes first, of equals either; CAN: the identifier
-  Time frame{};                ///< with worst stuffing and interframe space
-  Time period{};               ///< least distance of two; > 0
-  Time jitter{};               ///< how much later than its period one may be queued
-  unsigned burst = 1;          ///< so many at once, each period
-  bool counts = true;          ///< false: it delays no other
+  std::uint64_t priority =
+      0;               ///< a smaller value goes first, equal ones in any order; CAN: the identifier
+  Time frame{};        ///< with worst stuffing and interframe space
+  Time period{};       ///< shortest distance between two frames; > 0
+  Time jitter{};       ///< how much later than its period a frame may be queued
+  unsigned burst = 1;  ///< number of frames at once in each period
+  bool counts = true;  ///< false: it delays no other stream
 };
 
-/// Errors on the wire: `burst` at once, then no two within `interval`. 0: none.
+/// Errors on the wire: `burst` errors at once, then at most one in each `interval`. 0 means no
+/// errors.
 struct WireErrors {
   unsigned burst = 0;
   Time interval{};
 };
 
-/// What errors take within `time`, if the longest frame that is repeated takes `frame`.
+/// Bus time that errors cost within `time`, if the longest repeated frame takes `frame`.
 Time error_time(Time time, const WireErrors& errors, Time bit, Time frame) noexcept;
 
-/// Worst-case time from queueing to the end of the frame, of each stream; none where there is no
-/// bound (its priority and those above it need the whole bus). Davis, Burns, Bril, Lukkien 2007,
-/// with all instances of the busy period. `bit` is one bit time.
+/// Returns for each stream the worst-case time from queueing to the end of the frame. It is empty
+/// if there is no bound, because this priority and those above it need the whole bus. The method is
+/// that of Davis, Burns, Bril, Lukkien 2007, with all instances of the busy period. `bit` is one
+/// bit time.
 std::vector<std::optional<Time>> worst_responses(std::span<const FrameStream> streams, Time bit,
                                                  const WireErrors& errors = {});
 

@@ -9,7 +9,7 @@ namespace takt {
 namespace {
 
 constexpr unsigned longest_data = 8;
-constexpr Time long_cycle = std::chrono::milliseconds{50};  // from here on it has several rounds
+constexpr Time long_cycle = std::chrono::milliseconds{50};  // such a cycle has several rounds
 constexpr Time round_distance = std::chrono::milliseconds{10};
 constexpr int cycles_to_relief = 3;
 
@@ -19,7 +19,7 @@ ServiceShare service_share(const BusPlan& plan, double load_of_others) noexcept 
   const auto& cycle = plan.cycle;
   const TimeBudget wire = time_budget(plan);
   const Time pair = wire_time(2 * std::uint64_t{worst_frame_bits(longest_data)}, plan.bitrate);
-  // What neither the cycle nor the other traffic takes.
+  // The time that neither the cycle nor the other traffic needs.
   const Time left =
       std::chrono::duration_cast<Time>(cycle.period * std::max(0.0, 1.0 - load_of_others)) -
       cycle.quiet_before_sync;
@@ -27,7 +27,7 @@ ServiceShare service_share(const BusPlan& plan, double load_of_others) noexcept 
   const Time round = cycle.period >= long_cycle ? round_distance : cycle.period;
   const Time share =
       std::max(slack, Time{0}) * round.count() / std::max<Time::rep>(cycle.period.count(), 1);
-  // Cycles without room for them are relieved now and then.
+  // If no cycle has room for a request with its answer, the master still sends one now and then.
   if (share < pair) return {.dialogues = 1, .round = cycles_to_relief * round};
   const auto most = std::max<Time::rep>(cycle.service_frames, 1);
   return {.dialogues = static_cast<unsigned>(std::min<Time::rep>(share / pair, most)),

@@ -3,14 +3,14 @@
 
 namespace takt {
 
-/// SDO requests that the master sends in the slack of a cycle, each with its answer.
+/// The SDO requests, each with its answer, that the master sends in the slack of a cycle.
 struct ServiceShare {
-  unsigned dialogues = 1;  ///< in one round
-  Time round{};            ///< a cycle; long ones have several rounds
+  unsigned dialogues = 1;  ///< requests with answers in one round
+  Time round{};            ///< one cycle; a long cycle has several rounds
 };
 
-/// `service_frames`, as far as their answers end before the outputs: the master hands over no
-/// more, and none to a node that has not answered yet.
+/// Returns `service_frames`, limited to the requests whose answers end before the outputs. The
+/// master sends no more than these, and none to a node that has not answered yet.
 ServiceShare service_share(const BusPlan& plan, double load_of_others) noexcept;
 
 }  // namespace takt

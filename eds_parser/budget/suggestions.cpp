@@ -56,7 +56,8 @@ class Search {
     return changes;
   }
 
-  /// The fewest of these that are enough, as far as leaving out one after another finds them.
+  /// The fewest of these changes that are enough. The search leaves out one after another and may
+  /// miss a smaller set.
   std::vector<PdoChange> fewest(std::vector<PdoChange> pdos) const {
     for (std::size_t i = pdos.size(); i-- > 0 && pdos.size() > 1;) {
       auto less = pdos;
@@ -73,7 +74,7 @@ class Search {
     add("lower priority than all synchronous PDOs for " + names_of(moved), with(moved));
   }
 
-  /// As long as the frame may take.
+  /// Tries inhibit times of twice the worst-case time of the frame.
   void try_inhibit_times() {
     const auto budget = bus_budget(plan_, options_);
     std::vector<PdoChange> longer;
@@ -92,7 +93,7 @@ class Search {
     add("longer inhibit times for " + names_of(longer), with(longer));
   }
 
-  /// Synchronous TPDOs by turns, those of lowest priority first.
+  /// Tries synchronous TPDOs that take turns, beginning with those of the lowest priority.
   void try_alternating() {
     for (std::size_t count = 2; count <= most_alternating; count += 2) {
       const auto turns = by_turns(plan_, count);

@@ -8,18 +8,19 @@
 
 namespace takt {
 
-/// A change of a network file with which it fits: it was tried.
+/// A change of a network file that makes the network fit. The change was tried.
 struct Suggestion {
   std::string text;  ///< "SYNC every 2300 us instead of 2000 us"
   WhatIf changes;
 };
 
-/// The plan of the network as it would be; none: it can't be compiled.
+/// Returns the plan of the changed network, or std::nullopt if that cannot be compiled.
 using TryNetwork = std::function<std::optional<BusPlan>(const WhatIf&)>;
 
-/// What makes a network fit that does not, the cheapest first: other identifiers, longer inhibit
-/// times, TPDOs in every second SYNC, a longer period, a higher bit rate. `changes` are in force
-/// already. Where none of these alone is enough: combinations. Empty: nor are they.
+/// Returns the changes that make an overloaded network fit, the cheapest first: other identifiers,
+/// longer inhibit times, TPDOs at every second SYNC, a longer period, a higher bit rate. `changes`
+/// are in force already. If no single change is enough, the result holds combinations of them. It
+/// is empty if these are not enough either.
 std::vector<Suggestion> cheapest_changes(const BusPlan& plan, const WhatIf& changes,
                                          const BudgetOptions& options,
                                          const TryNetwork& try_network);

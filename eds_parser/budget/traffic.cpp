@@ -13,8 +13,8 @@ namespace {
 constexpr unsigned longest_data = 8;
 constexpr Time nmt_interval = std::chrono::seconds{1};
 
-/// Bits in the order of arbitration: a base identifier goes before the extended ones that begin
-/// with it, data before a remote request. ISO 11898-1, 10.4.
+/// Returns the frame's bits in the order of arbitration. A base identifier goes before the extended
+/// identifiers that begin with it, and data go before a remote request. ISO 11898-1, 10.4.
 std::uint64_t rank(const TrafficFrame& frame) noexcept {
   const std::uint64_t id = frame.cob_id.id();
   const std::uint64_t remote = frame.remote_request ? 1 : 0;
@@ -28,7 +28,7 @@ void append(std::string& names, const std::string& name) {
 
 bool is_polled(const PdoRow& pdo) noexcept { return pdo.poll > Time{0} || pdo.poll_syncs != 0; }
 
-/// Types 252 and 253: no event sends them.
+/// Whether the device sends the PDO only on request (types 252 and 253), never on an event.
 bool only_on_request(const PdoRow& pdo) noexcept {
   return pdo.transmission == 252 || pdo.transmission == 253;
 }
@@ -96,7 +96,8 @@ class TrafficCollector {
     }
   }
 
-  /// Of those who wait for the next frame so long, the one with the least patience counts.
+  /// Limits a frame by a receiver that waits at most `wait` for the next one. The shortest limit
+  /// counts.
   static void limit_by_wait(TrafficFrame& frame, Time wait, std::string who) {
     if (wait <= Time{0}) return;
     const Time beyond_period = std::max(wait - frame.period, Time{0});
@@ -106,7 +107,7 @@ class TrafficCollector {
     frame.waits = std::move(who);
   }
 
-  /// Devices that watch these heartbeats.
+  /// Limits a frame by the devices that watch the heartbeats of `producer`.
   void limit_by_consumers(TrafficFrame& frame, NodeId producer) const {
     for (const auto& node : plan_.nodes) {
       for (const auto& watch : node.watches) {
@@ -120,7 +121,7 @@ class TrafficCollector {
     return std::string{kind} + std::to_string(pdo.number) + ' ' + plan_.nodes[pdo.node_index].name;
   }
 
-  /// An MPDO is a row for each object; their frames share one identifier.
+  /// An MPDO has one row for each object. The frames of these rows share one identifier.
   bool joins_frame_of_its_mpdo(const PdoRow& pdo, Traffic kind) {
     if (!pdo.multiplexed()) return false;
     const auto same = std::ranges::find_if(out_.frames, [&](const TrafficFrame& frame) {
@@ -153,7 +154,7 @@ class TrafficCollector {
                        .in_cycle = plan_.cycle.sync && !pdo.on_request,
                        .bytes = pdo.length});
     set_rate(frame, pdo);
-    // Its own types are all due at the same SYNC.
+    // The master's own cyclic PDOs are all due at the same SYNC.
     if (frame.every > 1) frame.turn.reset();
   }
 
@@ -196,7 +197,7 @@ class TrafficCollector {
     }
   }
 
-  /// An event timer is one more cause to send; no cause sends within the inhibit time.
+  /// An event timer is an additional cause of sending. No cause sends within the inhibit time.
   void set_rate_of_events(TrafficFrame& frame, const PdoRow& pdo) {
     if (pdo.inhibit > Time{0}) {
       frame.period = pdo.inhibit;
@@ -215,7 +216,8 @@ class TrafficCollector {
     frame.why = BudgetLimit::own_period;
   }
 
-  /// By the SYNC counter, if it turns over with the same phase each time.
+  /// The turn that the SYNC counter determines, if the counter overflows with the same phase each
+  /// time.
   std::optional<std::uint16_t> certain_turn(const PdoRow& pdo) const {
     const unsigned overflow = plan_.cycle.sync_overflow;
     if (pdo.sync_start == 0 || overflow < 2 || overflow % pdo.transmission != 0) return {};
@@ -245,7 +247,8 @@ class TrafficCollector {
     limit_by_consumers(frame, node.id);
   }
 
-  /// The device misses requests by its life guarding, the master answers.
+  /// The device detects missing requests by its life guarding, and the master detects missing
+  /// answers.
   void add_guarding(const NodePlan& node) {
     const auto id = CobId::base(0x700U + node.id.value());
     auto& request = add({.name = "guard request " + node.name,
@@ -264,7 +267,7 @@ class TrafficCollector {
     limit_by_wait(answer, node.guard.life_time(), "the master");
   }
 
-  /// The identifiers of the first node stand for those of all.
+  /// The identifiers of the first node represent those of all nodes.
   void collect_sdo() {
     if (plan_.nodes.empty()) return;
     const unsigned first = plan_.nodes.front().id.value();
@@ -318,7 +321,7 @@ class TrafficCollector {
   const BudgetOptions& options_;
   ServiceShare services_;
   BusTraffic out_;
-  std::string by_timer_;  ///< names
+  std::string by_timer_;  ///< names of the frames that are sent by a timer
 };
 
 }  // namespace

@@ -9,15 +9,16 @@
 
 namespace takt {
 
-/// What the analysis takes for granted where the plan does not say it.
+/// The assumptions of the analysis on what the plan does not contain.
 struct BudgetOptions {
-  /// Of the slowest device, from the end of SYNC to its TPDO being ready for the bus.
+  /// Time that the slowest device needs from the end of SYNC until its TPDO is ready to be sent.
   Time device_time = std::chrono::microseconds{30};
-  Time emcy_interval = std::chrono::milliseconds{100};  ///< least distance of two EMCYs of a node
+  Time emcy_interval =
+      std::chrono::milliseconds{100};  ///< shortest distance of two EMCYs of a node
   WireErrors errors{};
 };
 
-/// What a frame is on the bus for.
+/// The purpose of a frame.
 enum class Traffic : std::uint8_t {
   nmt,
   time,
@@ -30,14 +31,14 @@ enum class Traffic : std::uint8_t {
   error_control,  ///< heartbeats, answers to guarding
 };
 
-/// Why a frame must be through at some time.
+/// The reason for which a frame must have ended at some time.
 enum class BudgetLimit : std::uint8_t {
   none,
-  receive_window,   ///< of the master: later it counts as missing
-  output_deadline,  ///< the same, where it comes before that window
+  receive_window,   ///< of the master; a PDO that ends later counts as missing
+  output_deadline,  ///< the same, if the deadline is earlier than the end of that window
   sync_window,      ///< 0x1007 of the devices
-  own_period,       ///< its next frame comes
-  patience,         ///< somebody waits for it no longer: SDO timeout, heartbeat consumer
+  own_period,       ///< the next frame of the same kind comes
+  patience,         ///< the receiver's time-out expires: SDO time-out, heartbeat consumer
 };
 
 /// All frames of one identifier and sender.
@@ -47,31 +48,31 @@ struct TrafficFrame {
   CobId cob_id{};
   bool remote_request = false;
   bool from_master = false;
-  bool in_cycle = false;  ///< SYNC, what follows it at once, what goes out with the outputs
-  bool awaited = false;   ///< the master does nothing else before it is there
+  bool in_cycle = false;  ///< SYNC, the TPDOs that follow it at once, and the outputs
+  bool awaited = false;   ///< the master sends nothing else before it has arrived
   std::uint8_t bytes = 0;
-  std::uint16_t every = 1;              ///< in_cycle: SYNCs from one to the next
-  std::optional<std::uint16_t> turn{};  ///< SYNC number modulo `every`, where it is certain
-  unsigned burst = 1;                   ///< so many at once
-  Time frame{};                         ///< one, with worst stuffing
-  Time period{};                        ///< least distance of two
+  std::uint16_t every = 1;              ///< in_cycle: number of SYNCs from one frame to the next
+  std::optional<std::uint16_t> turn{};  ///< SYNC number modulo `every`, if it is certain
+  unsigned burst = 1;                   ///< number of frames at once
+  Time frame{};                         ///< bus time of one frame with worst stuffing
+  Time period{};                        ///< shortest distance of two frames
   Time jitter{};
   bool period_assumed = false;
-  bool on_change = false;       ///< sent when its values change, not by time
-  std::optional<Time> limit{};  ///< from being queued to its end
+  bool on_change = false;       ///< sent when its values change, not periodically
+  std::optional<Time> limit{};  ///< longest time from being queued to its end
   BudgetLimit why = BudgetLimit::none;
-  std::string waits{};   ///< patience: whose, "arm (0x1016)"
-  bool answers = false;  ///< the limit counts from its request being queued
+  std::string waits{};   ///< patience: who waits, for example "arm (0x1016)"
+  bool answers = false;  ///< the limit counts from the moment its request was queued
 
   bool by_itself() const noexcept { return !from_master && !in_cycle; }
 };
 
-/// The frames of a bus, the highest priority first.
+/// The frames of a bus in order of priority, the highest first.
 struct BusTraffic {
   std::vector<TrafficFrame> frames;
   unsigned service_dialogues = 0;  ///< requests with their answers in one `service_round`
   Time service_round{};
-  std::vector<std::string> assumptions{};  ///< a sentence each
+  std::vector<std::string> assumptions{};  ///< one sentence each
 };
 
 BusTraffic bus_traffic(const BusPlan& plan, const BudgetOptions& options);

@@ -27,7 +27,7 @@ std::optional<T> number(std::string_view text, T least, T most) {
   return good ? std::optional{value} : std::nullopt;
 }
 
-/// "1500us", "2ms", "1s".
+/// Reads a time such as "1500us", "2ms" or "1s".
 std::optional<std::uint32_t> microseconds(std::string_view text) {
   const auto unit = text.find_first_not_of("0123456789");
   if (unit == std::string_view::npos) return std::nullopt;
@@ -45,7 +45,7 @@ PdoChange& change_of(WhatIf& changes, PdoChange pdo) {
   return same != changes.pdos.end() ? *same : changes.pdos.emplace_back(std::move(pdo));
 }
 
-/// CiA 301, tables 69 and 72.
+/// Whether a transmission type is reserved. CiA 301, tables 69 and 72.
 bool is_reserved(std::uint8_t transmission, bool tpdo) {
   return transmission > 240 && transmission < (tpdo ? 252 : 254);
 }
@@ -73,7 +73,7 @@ bool set_pdo(std::string_view what, std::string_view value, PdoChange& pdo) {
   return true;
 }
 
-/// `elbow.tpdo2` or `elbow.tpdo2.start`.
+/// Reads a key such as `elbow.tpdo2` or `elbow.tpdo2.start`.
 bool add_pdo_change(std::string_view key, std::string_view value, WhatIf& changes) {
   for (const std::string_view kind : {".tpdo", ".rpdo"}) {
     const auto at = key.rfind(kind);

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// As an EDS writes it: "ro", "const".
+/// Returns the access type as an EDS writes it, for example "ro" or "const".
 std::string_view access_name(Access access) noexcept;
 
 }  // namespace takt

@@ -34,7 +34,7 @@ enum class DataType : std::uint16_t {
   unsigned64 = 0x1B,
 };
 
-/// Width in bits; 0 where the type has no fixed width (strings, domains, unknown codes).
+/// Width in bits; 0 if the type has no fixed width (strings, domains, unknown codes).
 constexpr unsigned bit_width(DataType type) noexcept {
   switch (type) {
     case DataType::boolean:
@@ -77,7 +77,7 @@ constexpr unsigned bit_width(DataType type) noexcept {
   return 0;
 }
 
-/// Bytes on the wire by SDO (a BOOLEAN travels as one byte); 0 where not fixed.
+/// Number of bytes in an SDO transfer (a BOOLEAN takes one byte); 0 if the width is not fixed.
 constexpr unsigned byte_width(DataType type) noexcept { return (bit_width(type) + 7) / 8; }
 
 constexpr bool is_signed(DataType type) noexcept {
@@ -100,10 +100,10 @@ constexpr bool is_real(DataType type) noexcept {
   return type == DataType::real32 || type == DataType::real64;
 }
 
-/// Strings, domains and unknown codes: bytes of any length.
+/// Whether a value is a byte sequence of any length: strings, domains and unknown codes.
 constexpr bool is_bytes(DataType type) noexcept { return bit_width(type) == 0; }
 
-/// `INTEGER32`, as CiA 301 writes it; `unknown` for other codes.
+/// Returns the name in CiA 301, for example `INTEGER32`, or `unknown` for other codes.
 std::string_view name(DataType type) noexcept;
 
 }  // namespace takt

@@ -13,7 +13,7 @@ namespace takt {
 /// SDO access of an object. CiA 306, 4.6.3.2.
 enum class Access : std::uint8_t { ro, wo, rw, rwr, rww, constant };
 
-/// One object or sub-object of a device as the simulation holds it.
+/// One object or sub-object of a simulated device.
 struct DeviceObject {
   ObjectKey key;
   DataType type = DataType::unknown;
@@ -24,16 +24,17 @@ struct DeviceObject {
   std::optional<std::int64_t> high_limit;
 };
 
-/// An EDS or DCF turned into what a simulated device starts with; $NODEID is resolved.
+/// The object dictionary with which a simulated device starts, from an EDS or DCF. $NODEID is
+/// resolved.
 struct DeviceTable {
   NodeId node;
   std::string name;
-  std::vector<DeviceObject> objects;  ///< ascending key
-  std::uint8_t granularity = 8;       ///< 0: mapping is fixed
-  std::uint8_t dummy_usage = 0;       ///< bit n: data type n may be mapped as a dummy
+  std::vector<DeviceObject> objects;  ///< in ascending order of their keys
+  std::uint8_t granularity = 8;       ///< of PDO mapping, in bits; 0 = the mapping is fixed
+  std::uint8_t dummy_usage = 0;       ///< bit n set: data type n may be mapped as a dummy
   std::string model;                  ///< "drive402", "io401", "lenze8400", "plain" ...
   std::vector<std::string> quirks;    ///< "late_bootup", ...
-  std::string firmware{};             ///< "15.02.00"; empty: the newest that the model knows
+  std::string firmware{};             ///< "15.02.00"; empty = the newest that the model knows
 };
 
 }  // namespace takt

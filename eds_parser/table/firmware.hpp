@@ -10,13 +10,13 @@
 
 namespace takt {
 
-/// A firmware version as "15.02" or "16.00.00"; parts that are not given are 0.
+/// A firmware version such as "15.02" or "16.00.00". Parts that are not given are 0.
 struct Firmware {
   std::array<std::uint16_t, 3> parts{};
 
   constexpr auto operator<=>(const Firmware&) const noexcept = default;
 
-  /// None: not one to three numbers of 0..65535 with dots between them.
+  /// Returns std::nullopt unless `text` is one to three numbers of 0..65535 separated by dots.
   static std::optional<Firmware> parse(std::string_view text) noexcept {
     Firmware version;
     const char* at = text.data();
@@ -31,7 +31,7 @@ struct Firmware {
     return {};
   }
 
-  /// The first version in a text such as "V16.00 build 7" (0x100A).
+  /// Finds the first version in a text such as "V16.00 build 7" (0x100A).
   static std::optional<Firmware> find_in(std::string_view text) noexcept {
     constexpr std::string_view digits = "0123456789";
     const std::size_t first = text.find_first_of(digits);
@@ -45,13 +45,14 @@ struct Firmware {
       text = text.substr(0, dot);
     }
   }
-  /// 0x1018:03 of a device whose revision is its firmware: main version in the upper half.
+  /// The version in 0x1018:03 of a device whose revision number is its firmware version. The upper
+  /// half holds the main version.
   static constexpr Firmware of_revision(std::uint32_t revision) noexcept {
     return {{static_cast<std::uint16_t>(revision >> 16),
              static_cast<std::uint16_t>(revision & 0xFFFF), 0}};
   }
 
-  /// As one number, 16 bits a part.
+  /// The version as one number with 16 bits for each part.
   constexpr std::int64_t packed() const noexcept {
     return std::int64_t{parts[0]} << 32 | std::int64_t{parts[1]} << 16 | parts[2];
   }

@@ -6,7 +6,8 @@
 
 namespace takt {
 
-/// Address of one device on the bus, 1..127. There is no invalid NodeId. CiA 301, 7.3.3.
+/// Address of one device on the bus, 1..127. An object of this type is always valid. CiA
+/// 301, 7.3.3.
 class NodeId {
  public:
   static constexpr std::optional<NodeId> from(unsigned value) noexcept {
@@ -16,7 +17,7 @@ class NodeId {
   constexpr std::uint8_t value() const noexcept { return value_; }
   constexpr auto operator<=>(const NodeId&) const noexcept = default;
 
-  /// `5_node`; a literal outside 1..127 does not compile.
+  /// The literal `5_node`; a value outside 1..127 does not compile.
   friend consteval NodeId operator""_node(unsigned long long value);
 
  private:
@@ -33,9 +34,9 @@ consteval NodeId operator""_node(unsigned long long value) {
 class CobId {
  public:
   constexpr CobId() noexcept = default;
-  /// 11-bit identifier; higher bits are cut.
+  /// Makes an 11-bit identifier; higher bits are cut.
   static constexpr CobId base(std::uint32_t id) noexcept { return CobId{id & 0x7FF}; }
-  /// 29-bit identifier; higher bits are cut.
+  /// Makes a 29-bit identifier; higher bits are cut.
   static constexpr CobId extended(std::uint32_t id) noexcept {
     return CobId{(id & 0x1FFF'FFFF) | extended_flag};
   }
@@ -56,11 +57,11 @@ struct ObjectKey {
   constexpr auto operator<=>(const ObjectKey&) const noexcept = default;
 };
 
-/// `0x6041`, four digits or more.
+/// Formats a value as `0x6041`, with at least `digits` digits.
 std::string hex(std::uint32_t value, int digits = 4);
-/// `6041:00`.
+/// Formats an object as `6041:00`.
 std::string to_string(ObjectKey key);
-/// `0x185`, or `0x00012345` for 29 bits.
+/// Formats an identifier as `0x185`, or as `0x00012345` if it has 29 bits.
 std::string to_string(CobId id);
 
 }  // namespace takt

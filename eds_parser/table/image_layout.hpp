@@ -11,7 +11,7 @@
 
 namespace takt {
 
-/// What becomes of an output when its command has outlived its time to live.
+/// What the master does with an output when its command has exceeded its time to live.
 enum class Fallback : std::uint8_t {
   hold,   ///< keep the last commanded value
   value,  ///< send Signal::fallback_value (zero, a safe value, the quick stop controlword)
@@ -19,34 +19,33 @@ enum class Fallback : std::uint8_t {
 
 /// One value of the process image: its place, its meaning and its unit.
 struct Signal {
-  std::string
-      name;  ///< snake_case of the EDS name, unique within its node: "position_actual_value"
+  std::string name;  ///< EDS name in snake_case, unique in its node: "position_actual_value"
   NodeId node;
   std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
   ObjectKey object;
   DataType type = DataType::unknown;
   std::uint8_t bits = 0;
-  bool output = false;    ///< mapped into an RPDO: the master sends it
-  std::uint16_t row = 0;  ///< its PDO: row of PdoTable::tpdos or ::rpdos
+  bool output = false;    ///< true: mapped into an RPDO, so that the master sends it
+  std::uint16_t row = 0;  ///< row of its PDO in PdoTable::tpdos or ::rpdos
 
   double scale = 1.0;  ///< SI value = raw * scale + offset
   double offset = 0.0;
-  std::string unit;  ///< "rad", "rad/s"; empty: a raw count
+  std::string unit;  ///< "rad", "rad/s"; empty = raw count
 
   // outputs only
   Fallback fallback = Fallback::hold;
   std::int64_t fallback_value = 0;
   std::uint32_t fallback_cycles = 0;       ///< time to live of a command in cycles; 0 = no limit
-  std::optional<std::int64_t> safe_value;  ///< sent before the first command
-  std::optional<SignalIndex> seeded_from;  ///< input that gives the first value (6064 -> 607A)
+  std::optional<std::int64_t> safe_value;  ///< value to send before the first command
+  std::optional<SignalIndex> seeded_from;  ///< input that provides the first value (6064 -> 607A)
 };
 
-/// Order and meaning of all values of a bus: inputs first, then outputs; within each by object,
-/// then by node, so that the same object of all axes is one contiguous column.
+/// Order and meaning of all values of a bus. Inputs come first, then outputs. Each group is sorted
+/// by object and then by node, so that the same object of all axes is one contiguous column.
 struct ImageLayout {
   std::vector<Signal> signals;
   std::size_t inputs = 0;  ///< signals [0, inputs) are inputs, the rest outputs
-  std::uint64_t hash = 0;  ///< of names, objects, types, units and order; repeated by image_t
+  std::uint64_t hash = 0;  ///< covers names, objects, types, units and order; image_t repeats it
 
   std::size_t outputs() const noexcept { return signals.size() - inputs; }
 };

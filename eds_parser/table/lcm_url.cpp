@@ -14,7 +14,7 @@ std::unexpected<std::string> wrong(std::string_view text, std::string_view why) 
   return std::unexpected{"LCM url '" + std::string{text} + "': " + std::string{why}};
 }
 
-/// `127.0.0.1:7700`, both parts optional. False: not a port.
+/// Reads `127.0.0.1:7700`, in which both parts are optional. Returns false if the port is invalid.
 bool read_network(std::string_view network, LcmUrl& url) {
   const std::size_t colon = network.find(':');
   if (colon != 0 && !network.empty()) url.address = network.substr(0, colon);
@@ -24,7 +24,7 @@ bool read_network(std::string_view network, LcmUrl& url) {
   return error == std::errc{} && end == port.data() + port.size();
 }
 
-/// First number of `a.b.c.d`; none: not a dotted address.
+/// Returns the first number of `a.b.c.d`, or std::nullopt if the text is not a dotted address.
 std::optional<unsigned> first_of_dotted(std::string_view address) {
   std::optional<unsigned> first;
   const char* at = address.data();

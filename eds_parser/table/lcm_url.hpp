@@ -6,15 +6,15 @@
 
 namespace takt {
 
-/// `scheme://address:port?...`, as far as takt has to understand it.
+/// The parts of `scheme://address:port?...` that takt needs.
 struct LcmUrl {
-  std::string text;     ///< as it was given
+  std::string text;     ///< the unchanged text
   std::string scheme;   ///< "udpm", "tcpq", "memq", "file"
-  std::string address;  ///< dotted IPv4; of the scheme's default where none is given
+  std::string address;  ///< dotted IPv4; the scheme's default if none is given
   std::uint16_t port = 0;
 };
 
-/// An error is a sentence: what is wrong and what would be right.
+/// Parses a URL. The error is a sentence that says what is wrong and what is expected.
 std::expected<LcmUrl, std::string> parse_lcm_url(std::string_view text);
 
 }  // namespace takt

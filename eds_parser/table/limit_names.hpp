@@ -6,20 +6,21 @@
 
 namespace takt {
 
-/// As the keys of `limits:`.
+/// Returns the key of the limit in `limits:` of the network file.
 std::string_view name(LimitKind kind) noexcept;
-/// `file`, `device`, `none`.
+/// Returns `file`, `device` or `none`.
 std::string_view name(LimitSource source) noexcept;
 
-/// What a device says of its range is a limit: it is neither empty nor the whole of an INTEGER16 or
-/// INTEGER32.
+/// Whether the range that a device reports is a real limit. It is none if it is empty or covers the
+/// whole of an INTEGER16 or INTEGER32.
 constexpr bool plausible_range(std::int64_t low, std::int64_t high) noexcept {
   const bool whole16 = low <= -0x7FFF && high == 0x7FFF;
   const bool whole32 = low <= -0x7FFF'FFFFLL || high >= 0x7FFF'FFFFLL;
   return low < high && !whole16 && !whole32;
 }
 
-/// The same of a magnitude: neither 0 nor the highest value of its type.
+/// Whether a reported magnitude is a real limit. It is none if it is 0 or the highest value of its
+/// type.
 constexpr bool plausible_size(std::int64_t value) noexcept {
   return value > 0 && value != 0xFFFF && value < 0x7FFF'FFFF;
 }

@@ -4,15 +4,15 @@
 
 namespace takt {
 
-/// What tells a device from all others: vendor id, product code, revision, serial number
-/// (0x1018:01..04). CiA 305, 3.1.
+/// The numbers that together identify one device: vendor-ID, product code, revision number, serial
+/// number (0x1018:01..04). CiA 305, 3.1.
 using LssAddress = std::array<std::uint32_t, 4>;
 
-/// A node gets its id by LSS where it has none.
+/// How a node that has no node-ID gets one by LSS.
 struct LssPlan {
   LssAddress address{};
-  LssAddress known{};  ///< bits of `address` that are given; the others are found by fastscan
-  bool store = true;   ///< the device keeps the id
+  LssAddress known{};  ///< mask of the known bits of `address`; fastscan finds the others
+  bool store = true;   ///< the device stores the node-ID permanently
 };
 
 }  // namespace takt

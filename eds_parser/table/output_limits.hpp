@@ -10,87 +10,88 @@
 
 namespace takt {
 
-/// What a limit bounds.
+/// The quantity that a limit bounds.
 enum class LimitKind : std::uint8_t {
   position,
   velocity,
   acceleration,
-  jerk,  ///< not checked: set-points of whole counts can't show it
+  jerk,  ///< not checked, because set-points in whole counts cannot show it
   step,
   torque,
-  range,  ///< of a single output
+  range,  ///< range of a single output
 };
 
 /// Where a limit comes from.
 enum class LimitSource : std::uint8_t {
-  none,    ///< there is no limit
+  none,    ///< no limit is known
   file,    ///< `limits:` of the network file
-  device,  ///< the device tells it in each boot
+  device,  ///< the master reads it from the device in each boot
 };
 
-/// One limit as people see it: what `takt plan` prints. Values in `unit`.
+/// One limit in the form that `takt plan` prints. Values are in `unit`.
 struct LimitLine {
   std::uint8_t node_index = 0;  ///< position in BusPlan::nodes
-  std::uint8_t axis = 0;        ///< 1..8; 0: of the single output `object`
-  ObjectKey object{};           ///< the single output; `source` device: what is read in a boot
+  std::uint8_t axis = 0;        ///< 1..8; 0 = the limit of the single output `object`
+  ObjectKey object{};           ///< single output; with `source` device the object read in a boot
   LimitKind kind = LimitKind::range;
   LimitSource source = LimitSource::none;
   std::optional<double> low{};   ///< position and range only
-  std::optional<double> high{};  ///< upper limit, or greatest magnitude
+  std::optional<double> high{};  ///< upper limit or greatest magnitude
   std::string unit{};
-  double scale = 1.0;                  ///< `source` device: value of the object x scale + offset,
-  double offset = 0.0;                 ///< in `unit`
-  std::vector<SignalIndex> signals{};  ///< the outputs that are checked; none: nothing is
-  std::string proposal{};              ///< `velocity: 2.5`; where there is no limit
-  std::string because{};               ///< where the proposal comes from
+  double scale = 1.0;   ///< `source` device: limit = value of the object x scale + offset,
+  double offset = 0.0;  ///< in `unit`
+  std::vector<SignalIndex> signals{};  ///< outputs that are checked; empty = no check
+  std::string proposal{};              ///< `velocity: 2.5`; only if there is no limit
+  std::string because{};               ///< reason for the proposal
 };
 
-/// What the bus thread checks of one output, in raw counts. Rates count per cycle: the bus thread
-/// multiplies them with the cycles that have passed.
+/// The limits of one output that the bus thread checks, in raw counts. Rates are per cycle: the bus
+/// thread multiplies them by the number of cycles that have passed.
 struct OutputLimit {
   static constexpr double none = std::numeric_limits<double>::infinity();
 
   SignalIndex signal = 0;
   double low = -none;
   double high = none;
-  LimitKind range = LimitKind::range;  ///< what `low` and `high` bound
+  LimitKind range = LimitKind::range;  ///< quantity that `low` and `high` bound
   double step = none;                  ///< greatest difference in one cycle
-  double rate = none;                  ///< the same, from a velocity or an acceleration
+  double rate = none;                  ///< as `step`, derived from a velocity or an acceleration
   LimitKind rate_of = LimitKind::velocity;
-  double bend = none;    ///< greatest change of the difference: an acceleration, per cycle squared
-  double modulus = 0.0;  ///< differences count modulo this; 0: they don't
+  double bend = none;    ///< greatest change of the difference (acceleration), per cycle squared
+  double modulus = 0.0;  ///< differences count modulo this; 0 = no modulo
   bool wraps = false;    ///< differences count modulo the width of the object
-  std::optional<SignalIndex> feedback{};      ///< 6064: a set-point may begin there
-  std::optional<SignalIndex> statusword{};    ///< tells whether the drive follows set-points
-  std::optional<SignalIndex> mode{};          ///< 6060, where it is an output
+  std::optional<SignalIndex> feedback{};  ///< 6064: value from which the first set-point may start
+  std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
+  std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
-  bool profile = false;  ///< 6060 is no output, and the file sets profile position mode
+  bool profile = false;  ///< 6060 is not an output, and the file sets profile position mode
 };
 
-/// What a value that is read from a device becomes.
+/// The field of OutputLimit that a value read from a device sets.
 enum class DeviceBound : std::uint8_t {
-  range,  ///< OutputLimit::low, and OutputLimit::high from the next sub-index; INTEGER32
-  size,   ///< both, as a magnitude; UNSIGNED32
+  range,  ///< OutputLimit::low, with OutputLimit::high from the next sub-index; INTEGER32
+  size,   ///< both, as a symmetric magnitude; UNSIGNED32
   rate,   ///< OutputLimit::rate; UNSIGNED32
   bend,   ///< OutputLimit::bend; UNSIGNED32
 };
 
-/// A limit that a device tells in each boot. It holds where it is plausible, see limit_names.hpp.
+/// A limit that the master reads from a device in each boot. The master uses it only if it is
+/// plausible, see limit_names.hpp.
 struct DeviceLimit {
   std::uint8_t node_index = 0;
   ObjectKey object{};
   SignalIndex signal = 0;
   DeviceBound bound = DeviceBound::size;
-  double factor = 1.0;     ///< value of the device x factor = the bound in counts of the signal
-  std::uint16_t line = 0;  ///< place in LimitsPlan::lines
+  double factor = 1.0;     ///< bound in counts of the signal = value of the device x factor
+  std::uint16_t line = 0;  ///< position in LimitsPlan::lines
 };
 
-/// Where the upper end of a range is.
+/// The object that holds the upper end of a range.
 constexpr ObjectKey upper_object(const DeviceLimit& limit) noexcept {
   return {limit.object.index, static_cast<std::uint8_t>(limit.object.sub + 1)};
 }
 
-/// A limit as a boot has read it.
+/// The value of a limit that a boot has read.
 struct LimitReading {
   ObjectKey object{};
   std::uint32_t value = 0;
@@ -98,9 +99,9 @@ struct LimitReading {
 
 /// All limits of a bus.
 struct LimitsPlan {
-  std::vector<OutputLimit> outputs{};  ///< ascending signals
-  std::vector<DeviceLimit> device{};   ///< by node
-  std::vector<LimitLine> lines{};      ///< by node, axis and kind
+  std::vector<OutputLimit> outputs{};  ///< in ascending order of their signals
+  std::vector<DeviceLimit> device{};   ///< sorted by node
+  std::vector<LimitLine> lines{};      ///< sorted by node, axis and kind
 };
 
 }  // namespace takt

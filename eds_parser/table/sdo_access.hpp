@@ -16,34 +16,34 @@ struct SdoChannel {
   constexpr bool operator==(const SdoChannel&) const noexcept = default;
 };
 
-/// The channel that every device has. CiA 301, 7.3.3.
+/// The default SDO channel of a device. CiA 301, 7.3.3.
 constexpr SdoChannel default_sdo_channel(NodeId server) noexcept {
   return {CobId::base(0x600U + server.value()), CobId::base(0x580U + server.value())};
 }
 
-/// Block transfers of values that are large enough for it.
+/// Whether the master uses block transfers for large values.
 enum class SdoBlockUse : std::uint8_t {
-  automatic,  ///< where the device knows them
+  automatic,  ///< if the device supports them
   off,
 };
 
-/// A longer (or shorter) wait for one object: flash, parameters that are stored.
+/// A longer (or shorter) time-out for one object, for example one that writes flash.
 struct SdoObjectTimeout {
   std::uint16_t index = 0;
-  std::optional<std::uint8_t> sub{};  ///< none: every sub-index
+  std::optional<std::uint8_t> sub{};  ///< empty = every sub-index
   Time timeout{};
 };
 
-/// How the master talks to the SDO server of one node.
+/// How the master accesses the SDO server of one node.
 struct SdoAccess {
-  std::optional<SdoChannel> channel{};  ///< none: the default channel
+  std::optional<SdoChannel> channel{};  ///< empty = the default channel
   SdoBlockUse block = SdoBlockUse::automatic;
   std::vector<SdoObjectTimeout> timeouts{};
 
   SdoChannel channel_of(NodeId node) const noexcept {
     return channel.value_or(default_sdo_channel(node));
   }
-  /// `otherwise` where the object has no time-out of its own.
+  /// Returns the time-out of the object, or `otherwise` if none is set for it.
   Time timeout_of(ObjectKey key, Time otherwise) const noexcept {
     for (const SdoObjectTimeout& entry : timeouts) {
       if (entry.index == key.index && (!entry.sub || *entry.sub == key.sub)) return entry.timeout;

@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// The TPDO that carries an input; null: there is none.
+/// Returns the TPDO that carries an input, or null if there is none.
 inline const PdoRow* tpdo_of(const PdoTable& pdos, SignalIndex input) noexcept {
   for (const PdoRow& pdo : pdos.tpdos) {
     const auto fields = std::span{pdos.fields}.subspan(pdo.first_field, pdo.field_count);
@@ -15,7 +15,7 @@ inline const PdoRow* tpdo_of(const PdoTable& pdos, SignalIndex input) noexcept {
   return nullptr;
 }
 
-/// Whether the device sends this TPDO only by event, so that the first one may never come.
+/// Whether the device sends this TPDO only on events, so that the first one may never come.
 constexpr bool comes_by_event_alone(const PdoRow& tpdo) noexcept {
   return tpdo.transmission >= 254 && tpdo.event_timer == Time{};
 }

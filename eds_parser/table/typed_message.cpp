@@ -9,8 +9,8 @@
 namespace takt {
 namespace {
 
-/// Words of C, C++, Java, Python and LCM, what their C libraries define, and what generated code
-/// calls its own functions; in lower case, as field names are.
+/// Reserved words of C, C++, Java, Python and LCM, names that their C libraries define, and names
+/// of functions in generated code. They are in lower case, as field names are.
 constexpr std::array<std::string_view, 129> taken{
     "abstract",  "alignas",    "alignof",  "and",      "as",         "asm",      "assert",
     "async",     "auto",       "await",    "bool",     "boolean",    "break",    "byte",
@@ -32,7 +32,8 @@ constexpr std::array<std::string_view, 129> taken{
     "typedef",   "typename",   "union",    "unix",     "unsigned",   "using",    "virtual",
     "void",      "volatile",   "while"};
 
-/// Letters, digits and `_`, in lower case, not beginning with a digit, no word of a language.
+/// Makes an identifier of lower-case letters, digits and `_` that does not begin with a digit and
+/// is not a reserved word.
 std::string identifier(std::string_view text) {
   std::string name;
   for (const char c : text) {
@@ -40,7 +41,7 @@ std::string identifier(std::string_view text) {
     const bool word = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
     name += upper ? static_cast<char>(c + ('a' - 'A')) : word ? c : '_';
   }
-  // names that begin with `_` are the generated code's own
+  // Names that begin with `_` belong to the generated code.
   if (name.empty() || name[0] == '_' || (name[0] >= '0' && name[0] <= '9')) name.insert(0, 1, 'x');
   if (std::ranges::find(taken, name) != taken.end()) name += '_';
   return name;
@@ -52,7 +53,7 @@ std::string unused(std::string name, std::set<std::string>& used) {
   return name;
 }
 
-/// The number is no part of what a long name is cut to.
+/// The number stays complete when a long name is cut.
 std::string unused_channel(const std::string& node, const std::string& kind,
                            std::set<std::string>& used) {
   std::string channel = channel_name(node, kind);
@@ -123,7 +124,8 @@ TypedMessage message_of(const BusPlan& plan, std::size_t node, bool command) {
   return message;
 }
 
-// The fingerprint of lcm-gen: arithmetic on signed 64 bits, shifts of the sign included.
+// The fingerprint of lcm-gen uses arithmetic on signed 64-bit numbers, with arithmetic right
+// shifts.
 
 std::int64_t mix(std::int64_t value, char c) noexcept {
   const auto shifted = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << 8U);
@@ -150,7 +152,7 @@ std::uint64_t TypedMessage::fingerprint() const noexcept {
   for (const TypedField& field : fields) {
     value = mix(value, field.name);
     value = mix(value, takt::name(field.type));
-    value = mix(value, '\0');  // no dimensions
+    value = mix(value, '\0');  // the field has no dimensions
   }
   const auto hash = static_cast<std::uint64_t>(value);
   return (hash << 1U) + (hash >> 63U);
@@ -159,7 +161,8 @@ std::uint64_t TypedMessage::fingerprint() const noexcept {
 std::vector<TypedMessage> typed_messages(const BusPlan& plan) {
   std::vector<TypedMessage> messages;
   std::set<std::string> used;
-  std::set<std::string> channels{channel_name(plan.name, "TRANSFER_STATE")};  // a node `transfer`
+  // A node called `transfer` would get this channel, too.
+  std::set<std::string> channels{channel_name(plan.name, "TRANSFER_STATE")};
   for (std::size_t node = 0; node < plan.nodes.size(); ++node) {
     for (const bool command : {false, true}) {
       TypedMessage message = message_of(plan, node, command);

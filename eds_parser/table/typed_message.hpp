@@ -9,7 +9,8 @@
 
 namespace takt {
 
-/// Primitive types of LCM. It has no unsigned ones: those get the next wider.
+/// Primitive types of LCM. LCM has no unsigned types, so an unsigned value gets the next wider
+/// type.
 enum class LcmPrimitive : std::uint8_t {
   boolean,
   int8,
@@ -26,7 +27,7 @@ std::string_view name(LcmPrimitive type) noexcept;
 struct TypedField {
   std::string name;
   LcmPrimitive type = LcmPrimitive::int64;
-  std::optional<SignalIndex> signal{};  ///< none: a field that every such message has
+  std::optional<SignalIndex> signal{};  ///< empty for a field that every such message has
   std::string comment{};
 };
 
@@ -34,17 +35,19 @@ struct TypedField {
 struct TypedMessage {
   std::string package;  ///< "lift"
   std::string name;     ///< "shoulder_state_t"
-  std::string channel;  ///< "LIFT_SHOULDER_STATE"; another one each
+  std::string channel;  ///< "LIFT_SHOULDER_STATE", different for each message
   std::uint8_t node_index = 0;
   bool command = false;
   std::vector<TypedField> fields{};
 
-  /// What lcm-gen's code sends in front of each message: of names, types and order of the fields.
+  /// The hash that lcm-gen's code sends in front of each message. It covers names, types and order
+  /// of the fields.
   std::uint64_t fingerprint() const noexcept;
 };
 
-/// The types of all nodes of a bus: a state each that has inputs, a command each that has outputs.
-/// Names are usable in C, C++, Java and Python alike; scaled values are SI in doubles.
+/// Returns the message types of all nodes of a bus: a state for each node with inputs, a command
+/// for each node with outputs. All names are valid in C, C++, Java and Python. Scaled values are
+/// doubles in SI units.
 std::vector<TypedMessage> typed_messages(const BusPlan& plan);
 
 }  // namespace takt

@@ -5,51 +5,53 @@
 
 #include "eds_parser/table/time.hpp"
 
-/// How long the master waits where neither the network file nor a request says it, in one place:
-/// the plan prints them, the master keeps to them.
+/// How long the master waits if neither the network file nor a request sets a time. All these times
+/// are in one place: the plan prints them and the master uses them.
 namespace takt::waits {
 
 // SDO
-inline constexpr std::uint8_t upload_attempts = 3;  ///< of a boot; a download goes out once
+inline constexpr std::uint8_t upload_attempts = 3;  ///< of a boot step; a download is sent once
 inline constexpr Time probe_try = std::chrono::milliseconds{500};
 inline constexpr Time probe_pause = std::chrono::milliseconds{50};
 inline constexpr Time poll_pause = std::chrono::milliseconds{100};  ///< CiA 302-3, flash status
 inline constexpr Time sdo_settle = std::chrono::milliseconds{20};
 inline constexpr Time own_server = std::chrono::seconds{1};
-/// The segments of a block upload have priority over most that the master sends: a sub-block lasts
-/// no longer on a free wire, and service frames wait for its end, twice as long at most for each
-/// upload that is under way.
+/// The segments of a block upload have priority over most frames of the master. `sub_block` is the
+/// longest duration of a sub-block on a free bus. Service frames wait for its end, for at most
+/// `sub_block_end` for each upload in progress.
 inline constexpr Time sub_block = std::chrono::milliseconds{20};
 inline constexpr Time sub_block_end = 2 * sub_block;
-/// In a block upload the client speaks up before a server loses its own patience.
+/// In a block upload the client asks for missing segments before the server's own time-out expires.
 constexpr Time block_silence(Time sdo_timeout) noexcept { return sdo_timeout * 7 / 10; }
 
 // PDOs on request
 inline constexpr Time pdo_answer = std::chrono::milliseconds{500};
-inline constexpr std::size_t pdo_requests = 16;  ///< at once
-/// Those before it may wait for the same PDO, one after another.
+inline constexpr std::size_t pdo_requests = 16;  ///< greatest number of simultaneous requests
+/// Longest wait of a request for its turn: all others may wait for the same PDO, one after another.
 constexpr Time pdo_turn(Time timeout) noexcept {
   return static_cast<Time::rep>(pdo_requests) * timeout;
 }
 
 // LSS
 inline constexpr Time lss_answer = std::chrono::seconds{1};
-inline constexpr Time lss_store = std::chrono::seconds{5};           ///< flash
-inline constexpr Time lss_all = std::chrono::milliseconds{100};      ///< waited for in full
-inline constexpr Time lss_shortest = std::chrono::milliseconds{10};  ///< within a scan
+inline constexpr Time lss_store = std::chrono::seconds{5};  ///< flash
+inline constexpr Time lss_all =
+    std::chrono::milliseconds{100};  ///< for the answers of all devices; always waited in full
+inline constexpr Time lss_shortest =
+    std::chrono::milliseconds{10};  ///< for the same answers within a scan
 inline constexpr Time lss_look_again = std::chrono::seconds{1};
 inline constexpr Time lss_let_boot = std::chrono::seconds{5};
 
 // SYNC
-inline constexpr Time first_sync = std::chrono::seconds{1};  ///< of another device
+inline constexpr Time first_sync = std::chrono::seconds{1};  ///< for the SYNC of another device
 inline constexpr Time held_sync_first = std::chrono::milliseconds{100};
 inline constexpr Time held_sync_longest = std::chrono::seconds{30};
 
 // applications
 inline constexpr Time transfer_silence = std::chrono::seconds{10};
 
-/// When each stage of the ordered stop ends at the latest, from its beginning on. Nearly all the
-/// time belongs to the quick stop: a drive that still moves should not be disabled.
+/// The latest end of each stage of the ordered stop, counted from the beginning of the stop. The
+/// quick stop gets most of the time, because a drive that still moves should not be disabled.
 struct StopLimits {
   Time fallback{};
   Time quick_stop{};
@@ -65,9 +67,10 @@ constexpr StopLimits stop_limits(Time timeout, Time period) noexcept {
           .nmt = timeout - std::min(timeout / 20, 2 * period)};
 }
 inline constexpr Time stop_default = std::chrono::seconds{5};
-inline constexpr Time stop_longest = std::chrono::seconds{30};  ///< that is derived from drives
-/// The whole time of a stop in which the quick stop takes so long; a quarter more for what the
-/// ramp does not tell: jerk, following error, detection.
+inline constexpr Time stop_longest =
+    std::chrono::seconds{30};  ///< upper limit if derived from drives
+/// The time-out of a whole ordered stop in which the quick stop takes `stopping`. It includes a
+/// margin of a quarter for what the ramp does not cover: jerk, following error, detection.
 constexpr Time stop_timeout_for(Time stopping) noexcept {
   return std::min(stop_longest, std::max(stop_default, stopping * 5 / 4 * 10 / 8));
 }
