@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::uint16_t axis_step = 0x800;
 constexpr std::uint8_t axes_per_node = 8;
-constexpr double no_limit = 0x7FFF'FFFF;  // and above: a value that limits nothing
+constexpr double no_limit = 0x7FFF'FFFF;  // This value and all above it mean "no limit".
 
-/// The numbers that a device holds once it has booted.
+/// The numeric values of a device after its boot.
 class BootedValues {
  public:
   BootedValues(const NodePlan& node, const DeviceTable& device) {
@@ -35,7 +35,7 @@ class BootedValues {
     const auto found = values_.find(key);
     return found == values_.end() ? std::nullopt : std::optional{found->second};
   }
-  /// None: missing, zero, or a value that means "no limit".
+  /// Returns std::nullopt if the object is missing, is zero, or has a value that means "no limit".
   std::optional<double> positive(ObjectKey key) const {
     const auto value = get(key);
     if (!value || *value == 0 || *value >= no_limit) return std::nullopt;
@@ -73,7 +73,7 @@ class AxisCompiler {
     if (const auto window = standstill_velocity(limit)) set_windows(axis, *window);
     return axis;
   }
-  /// The windows of standstill follow from nothing that is known of this axis.
+  /// Returns true if no known value of this axis determines its standstill windows.
   bool windows_are_guessed() const { return !standstill_velocity(velocity_limit()); }
 
  private:
@@ -86,18 +86,19 @@ class AxisCompiler {
     return Time{static_cast<Time::rep>(std::min(value, longest) * 1e9)};
   }
 
-  /// 0x605A; its default is 2.
+  /// Returns the quick stop option, 0x605A. Its default is 2.
   std::int16_t option() const {
     return static_cast<std::int16_t>(values_.get(at(0x605A)).value_or(2));
   }
 
-  /// The object that holds the deceleration of a quick stop; 0: it stops along no known ramp.
+  /// Returns the object that holds the deceleration of a quick stop, or 0 if the axis does not stop
+  /// along a known ramp.
   static std::uint16_t ramp_object(std::int16_t option) {
     if (option == 1 || option == 5) return 0x6084;
     return option == 2 || option == 6 ? 0x6085 : 0;
   }
 
-  /// Velocity units for each velocity unit that a second of acceleration makes.
+  /// Returns the number of velocity units that one acceleration unit adds in a second.
   double acceleration_ratio() const {
     if (!units_.acceleration || !units_.velocity) return 1;
     return *units_.acceleration->scale / *units_.velocity->scale;
@@ -108,8 +109,9 @@ class AxisCompiler {
     return *units_.position->scale / *units_.velocity->scale;
   }
 
-  /// 0x607F, 0x6080 (revolutions of the motor in a minute) behind the gear, and what the network
-  /// file lets be commanded; the lowest counts. In units of 0x606C.
+  /// Returns the velocity limit of the axis in units of 0x606C. It is the lowest of 0x607F, of
+  /// 0x6080 (motor revolutions per minute) converted through the gear, and of the limit that the
+  /// network file sets for commands.
   std::optional<double> velocity_limit() const {
     std::optional<double> lowest = values_.positive(at(0x607F));
     const auto take = [&](double limit) { lowest = std::min(lowest.value_or(limit), limit); };
@@ -120,7 +122,7 @@ class AxisCompiler {
     return lowest;
   }
 
-  /// `limits: {velocity}` of the network file, in units of 0x606C.
+  /// Returns `limits: {velocity}` of the network file in units of 0x606C.
   std::optional<double> commanded_velocity() const {
     const Sourced<double>* velocity = &limits_.all.velocity;
     for (const AxisOverrideSpec& own : limits_.axes) {
@@ -131,7 +133,8 @@ class AxisCompiler {
     return *(*velocity) / (unit ? std::abs(*unit->scale) : 1.0);
   }
 
-  /// Position units for each revolution of the motor: 0x6092 over 0x6091, else 0x608F.
+  /// Returns the number of position units for each revolution of the motor: 0x6092 divided by
+  /// 0x6091, else 0x608F.
   std::optional<double> positions_per_turn() const {
     if (const auto feed = ratio(0x6092)) return *feed / ratio(0x6091).value_or(1);
     return ratio(0x608F);
@@ -144,10 +147,12 @@ class AxisCompiler {
     return *above / *below;
   }
 
-  /// Below it an axis counts as standing still: the velocity threshold of the device (0x606F), at
-  /// most a hundredth of its velocity limit; without a threshold a thousandth of the limit; without
-  /// a limit a hundredth of a revolution in a second, the position window of the device (0x6067) in
-  /// 50 ms, or what is small in the unit of the network file. In units of 0x606C.
+  /// Returns the velocity below which an axis counts as standing still, in units of 0x606C. With a
+  /// velocity limit this is the velocity threshold of the device (0x606F), but at most a hundredth
+  /// of the limit, or a thousandth of the limit if there is no threshold. Without a limit it is the
+  /// threshold. Without both it is a hundredth of a revolution per second, else the position window
+  /// of the device (0x6067) in 50 ms, else a velocity that is small in the unit of the network
+  /// file.
   std::optional<double> standstill_velocity(std::optional<double> limit) const {
     const auto threshold = values_.positive(at(0x606F));
     if (limit && threshold) return std::min(*threshold, *limit / 100);
@@ -180,7 +185,8 @@ class AxisCompiler {
     axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, most)));
   }
 
-  static constexpr double looks_in_a_second = 20;  // Standstill::standstill_time is 50 ms
+  // Per second; Standstill::standstill_time is 50 ms.
+  static constexpr double looks_in_a_second = 20;
 
   const BootedValues& values_;
   const UnitsSpec& units_;

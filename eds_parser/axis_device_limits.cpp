@@ -2,7 +2,7 @@
 
 #include "eds_parser/axis_limits.hpp"
 
-// Limits that a drive tells in each boot, where the network file gives none.
+// Limits that are read from a drive in each boot, for kinds that the network file does not limit.
 
 namespace takt {
 
@@ -34,7 +34,7 @@ void AxisLimits::read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound 
                                  .line = place});
 }
 
-/// 607D counts as 607A does.
+/// 607D has the unit of 607A.
 bool AxisLimits::device_position() {
   const ObjectKey low = object(0x607D, 1);
   if (!tells(low) || !tells(object(0x607D, 2))) return false;
@@ -48,8 +48,8 @@ bool AxisLimits::device_position() {
   return true;
 }
 
-/// 607F counts as 60FF does. Positions are held against it only where `units:` say how velocities
-/// and positions relate.
+/// 607F has the unit of 60FF. Positions are compared with it only if `units:` defines how
+/// velocities and positions relate.
 bool AxisLimits::device_velocity() {
   const ObjectKey most = object(0x607F);
   const auto& unit = node_.spec->units.velocity;
@@ -68,7 +68,7 @@ bool AxisLimits::device_velocity() {
   return true;
 }
 
-/// 60C5 counts as 6083 does, so `units:` have to say how it relates to what is commanded.
+/// 60C5 has the unit of 6083, so `units:` must define how it relates to the commanded values.
 bool AxisLimits::device_acceleration() {
   const ObjectKey most = object(0x60C5);
   const auto& unit = node_.spec->units.acceleration;

@@ -14,11 +14,11 @@
 namespace takt {
 namespace {
 
-constexpr std::uint16_t axis_objects =
-    0x800;  // The objects of two axes of a device are so far apart (CiA 402).
-constexpr std::int64_t profile_position = 1;  // This is the value of 6060.
-constexpr double rounded_digits =
-    1e-4;  // People round a `modulo` that much, for example to 6.2832.
+/// Distance between the objects of two axes of a device (CiA 402).
+constexpr std::uint16_t axis_objects = 0x800;
+constexpr std::int64_t profile_position = 1;  // value of 6060
+/// Largest relative error of a `modulo` that a person has rounded, for example to 6.2832.
+constexpr double rounded_digits = 1e-4;
 
 }  // namespace
 
@@ -97,7 +97,7 @@ LimitLine& AxisLimits::line(LimitKind kind, LimitSource source) {
   return line;
 }
 
-/// That of `units:`, else what the unit of positions says.
+/// Returns the unit of `units:`, else the one that follows from the unit of positions.
 std::string AxisLimits::unit_of(LimitKind kind) const {
   const UnitsSpec& units = node_.spec->units;
   const std::string base = positions_.empty() ? "" : table_.signal(positions_[0]).unit;
@@ -262,7 +262,7 @@ void AxisLimits::jerk(const Sourced<double>& limit) {
   line(LimitKind::jerk, LimitSource::file).high = *limit;
 }
 
-/// Position range limit, CiA 402-2. 0: there is none.
+/// Returns the length of the position range limit (CiA 402-2), or 0 if there is none.
 double AxisLimits::turn(ObjectReader read) const {
   const auto low = read(node_, object(0x607B, 1));
   const auto high = read(node_, object(0x607B, 2));
@@ -270,9 +270,10 @@ double AxisLimits::turn(ObjectReader read) const {
   return static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
 }
 
-/// Length of the range in which a position turns over: of the file, else 607B as `sdo:` writes it.
-/// A length of the file that is rounded means that of the drive: a turn that is too short would
-/// make a whole way of each turn-over.
+/// Returns the length of the range after which a position starts again: `modulo` of the network
+/// file, else 607B as `sdo:` writes it. If `modulo` is a rounded form of the drive's own length,
+/// the exact length is used. With a length that is too short, each turn-over would look like a
+/// movement over the whole range.
 double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
   if (!modulo.given) return turn(written_object);
   const double length = table_.raw_size(signal, *modulo);
@@ -280,7 +281,8 @@ double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) co
   return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
 }
 
-/// An axis that doesn't turn over where its limits do goes back a whole turn in one cycle.
+/// Warns if the drive turns over at another position than its limits assume. Its position would
+/// then jump back by a whole turn in one cycle.
 void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   if (!modulo.given || positions_.empty()) return;
   const double length = modulus(modulo, positions_[0]);
@@ -301,7 +303,7 @@ void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
                       to_string(ObjectKey{key.index, 2}) + " under `sdo:`");
 }
 
-/// What a position set-point is held against.
+/// Sets the data that a position set-point is compared with.
 void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
   for (const SignalIndex signal : positions_) {
     const auto& rows = plan_.limits.outputs;
@@ -317,7 +319,7 @@ void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
   }
 }
 
-/// The first set-point whose way is limited waits until the device has sent its actual position.
+/// Warns that the first limited set-point waits until the device has sent its actual position.
 void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
   const std::optional<SignalIndex> feedback = input(0x6064);
   if (positions_.empty() || !feedback) return;

@@ -75,7 +75,7 @@ class BootCompiler {
     probe();
   }
 
-  /// CiA 302-2, keep-alive bit of 0x1F81: an OPERATIONAL node is left alone.
+  /// CiA 302-2, keep-alive bit of 0x1F81: an OPERATIONAL node is not reset.
   std::size_t await_alive() {
     const bool guarded = context_.heartbeat_timeout == Time{};
     const Time longest = guarded ? context_.guard.life_time() : context_.heartbeat_timeout;
@@ -105,8 +105,8 @@ class BootCompiler {
     step.timeout = context_.boot_timeout;
   }
 
-  /// The value of the network file, else of the device file; 0 is not checked. [DeviceInfo] is not
-  /// believed: its product number is wrong in one of 25 files.
+  /// Returns the value of the network file, else of the device file. 0 means that the value is not
+  /// checked. [DeviceInfo] is not used: its product number is wrong in one of 25 files.
   std::uint32_t expected(const Sourced<std::uint32_t>& wanted, ObjectKey key) const {
     if (wanted.given) return *wanted;
     return static_cast<std::uint32_t>(integer_of(dictionary_, key).value_or(0));
@@ -130,7 +130,7 @@ class BootCompiler {
     firmware();
   }
 
-  /// Read where the device data depend on it.
+  /// Reads the firmware if rules of the device data depend on it.
   void firmware() {
     if (node_.node.data == nullptr) return;
     const auto plan = firmware_plan(*node_.node.data, node_.node.firmware);
@@ -141,8 +141,9 @@ class BootCompiler {
         .value.clear();
   }
 
-  /// What the device watches of the master was disarmed at the end of the last ordered stop: every
-  /// boot looks at it again, whatever the configuration date says, and writes what differs.
+  /// Arms the supervision of the master by the device. The last ordered stop may have disarmed it.
+  /// Therefore every boot checks it again, regardless of the configuration date, and writes what
+  /// differs.
   void arm() {
     append_error_control(part_);
     append_sync(part_);
@@ -166,8 +167,8 @@ class BootCompiler {
     probe();
   }
 
-  /// What was written is kept, as the network file asks; nothing is stored where nothing was
-  /// written.
+  /// Stores the written parameters, if the network file asks for it. Nothing is stored if no
+  /// parameter was written.
   void store() {
     const std::uint8_t sub = *spec_.store;
     if (sub == 0) return;
@@ -182,7 +183,7 @@ class BootCompiler {
         .timeout = std::max(restore_timeout, context_.sdo_timeout);
   }
 
-  /// Each object that holds a limit is read once, however many outputs it bounds.
+  /// Reads each object that holds a limit once, even if it bounds several outputs.
   void limits() {
     std::vector<ObjectKey> read;
     const auto once = [&](ObjectKey object) {

@@ -64,8 +64,9 @@ class ErrorControl : BootPart {
                       std::to_string(context.master_consumer_ms) + " ms");
   }
 
-  /// 0x1016: the entry that names the master already, else the first that watches nobody, else the
-  /// first of which neither network file nor DCF says whom it watches.
+  /// Selects the entry of 0x1016 for the master: the entry that already names the master, else the
+  /// first entry that watches no node, else the first entry that neither the network file nor the
+  /// DCF configures.
   std::optional<std::uint8_t> entry_for_master(const Object& object) const {
     std::optional<std::uint8_t> unused;
     std::optional<std::uint8_t> by_default;
@@ -82,7 +83,7 @@ class ErrorControl : BootPart {
     return unused ? unused : by_default;
   }
 
-  /// What the network file, else a DCF, makes of an entry of 0x1016.
+  /// Returns the value that the network file, else a DCF, gives to an entry of 0x1016.
   std::optional<std::int64_t> configured_consumer(const SubObject& sub) const {
     const auto own = std::ranges::find(spec.sdo, ObjectKey{0x1016, sub.sub}, &SdoSpec::object);
     const auto* value = own == spec.sdo.end() ? nullptr : std::get_if<std::int64_t>(&own->value);
@@ -90,7 +91,7 @@ class ErrorControl : BootPart {
     return dictionary.is_dcf ? integer_of(sub.parameter_value) : std::nullopt;
   }
 
-  /// 0x100C and 0x100D, for the device's own life guarding.
+  /// Writes 0x100C and 0x100D for the life guarding of the device.
   void guarding() {
     if (context.guard.period == Time{}) return;
     const auto ms = context.guard.period / std::chrono::milliseconds{1};
@@ -154,14 +155,15 @@ class Emergency : BootPart {
   }
 
  private:
-  /// False where the limits of 0x1014 forbid bit 31; such a device takes another id as it is.
+  /// Returns false if the limits of 0x1014 forbid bit 31. Such a device accepts another identifier
+  /// without switching EMCY off first.
   bool has_off_bit() const {
     const SubObject* sub = dictionary.find(ObjectKey{0x1014, 0});
     const auto high = sub == nullptr ? std::nullopt : integer_of(sub->high_limit);
     return !high || *high >= 0x8000'0000;
   }
 
-  /// 0x1014 of the network file, else of a DCF.
+  /// Returns 0x1014 of the network file, else of a DCF.
   std::optional<std::int64_t> emcy_cob_id() const {
     if (spec.emcy_cob_id.given) return *spec.emcy_cob_id;
     const SubObject* sub = dictionary.find(ObjectKey{0x1014, 0});

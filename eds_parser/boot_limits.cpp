@@ -16,7 +16,8 @@ struct Limits {
   bool hold(std::int64_t value) const {
     return (!low || value >= *low) && (!high || value <= *high);
   }
-  /// Both 0 or the wrong way round: filled in by an editor, not by a person.
+  /// Returns false for limits that are both 0 or inverted. An editor fills them in; they are not
+  /// meant.
   bool mean_something() const { return !low || !high || *low < *high; }
   std::string text() const {
     return (low ? std::to_string(*low) : "") + ".." + (high ? std::to_string(*high) : "");
@@ -27,7 +28,7 @@ Limits limits_of(const SubObject& sub) {
   return {integer_of(sub.low_limit), integer_of(sub.high_limit)};
 }
 
-/// Steps that write a value of the network file or of a DCF.
+/// Returns true for a step that writes a parameter, but not for the store and restore commands.
 bool writes(const BootStep& step) {
   const bool command = step.object.index == 0x1010 || step.object.index == 0x1011;
   const bool write =
@@ -35,7 +36,7 @@ bool writes(const BootStep& step) {
   return write && !command;
 }
 
-/// The number in `bytes`; none: no integer.
+/// Returns the number in `bytes`, or std::nullopt if the type is no integer.
 std::optional<std::int64_t> number_of(std::span<const std::byte> bytes, DataType type) {
   if (is_real(type) || is_bytes(type) || bytes.empty() || bytes.size() > 8) return {};
   std::uint64_t number = 0;

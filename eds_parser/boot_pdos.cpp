@@ -11,8 +11,9 @@ class PdoBoot {
   PdoBoot(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps)
       : dictionary_{dictionary}, pdo_{pdo}, steps_{steps} {}
 
-  /// First the mapping, then the communication parameters. A PDO whose mapping was written is off,
-  /// so its COB-ID differs and the second half switches it on again.
+  /// Compares and configures first the mapping, then the communication parameters. A write of the
+  /// mapping switches the PDO off. The COB-ID then differs, and the second half switches the PDO on
+  /// again.
   void exchange() {
     const std::size_t first = steps_.size();
     append_exchange();
@@ -43,7 +44,8 @@ class PdoBoot {
     disable();
     write_parameters();
     if (steps_.writable(cob_id_key())) {
-      // Where the master asks by remote request bit 30 has to be clear, else it stays as it was.
+      // If the master polls the PDO by remote request, bit 30 must be clear. Otherwise the bit
+      // keeps the value of the device.
       steps_.integer(pdo_.rtr ? BootAction::write : BootAction::enable_pdo, cob_id_key(),
                      cob_id_value(),
                      pdo_.label() + " on, COB-ID " + to_string(pdo_.cob_id) +
@@ -102,7 +104,8 @@ class PdoBoot {
     parameters(BootAction::compare);
   }
 
-  /// A PDO that differs on a node that is left running can't be used.
+  /// Marks the comparisons of a PDO. If they fail on a node that stays in operation, the PDO can't
+  /// be used.
   void mark_running(std::size_t first) {
     for (std::size_t i = first; i < steps_.size(); ++i) {
       BootStep& step = steps_.steps()[i];
@@ -110,7 +113,8 @@ class PdoBoot {
     }
   }
 
-  /// Count and entries. A fixed count may cover empty entries, which the plan leaves out.
+  /// Appends steps for the number of entries and the entries. A fixed number may include empty
+  /// entries, which the plan leaves out.
   void mapping_steps(BootAction action, const std::string& suffix) {
     if (!pdo_.fixed_mapping) {
       steps_.integer(action, mapping(0), pdo_.mapping_count(),
@@ -143,7 +147,7 @@ class PdoBoot {
     parameters(BootAction::write_if_differs);
   }
 
-  /// Inhibit time, event timer and SYNC start value, where the device has them.
+  /// Appends steps for the inhibit time, event timer and SYNC start value that the device has.
   void parameters(BootAction action) {
     const auto step = [&](bool has, std::uint8_t sub, std::int64_t value, const std::string& text) {
       if (!has) return;

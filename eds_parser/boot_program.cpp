@@ -7,9 +7,11 @@ constexpr ObjectKey data{0x1F50, 1};
 constexpr ObjectKey control{0x1F51, 1};
 constexpr ObjectKey version{0x1F56, 1};
 constexpr ObjectKey flash{0x1F57, 1};
-constexpr Time flash_time = std::chrono::seconds{60};   // clearing and writing
-constexpr Time start_time = std::chrono::seconds{10};   // a boot loader starts the program
-constexpr Time segment_time = std::chrono::seconds{5};  // between two answers of the download
+constexpr Time flash_time = std::chrono::seconds{60};  // longest time of erasing and programming
+// Longest time until the boot loader has started the program.
+constexpr Time start_time = std::chrono::seconds{10};
+// Longest time between two answers of the download.
+constexpr Time segment_time = std::chrono::seconds{5};
 
 enum class Command : std::uint8_t { stop = 0, start = 1, clear = 3 };
 
@@ -61,7 +63,7 @@ class ProgramSteps {
     step.timeout = flash_time;
   }
 
-  /// The boot loader may have to come up first.
+  /// Waits until the boot loader answers; it may need time to start.
   void await_answer() {
     BootStep& step = steps_.integer(BootAction::probe, {0x1000, 0}, 0, "the boot loader answers");
     step.value.clear();

@@ -30,7 +30,7 @@ class SyncSteps : BootPart {
   }
 
  private:
-  /// Bit 30 comes last: with it SYNC begins, and other bits may not change. CiA 301, 7.5.2.5.
+  /// Sets bit 30 last: it starts SYNC, and afterwards no other bit may change. CiA 301, 7.5.2.5.
   void make_sync() {
     if (!context.makes_sync) return;
     steps

@@ -18,9 +18,11 @@ namespace {
 
 constexpr std::uint32_t refuse_write_on_download = 1;
 constexpr std::size_t longest_compared = 256;
-constexpr Time segment_time = std::chrono::seconds{5};  // between two answers of a download
+// Longest time between two answers of a download.
+constexpr Time segment_time = std::chrono::seconds{5};
 
-/// Objects that other parts of the boot set, or that only a person should write.
+/// Returns true for objects that other parts of the boot set, and for objects that only a person
+/// should write.
 bool is_set_elsewhere(std::uint16_t index) {
   switch (index) {
     case 0x1000:
@@ -41,7 +43,8 @@ bool is_set_elsewhere(std::uint16_t index) {
   }
 }
 
-/// A period as value * 10^exponent seconds, as 0x60C2 holds it; none: not possible.
+/// A period as value * 10^exponent seconds, in the format of 0x60C2. interpolation() returns
+/// std::nullopt if no such form exists.
 struct Interpolation {
   std::int64_t value;
   std::int64_t exponent;
@@ -86,7 +89,8 @@ class ValueSteps {
     return found == spec_.sdo.end() ? nullptr : &*found;
   }
 
-  /// What follows from the plan or stands in the network file comes before the DCF.
+  /// Writes the values of a DCF. Values that follow from the plan or that the network file states
+  /// take precedence.
   void device_values() {
     for (const Object& object : dictionary_.objects) {
       if (is_set_elsewhere(object.index)) continue;
@@ -104,7 +108,8 @@ class ValueSteps {
     }
   }
 
-  /// What a DCF names as DownloadFile. Short ones are compared first, where they can be read.
+  /// Writes the DownloadFile of a DCF. Short files are first compared with the device if the object
+  /// is readable.
   void domains(std::uint16_t index) {
     for (const DomainFiles& files : dictionary_.domain_files) {
       if (files.key.index != index || files.content.empty()) continue;
@@ -129,7 +134,7 @@ class ValueSteps {
     if (step.value.size() > 4) step.mask = 0xFFFF'FFFF;
   }
 
-  /// 0x60C2 of every axis := SYNC period, unless the network file has its own mind.
+  /// Sets 0x60C2 of every axis to the SYNC period, unless the network file sets 0x60C2 itself.
   void interpolation_periods() {
     for (std::uint32_t index = 0x60C2; index < 0xA000; index += 0x800) {
       const ObjectKey value{static_cast<std::uint16_t>(index), 1};
@@ -159,11 +164,13 @@ class ValueSteps {
     }
   }
 
-  /// Of 10, in seconds: as the network file has it, else the DCF, else milliseconds.
+  /// Returns the power of 10 that scales 0x60C2 to seconds: the value of the network file, else of
+  /// the DCF, else -3 (milliseconds).
   std::int64_t exponent_of(ObjectKey key) const {
     const SdoSpec* own = configured_value(key);
     const auto* power = own == nullptr ? nullptr : std::get_if<std::int64_t>(&own->value);
-    if (power != nullptr) return static_cast<std::int8_t>(*power);  // 253 in a file of UNSIGNED8
+    // The file may hold 253 for -3 as UNSIGNED8.
+    if (power != nullptr) return static_cast<std::int8_t>(*power);
     const SubObject* sub = dictionary_.find(key);
     const bool of_dcf = dictionary_.is_dcf && sub != nullptr;
     return of_dcf ? integer_of(sub->parameter_value).value_or(-3) : -3;
@@ -184,7 +191,7 @@ class ValueSteps {
                         "the entry out and takt sets it)");
   }
 
-  /// A value of the network file or of a DCF comes before that of the device data.
+  /// Writes a value of the device data. A value of the network file or of a DCF takes precedence.
   void of_device_data(const ValueEdit& edit) {
     const SubObject* sub = dictionary_.find(edit.object);
     if (configured_value(edit.object) || (sub != nullptr && in_dcf(*sub))) return;
@@ -231,7 +238,7 @@ class ValueSteps {
     write(sdo.object, std::move(*value), "sdo: " + label(dictionary_, sdo.object));
   }
 
-  /// 0 is no supervision of SYNC, so nothing to compare.
+  /// Warns if the SYNC period differs. 0 disables the supervision of SYNC, so it is not compared.
   void compare_sync_period(const SdoSpec& sdo) {
     const auto* us = std::get_if<std::int64_t>(&sdo.value);
     if (!context_.sync || us == nullptr || *us == 0 || *us == context_.sync_period_us) return;
@@ -241,7 +248,7 @@ class ValueSteps {
                         " us: it may take SYNC for lost (leave the entry out and takt sets it)");
   }
 
-  /// A concise DCF may know more of the device than its EDS.
+  /// Writes an object that is not in the EDS. A concise DCF may contain such objects.
   void unknown_object(const SdoSpec& sdo, const std::vector<std::byte>& value) {
     report_.warning(sdo.pos, "no-such-object",
                     "node `" + spec_.name + "`: " + to_string(sdo.object) +
@@ -303,7 +310,7 @@ class ValueSteps {
                      *sdo.quoted + "; write it without them");
   }
 
-  /// `-128..127, or 0x80..0xFF as bits`.
+  /// Returns a range as text: `-128..127, or 0x80..0xFF as bits`.
   static std::string range_text(DataType type, std::int64_t low, std::int64_t high) {
     const unsigned bits = bit_width(type);
     if (!is_signed(type) || bits >= 63) return std::to_string(low) + ".." + std::to_string(high);
@@ -320,7 +327,7 @@ class ValueSteps {
            ".." + bits_text(high) + " as bits";
   }
 
-  /// A bit pattern of the width (0xFFFFFFFF for -1) passes as well.
+  /// Also accepts a bit pattern of the width of the type (0xFFFFFFFF for -1).
   bool fits(const SdoSpec& sdo, const SubObject& sub, std::int64_t value) {
     const unsigned bits = bit_width(sub.type);
     const bool sign = is_signed(sub.type);
@@ -339,7 +346,7 @@ class ValueSteps {
 
   const NodeSpec& spec_;
   const ObjectDictionary& dictionary_;
-  const DeviceData* data_;  ///< nullptr: there is no entry
+  const DeviceData* data_;  ///< nullptr if the node has no entry
   const BootContext& context_;
   BootSteps& steps_;
   NetworkReport& report_;

@@ -36,8 +36,8 @@ class CobIdAssigner {
     each([&](NodePdos& n, EffectivePdo& p) {
       if (device(p) && is_own(n, p)) claim_of_device(n, p);
     });
-    for (const bool is_tpdo :
-         {true, false}) {  // senders first, so that an RPDO finds whom it hears
+    // TPDOs come first, so that an RPDO finds its sender.
+    for (const bool is_tpdo : {true, false}) {
       each([&](NodePdos& n, EffectivePdo& p) {
         if (device(p) && !is_own(n, p) && p.is_tpdo == is_tpdo) claim_of_device(n, p);
       });
@@ -64,7 +64,7 @@ class CobIdAssigner {
     return pdo.number <= 4 && pdo.cob_id == CobId::base(predefined(pdo, node.node.id));
   }
 
-  /// Why no PDO may have this id; empty: it may.
+  /// Returns why no PDO may have this COB-ID. The result is empty if a PDO may have it.
   std::string service_at(CobId id) const {
     const auto service = services_.find(id);
     if (service != services_.end()) return service->second;
@@ -100,7 +100,8 @@ class CobIdAssigner {
     }
   }
 
-  /// A TPDO and an RPDO of one id: the devices talk to each other, the master only listens.
+  /// Links a TPDO and an RPDO with the same COB-ID. The devices then communicate directly, and the
+  /// master only listens.
   void link(EffectivePdo& pdo, User other, User user) {
     EffectivePdo& receiver = pdo.is_tpdo ? *other.pdo : pdo;
     const User& sender = pdo.is_tpdo ? user : other;
@@ -128,16 +129,18 @@ class CobIdAssigner {
     }
   }
 
-  /// Whether `pdo` and `other`, of one id, are a link that a device file states together with the
-  /// network file or another device file. Not where the master is to send the RPDO (the network
-  /// file has a word on it, but no id), and not where both ids are only those of their nodes.
+  /// Returns true if `pdo` and `other`, which have the same COB-ID, form a link that a device file
+  /// states together with the network file or another device file. There is no link if the master
+  /// is to send the RPDO (the network file mentions it without a COB-ID), or if both COB-IDs are
+  /// only the predefined ones of their nodes.
   static bool is_link(const NodePdos& node, const EffectivePdo& pdo, const User& other) {
     if (pdo.is_tpdo == other.pdo->is_tpdo || other.node == &node.node) return false;
     if (other.pdo->origin == CobIdOrigin::network_file) return pdo.is_tpdo || !pdo.named;
     return !pdo.is_tpdo && !pdo.named && !is_own(node, pdo);
   }
 
-  /// The network file gives one PDO the id that another one sends with by its device file.
+  /// Returns true if the network file gives one PDO the COB-ID with which another PDO is sent
+  /// according to its device file.
   static bool is_clash(const EffectivePdo& pdo, const User* other) {
     return pdo.is_tpdo && other != nullptr && other->pdo->origin == CobIdOrigin::network_file;
   }
@@ -150,7 +153,8 @@ class CobIdAssigner {
                       hex(free, 3) + ")");
   }
 
-  /// `other`: who has the id already; nullptr: `service` says why no PDO may have it.
+  /// Gives a PDO another COB-ID. `other` is the PDO that already has the current one; if it is
+  /// nullptr, `service` says why no PDO may have it.
   void move(NodePdos& node, EffectivePdo& pdo, const User* other, const std::string& service) {
     const User user{&pdo, &node.node};
     const CobId was = pdo.cob_id;
@@ -193,7 +197,8 @@ class CobIdAssigner {
     take(node, pdo, CobId::base(id));
   }
 
-  /// Predefined where that is free, else the lowest id that no node's predefined set covers.
+  /// Returns the predefined COB-ID if it is free, else the lowest free identifier. Identifiers
+  /// outside the predefined connection set are preferred.
   std::uint32_t automatic(const NodePdos& node, const EffectivePdo& pdo) const {
     if (pdo.number <= 4) {
       const std::uint32_t own = predefined(pdo, node.node.id);

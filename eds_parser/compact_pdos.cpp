@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// One sub-object of a record made up by CompactPDO, behind those that it has.
+/// Appends one sub-object to a record that CompactPDO implies.
 SubObject& add_sub(Object& object, std::uint8_t sub, DataType type, std::uint64_t value) {
   auto& made = object.subs.emplace_back();
   made.sub = sub;
@@ -25,8 +25,8 @@ SubObject& add_sub(Object& object, std::uint8_t sub, DataType type, std::uint64_
 
 constexpr std::uint64_t off = 0x8000'0000;  // COB-ID, bit 31
 
-/// Default COB-ID: the predefined connection set for PDO 1 to 4, else "does not exist". A PDO that
-/// a DCF does not list is off. CiA 306, 5.3.3.1.
+/// Adds the default COB-ID: the predefined connection set for PDO 1 to 4, else a PDO that is
+/// switched off. A PDO that a DCF does not list is also switched off. CiA 306, 5.3.3.1.
 void add_cob_id(Object& object, std::uint16_t number, bool is_tpdo,
                 const ObjectDictionary& dictionary) {
   auto& sub = add_sub(object, 1, DataType::unsigned32, off);
@@ -45,7 +45,7 @@ void add_cob_id(Object& object, std::uint16_t number, bool is_tpdo,
   sub.parameter_value = value(off + base);
 }
 
-/// Record at `first` + `number` - 1, without sub-objects.
+/// Returns the record at `first` + `number` - 1 without sub-objects.
 Object pdo_record(unsigned first, std::uint16_t number, bool is_tpdo, std::string_view what) {
   Object object;
   object.index = static_cast<std::uint16_t>(first + number - 1);
@@ -94,7 +94,7 @@ Object mapping_record(std::uint16_t number, bool is_tpdo) {
   return object;
 }
 
-/// What the file only counts stands where it is counted.
+/// Sets the place of objects that the file only counts to the place of the count.
 void place(Object& object, SourcePos pos) noexcept {
   object.pos = pos;
   for (auto& sub : object.subs) {
@@ -103,7 +103,7 @@ void place(Object& object, SourcePos pos) noexcept {
   }
 }
 
-/// The records of one direction that the file leaves out.
+/// Adds the records of one direction that the file leaves out.
 void add_missing(const ObjectDictionary& dictionary, bool is_tpdo, std::uint16_t total,
                  std::vector<Object>& made) {
   const std::uint16_t first = is_tpdo ? 0x1800 : 0x1400;

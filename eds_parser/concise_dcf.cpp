@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t entry_head = 7;  // index, sub-index, length
+constexpr std::size_t entry_head = 7;  // bytes of index, sub-index and length
 
 std::uint32_t number(std::span<const std::byte> bytes) {
   std::uint32_t value = 0;

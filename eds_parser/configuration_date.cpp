@@ -59,7 +59,7 @@ void ConfigurationDate::skip_if_there() {
   skip_ = steps_.skip_if_same("the device has this configuration already");
 }
 
-/// The same content gives the same date, whatever the day is.
+/// Derives the date from the content, so that the same content always gives the same date.
 void ConfigurationDate::make_from_content() {
   Hash hash;
   for (std::size_t i = skip_ + 1; i < steps_.size(); ++i) {

@@ -10,9 +10,11 @@ namespace {
 
 constexpr unsigned longest_data = 8;
 constexpr std::uint32_t service_pair_bits = 2 * worst_frame_bits(longest_data);
-constexpr Time::rep usual_service_frames = 16;  // in each 10 ms, unless the file says otherwise
-constexpr Time long_cycle = std::chrono::milliseconds{50};  // the master serves it each 10 ms
-constexpr int event_share = 4;  ///< event-driven outputs get at most a quarter of the period
+// In each 10 ms, unless the network file sets `service_frames`.
+constexpr Time::rep usual_service_frames = 16;
+// In longer cycles the master processes services every 10 ms.
+constexpr Time long_cycle = std::chrono::milliseconds{50};
+constexpr int event_share = 4;  ///< Event-driven outputs get at most a quarter of the period.
 constexpr Time longest_window = std::chrono::milliseconds{50};
 constexpr Time shortest_margin = std::chrono::microseconds{20};
 constexpr Time longest_margin = std::chrono::microseconds{200};
@@ -29,9 +31,10 @@ Time frame_time(std::uint32_t bitrate) {
   return wire_time(worst_frame_bits(longest_data), bitrate);
 }
 
-/// Own frames end so long before SYNC: one longest frame that may be on the wire, and 2 % of the
-/// period (20..200 us) for the answer it solicits and for being late. SYNC of another device may be
-/// early besides.
+/// Returns how long before SYNC the master's own frames must have ended. The time covers the
+/// longest frame that may be on the wire, and 2 % of the period (20..200 us) for the answer to that
+/// frame and for delays. If another device produces SYNC, the time also covers a SYNC that is
+/// early.
 Time quiet_time(const BusPlan& plan) {
   const CyclePlan& cycle = plan.cycle;
   const Time margin = std::clamp<Time>(cycle.period / 50, shortest_margin, longest_margin);
@@ -62,9 +65,10 @@ class CycleCompiler {
     return plan_.cycle.sync ? spec_.master.sync_period_us.pos : spec_.master.pos;
   }
 
-  /// The middle of the time between the earliest arrival of all inputs and the outputs: a device
-  /// may be late by half of it, and an application still has the other half. At most 80 % of the
-  /// period, and no longer than services can wait.
+  /// Sets the receive window to the middle of the time between the earliest arrival of all inputs
+  /// and the outputs. A device may then be late by half of this time, and an application still has
+  /// the other half. The window is at most 80 % of the period, and not longer than services can
+  /// wait.
   void set_receive_window(const TimeBudget& wire) {
     if (spec_.receive_window_us.given) {
       cycle_.receive_window = std::chrono::microseconds{*spec_.receive_window_us};
@@ -82,7 +86,7 @@ class CycleCompiler {
                         std::max<Time>(wire.earliest, longest_window)});
   }
 
-  /// SDO requests with their answers in the time that nothing else needs.
+  /// Sets how many SDO requests with their answers fit into the time that nothing else needs.
   void set_service_frames(const TimeBudget& wire) {
     const Time left =
         cycle_.period - wire.inputs_wire - wire.outputs_wire - cycle_.quiet_before_sync;
@@ -117,7 +121,8 @@ class CycleCompiler {
     }
   }
 
-  /// A device drops synchronous RPDOs that come after its 0x1007.
+  /// Warns if synchronous RPDOs arrive after the synchronous window of a device (0x1007), because
+  /// the device drops them.
   void judge_device_windows(const TimeBudget& wire) {
     if (!plan_.cycle.sync) return;
     const Time sent = cycle_.output_deadline + wire.outputs_wire;
@@ -178,7 +183,7 @@ TimeBudget time_budget(const BusPlan& plan) noexcept {
   for (const PdoRow& row : plan.pdos.rpdos) {
     (row.synchronous() ? budget.outputs_wire : by_event) += row_time(row, plan.bitrate);
   }
-  // Not all event-driven frames change in one cycle; those that find no room go out in the next.
+  // Not all event-driven frames change in one cycle. Those that do not fit are sent in the next.
   budget.outputs_wire += std::min<Time>(by_event, plan.cycle.period / event_share);
   budget.earliest = budget.inputs_wire + frame_time(plan.bitrate);
   budget.latest = plan.cycle.output_deadline;

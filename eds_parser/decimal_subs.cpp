@@ -16,7 +16,7 @@ constexpr std::size_t index_digits = 4;
 constexpr std::size_t sub_at = index_digits + 3;
 constexpr std::uint32_t last_sub = 254;
 
-/// What stands behind `xxxxsub`; empty where the name is another one.
+/// Returns the text after `xxxxsub`. The result is empty if the name has another form.
 std::string_view sub_text(std::string_view name) noexcept {
   if (name.size() <= sub_at || !same_word(name.substr(index_digits, 3), "sub")) return {};
   const auto index = name.substr(0, index_digits);
@@ -29,13 +29,13 @@ std::optional<std::uint32_t> decimal_sub(const IniSection& section) noexcept {
   return sub && *sub <= last_sub ? sub : std::nullopt;
 }
 
-/// Three digits are a sub-index in decimal only.
+/// Returns true for a sub-index of three digits, which can only be decimal.
 bool is_beyond_ff(const IniSection& section) noexcept {
   const auto& name = section.name;
   return name.size() == sub_at + 3 && name[sub_at] != '0' && decimal_sub(section).has_value();
 }
 
-/// What sub 0 says; none where it has no number.
+/// Returns the number of sub 0, or std::nullopt if it has none.
 std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
   for (const IniEntry& entry : entries) {
     if (classify_key(entry.key) != Keyword::default_value) continue;
@@ -45,10 +45,10 @@ std::optional<std::uint64_t> default_value(const IniEntries& entries) noexcept {
   return std::nullopt;
 }
 
-/// The sections of the sub-objects of one index, in order of the file.
+/// The sections of the sub-objects of one index, in the order of the file.
 struct Subs {
   std::vector<IniSection*> sections;
-  std::set<std::uint32_t> numbers;  ///< in decimal, but 0
+  std::set<std::uint32_t> numbers;  ///< in decimal, without sub 0
   std::optional<std::uint64_t> said_highest;
   bool all_decimal = true;
   bool beyond_ff = false;
@@ -64,7 +64,8 @@ struct Subs {
   bool is_decimal() const noexcept { return all_decimal && (beyond_ff || shows_decimal()); }
 
  private:
-  /// In hexadecimal the numbers would have a gap from 9 to 10, or not end where sub 0 says.
+  /// Returns true if the numbers are plausible only in decimal: in hexadecimal they would have a
+  /// gap from 9 to 10, or would not end at the number that sub 0 states.
   bool shows_decimal() const noexcept {
     if (numbers.empty() || *numbers.rbegin() < 10) return false;
     return numbers.size() == *numbers.rbegin() || said_highest == *numbers.rbegin();

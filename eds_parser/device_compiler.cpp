@@ -31,7 +31,7 @@ bool is_pdo_cob_id(ObjectKey key) {
   return communication && key.sub == 1;
 }
 
-/// A device takes what its own file says of it, whatever limits the file has beside it.
+/// Widens the limits of an object so that the device accepts the values of its own file.
 void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
   const auto value = integer_of(own);
   if (!value) return;
@@ -39,7 +39,7 @@ void widen_limits(DeviceObject& object, const std::optional<Value>& own) {
   if (object.high_limit) object.high_limit = std::max(*object.high_limit, *value);
 }
 
-/// Read-only objects hold what a DCF says of them; a PDO of unknown COB-ID is off.
+/// Read-only objects get their value from the DCF. A PDO of unknown COB-ID is off.
 DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   DeviceObject object{.key = {index, sub.sub},
                       .type = sub.type,
@@ -64,7 +64,7 @@ DeviceObject object_of(std::uint16_t index, const SubObject& sub) {
   return object;
 }
 
-/// The simulated device says the firmware that it has.
+/// Makes the simulated device report its configured firmware.
 void set_firmware(const NodeSource& node, DeviceTable& table) {
   table.firmware = to_string(*node.firmware);
   if (node.data == nullptr || !node.data->revision_is_firmware) return;
@@ -75,7 +75,7 @@ void set_firmware(const NodeSource& node, DeviceTable& table) {
   }
 }
 
-/// The simulated device is the one that the network file expects.
+/// Gives the simulated device the serial number that the network file expects.
 void set_serial_number(const NodeSpec& node, DeviceTable& table) {
   if (!node.serial_number.given || *node.serial_number == 0) return;
   const std::uint64_t serial = *node.serial_number;

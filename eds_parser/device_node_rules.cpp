@@ -56,7 +56,8 @@ class NodeJudge {
     }
   }
 
-  /// The network file decides, though it may not know.
+  /// Warns if the network file resets the node differently from the device data. The network file
+  /// decides.
   void reset() {
     const auto& wanted = data_.boot.reset;
     if (!wanted || !spec_.reset.given || data_.boot.fact.reason.empty()) return;

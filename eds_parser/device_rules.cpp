@@ -50,7 +50,8 @@ class Judge {
   static bool is_used(const EffectivePdo& pdo) {
     return pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked;
   }
-  /// The PDO is used, or its parameter written although it is not.
+  /// Returns true if the PDO is used, or if an `sdo:` entry writes the parameter `sub` of an unused
+  /// PDO.
   bool is_set(const EffectivePdo& pdo, std::uint8_t sub) const {
     return is_used(pdo) || written({pdo.communication_index(), sub}) != nullptr;
   }
@@ -58,7 +59,7 @@ class Judge {
     const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
     return found == spec_.sdo.end() ? nullptr : &*found;
   }
-  /// Where the network file asks for it by an `sdo:` entry; `otherwise` where it does not.
+  /// Returns the place of the `sdo:` entry that writes the object, or `otherwise` if there is none.
   SourcePos sdo_pos(ObjectKey key, SourcePos otherwise) const {
     const SdoSpec* entry = written(key);
     return entry == nullptr ? otherwise : entry->pos;
@@ -120,7 +121,7 @@ class Judge {
                       std::to_string(pdo.number - 1) + " on " + data_.name + source(rule.fact));
   }
 
-  /// A TPDO that is sent as an answer only needs who asks.
+  /// Warns if a TPDO is sent only as an answer and no RPDO asks for it.
   void answer(const EffectivePdo& pdo, const PdoRule& rule) {
     const auto covers = [&](const NumberRange& range) { return range.contains(pdo.transmission); };
     if (!pdo.is_tpdo || pdo.event_timer != 0 || std::ranges::none_of(rule.answers, covers)) return;
@@ -136,7 +137,8 @@ class Judge {
                         other_type(rule) + source(rule.fact));
   }
 
-  /// `, or write "transmission: 254"`, where the device knows another type.
+  /// Returns `, or write "transmission: 254"` if the device supports another type, else an empty
+  /// text.
   static std::string other_type(const PdoRule& rule) {
     const auto has = [](const std::vector<NumberRange>& list, std::uint32_t type) {
       return std::ranges::any_of(list, [&](const NumberRange& r) { return r.contains(type); });
@@ -150,7 +152,8 @@ class Judge {
     return "";
   }
 
-  /// The network file counts in 100 us, as CiA 301 does; the device in its own unit.
+  /// Checks an inhibit time. The network file counts in 100 us, as CiA 301 does; the device counts
+  /// in its own unit.
   void inhibit(const EffectivePdo& pdo) {
     const InhibitRule& rule = data_.inhibit;
     const PdoSpec* spec = spec_of(spec_, pdo);
@@ -159,7 +162,7 @@ class Judge {
                                    : std::uint64_t{pdo.inhibit_time} * rule.unit_us;
     const ObjectKey key{pdo.communication_index(), 3};
     const SourcePos pos = pos_of(pdo, &PdoSpec::inhibit_time, 3);
-    if (!given && pos == pdo.pos) return;  // the device's own
+    if (!given && pos == pdo.pos) return;  // The default of the device is not judged.
     if (us % rule.unit_us != 0) {
       report_.error(pos, "device-data",
                     "the inhibit time of " + label(pdo) + " is " + time_text(us) + "; " +
@@ -176,7 +179,7 @@ class Judge {
     }
   }
 
-  /// Where the network file makes this node the producer of SYNC.
+  /// Returns the place where the network file makes this node the SYNC producer.
   std::optional<SourcePos> producer_request() const {
     const Sourced<std::string>& source = master_.sync_source;
     if (source.given && *source == spec_.name) return source.pos;
@@ -215,7 +218,7 @@ class Judge {
                       source(data_.sync.fact));
   }
 
-  /// That of 0x1005, which the device receives.
+  /// Returns the identifier in 0x1005, on which the device receives SYNC.
   std::int64_t received_sync() const {
     const SdoSpec* entry = written({0x1005, 0});
     const auto* value = entry == nullptr ? nullptr : std::get_if<std::int64_t>(&entry->value);

@@ -24,7 +24,7 @@ bool writes(const BootStep& step, ObjectKey key) noexcept {
   return any && step.object == key;
 }
 
-/// What the boot writes last, else what the device's file says.
+/// Returns the last value that the boot writes, else the value of the device file.
 std::int64_t value_after_boot(const ObjectDictionary& dictionary, const BootPlan& boot,
                               ObjectKey key) {
   std::int64_t value = integer_of(dictionary, key).value_or(0);

@@ -13,14 +13,14 @@
 namespace takt {
 namespace {
 
-/// Set-points that act in some modes of operation only.
+/// Set-points that act only in some modes of operation.
 constexpr std::array<std::uint16_t, 3> targets{0x607A, 0x60FF, 0x6071};
 
 bool is_target(ObjectKey object) {
   return std::ranges::find(targets, first_axis(object.index)) != targets.end();
 }
 
-/// 0x6060 of the axis that an object belongs to.
+/// Returns the object 0x6060 of the axis that an object belongs to.
 ObjectKey mode_of(ObjectKey object) {
   const auto axis = static_cast<std::uint16_t>(object.index - first_axis(object.index));
   return {static_cast<std::uint16_t>(0x6060 + axis), 0};
@@ -34,7 +34,7 @@ bool is_sent(const NodePdos& node, ObjectKey object) {
   });
 }
 
-/// By `sdo:` or by the values of a DCF.
+/// Returns true if `sdo:` or a value of a DCF writes the object.
 bool is_written(const NodePdos& node, ObjectKey object) {
   const auto& list = node.node.spec->sdo;
   if (std::ranges::find(list, object, &SdoSpec::object) != list.end()) return true;
@@ -83,10 +83,10 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
 
 constexpr std::uint16_t axis_step = 0x800;
 constexpr unsigned most_axes = 8;
-constexpr std::int64_t quick_stop_command = 3;  // 0x6007, CiA 402-2
+constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
 
-/// The object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop ends
-/// the exchange of PDOs, and 3 is the value with which the drive then makes a quick stop.
+/// Returns the object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop
+/// ends the exchange of PDOs. With the value 3 the drive then makes a quick stop.
 std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
   std::vector<ObjectKey> objects;
   for (unsigned axis = 0; axis < most_axes; ++axis) {
@@ -105,7 +105,7 @@ bool is_stopped_with(const NodeSpec& node, const NodeSpec& lost) {
          *node.group == *lost.group;
 }
 
-/// What a network file says so that these objects are 3.
+/// Returns the text with which a network file sets these objects to 3.
 std::string written_as_quick_stop(const std::set<std::uint16_t>& objects) {
   std::string entries;
   for (const std::uint16_t index : objects) {
@@ -114,8 +114,8 @@ std::string written_as_quick_stop(const std::set<std::uint16_t>& objects) {
   return entries.empty() ? "" : "`sdo: [" + entries + "]`, or ";
 }
 
-/// `on_loss: stop_node` and `stop_group` send NMT stop at once. What a moving drive does then is
-/// its own affair.
+/// Warns of drives whose reaction to NMT stop is unknown. `on_loss: stop_node` and `stop_group`
+/// send NMT stop at once, and the configuration of a moving drive decides what the drive does then.
 void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> nodes,
                             NetworkReport& report) {
   std::string names;

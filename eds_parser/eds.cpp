@@ -20,12 +20,12 @@
 namespace takt {
 namespace {
 
-/// A file larger than this is not read: no dictionary of 65,536 objects needs so much.
+/// Larger files are not read. No dictionary of 65,536 objects needs more.
 constexpr std::uintmax_t largest_file = 512ULL << 20;
 
-constexpr SourcePos file_start{1, 1};  // for what the file does not have
+constexpr SourcePos file_start{1, 1};  // place of findings about parts that the file does not have
 
-/// Where each kind of section is.
+/// The sections of the file by kind.
 struct Outline {
   const IniSection* file_info = nullptr;
   const IniSection* comments = nullptr;
@@ -33,12 +33,13 @@ struct Outline {
   const IniSection* dummy_usage = nullptr;
   const IniSection* commissioning = nullptr;
   const IniSection* channels = nullptr;
-  std::array<const IniSection*, 3> lists{};  ///< by ObjectList
-  std::vector<ObjectSection> objects;        ///< ascending index and role, no duplicates
-  const IniSection* tool_list = nullptr;     ///< [Tools]
-  std::vector<const IniSection*> tools;      ///< [ToolN]
+  std::array<const IniSection*, 3> lists{};  ///< indexed by ObjectList
+  std::vector<ObjectSection> objects;  ///< in ascending order of index and role, without duplicates
+  const IniSection* tool_list = nullptr;  ///< [Tools]
+  std::vector<const IniSection*> tools;   ///< [ToolN]
   std::vector<ObjectSection> links;
-  std::vector<std::pair<std::uint16_t, const IniSection*>> modules;  ///< [MxModuleInfo] by x
+  /// X and section of [MxModuleInfo].
+  std::vector<std::pair<std::uint16_t, const IniSection*>> modules;
 };
 
 class EdsReader {
@@ -168,7 +169,8 @@ class EdsReader {
                     "section " + quoted(section.name) + " is not one of CiA 306; it was left out");
   }
 
-  /// The name decides; where it does not tell, the section that only a DCF should have.
+  /// The extension of the file name decides. If it does not tell, the section that only a DCF
+  /// should have decides.
   bool is_dcf(std::string_view name) const noexcept {
     if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".dcf")) return true;
     if (name.size() >= 4 && same_word(name.substr(name.size() - 4), ".eds")) return false;

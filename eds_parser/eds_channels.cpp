@@ -70,7 +70,7 @@ class ChannelReader {
     return false;
   }
 
-  /// As the other devices see it: what is `ro` is an output of the program.
+  /// Reads the direction as other devices see it: `ro` is an output of the program.
   bool read_direction(DynamicChannel& channel, const IniEntry& entry) {
     constexpr std::pair<std::string_view, Access> words[] = {
         {"ro", Access::ro},   {"wo", Access::wo},   {"rw", Access::rw},

@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// N of `BaudRate_N`; `BaudRate_auto` is none.
+/// Returns N of `BaudRate_N`, or std::nullopt for other keys such as `BaudRate_auto`.
 std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
   constexpr std::string_view prefix = "baudrate_";
   if (key.size() <= prefix.size() || !same_word(key.substr(0, prefix.size()), prefix)) {
@@ -26,7 +26,7 @@ std::optional<std::uint16_t> baud_rate_of(std::string_view key) noexcept {
 
 bool nothing_else(std::string_view /*key*/) noexcept { return false; }
 
-/// Keys of [DeviceInfo] that takt has no use for, and bit rates of vendors.
+/// Returns true for keys of [DeviceInfo] that takt does not use, and for bit rates of vendors.
 bool is_reserved(std::string_view key) noexcept {
   constexpr std::string_view reserved[] = {
       "productversion",       "productrevision",     "lmt_manufacturername",   "lmt_productname",
@@ -36,7 +36,7 @@ bool is_reserved(std::string_view key) noexcept {
   return std::ranges::any_of(reserved, [key](auto word) { return same_word(key, word); });
 }
 
-/// `Dummy0005`: the word and the index of a data type.
+/// Returns true for `Dummy0005`: the word followed by the index of a data type.
 bool is_dummy(std::string_view key) noexcept {
   constexpr std::string_view word = "dummy";
   return key.size() == word.size() + 4 && same_word(key.substr(0, word.size()), word) &&

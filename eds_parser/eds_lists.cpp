@@ -121,7 +121,8 @@ void ObjectLists::add(ObjectList list, const IniEntry& entry) {
   membership_[index] = list;
 }
 
-/// `2001` without 0x: hexadecimal where only that object exists.
+/// Returns the index of an entry. An index without 0x, such as `2001`, is read as hexadecimal if
+/// only that object exists.
 std::uint16_t ObjectLists::read_index(const IniEntry& entry, std::uint16_t decimal) {
   const bool prefixed = entry.value.size() > 2 && fold(entry.value[1]) == 'x';
   if (prefixed || described_[decimal]) return decimal;

@@ -11,7 +11,7 @@ bool inverted(const Value& low, const Value& high) noexcept {
   return high < low;
 }
 
-/// A negative limit written without a sign.
+/// Returns true if a negative limit is written without a sign.
 bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexcept {
   const auto* number = limit ? std::get_if<std::int64_t>(&*limit) : nullptr;
   if (number == nullptr || *number >= 0) return false;
@@ -21,8 +21,9 @@ bool is_pattern(const std::optional<Value>& limit, std::string_view text) noexce
 
 }  // namespace
 
-/// A limit that closes a range to values that the file means is none. CiA 306 does not say how a
-/// limit of a signed type is written: vendors write bit patterns, and numbers above the type.
+/// Drops limits that exclude values which the file means to allow. CiA 306 does not say how the
+/// limit of a signed type is written. Vendors write bit patterns, and numbers above the range of
+/// the type.
 void ObjectReader::judge_limits(SubObject& sub, const ObjectFields& fields, ObjectKey key,
                                 const IniSection& section) {
   if (sub.low_limit && sub.high_limit && inverted(*sub.low_limit, *sub.high_limit)) {

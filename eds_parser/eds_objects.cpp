@@ -37,12 +37,12 @@ ObjectSection ObjectSection::of(const SectionName& name, std::uint32_t section) 
   return {.order = static_cast<std::uint32_t>(name.index) << 9 | role_of(name), .section = section};
 }
 
-/// The sections of one object by role.
+/// The sections of one object, sorted by role.
 struct ObjectReader::Parts {
   std::uint16_t index = 0;
   const IniSection* main = nullptr;
   std::span<const ObjectSection> subs;
-  std::array<const IniSection*, 3> lists{};  ///< by CompactList
+  std::array<const IniSection*, 3> lists{};  ///< indexed by CompactList
 };
 
 ObjectReader::Parts ObjectReader::split(std::span<const ObjectSection> group) {
@@ -142,7 +142,8 @@ void ObjectReader::read_subs(Object& object, const Parts& parts) {
                       section_text(section) + " has no ParameterName");
     }
     const auto type_pos = fields.pos(Keyword::object_type, section.pos);
-    read_object_type_code(fields, type_pos, values_, report_);  // it only matters how it is written
+    // The result is not used; the call only reports how the key is written.
+    read_object_type_code(fields, type_pos, values_, report_);
     keep_reference(fields, part.index(), part.sub());
     read_sub(object.subs.emplace_back(), fields, {part.index(), part.sub()}, section);
   }

@@ -32,7 +32,7 @@ constexpr KnownSection known_sections[] = {
     {"connectedmodules", SectionKind::connected_modules},
 };
 
-/// Up to `most` hex digits from `at` on; returns how many there were.
+/// Reads up to `most` hexadecimal digits from the start of `text` and returns their number.
 std::size_t take_hex(std::string_view text, std::size_t most, std::uint32_t& value) noexcept {
   std::size_t count = 0;
   for (value = 0; count < most && count < text.size(); ++count) {
@@ -47,7 +47,7 @@ bool has_prefix(std::string_view text, std::string_view lower) noexcept {
   return text.size() >= lower.size() && same_word(text.substr(0, lower.size()), lower);
 }
 
-/// What follows the four digits of an index.
+/// Classifies the text after the four digits of an index.
 SectionName classify_suffix(std::string_view written, std::uint16_t index) noexcept {
   const auto suffix = trim(written);
   SectionName name{.kind = SectionKind::object, .index = index};
@@ -73,7 +73,7 @@ SectionName classify_suffix(std::string_view written, std::uint16_t index) noexc
   return name;
 }
 
-/// `M<decimal><word>`: [M1ModuleInfo], [M12Fixed6000sub1].
+/// Classifies `M<decimal><word>`, such as [M1ModuleInfo] and [M12Fixed6000sub1].
 SectionName classify_module(std::string_view name) noexcept {
   std::size_t at = 1;
   std::uint32_t number = 0;
@@ -96,8 +96,8 @@ bool is_tool(std::string_view name) noexcept {
   return name.find_first_not_of("0123456789", 4) == std::string_view::npos;
 }
 
-/// Letters, whatever their case: bit 5 tells lower from upper, and of all bytes only the letter
-/// itself becomes a lower one.
+/// Folds letters to lower case: bit 5 distinguishes lower from upper case. Only the two forms of a
+/// letter become the lower-case letter, no other byte does.
 template <std::size_t n>
 constexpr std::uint64_t folded(const char* letters) noexcept {
   std::array<char, 8> eight{};
@@ -105,7 +105,7 @@ constexpr std::uint64_t folded(const char* letters) noexcept {
   return std::bit_cast<std::uint64_t>(eight) | 0x2020'2020'2020'2020;
 }
 
-/// A keyword of 4 to 16 letters in two numbers.
+/// A keyword of 4 to 16 letters as two numbers.
 struct FoldedWord {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
@@ -154,7 +154,7 @@ constexpr KnownKey known_keys[] = {
     {"unit", Keyword::other_known},
 };
 
-/// A hash table in which every keyword has a place of its own: one look, one comparison.
+/// A hash table without collisions: each lookup needs one access and one comparison.
 struct KeyTable {
   struct Place {
     FoldedWord word;

@@ -74,7 +74,7 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
                 "; `heartbeat_producer: 0` would switch to guarding");
   } else if (ms <= 0 || ms > 0xFFFF) {
     leave_alone(spec, name + "has no guard time, neither here nor in " + node.dictionary->file);
-  } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off
+  } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off.
     leave_alone(spec, name + "is not guarded (`retry_factor: 0`)");
   } else {
     guards_ = true;
@@ -91,7 +91,8 @@ void ErrorControl::tell_unused_retry_factor() const {
                    (guards_ ? "each node that is guarded has its own" : "no node is guarded"));
 }
 
-/// What asks for guarding of a node that is not guarded; what asks for none is obeyed.
+/// Reports settings that ask for guarding of a node that is not guarded. Settings of 0 ask for no
+/// guarding and are not reported.
 void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
                                const std::string& remedy) const {
   const auto tell = [&](const auto& key, const std::string& word) {

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// A bit pattern of `bits` bits as the signed number it stands for.
+/// Returns the signed number that a bit pattern of `bits` bits represents.
 std::int64_t sign_extend(std::uint64_t pattern, unsigned bits) noexcept {
   const unsigned shift = 64 - bits;
   return std::bit_cast<std::int64_t>(pattern << shift) >> shift;

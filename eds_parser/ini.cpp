@@ -15,12 +15,12 @@ constexpr std::ptrdiff_t longest_line = 255;  // CiA 306, 4.2
 
 struct Line {
   const char* first;
-  const char* last;              ///< behind it
+  const char* last;              ///< after the last character
   const char* equals = nullptr;  ///< the first `=`, if any
 };
 
-/// Cuts a text into lines, whatever ends them, and notes the first `=` of each on the way. Looks at
-/// 64 bytes at a time and remembers where control characters and `=` are.
+/// Splits a text into lines at any kind of line end, and notes the first `=` of each line. The
+/// class examines 64 bytes at a time and remembers the positions of control characters and `=`.
 class Lines {
  public:
   explicit Lines(std::string_view text) noexcept
@@ -50,13 +50,14 @@ class Lines {
   static constexpr std::uint64_t tops = ones << 7;
   static constexpr std::size_t block_size = 64;
 
-  /// Tabs and other control characters, and what looked like one of the wanted.
+  /// Handles tabs, other control characters, and bytes that only look like one of these characters.
   void take_odd(Line& line) noexcept {
     if (*line.last == '=' && line.equals == nullptr) line.equals = line.last;
     line.last = next();
   }
 
-  /// The next character that may matter: every control character and `=`, few others; or the end.
+  /// Returns the next character that may matter, or the end. The function finds every control
+  /// character and every `=`, and few others.
   const char* next() noexcept {
     while (marks_ == 0) {
       if (end_ - block_ <= static_cast<std::ptrdiff_t>(block_size)) return end_;
@@ -87,7 +88,7 @@ class Lines {
       if constexpr (std::endian::native == std::endian::big) eight = std::byteswap(eight);
       const std::uint64_t other = eight ^ (ones * '=');
       const std::uint64_t found = ((eight - ones * ' ') & ~eight) | ((other - ones) & ~other);
-      // bit 7 of each byte, side by side
+      // Packs bit 7 of each byte into adjacent bits.
       marks |= (((found & tops) >> 7) * 0x0102'0408'1020'4080 >> 56) << at;
     }
     return marks;
@@ -96,7 +97,7 @@ class Lines {
   const char* at_;
   const char* end_;
   const char* block_;
-  std::uint64_t marks_ = 0;  ///< bit n: block_[n] may matter and was not taken yet
+  std::uint64_t marks_ = 0;  ///< bit n: block_[n] may matter and is not handled yet
 };
 
 class Reader {
@@ -139,7 +140,7 @@ class Reader {
         {.key = offset(key), .equals = offset(equals), .end = offset(last), .line = number_});
   }
 
-  /// Neither blank nor an entry.
+  /// Handles a line that is neither blank nor an entry.
   void read_other(std::string_view rest) {
     if (rest.front() == '[') {
       read_header(rest);
@@ -171,7 +172,8 @@ class Reader {
                               static_cast<std::uint32_t>(file_.spots.size())});
   }
 
-  /// What follows belongs to this section, whatever it is, and not to the one before.
+  /// Starts a section whose ] is missing. The following entries belong to it, not to the section
+  /// before.
   void read_open_header(std::string_view rest) {
     rest = trim(rest.substr(0, rest.find(';')));
     if (report_.wants("section-not-closed")) {
@@ -206,11 +208,12 @@ class Reader {
 
   IniFile& file_;
   Report& report_;
-  const char* start_ = nullptr;  ///< of the line
-  std::uint32_t number_ = 0;     ///< of the line
+  const char* start_ = nullptr;  ///< start of the line
+  std::uint32_t number_ = 0;     ///< number of the line
 };
 
-/// UTF-16 by its mark, or by the NULs that every second byte of ASCII text then is.
+/// The encoding of a text. UTF-16 is recognized by its mark, or by the NULs in every second byte of
+/// ASCII text.
 enum class Encoding : std::uint8_t { bytes, utf16_le, utf16_be };
 
 Encoding encoding_of(std::string_view text) noexcept {
@@ -225,7 +228,7 @@ Encoding encoding_of(std::string_view text) noexcept {
   return Encoding::bytes;
 }
 
-/// Length of the UTF-8 character at `at`, 0 where there is none.
+/// Returns the length of the UTF-8 character at `at`, or 0 if there is none.
 std::size_t character_at(std::string_view text, std::size_t at) noexcept {
   if (static_cast<unsigned char>(text[at]) < 0x80) return 1;
   for (const std::size_t length : {2U, 3U, 4U}) {
@@ -234,7 +237,8 @@ std::size_t character_at(std::string_view text, std::size_t at) noexcept {
   return 0;
 }
 
-/// Each text that is not UTF-8 is read as Windows-1252, which is only likely: says so once.
+/// Reports once that texts which are not UTF-8 are read as Windows-1252, because this encoding is
+/// only likely.
 void tell_assumed_encoding(std::string_view text, Report& report) {
   if (is_utf8(text)) return;
   SourcePos pos{1, 1};

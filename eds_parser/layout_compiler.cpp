@@ -16,12 +16,13 @@ namespace {
 constexpr std::size_t longest_name = 60;
 constexpr std::size_t max_signals = 0xFFFF;
 
-/// A mapped object on its way to its signal.
+/// A mapped object that is to become a signal.
 struct Candidate {
   std::size_t node_index = 0;
-  std::size_t row = 0;  ///< of tpdos or rpdos
+  std::size_t row = 0;  ///< index in tpdos or rpdos
   const EffectiveEntry* entry = nullptr;
-  std::size_t occurrence = 0;  ///< of this object in the same node and direction
+  /// Number of earlier occurrences of this object in the same node and direction.
+  std::size_t occurrence = 0;
   bool output = false;
 };
 
@@ -54,10 +55,10 @@ class LayoutCompiler {
   struct Source {
     std::size_t node_index;
     const EffectivePdo* pdo;
-    const EffectiveEntry* entry = nullptr;  ///< MPDO: the object of this row
+    const EffectiveEntry* entry = nullptr;  ///< for an MPDO: the object of this row
     std::uint32_t header = 0;
 
-    /// Entries that become signals.
+    /// Returns the entries that become signals.
     std::span<const EffectiveEntry> entries() const {
       if (pdo->on_request) return {};
       return entry != nullptr ? std::span{entry, 1} : std::span{pdo->mapping};
@@ -82,7 +83,8 @@ class LayoutCompiler {
         if (pdo.use == PdoUse::exchanged && pdo.is_tpdo == is_tpdo) add_source(n, pdo, sources);
       }
     }
-    // The master sends by priority, so that no frame waits in the controller for a lower one.
+    // The master sends RPDOs in the order of their priority, so that no frame waits in the
+    // controller for one of lower priority.
     if (!is_tpdo) {
       std::ranges::stable_sort(sources, {}, [](const Source& s) { return s.pdo->cob_id; });
     }
@@ -131,15 +133,16 @@ class LayoutCompiler {
     return std::int64_t{pdo.inhibit_time} * pdo.inhibit_unit_us;
   }
 
-  /// `event_deadline`; else, where the device repeats by itself, 1.5 of its timer, its inhibit time
-  /// (which may delay each repetition) and 10 ms.
+  /// Returns `event_deadline`. If there is none and the device repeats the PDO itself, returns 1.5
+  /// times its event timer, plus its inhibit time (which may delay each repetition), plus 10 ms.
   static Time deadline_of(const EffectivePdo& pdo) {
     if (pdo.master_timer != 0) return std::chrono::milliseconds{pdo.master_timer};
     if (pdo.synchronous() || pdo.event_timer == 0) return Time{};
     return std::chrono::microseconds{pdo.event_timer * 1500 + 10'000 + inhibit_us(pdo)};
   }
 
-  /// Inputs mapped twice are two signals; an output is one, copied into every RPDO that maps it.
+  /// An input that is mapped twice becomes two signals. An output is one signal, which is copied
+  /// into every RPDO that maps it.
   void add_candidates(const Source& source, std::size_t row) {
     for (const EffectiveEntry& entry : source.entries()) {
       if (entry.dummy) continue;
@@ -178,7 +181,8 @@ class LayoutCompiler {
     plan_.layout.signals.push_back(std::move(signal));
   }
 
-  /// Unique within a node; where an object is input and output, the output has the plain name.
+  /// Gives each signal a name that is unique within its node. If an object is input and output, the
+  /// output gets the plain name.
   void give_names() {
     std::set<std::pair<std::uint8_t, std::string>> taken;
     for (const bool output : {true, false}) {

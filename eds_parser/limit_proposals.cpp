@@ -80,7 +80,7 @@ class Proposal {
     words("what the machine stands");
   }
 
-  /// What the velocity of the axis makes in one cycle.
+  /// Proposes the distance that the axis travels in one cycle at its velocity limit.
   void step() {
     const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
     for (const LimitLine& other : plan_.limits.lines) {

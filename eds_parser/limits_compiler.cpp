@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// `own` where it is given, else `common`.
+/// Returns the limits of `common`, overridden by those that `own` gives.
 AxisLimitsSpec merged(const AxisLimitsSpec& common, const AxisLimitsSpec& own) {
   AxisLimitsSpec out = common;
   const auto take = [](auto& to, const auto& from) {
@@ -27,7 +27,7 @@ AxisLimitsSpec merged(const AxisLimitsSpec& common, const AxisLimitsSpec& own) {
   return out;
 }
 
-/// Where the first limit of an axis stands; none: there is none.
+/// Returns the place of the first limit of an axis, or std::nullopt if there is none.
 std::optional<SourcePos> first_place(const AxisLimitsSpec& limits) {
   if (limits.position.given) return limits.position.pos;
   for (const auto* limit : {&limits.velocity, &limits.acceleration, &limits.jerk, &limits.step,
@@ -75,7 +75,7 @@ class LimitsCompiler {
     for (const ObjectLimitSpec& limit : limits.objects) object(index, limit);
   }
 
-  /// Otherwise what is wrong with the mapping is told already, and no limit is to blame.
+  /// Returns false if a mapping has errors. They are already reported, and no limit is to blame.
   static bool every_output_is_mapped(const NodePdos& node) {
     return std::ranges::all_of(node.node.spec->rpdos, [&](const PdoSpec& written) {
       const auto pdo = std::ranges::find_if(node.pdos, [&](const EffectivePdo& one) {
@@ -86,7 +86,7 @@ class LimitsCompiler {
     });
   }
 
-  /// Axes with a set-point in an RPDO.
+  /// Returns the axes that have a set-point in an RPDO.
   std::set<std::uint8_t> axes_of(std::size_t node_index) const {
     constexpr std::array<std::uint16_t, 7> set_points{0x607A, 0x60C1, 0x60FF, 0x6071,
                                                       0x60B0, 0x60B1, 0x60B2};

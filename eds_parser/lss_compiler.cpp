@@ -14,14 +14,15 @@ bool may_be_same(const LssPlan& a, const LssPlan& b) {
   return true;
 }
 
-/// Of the network file, else of the device file.
+/// Returns a number of the identity from the network file, else from the device file.
 std::uint32_t identity(const Sourced<std::uint32_t>& wanted, const ObjectDictionary& dictionary,
                        std::uint8_t sub) {
   if (wanted.given) return *wanted;
   return static_cast<std::uint32_t>(integer_of(dictionary, {0x1018, sub}).value_or(0));
 }
 
-/// A number of 0 is not known, but for a vendor id beside a product code: that device has none.
+/// A number of 0 is unknown. The exception is a vendor ID of 0 together with a product code: that
+/// device has no vendor ID.
 LssPlan lss_plan(const NodeSpec& node, const ObjectDictionary& dictionary) {
   LssPlan lss{.address = {identity(node.vendor_id, dictionary, 1),
                           identity(node.product_code, dictionary, 2), *node.revision_number,

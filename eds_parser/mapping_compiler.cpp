@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint16_t first_real_object = 0x0020;
 
-/// What is near a missing object: its sub-indices, or the nearest object with a mappable entry.
+/// Returns a hint for a missing object: its sub-indices, or the nearest object with a mappable
+/// entry.
 std::string suggestion(const ObjectDictionary& dictionary, ObjectKey key) {
   if (const Object* object = dictionary.find(key.index)) {
     if (object->subs.empty()) return {};

@@ -12,7 +12,7 @@
 namespace takt {
 namespace {
 
-/// `M1FixedObjects`, `M1SubExtends`.
+/// Returns the name of a list: `M1FixedObjects`, `M1SubExtends`.
 std::string list_name(std::uint16_t module, ModulePart part) {
   return 'M' + std::to_string(module) + (part == ModulePart::fixed ? "FixedObjects" : "SubExtends");
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_modules = 254;
 
-/// `Count=n`: n sub-indices a module. `Count=0;b`: b bits a module.
+/// The values of `Count=n` (n sub-indices for each module) or `Count=0;b` (b bits for each module).
 struct Count {
   unsigned subs = 0;
   unsigned bits = 0;
@@ -45,7 +45,7 @@ Count read_count(std::string_view text) noexcept {
   return count;
 }
 
-/// Numbers, and not so large that they are cut.
+/// Returns true if the text holds valid numbers that are not too large.
 bool brings_something(std::string_view text) noexcept {
   const auto separator = text.find(';');
   const auto subs = parse_number(trim(text.substr(0, separator)));
@@ -55,7 +55,7 @@ bool brings_something(std::string_view text) noexcept {
   return bits >= 1 && bits <= 64;
 }
 
-/// An array without elements, for the extensions of modules.
+/// Returns an array without elements, for the extensions of modules.
 Object extended_object(std::uint16_t index, const SubObject& pattern) {
   Object object;
   object.index = index;
@@ -74,7 +74,7 @@ Object extended_object(std::uint16_t index, const SubObject& pattern) {
   return object;
 }
 
-/// One that the file describes by itself stays. Sub 0 counts it either way.
+/// Adds a sub-object unless the file describes it already. Sub 0 is updated in both cases.
 void add_sub(Object& object, const SubObject& pattern, unsigned sub) {
   const auto at = std::ranges::lower_bound(object.subs, sub, {}, &SubObject::sub);
   if (at == object.subs.end() || at->sub != sub) {
@@ -99,7 +99,7 @@ bool ModuleSections::add(const SectionName& name, std::uint32_t section, Report&
   constexpr std::string_view extension = "SubExt";
   const char first = fold(name.module_part.front());
   const bool is_fixed = first == 'f';
-  if (!is_fixed && first != 's') return true;  // [MxModuleInfo], [MxComments]
+  if (!is_fixed && first != 's') return true;  // [MxModuleInfo] and [MxComments] are not used.
   const auto rest = name.module_part.substr(is_fixed ? fixed.size() : extension.size());
   const Part part = is_fixed ? Part::fixed : Part::extension;
   if (same_word(rest, is_fixed ? "objects" : "ends")) {
@@ -163,7 +163,7 @@ void ModuleSections::check(const ObjectDictionary& dictionary, Report& report) {
   }
 }
 
-/// False: the budget is used up.
+/// Returns false if the budget is used up.
 bool ModuleSections::add_modules(ObjectDictionary& dictionary, ObjectReader& reader,
                                  Report& report) {
   std::vector<bool> seen(65536);
@@ -178,7 +178,8 @@ bool ModuleSections::add_modules(ObjectDictionary& dictionary, ObjectReader& rea
   return true;
 }
 
-/// The entries of [ConnectedModules] by number, which is the order of the modules on the device.
+/// Returns the entries of [ConnectedModules] by number, which is the order of the modules on the
+/// device.
 std::vector<ModuleSections::Slot> ModuleSections::slots(Report& report) const {
   std::vector<Slot> slots;
   std::optional<IniEntry> count;
@@ -265,7 +266,7 @@ void ModuleSections::add_fixed(std::uint16_t module, const ObjectDictionary& dic
   }
 }
 
-/// Of the file, of a module so far, or nullptr.
+/// Returns the object from the file or from the modules so far, or nullptr.
 Object* ModuleSections::find(std::uint16_t index, ObjectDictionary& dictionary) {
   const auto at = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);
   if (at != dictionary.objects.end() && at->index == index) return &*at;
@@ -273,7 +274,7 @@ Object* ModuleSections::find(std::uint16_t index, ObjectDictionary& dictionary) 
   return made == made_.end() ? nullptr : &made->second;
 }
 
-/// False: the budget is used up.
+/// Returns false if the budget is used up.
 bool ModuleSections::extend(const ModuleSection& section, ObjectDictionary& dictionary,
                             ObjectReader& reader, Report& report) {
   const auto& extension = extension_of(section, reader, report);
@@ -326,7 +327,7 @@ ModuleSections::Fill& ModuleSections::fill_of(std::uint16_t index, ObjectDiction
       Fill{.first_index = index, .index = index, .described = described_subs(index, dictionary)});
 }
 
-/// Highest sub-index that an object has before modules extend it.
+/// Returns the highest sub-index that an object has before modules extend it.
 unsigned ModuleSections::described_subs(std::uint16_t index, ObjectDictionary& dictionary) {
   unsigned highest = 0;
   const auto* object = find(index, dictionary);
@@ -337,8 +338,9 @@ unsigned ModuleSections::described_subs(std::uint16_t index, ObjectDictionary& d
   return highest;
 }
 
-/// A DCF may hold the sub-objects of its modules as sections: they are the same. Where they are
-/// not as many, some of the file and of the modules were meant to be others.
+/// Warns if the file describes another number of sub-objects than the modules bring. A DCF may hold
+/// the sub-objects of its modules as sections, which then are the same. If the numbers differ, some
+/// of them were meant as different objects.
 void ModuleSections::tell_overlap(const Fill& fill, ObjectDictionary& dictionary, Report& report) {
   if (fill.described == 0 || fill.sub == 0 || fill.described == fill.sub) return;
   report.warning(find(fill.index, dictionary)->pos, "module-sub-objects",

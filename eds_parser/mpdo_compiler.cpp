@@ -54,8 +54,9 @@ class MpdoCompiler {
   NetworkReport& report_;
 };
 
-/// The object dispatching list (0x1FD0..0x1FFF) of a device, by its file and the `sdo` writes of
-/// its node: which objects of whom it takes by source address. CiA 301, 7.5.2.
+/// The object dispatching list (0x1FD0..0x1FFF) of a device, according to its file and the `sdo`
+/// writes of its node. It states which objects of which nodes the device receives by source
+/// address. CiA 301, 7.5.2.
 class DispatchingList {
  public:
   explicit DispatchingList(const NodeSource& node) : node_{node} {
@@ -69,7 +70,7 @@ class DispatchingList {
 
   bool exists() const noexcept { return !entries_.empty() || !free_.empty(); }
 
-  /// The object of `sender` that the device copies into its own `object`.
+  /// Returns the object of `sender` that the device copies into its own `object`.
   std::optional<ObjectKey> sent_as(ObjectKey object, NodeId sender) const noexcept {
     for (const Entry& entry : entries_) {
       const unsigned offset = unsigned{object.sub} - entry.local.sub;
@@ -80,7 +81,8 @@ class DispatchingList {
     return {};
   }
 
-  /// What to write so that `sender` sends the object under its own index; takes a free place.
+  /// Returns the text of an `sdo:` entry with which `sender` sends the object under its own index.
+  /// Uses up a free place of the list.
   std::string proposal(ObjectKey object, NodeId sender) {
     if (free_.empty()) return "it has no free place either";
     const std::uint32_t low =
@@ -101,10 +103,10 @@ class DispatchingList {
     ObjectKey local;
     ObjectKey sender;
     std::uint8_t node = 0;
-    unsigned block = 1;  ///< sub-indices in a row
+    unsigned block = 1;  ///< number of consecutive sub-indices
   };
 
-  /// The last write counts.
+  /// Returns the value of a list entry. The last write counts.
   std::uint64_t value_of(ObjectKey place, const SubObject& sub) const {
     std::int64_t value = integer_of(sub.value()).value_or(0);
     for (const SdoSpec& written : node_.spec->sdo) {
@@ -130,7 +132,7 @@ class DispatchingList {
 
   const NodeSource& node_;
   std::vector<Entry> entries_;
-  std::vector<ObjectKey> free_;  ///< places that are empty and may be written
+  std::vector<ObjectKey> free_;  ///< empty places that can be written
 };
 
 }  // namespace

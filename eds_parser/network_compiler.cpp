@@ -37,8 +37,8 @@ constexpr Time storing_timeout = std::chrono::seconds{5};
 constexpr std::uint32_t default_reboot_delay_ms = 1000;
 constexpr std::uint32_t default_reboot_delay_max_ms = 30'000;
 constexpr std::uint8_t stand_in_id = 127;
-constexpr std::uint8_t stray_index = 255;  // of a node that has no place in the plan
-constexpr int stop_cycles = 10;            // an ordered stop without axes takes five
+constexpr std::uint8_t stray_index = 255;  // index of a node that has no place in the plan
+constexpr int stop_cycles = 10;            // An ordered stop without axes takes five cycles.
 
 Time milliseconds(std::uint32_t value) { return std::chrono::milliseconds{value}; }
 
@@ -48,7 +48,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Names end up in LCM channels, in capitals.
+/// Returns the form by which names are compared. LCM channels contain the names in capitals.
 std::string channel_form(const std::string& name) {
   std::string out = lower(name);
   std::ranges::replace(out, '-', '_');
@@ -129,7 +129,8 @@ class NetworkCompiler {
     }
   }
 
-  /// The time of the ordered stop is derived from the ramps of the drives, unless it is written.
+  /// Sets the time of the ordered stop: the value of the network file, else a value derived from
+  /// the ramps of the drives.
   void stop() {
     BusPlan& bus = plan();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -143,7 +144,8 @@ class NetworkCompiler {
     judge_stop(bus, spec_, report_);
   }
 
-  /// Nodes in ascending id; ids and names used once. A node without an id of its own is a stray.
+  /// Collects the nodes in ascending node-ID and checks that node-IDs and names are used only once.
+  /// A node without a valid node-ID becomes a stray.
   void collect_nodes() {
     std::map<unsigned, const NodeSpec*> by_id;
     std::map<std::string, const NodeSpec*> by_name;
@@ -268,7 +270,8 @@ class NetworkCompiler {
     return static_cast<std::uint8_t>(found - groups.begin() + 1);
   }
 
-  /// Of the network file, then of the device data where they are longer than that of all objects.
+  /// Returns the timeouts of the network file, then those of the device data. The latter are never
+  /// shorter than the general SDO timeout of the node.
   static std::vector<SdoObjectTimeout> stated_timeouts(const NodeSource& node) {
     std::vector<SdoObjectTimeout> list = node.spec->sdo_timeouts;
     if (node.data == nullptr) return list;
@@ -280,7 +283,8 @@ class NetworkCompiler {
     return list;
   }
 
-  /// Parameters that are stored or restored take their time wherever nobody says how long.
+  /// Objects that store or restore parameters get a longer timeout, unless another timeout is
+  /// stated.
   static SdoAccess sdo_access(const NodeSource& node) {
     const NodeSpec& spec = *node.spec;
     SdoAccess access{.block = spec.sdo_block.value_or(SdoBlockUse::automatic),
@@ -313,7 +317,7 @@ class NetworkCompiler {
     set_device_watch(*source.node.dictionary, node);
   }
 
-  /// Of a node without an id of its own: what else is wrong with it, told in the same run.
+  /// Reports the other errors of a node without a valid node-ID in the same run.
   void judge_stray(NodePdos& source) {
     source.pdos = compile_pdos(source.node, report_);
     judge_by_device_data(source, spec_.master, report_);
@@ -358,7 +362,7 @@ class NetworkCompiler {
   const NetworkSpec& spec_;
   std::span<const ObjectDictionary* const> dictionaries_;
   std::span<const DeviceData> device_data_;
-  std::deque<ObjectDictionary> edited_;  ///< stable addresses
+  std::deque<ObjectDictionary> edited_;  ///< a deque, because its elements keep their addresses
   NetworkReport report_;
   ErrorControl error_control_;
   std::vector<NodePdos> nodes_;

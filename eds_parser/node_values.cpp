@@ -12,7 +12,8 @@ std::string object_text(ObjectKey object, const SubObject& sub) {
   return to_string(object) + (sub.name.empty() ? "" : " " + sub.name);
 }
 
-/// Whether `value` can be written into the object; a bit pattern of its width (0xFF for -1) can.
+/// Returns true if `value` can be written into the object. A bit pattern of the width of the type
+/// (0xFF for -1) is accepted.
 bool fits(std::int64_t value, DataType type) {
   const unsigned bits = bit_width(type);
   if (bits == 0 || bits >= 63 || is_real(type)) return true;

@@ -13,7 +13,7 @@ using Parsed = std::expected<ParsedNumber, NumberFault>;
 
 std::uint16_t bit(NumberQuirk quirk) noexcept { return static_cast<std::uint16_t>(quirk); }
 
-/// Digits of `base` up to the end. False: another character, or more than 64 bits (`too_big`).
+/// The result of reading digits. `bad` means another character; `too_big` means more than 64 bits.
 enum class Digits : std::uint8_t { good, bad, too_big };
 
 Digits read_digits(std::string_view digits, int base, std::uint64_t& out) noexcept {
@@ -28,7 +28,7 @@ bool all_of(std::string_view text, std::string_view set) noexcept {
   return text.find_first_not_of(set) == std::string_view::npos;
 }
 
-/// `5.0` as an integer where it is one.
+/// Reads `5.0` as an integer if the value is one.
 std::optional<ParsedNumber> integral_real(std::string_view text) noexcept {
   if (text.find('.') == std::string_view::npos) return std::nullopt;
   const auto real = parse_real(text);
@@ -41,7 +41,8 @@ std::optional<ParsedNumber> integral_real(std::string_view text) noexcept {
   return number;
 }
 
-/// What follows neither 0x nor only decimal digits: suffixes, hex without prefix, reals.
+/// Reads numbers other than 0x... and plain decimal digits: suffixes, hexadecimal without prefix,
+/// reals.
 Parsed read_unusual(std::string_view text) noexcept {
   if (const auto real = integral_real(text)) return *real;
   const auto last_digit = text.find_last_not_of("uUlL");
@@ -51,7 +52,8 @@ Parsed read_unusual(std::string_view text) noexcept {
     if (number) return number;
   }
   ParsedNumber number;
-  // a name in hex digits (`DEAD`) is none; `1E3` could be 1000 or 0x1E3, `0b101` 5 or 0xB101
+  // A name in hexadecimal digits (`DEAD`) is no number. `1E3` could be 1000 or 0x1E3, and `0b101`
+  // could be 5 or 0xB101.
   const bool has_digit = text.find_first_of("0123456789") != std::string_view::npos;
   const bool real = all_of(text, "0123456789eE") && parse_real(text);
   const bool binary =
@@ -85,7 +87,7 @@ Parsed read_hex(std::string_view text) noexcept {
   return finish(digits, number);
 }
 
-/// One term without sign.
+/// Reads one term without a sign.
 Parsed read_unsigned(std::string_view text) noexcept {
   if (text.empty()) return std::unexpected{NumberFault::not_a_number};
   if (text.size() > 2 && text[0] == '0' && fold(text[1]) == 'x') return read_hex(text);
@@ -94,13 +96,14 @@ Parsed read_unsigned(std::string_view text) noexcept {
   const bool zero_first = text.size() > 1 && text[0] == '0';
   const bool is_octal = zero_first && all_of(text, "01234567");
   const auto digits = read_digits(text, is_octal ? 8 : 10, number.magnitude);
-  // "00" and "007" mean the same either way
+  // "00" and "007" have the same value in octal and in decimal.
   if (is_octal && number.magnitude > 7) number.quirks = bit(NumberQuirk::octal);
   if (zero_first && !is_octal) number.quirks = bit(NumberQuirk::decimal_zero);
   return finish(digits, number);
 }
 
-/// `$NODEID-1`, not `$NODEID_2`: the name is known, what follows it is not.
+/// Returns true for `$NODEID-1`, but not for `$NODEID_2`: the name is known, and only what follows
+/// it is wrong.
 bool starts_with_node_id(std::string_view text) noexcept {
   constexpr std::string_view name = "$nodeid";
   if (!same_word(text.substr(0, name.size()), name)) return false;
@@ -126,7 +129,7 @@ Parsed read_term(std::string_view text) noexcept {
   return number;
 }
 
-/// sum += term; only terms of one sign occur together in practice.
+/// Computes sum += term. In practice all terms have the same sign.
 bool add(ParsedNumber& sum, const ParsedNumber& term) noexcept {
   if (sum.node_ids + term.node_ids > 127) return false;
   sum.node_ids = static_cast<std::uint8_t>(sum.node_ids + term.node_ids);
@@ -144,7 +147,8 @@ bool add(ParsedNumber& sum, const ParsedNumber& term) noexcept {
   return true;
 }
 
-/// Position of the `+` that ends a term; the one of an exponent (`1e+3`) does not.
+/// Returns the position of the `+` that ends a term. The `+` of an exponent (`1e+3`) does not end
+/// it.
 std::size_t end_of_term(std::string_view text) noexcept {
   for (std::size_t i = 1; i < text.size(); ++i) {
     if (text[i] != '+') continue;
@@ -155,7 +159,8 @@ std::size_t end_of_term(std::string_view text) noexcept {
   return std::string_view::npos;
 }
 
-/// The forms that nearly all numbers have, decimal and 0x; none where there is anything else.
+/// Reads the decimal and 0x forms that nearly all numbers have. Returns std::nullopt for any other
+/// form.
 std::optional<ParsedNumber> plain_number(std::string_view text) noexcept {
   ParsedNumber number;
   const bool minus = text.starts_with('-');

@@ -212,10 +212,11 @@ struct ObjectDictionary {
   const SubObject* find(ObjectKey key) const noexcept;
 };
 
-/// Returns the value as an integer, or std::nullopt for reals and strings.
+/// Returns the value as an integer, or std::nullopt for reals and strings. An unsigned value above
+/// 2^63 - 1 gives the negative number with the same bits.
 std::optional<std::int64_t> as_integer(const Value& value) noexcept;
-/// Returns the bytes of a value on the wire: little endian, with the width of `type`. Strings are
-/// returned unchanged.
+/// Returns the bytes of a value on the wire: little endian, with the width of `type`. Strings keep
+/// their bytes, except for UNICODE_STRING, which becomes UTF-16.
 std::vector<std::byte> to_bytes(const Value& value, DataType type);
 
 }  // namespace takt

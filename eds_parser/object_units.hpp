@@ -11,7 +11,9 @@ struct ObjectQuantity {
   Quantity quantity = Quantity::position;
   /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.
   bool directed = true;
-  bool absolute = false;  ///< `offset` applies. If false, the value is a difference.
+  /// `offset` of a position applies. If false, the position is a difference. The offset of any
+  /// other quantity always applies.
+  bool absolute = false;
 };
 
 /// Returns the quantity of a CiA 402 object of any axis of a device (0x6000 + 0x800 n), or

@@ -46,7 +46,7 @@ class PdoCompiler {
     return pdo;
   }
 
-  /// One word on all PDOs that are on and carry nothing.
+  /// Reports all PDOs that are on and carry nothing in one message.
   void report_unmapped() {
     if (unmapped_.empty()) return;
     std::string list = unmapped_[0];
@@ -76,7 +76,8 @@ class PdoCompiler {
     return found == node_.spec->sdo.end() ? nullptr : &*found;
   }
 
-  /// By an `sdo:` entry or a ParameterValue, not only by its default.
+  /// Returns true if an `sdo:` entry or a ParameterValue, and not only the default, switches the
+  /// PDO off.
   bool is_turned_off(const EffectivePdo& pdo) const {
     const SubObject* cob_id = sub(pdo.communication_index(), 1);
     const bool by_dcf = node_.dictionary->is_dcf && cob_id != nullptr && cob_id->parameter_value &&
@@ -121,8 +122,8 @@ class PdoCompiler {
     pdo.cob_id = device.extended ? CobId::extended(*id) : CobId::base(*id);
   }
 
-  /// By an `sdo:` entry, whatever becomes of the PDO. Device data with a word on types judge it
-  /// themselves.
+  /// Judges a transmission type that an `sdo:` entry writes, even for an unused PDO. If the device
+  /// data list the allowed types, those rules apply instead.
   void judge_written_type(const EffectivePdo& pdo) {
     const SdoSpec* entry = written(pdo, 2);
     if (entry == nullptr || usable_type(pdo)) return;
@@ -135,7 +136,8 @@ class PdoCompiler {
                                               : ": only a TPDO is sent on remote request"));
   }
 
-  /// A PDO of the device file alone: used where that is possible, else left out with a word.
+  /// Judges a PDO that only the device file mentions. The PDO is used if possible, else left out
+  /// with a note.
   void judge_unnamed(const PdoDescription& device, EffectivePdo& pdo) {
     if (pdo.use != PdoUse::exchanged) return;
     const auto leave_out = [&](const std::string& why) {
@@ -199,7 +201,7 @@ class PdoCompiler {
     pdo.cob_id = *file.id;
   }
 
-  /// event_timer is the sender's, event_deadline the receiver's (as dcfgen means them).
+  /// event_timer belongs to the sender and event_deadline to the receiver, as in dcfgen.
   void overlay_times(const PdoSpec& spec, EffectivePdo& pdo) {
     if (spec.transmission.given) pdo.transmission = *spec.transmission;
     if (pdo.is_tpdo) {
@@ -245,7 +247,7 @@ class PdoCompiler {
     }
   }
 
-  /// Multiplexed PDOs are event-driven; their objects are not in the mapping record.
+  /// Multiplexed PDOs are event-driven. Their objects are not in the mapping record.
   void overlay_mpdo(const PdoSpec& spec, EffectivePdo& pdo) {
     pdo.mapping = compile_mpdo(node_, pdo, spec.mapping, report_);
     pdo.bits = 64;
@@ -298,7 +300,7 @@ class PdoCompiler {
   void judge_named(const PdoSpec& spec, EffectivePdo& pdo) {
     if (pdo.use == PdoUse::off) return;
     if (pdo.on_request && pdo.mapping.empty()) {
-      pdo.fixed_mapping = true;  // the device has no word on what it carries
+      pdo.fixed_mapping = true;  // The device does not describe the content of the PDO.
       pdo.bits = 64;
     } else if (pdo.mapping.empty() && (!spec.mapping.given || spec.mapping->empty())) {
       report_.error(spec.mapping.given ? spec.mapping.pos : spec.pos, "maps-nothing",
@@ -332,7 +334,7 @@ const PdoSpec* find_spec(const NodeSpec& node, const PdoDescription& device) {
   return found == list.end() ? nullptr : &*found;
 }
 
-/// Every PDO of the network file has to be one of the device.
+/// Reports each PDO of the network file that the device does not have.
 void report_missing(const NodeSource& node, bool is_tpdo,
                     const std::vector<PdoDescription>& devices, NetworkReport& report) {
   const std::string kind = is_tpdo ? "TPDO" : "RPDO";
@@ -358,7 +360,7 @@ void report_missing(const NodeSource& node, bool is_tpdo,
   }
 }
 
-/// An RPDO on request needs the TPDO that answers it.
+/// Checks that the TPDO that answers an RPDO on request exists.
 void check_pairs(const NodeSource& node, std::span<const EffectivePdo> pdos,
                  NetworkReport& report) {
   for (const EffectivePdo& pdo : pdos) {

@@ -10,7 +10,7 @@ namespace takt {
 namespace {
 
 constexpr std::uint16_t pdos_per_direction = 512;
-constexpr std::uint8_t most_entries = 64;  // CiA 301, 7.5.2.36; above are the MPDO marks
+constexpr std::uint8_t most_entries = 64;  // CiA 301, 7.5.2.36; higher numbers mark MPDOs
 
 std::optional<std::uint64_t> unsigned_value(const ObjectDictionary& dictionary, ObjectKey key) {
   const auto integer = integer_of(dictionary, key);
@@ -24,7 +24,7 @@ std::optional<T> narrow(std::optional<std::uint64_t> value) noexcept {
   return static_cast<T>(*value);
 }
 
-/// COB-ID without the node id where that is unknown: its flags are in the constant term.
+/// Returns the COB-ID without an unknown node-ID. The constant term contains its flags.
 std::optional<std::uint64_t> constant_term(const SubObject& sub) noexcept {
   const auto number =
       parse_number(sub.parameter_text.empty() ? sub.default_text : sub.parameter_text);

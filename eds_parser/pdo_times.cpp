@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-/// Times of who sends an event-driven PDO: of a TPDO the device, of an RPDO the master.
+/// The times of the sender of an event-driven PDO: the device for a TPDO, the master for an RPDO.
 struct SenderTimes {
   std::uint64_t inhibit_us = 0;
   std::uint64_t timer_us = 0;
@@ -48,7 +48,7 @@ class TimeJudge {
     return found == list.end() ? nullptr : &*found;
   }
 
-  /// Where the network file gives the value, else the PDO.
+  /// Returns the place of the value in the network file, else that of the PDO.
   SourcePos pos(const EffectivePdo& pdo, Sourced<std::uint16_t> PdoSpec::* member) const {
     const PdoSpec* spec = spec_of(pdo);
     return spec != nullptr && (spec->*member).given ? (spec->*member).pos : pdo.pos;

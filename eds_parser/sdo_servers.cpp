@@ -25,14 +25,15 @@ bool is_configured(const ObjectDictionary& dictionary, const SubObject& sub) {
   return dictionary.is_dcf && sub.parameter_value;
 }
 
-/// As it stands there, of whichever node; none: there is no such entry or no number.
+/// Returns the number in the file, whichever node it is valid for. Returns std::nullopt if there is
+/// no such entry or it is no number.
 std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
   const SubObject* sub = dictionary.find(key);
   if (sub == nullptr) return std::nullopt;
   return integer_of(is_configured(dictionary, *sub) ? sub->parameter_value : sub->default_value);
 }
 
-/// None: it is off.
+/// Returns std::nullopt if the COB-ID is off.
 std::optional<CobId> cob_id_of(std::int64_t value) {
   const auto raw = static_cast<std::uint32_t>(value);
   if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
@@ -67,7 +68,8 @@ class SdoServers {
                      .doubt = {}};
   }
 
-  /// As the device may be delivered, unless a DCF says how it was left.
+  /// Returns the server that the device has at delivery according to its device data, unless a DCF
+  /// states its configuration.
   std::optional<SdoServer> of_factory(std::uint16_t index) const {
     const SubObject* sub = node_.dictionary->find(ObjectKey{index, 1});
     const bool left_off = sub != nullptr && is_configured(*node_.dictionary, *sub);
@@ -82,7 +84,8 @@ class SdoServers {
                      .doubt = node_.data->cite(found->fact)};
   }
 
-  /// The last one counts: those of `configuration_file` come before those of `sdo`.
+  /// Returns the last write of the object. Entries of `configuration_file` come before those of
+  /// `sdo`.
   const SdoSpec* written(ObjectKey key) const {
     const SdoSpec* last_one = nullptr;
     for (const SdoSpec& sdo : node_.spec->sdo) {
@@ -96,7 +99,7 @@ class SdoServers {
     return cob_id_of(number_of(own->value));
   }
 
-  /// Little-endian where it comes from a concise DCF.
+  /// Returns the value as a number. Values of a concise DCF are little-endian bytes.
   static std::int64_t number_of(const decltype(SdoSpec::value)& value) {
     if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
     const auto* bytes = std::get_if<std::vector<std::byte>>(&value);
@@ -111,7 +114,7 @@ class SdoServers {
   const NodeSource& node_;
 };
 
-/// The further servers of a device file, as the channel of the master may name one of them.
+/// The further SDO servers of a device file, of which the master's channel may name one.
 class ServersOfFile {
  public:
   ServersOfFile(const ObjectDictionary& dictionary, const SdoChannel& wanted) {
@@ -126,7 +129,7 @@ class ServersOfFile {
   }
 
   bool has_wanted() const noexcept { return has_; }
-  std::uint16_t first() const noexcept { return first_; }  ///< 0: none
+  std::uint16_t first() const noexcept { return first_; }  ///< 0 means that there is none
   const std::string& list() const noexcept { return list_; }
 
  private:

@@ -119,8 +119,8 @@ class ServiceIdCollector {
                       in_channel_of(*other, default_sdo_channel(other->id)));
   }
 
-  /// The other node whose first channel has `id`. That channel stays in use where no other one is
-  /// configured.
+  /// Returns the other node whose default channel has the identifier `id`. A node uses its default
+  /// channel unless another one is configured.
   const NodeSource* user_of_default(const NodeSource& node, CobId id) const {
     const auto other = std::ranges::find_if(nodes_, [&](const NodePdos& one) {
       const bool in_use = one.node.spec != node.spec && !one.node.spec->sdo_channel.given;

@@ -38,7 +38,7 @@ Role role_of(ObjectKey object) {
   }
 }
 
-/// A configured value as the image holds it: reals as bit pattern.
+/// Returns a configured value in the form of the process image: reals as their bit pattern.
 std::int64_t raw_value(const SdoSpec& sdo, DataType type) {
   if (const auto* integer = std::get_if<std::int64_t>(&sdo.value)) {
     if (type == DataType::real32) {
@@ -62,9 +62,10 @@ std::optional<std::int64_t> written_value(const std::vector<SdoSpec>& list, cons
   return {};
 }
 
-/// The value before the first command: `safe_values`, what `sdo:` or the DCF writes, and for drives
-/// a controlword and rates of 0. A position to go to is never taken from a file that does not call
-/// it safe: it is where the axis is.
+/// Returns the value of an output before its first command: the entry of `safe_values`. Without
+/// one, the controlword and the rates of a drive are 0, and other outputs get the value that `sdo:`
+/// or the DCF writes. A target position of a drive comes only from `safe_values`; otherwise it is
+/// the position where the axis is.
 std::optional<std::int64_t> safe_value(const NodeSource& node, bool cia402, const Signal& signal) {
   if (auto value = written_value(node.spec->safe_values, signal)) return value;
   const Role role = role_of(signal.object);
@@ -105,7 +106,7 @@ void apply_units(const NodeSource& node, Signal& signal) {
   signal.unit = unit->unit;
 }
 
-/// Time to live of commands, in cycles; 0: no limit.
+/// Returns the lifetime of commands in cycles. 0 means no limit.
 std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period) {
   if (timeout.after_cycles.given) return *timeout.after_cycles;
   const Time after =

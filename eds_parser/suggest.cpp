@@ -13,14 +13,14 @@ constexpr std::size_t longest_word = 64;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-/// Levenshtein distance in which two neighbours that changed places count as one; case, `_` and `-`
-/// cost nothing.
+/// Returns the Levenshtein distance, in which the exchange of two neighbours counts as one step.
+/// Differences in case, and between `_` and `-`, cost nothing.
 std::size_t distance(std::string_view a, std::string_view b) {
   const auto same = [](char x, char y) {
     const auto plain = [](char c) { return c == '-' ? '_' : lower(c); };
     return plain(x) == plain(y);
   };
-  std::vector<std::size_t> before(b.size() + 1);  // the row before the one above
+  std::vector<std::size_t> before(b.size() + 1);  // the row before `above`
   std::vector<std::size_t> above(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -9,7 +9,7 @@ namespace takt {
 namespace {
 
 void check_producer(const NodeSource& node, SourcePos pos, NetworkReport& report) {
-  if (!*node.spec->boot) return;  // somebody else configures it
+  if (!*node.spec->boot) return;  // Another tool configures the node.
   for (const ObjectKey key : {ObjectKey{0x1005, 0}, ObjectKey{0x1006, 0}}) {
     const SubObject* object = node.dictionary->find(key);
     if (object != nullptr && object->access != Access::ro && object->access != Access::constant) {

@@ -33,7 +33,7 @@ void append_utf8(std::string& out, char32_t code) {
   }
 }
 
-/// One character at `at` and its length; length 0 where the bytes are not UTF-8.
+/// One character and its length. Length 0 means that the bytes are not UTF-8.
 struct Decoded {
   char32_t code = 0;
   std::size_t length = 0;

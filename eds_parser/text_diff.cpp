@@ -10,15 +10,16 @@ namespace {
 using Lines = std::span<const std::string_view>;
 using Kind = DiffLine::Kind;
 
-constexpr std::size_t most_cells = 1'000'000;  // of the table for lines that repeat
+constexpr std::size_t most_cells = 1'000'000;  // size limit of the table for repeated lines
 
-/// Positions of one line that occurs once before and once after.
+/// The positions of a line that occurs once in `before` and once in `after`.
 struct Anchor {
   std::size_t before = 0;
   std::size_t after = 0;
 };
 
-/// The longest run of anchors that ascends in both texts; `anchors` ascend in `before`.
+/// Returns the longest sequence of anchors that ascends in both texts. `anchors` must ascend in
+/// `before`.
 std::vector<Anchor> ascending(const std::vector<Anchor>& anchors) {
   std::vector<std::size_t> tails;  // index of the last anchor of the best run of each length
   std::vector<std::size_t> previous(anchors.size());
@@ -73,7 +74,7 @@ class Differ {
     for (const std::string_view line : lines) out_.push_back({kind, line});
   }
 
-  /// Without the common beginning and end.
+  /// Handles a range: the common beginning and end are the same, and middle() compares the rest.
   void range(Lines before, Lines after) {
     std::size_t head = 0;
     const std::size_t least = std::min(before.size(), after.size());
@@ -105,7 +106,7 @@ class Differ {
     range(before.subspan(done.before), after.subspan(done.after));
   }
 
-  /// The longest common subsequence of lines that all occur more than once, by table.
+  /// Finds, by a table, the longest common subsequence of lines that all occur more than once.
   void repeated(Lines before, Lines after) {
     const std::size_t width = after.size() + 1;
     if (before.empty() || after.empty() || (before.size() + 1) * width > most_cells) {
@@ -140,7 +141,7 @@ class Differ {
   std::vector<DiffLine> out_;
 };
 
-/// `12`, `12,3`, or `11,0` where a side has none.
+/// Returns a line range: `12`, `12,3`, or `11,0` if a side has no lines.
 std::string range_text(std::size_t lines_before, std::size_t count) {
   const std::size_t first = count == 0 ? lines_before : lines_before + 1;
   return std::to_string(first) + (count == 1 ? "" : ',' + std::to_string(count));
@@ -158,7 +159,7 @@ std::string hunks_of(std::span<const DiffLine> lines, bool (*heading)(std::strin
                      std::size_t context, Write write) {
   std::string out;
   std::string_view title;
-  std::size_t before = 0;  // lines of either text so far
+  std::size_t before = 0;  // number of lines of either text so far
   std::size_t after = 0;
   const auto pass = [&](const DiffLine& line) {
     if (line.kind != Kind::added) ++before;
@@ -197,7 +198,7 @@ std::string hunks_of(std::span<const DiffLine> lines, bool (*heading)(std::strin
   return out;
 }
 
-/// With their ends; as `diff` and `patch` see it, LF alone ends a line.
+/// Returns the lines with their ends. Only LF ends a line, as for `diff` and `patch`.
 std::vector<std::string_view> whole_lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {

@@ -53,7 +53,7 @@ void say(Report& report, Severity severity, SourcePos pos, std::string_view rule
   }
 }
 
-/// `true` and its relatives, in files made by hand.
+/// Reads `true` and similar words, which occur in files written by hand.
 std::optional<bool> boolean_word(std::string_view text) noexcept {
   for (const auto* word : {"true", "yes", "on"}) {
     if (same_word(text, word)) return true;
@@ -64,7 +64,8 @@ std::optional<bool> boolean_word(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-/// Of normal numbers and 0. 0xFFFF in a REAL32 would be 9.2e-41: who means that writes all digits.
+/// Returns true for bit patterns of 0 and of normal numbers. 0xFFFF in a REAL32 would be 9.2e-41;
+/// an author who means such a number writes all digits.
 bool is_pattern(std::uint64_t bits, DataType type) noexcept {
   const unsigned fraction = type == DataType::real32 ? 23 : 52;
   return bits == 0 || bits >> fraction != 0;
@@ -181,7 +182,7 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
 
 std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
   auto digits = without_told_comment(text, place);
-  // how some tools write "nothing"
+  // Some tools write an empty value in this way.
   if (digits == "0" || digits == "0x0") return std::nullopt;
   bool odd_form = false;
   if (digits.size() >= 2 && digits[0] == '0' && fold(digits[1]) == 'x') {
@@ -215,8 +216,9 @@ std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValueP
   return bytes;
 }
 
-/// Days and milliseconds since midnight, as two numbers, or the 48 bits as one. CiA 306 has no form
-/// for times; other tools write the days first, so do the two numbers count where both orders fit.
+/// Reads days and milliseconds since midnight as two numbers, or the 48 bits as one number. CiA 306
+/// defines no form for times. Other tools write the days first, so this order applies if both
+/// orders fit.
 std::optional<Value> ValueReader::read_time(std::string_view text, DataType type,
                                             const ValuePlace& place) {
   const auto bare = without_comment(text);
@@ -234,7 +236,7 @@ std::optional<Value> ValueReader::read_time(std::string_view text, DataType type
   return std::nullopt;
 }
 
-/// Type unknown: an integer where it looks like one, so that it can be shown.
+/// Reads a value of unknown type. An integer is kept, so that it can be displayed.
 std::optional<Value> ValueReader::read_untyped(std::string_view text) {
   auto number = parse_number(text);
   if (!number || !resolve(*number, node_)) return std::nullopt;
@@ -244,7 +246,7 @@ std::optional<Value> ValueReader::read_untyped(std::string_view text) {
 
 std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std::uint32_t highest,
                                                      std::string_view key, SourcePos pos) {
-  if (text.empty()) return std::nullopt;  // most keys are missing
+  if (text.empty()) return std::nullopt;  // Most keys are missing.
   auto number = parse_number(text);
   if (!number && number.error() == NumberFault::empty) return std::nullopt;
   const bool good =

@@ -15,7 +15,7 @@ constexpr std::uint32_t off_flag = 0x8000'0000;
 constexpr std::uint32_t no_remote_flag = 0x4000'0000;
 constexpr std::uint32_t extended_flag = 0x2000'0000;
 
-/// A COB-ID entry of the file: constant, and whether the node id is added.
+/// A COB-ID entry of the file: its constant, and whether the node-ID is added.
 struct CobIdEntry {
   ObjectKey key;
   SourcePos pos;
@@ -26,7 +26,7 @@ struct CobIdEntry {
   bool extended() const noexcept { return (constant & extended_flag) != 0; }
   bool is_rpdo() const noexcept { return (key.index & 0xFE00) == 0x1400; }
   bool is_sdo_client() const noexcept { return (key.index & 0xFF80) == 0x1280; }
-  /// Besides the first.
+  /// Returns true for a further SDO server, but not for the default server.
   bool is_sdo_server() const noexcept { return key.index > 0x1200 && key.index < 0x1280; }
   std::uint32_t id() const noexcept { return constant & (extended() ? 0x1FFF'FFFF : 0x7FF); }
   std::uint32_t id_of(std::optional<NodeId> node) const noexcept {
@@ -70,18 +70,19 @@ std::string id_text(const CobIdEntry& entry) {
   return (entry.relative ? "$NODEID+" : "") + hex(entry.id(), entry.extended() ? 8 : 3);
 }
 
-/// With the bits above the identifier.
+/// Returns the entry as text, including the bits above the identifier.
 std::string written(const CobIdEntry& entry) {
   return (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 8);
 }
 
-/// A client reaches the default channels of other devices by restricted COB-IDs.
+/// Returns true if a client uses the default channel of another device, which has a restricted
+/// COB-ID.
 bool is_default_channel(const CobIdEntry& entry, std::uint32_t id) noexcept {
   const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
   return entry.is_sdo_client() && id > base && id <= base + 127;
 }
 
-/// The default SDO channel of a node has this identifier.
+/// The node and the direction of a default SDO channel.
 struct DefaultChannel {
   std::string_view direction;
   unsigned node = 0;
@@ -93,14 +94,15 @@ std::optional<DefaultChannel> default_channel_at(std::uint32_t id) noexcept {
   return std::nullopt;
 }
 
-/// Devices have further servers on default channels of other nodes, where they work as long as none
-/// of these is on the bus. `own`: the node id of the device; 0: unknown.
+/// Returns true if a further SDO server has the default channel of another node. Such devices
+/// exist, and the channel works as long as that node is not on the bus. `own` is the node-ID of the
+/// device; 0 means unknown.
 bool is_channel_of_another(const CobIdEntry& entry, std::uint32_t id, unsigned own) noexcept {
   const auto channel = default_channel_at(id);
   return entry.is_sdo_server() && channel && channel->node != own;
 }
 
-/// Why an entry cannot have this COB-ID; empty: it can.
+/// Returns why an entry cannot have this COB-ID. The result is empty if it can.
 std::string objection(const CobIdEntry& entry, std::uint32_t id, unsigned own) {
   if (id > 0x7FF) return "needs more than 11 bits";
   const auto* range = restriction_of(id);
@@ -109,14 +111,15 @@ std::string objection(const CobIdEntry& entry, std::uint32_t id, unsigned own) {
   return "is restricted (" + std::string{range->use} + ")";
 }
 
-/// What nobody else sends on can be no more than a deviation in an SDO server.
+/// Returns true if an SDO server uses an identifier that is merely reserved. No other service sends
+/// on it, so this is only a deviation.
 bool harmless(const CobIdEntry& entry, std::uint32_t id) noexcept {
   const auto* range = restriction_of(id);
   return entry.is_sdo_server() && range != nullptr && range->use == "reserved";
 }
 
-/// Where the node id is added but unknown, each that the device might have is looked at: an error
-/// is what the first of them may not use.
+/// Checks an entry for restricted identifiers. If the node-ID is added but unknown, every possible
+/// node-ID is checked. The finding is an error only if it already concerns the first node-ID.
 void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Report& report) {
   if (entry.extended()) return;
   if (node || !entry.relative) {
@@ -144,7 +147,8 @@ void check_restricted(const CobIdEntry& entry, std::optional<NodeId> node, Repor
   report.warning(entry.pos, "cob-id-restricted", text);
 }
 
-/// Nodes of `first` to `last` with this entry meet the channels of the nodes `away` from them.
+/// The nodes `first` to `last` with this entry use the default channel of the node whose node-ID is
+/// higher by `away`.
 struct Meeting {
   unsigned first = 0;
   unsigned last = 0;
@@ -212,7 +216,7 @@ void check_remote_of_rpdo(const CobIdEntry& entry, Report& report) {
                   " has bit 30 set (no remote requests), which means nothing for an RPDO");
 }
 
-/// Bit 30 of EMCY. CiA 301, 7.5.2.17.
+/// Warns of bit 30 of EMCY, which is reserved. CiA 301, 7.5.2.17.
 void check_reserved_bit(const CobIdEntry& entry, Report& report) {
   if ((entry.constant & no_remote_flag) == 0) return;
   report.warning(entry.pos, "cob-id-bits",
@@ -226,8 +230,8 @@ void check_absolute(const CobIdEntry& entry, bool is_dcf, Report& report) {
                   " is the same for every node id; $NODEID+... would let two devices share a bus");
 }
 
-/// CiA 301 does not forbid two RPDOs of one COB-ID: the device takes both from one frame. Two SDO
-/// clients may ask one server in turn.
+/// Returns true if two entries may have the same COB-ID. CiA 301 does not forbid two RPDOs with one
+/// COB-ID: the device receives both from one frame. Two SDO clients may use one server in turn.
 bool may_share(const CobIdEntry& entry, const CobIdEntry& other) noexcept {
   return (entry.is_rpdo() && other.is_rpdo()) || (entry.is_sdo_client() && other.is_sdo_client());
 }
@@ -251,7 +255,8 @@ void check_twice(std::vector<CobIdEntry> entries, std::optional<NodeId> node, Re
   }
 }
 
-/// The default channel of a server follows from its node id. CiA 301, 7.2.4.3 and 7.5.2.33.
+/// Warns if the default channel of a server does not follow from its node-ID. CiA 301, 7.2.4.3 and
+/// 7.5.2.33.
 void check_default_channel(const ObjectDictionary& dictionary, const CobIdEntry& entry,
                            Report& report) {
   const std::uint32_t base = entry.key.sub == 1 ? 0x600 : 0x580;
@@ -264,7 +269,7 @@ void check_default_channel(const ObjectDictionary& dictionary, const CobIdEntry&
                      " is not that of the default SDO channel, $NODEID+" + hex(base, 3));
 }
 
-/// Servers 0x1200..0x127F, clients 0x1280..0x12FF.
+/// Checks the SDO servers 0x1200..0x127F and the clients 0x1280..0x12FF.
 void check_sdo_channels(const ObjectDictionary& dictionary, std::vector<CobIdEntry>& active,
                         Report& report) {
   auto object = std::ranges::lower_bound(dictionary.objects, 0x1200, {}, &Object::index);
@@ -299,7 +304,7 @@ void check_cob_ids(const ObjectDictionary& dictionary, Report& report) {
     check_absolute(*entry, dictionary.is_dcf, report);
     active.push_back(*entry);
   }
-  // SYNC, TIME, EMCY: bit 31 and 30 mean other things in the first two
+  // SYNC, TIME and EMCY: bits 31 and 30 have other meanings in the first two.
   for (const auto index : std::to_array<std::uint16_t>({0x1005, 0x1012, 0x1014})) {
     auto entry = entry_of(dictionary, {index, 0});
     if (!entry || entry->id() == 0) continue;

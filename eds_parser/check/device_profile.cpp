@@ -13,7 +13,8 @@ struct Needed {
   std::string_view name;
 };
 
-/// Kinds of channels by their bit in the device type; one of `any_of` gives access to them.
+/// The kinds of channels by their bit in the device type. The device must have one of the objects
+/// `any_of`.
 struct ChannelKind {
   unsigned bit;
   std::array<std::uint16_t, 5> any_of;
@@ -32,7 +33,8 @@ constexpr Needed of_each_drive[] = {{0x6040, "controlword"},
                                     {0x6060, "modes of operation"},
                                     {0x6061, "modes of operation display"}};
 
-/// What every version of CiA 402 demands of a drive that has the mode, by its bit in 0x6502.
+/// The objects that every version of CiA 402 demands of a drive that has the mode. A mode is a bit
+/// in 0x6502.
 constexpr Needed of_pp[] = {{0x607A, "target position"},
                             {0x6064, "position actual value"},
                             {0x6081, "profile velocity"},
@@ -58,9 +60,9 @@ struct Mode {
 constexpr Mode modes[] = {{0, "pp", of_pp},   {1, "vl", of_vl},   {2, "pv", of_pv},
                           {3, "tq", of_tq},   {5, "hm", of_hm},   {6, "ip", of_ip},
                           {7, "csp", of_csp}, {8, "csv", of_csv}, {9, "cst", of_cst}};
-constexpr std::uint64_t modes_of_a_cycle = 0x3C0;  // ip, csp, csv, cst
+constexpr std::uint64_t modes_of_a_cycle = 0x3C0;  // the modes ip, csp, csv, cst
 
-/// Of both classes.
+/// The objects of encoders of both classes.
 constexpr Needed of_each_encoder[] = {{0x6000, "operating parameters"},
                                       {0x6500, "operating status"},
                                       {0x6501, "single-turn resolution or measuring step"},
@@ -70,7 +72,8 @@ constexpr Needed of_each_encoder[] = {{0x6000, "operating parameters"},
 constexpr std::uint32_t multi_turn = 2;
 constexpr std::uint32_t multi_sensor = 10;
 
-/// One device by the number of its profile; a module of several has its objects `base` higher.
+/// Checks one logical device by the number of its profile. If a device has several modules, the
+/// objects of a module are higher by `base`.
 class ProfileCheck {
  public:
   ProfileCheck(const ObjectDictionary& dictionary, std::uint16_t base, ObjectKey device_type,
@@ -134,7 +137,7 @@ class ProfileCheck {
     }
   }
 
-  /// What two modes demand is told once.
+  /// Reports an object that several modes demand only once.
   void need_for(const Mode& mode, SourcePos pos) {
     for (const auto& object : mode.objects) {
       if (has(object.index) || std::ranges::find(told_, object.index) != told_.end()) continue;

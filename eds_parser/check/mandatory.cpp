@@ -13,7 +13,8 @@ struct Needed {
 constexpr Needed mandatory[] = {
     {0x1000, "device type"}, {0x1001, "error register"}, {0x1018, "identity object"}};
 
-/// The section behind which an object would stand; the first one where there is none before it.
+/// Returns the place of the section after which an object would be, or of the first section if none
+/// comes before it.
 SourcePos place_of(const ObjectDictionary& dictionary, std::uint16_t index) {
   if (dictionary.objects.empty()) return {};
   const auto behind = std::ranges::lower_bound(dictionary.objects, index, {}, &Object::index);

@@ -4,11 +4,11 @@
 namespace takt {
 namespace {
 
-/// One entry with all that is needed to speak of it.
+/// One entry of a mapping with the data for its findings.
 struct Entry {
   const MappedObject& mapped;
   bool is_tpdo;
-  ObjectKey record;  ///< 1A00 sub 2
+  ObjectKey record;  ///< for example 1A00 sub 2
   SourcePos pos;
 };
 
@@ -71,7 +71,7 @@ void check_entry(const ObjectDictionary& dictionary, const Entry& entry, Report&
   }
   check_direction(entry, *sub, report);
   const auto width = bit_width(sub->type);
-  // a BOOLEAN may be mapped as a whole byte on devices with a granularity of 8
+  // Devices with a granularity of 8 may map a BOOLEAN as a whole byte.
   const bool byte_boolean = sub->type == DataType::boolean && entry.mapped.bits == 8;
   if (width != 0 && width != entry.mapped.bits && !byte_boolean) {
     report.warning(entry.pos, "pdo-entry-length",
@@ -98,7 +98,7 @@ void check_count(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
   }
 }
 
-/// Entries with a value behind one without: nobody knows at which bit they begin.
+/// Reports entries with a value after an entry without one: their first bit is unknown.
 void check_gap(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   if (!pdo.mapping_count || pdo.mapping.empty()) return;
   std::optional<std::uint8_t> missing;

@@ -15,7 +15,7 @@ SourcePos pos_of(const ObjectDictionary& dictionary, ObjectKey key) {
   return object == nullptr ? SourcePos{} : object->pos;
 }
 
-/// CiA 301, tables 69 and 72.
+/// Checks the transmission type. CiA 301, tables 69 and 72.
 void check_transmission(const ObjectDictionary& dictionary, const PdoDescription& pdo,
                         Report& report) {
   const ObjectKey key{pdo.communication_index(), 2};
@@ -56,7 +56,7 @@ void check_inhibit_use(const ObjectDictionary& dictionary, const PdoDescription&
                   std::to_string(type) + what_sends(type));
 }
 
-/// Inhibit time and event timer of a TPDO. CiA 301, 7.5.2.37.
+/// Checks the inhibit time and the event timer of a TPDO. CiA 301, 7.5.2.37.
 void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   if (!pdo.is_tpdo) return;
   const ObjectKey inhibit{pdo.communication_index(), 3};
@@ -77,7 +77,7 @@ void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
   }
 }
 
-/// The types that are only sent on remote request. CiA 301, 7.5.2.37.
+/// Checks the types that are sent only on remote request. CiA 301, 7.5.2.37.
 void check_remote(const ObjectDictionary& dictionary, const PdoDescription& pdo, Report& report) {
   const unsigned type = pdo.transmission_type.value_or(0);
   const bool on_request = pdo.is_tpdo && is_on_request(type);
@@ -102,7 +102,8 @@ void check_partners(const ObjectDictionary& dictionary, Report& report) {
   }
 }
 
-/// NrOfRXPDO, NrOfTXPDO against the records found (made ones of CompactPDO included).
+/// Compares NrOfRXPDO or NrOfTXPDO with the records found. Records that CompactPDO implies are
+/// included.
 void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t found,
                   Report& report) {
   const auto& device = dictionary.device;

@@ -18,7 +18,7 @@ std::string number_text(const Value& value) {
   return {text.data(), std::to_chars(text.begin(), text.end(), real ? *real : 0.0).ptr};
 }
 
-/// Of a value that is outside its limits.
+/// Names the limit that a value violates.
 std::string broken_limit(const Value& value, const SubObject& sub) {
   const bool low =
       sub.low_limit && sub.low_limit->index() == value.index() && value < *sub.low_limit;
@@ -42,8 +42,8 @@ void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
   }
 }
 
-/// What an object of the communication profile can't do without its bits 16 to 31; empty: nothing,
-/// or that is not known. CiA 301, 7.5.2.
+/// Returns what an object of the communication profile can't do without its bits 16 to 31. The
+/// result is empty if it can do everything, or if this is unknown. CiA 301, 7.5.2.
 std::string_view function_of_high_bits(ObjectKey key) noexcept {
   const auto in = [&](unsigned low, unsigned high) {
     return key.index >= low && key.index <= high;
@@ -76,7 +76,7 @@ std::string_view function_of_high_bits(ObjectKey key) noexcept {
   return maps ? "the index of the object in bits 16 to 31: nothing can be mapped" : "";
 }
 
-/// A slip of the tool that wrote the file: a 32-bit object with the limits of 16 bits.
+/// Warns of a mistake of the tool that wrote the file: a 32-bit object with the limits of 16 bits.
 void check_width_of_limits(ObjectKey key, const SubObject& sub, Report& report) {
   const auto high = integer_of(sub.high_limit);
   const bool is_16_bits = high == 0xFFFF || high == 0x7FFF;
@@ -89,7 +89,8 @@ void check_width_of_limits(ObjectKey key, const SubObject& sub, Report& report) 
                      ". Correct HighLimit to 0xFFFFFFFF where the device takes more");
 }
 
-/// Objects whose sub 0 counts something that changes: errors so far, active entries.
+/// Returns true for objects whose sub 0 counts something that changes: stored errors, active
+/// entries.
 bool counts_at_run_time(std::uint16_t index) noexcept {
   return index == 0x1003 || (index >= 0x1600 && index < 0x1800) ||
          (index >= 0x1A00 && index < 0x1C00);
