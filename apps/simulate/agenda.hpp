@@ -8,17 +8,17 @@
 
 namespace takt {
 
-/// What is to be done at later times.
+/// A list of actions that are due at later times.
 class Agenda {
  public:
   void add(Time when, std::function<void()> what) { items_.push_back({when, std::move(what)}); }
-  /// The earliest time; `never`: nothing is left to do.
+  /// Time of the earliest action; `never` if the agenda is empty.
   Time next() const noexcept {
     Time first = never;
     for (const Item& item : items_) first = std::min(first, item.when);
     return first;
   }
-  /// Does what is due, which may add more.
+  /// Performs all actions that are due. An action may add further ones.
   void act(Time now) {
     for (std::size_t i = 0; i < items_.size();) {
       if (items_[i].when > now) {

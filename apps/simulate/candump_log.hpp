@@ -7,10 +7,11 @@
 
 namespace takt {
 
-/// Counts what is on the wire and, where a file is named, writes it as `candump -L` does.
+/// Counts the frames on the wire and, if a file is named, writes them in the format of `candump
+/// -L`.
 class CandumpLog final : public sim::BusObserver {
  public:
-  /// Throws std::runtime_error where the file can't be written.
+  /// An empty `path` means no file. Throws std::runtime_error if the file cannot be written.
   CandumpLog(const BusPlan& plan, const std::string& path);
 
   void on_wire(const sim::WireFrame& wire) noexcept override;

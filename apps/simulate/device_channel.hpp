@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// The simulated devices' way onto a bus of this machine. An interface that is down only drops
-/// frames: it may come back.
+/// Connects the simulated devices to a bus of this machine. While the interface is down, frames are
+/// dropped without an error, because the interface may come back.
 class DeviceChannel final : public sim::FrameChannel {
  public:
   explicit DeviceChannel(takt::FrameChannel channel) : channel_{std::move(channel)} {}

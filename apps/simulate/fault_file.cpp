@@ -45,7 +45,7 @@ std::optional<std::uint64_t> integer(const std::string& text) {
   return number->negative ? ~number->magnitude + 1 : number->magnitude;
 }
 
-/// `1018:01`, `0x1018:1`, `6040`: index and sub-index in hex.
+/// Parses index and sub-index in hex, for example `1018:01`, `0x1018:1` or `6040`.
 std::optional<ObjectKey> object_key(std::string_view text) {
   if (text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
   unsigned index = 0;
@@ -62,7 +62,7 @@ std::optional<ObjectKey> object_key(std::string_view text) {
   return ObjectKey{static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
 }
 
-/// Reads one list entry after the other and collects what is wrong.
+/// Reads one list entry after the other and collects the errors.
 class Reader {
  public:
   Reader(std::string file, const BusPlan& plan, std::size_t applications)
@@ -116,7 +116,7 @@ class Reader {
     result_.faults.push_back(std::move(fault));
   }
 
-  /// `for` counts from the beginning of the fault.
+  /// Makes the end of the fault absolute: `for` counts from the beginning of the fault.
   void settle_end(Time at, Time& until) {
     const bool absolute = std::exchange(until_is_absolute_, false);
     if (until != never && !absolute) until += at;
@@ -152,7 +152,7 @@ class Reader {
     result_.programs.push_back(fault);
   }
 
-  /// Of what is done again and again, and of delays.
+  /// Reads the interval of a repeated action, or a delay.
   void read_step(Time& time, const std::string& text, const YAML::Mark& mark) {
     read_time(time, text, mark);
     if (time < shortest_step || time > longest_step) refuse(mark, text, "a time of 100us to 1h");
@@ -286,7 +286,7 @@ FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan
                           std::size_t applications) {
   Reader reader{path.string(), plan, applications};
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {  // yaml-cpp loses memory over it
+  if (std::filesystem::is_directory(path, ignored)) {  // yaml-cpp would leak memory
     reader.error(YAML::Mark::null_mark(), "fault-file", "is a folder");
     return reader.take();
   }

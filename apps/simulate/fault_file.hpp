@@ -10,21 +10,21 @@
 
 namespace takt {
 
-/// A schedule of faults for `takt simulate`. Usable only where `findings` holds no error.
+/// A schedule of faults for `takt simulate`. Usable only if `findings` holds no error.
 struct FaultFile {
   sim::Faults faults;
   ProgramFaults programs;
   Findings findings;
 };
 
-/// Reads
+/// Reads a fault file like this one:
 ///
 ///     faults:
 ///       - {kind: power_off, node: elbow, at: 2s, for: 500ms}
 ///       - {kind: override_value, node: 1, object: 1018:01, value: 0x43}
 ///
-/// Nodes go by name or number. All errors are listed at once. What happens to programs is an error
-/// where there are no `applications`.
+/// A node is given by name or number. All errors are listed at once. A fault of a program is an
+/// error if `applications` is 0.
 FaultFile read_fault_file(const std::filesystem::path& path, const BusPlan& plan,
                           std::size_t applications = 0);
 

@@ -11,12 +11,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t memory = 8192;   // commands
-constexpr Time as_good_as_new = 2s;    // a command that is younger may still be obeyed
-constexpr std::int64_t low_bits = 15;  // of a position: who has sent it
-constexpr std::int64_t nobody = 6;
-constexpr std::int64_t fewest_away = 50'000;  // cycles, between a forged cycle and the true one
-constexpr Time least_away = 10s;              // the same; no lease lasts longer than 1 s
+constexpr std::size_t memory = 8192;   // number of commands that the forger remembers
+constexpr Time as_good_as_new = 2s;    // a younger command may still be obeyed
+constexpr std::int64_t low_bits = 15;  // bits of a position that identify its sender
+constexpr std::int64_t nobody = 6;     // value of these bits that no program uses
+constexpr std::int64_t fewest_away =
+    50'000;                       // least cycles between a forged cycle and the true one
+constexpr Time least_away = 10s;  // the same distance as a time; no lease lasts longer than 1 s
 constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycles
 
 }  // namespace
@@ -77,7 +78,8 @@ void Forger::replay(Time now) {
   }
 }
 
-/// The true cycle, counted by the clock from the newest image as the daemon does it.
+/// Returns the true cycle, extrapolated by the clock from the newest image as in the daemon.
+/// Returns std::nullopt if no image has come yet.
 std::optional<std::int64_t> Forger::cycle_at(Time now) const {
   const auto image = decode<image_t>(image_);
   if (!image) return std::nullopt;
@@ -109,7 +111,7 @@ void Forger::forge_command(Time now) {
   for (std::size_t i = 0; i < command->signals.size(); ++i) {
     const auto signal = static_cast<SignalIndex>(command->signals[i]);
     if (plan_.layout.signals[signal].object.index != 0x607A) continue;
-    command->values[i] = (command->values[i] & ~low_bits) | nobody;  // within every limit
+    command->values[i] = (command->values[i] & ~low_bits) | nobody;  // stays within every limit
     forged_(signal, command->values[i]);
   }
   publish(channels_.command, encode(*command, buffer_));

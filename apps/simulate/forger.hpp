@@ -13,26 +13,26 @@
 
 namespace takt {
 
-/// A program that hears everything and sends what nobody may obey: old messages once more, commands
-/// from no cycle, from the future or of another session, images of a cycle that has not come, and
-/// bytes without sense. It learns from genuine messages only, and a cycle that it forges is always
-/// far from the true one.
+/// A program that receives every message and sends messages that nobody may obey: old messages once
+/// more, commands computed from no cycle, from a future cycle or for another session, images of a
+/// future cycle, and random bytes. The forger learns only from genuine messages, and a forged cycle
+/// is always far from the true one.
 class Forger final : public Actor {
  public:
-  /// `forged` hears each position that nobody may ever see on the wire.
+  /// Called with each forged position, which must never appear on the wire.
   using Forged = std::function<void(SignalIndex signal, std::int64_t value)>;
 
   Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random random);
 
-  /// One of the following, by chance.
+  /// Performs one of the actions below, chosen at random.
   void act_up(Time now);
-  /// A replay: some of what was heard comes again, from `cycle 0` or as it was.
+  /// Sends some of the recorded commands again, unchanged or with cycle 0.
   void replay(Time now);
-  /// The newest command with another position, which nobody obeys for one of several reasons.
+  /// Sends the newest command with other positions and with a wrong cycle or session.
   void forge_command(Time now);
-  /// An image of the far future.
+  /// Sends an image of a cycle in the far future.
   void forge_image(Time now);
-  /// Bytes of any length, or a command that is cut off, on any channel.
+  /// Sends random bytes of random length, or a truncated command, on a random channel.
   void send_rubbish();
   std::uint64_t sent() const noexcept { return sent_; }
 
@@ -54,7 +54,7 @@ class Forger final : public Actor {
   VirtualEndpoint& lcm_;
   Channels channels_;
   std::deque<Heard> heard_;
-  std::vector<std::byte> image_;  // the newest
+  std::vector<std::byte> image_;  // newest genuine image, encoded
   std::vector<std::byte> buffer_;
   std::uint64_t sent_ = 0;
 };

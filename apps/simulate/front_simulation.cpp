@@ -16,11 +16,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned rival_number = 7;  // in the low bits of positions
-constexpr Time last_words = 50ms;     // the front thread tells what the stop was
-constexpr Time without_taktd = 1ms;   // a step, while it does not run
+constexpr unsigned rival_number = 7;  // identifies the rivals in the low bits of positions
+constexpr Time last_words = 50ms;     // for the front thread to report the result of the stop
+constexpr Time without_taktd = 1ms;   // step of the simulation while taktd does not run
 
-/// The CiA 402 nodes are dealt to the applications in turn.
+/// Returns the nodes of one application. The CiA 402 nodes are distributed round-robin.
 std::vector<bool> nodes_of(const BusPlan& plan, std::size_t application, std::size_t applications) {
   std::vector<bool> mine(plan.nodes.size());
   std::size_t drive = 0;
@@ -112,7 +112,7 @@ class Run {
     most_led_ = std::max(most_led_, led);
   }
 
-  /// While the applications go on. True: it came to its end.
+  /// Stops in order while the applications run on. Returns true if the stop was completed.
   bool stop() {
     if (!daemon_.runs()) return false;
     daemon_.request_stop();
@@ -129,7 +129,7 @@ class Run {
     ledger_.tell(event);
   }
 
-  /// What this process of taktd did so far.
+  /// Adds the counters of the present taktd process to the outcome.
   void count_daemon() {
     if (!daemon_.runs()) return;
     daemon_.master().status(snapshot_);

@@ -3,9 +3,9 @@
 
 namespace takt {
 
-/// Does the same as simulate(), but runs the whole of taktd, with its front thread and its gateway,
-/// and as many programs that move the axes over LCM as SimulationOptions::applications says.
-/// Everything runs in virtual time.
+/// Does the same as simulate(), but runs the whole of taktd with its front thread and its gateway,
+/// and SimulationOptions::applications programs that move the axes over LCM. Everything runs in
+/// virtual time.
 SimulationOutcome simulate_front(const LoadedNetwork& network, const SimulationOptions& options);
 
 }  // namespace takt

@@ -8,20 +8,21 @@
 
 namespace takt {
 
-/// The ordered stop of a simulated master may take so much longer than the plan says.
+/// Additional time that the ordered stop of a simulated master may take beyond the plan's limit.
 inline constexpr Time stop_slack = std::chrono::seconds{1};
 
-/// Writes the outcome of a run while it goes on.
+/// Collects the outcome of a run while it goes on.
 class OutcomeLedger {
  public:
   OutcomeLedger(const BusPlan& plan, const WireStatistics& wire, std::uint64_t seed);
 
   void tell(const Event& event);
-  /// Before the stop, whose NMT commands delay the last TPDOs.
+  /// Keeps the worst TPDO times. To be called before the stop, because its NMT commands delay the
+  /// last TPDOs.
   void keep_worst_tpdos();
-  /// EMCYs that come from now on come when the master has ended.
+  /// EMCYs from this call on count as sent after the end of the master.
   void mark_end_of_master() noexcept { emcy_before_ = wire_.emcy_frames(); }
-  /// The run is over. `stopped`: the ordered stop came to its end.
+  /// To be called once, at the end of the run. `stopped` is true if the ordered stop was completed.
   SimulationOutcome finish(sim::World& world, const StatusSnapshot& snapshot, bool stopped);
 
  private:

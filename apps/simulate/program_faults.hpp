@@ -9,39 +9,39 @@
 
 namespace takt {
 
-/// What happens to taktd, to the programs beside it and to their messages. Each lasts from
-/// ProgramFault::at until ProgramFault::until.
+/// Faults of taktd, of the programs beside it and of their messages. Each fault lasts from
+/// ProgramFault::at until ProgramFault::until; `time` is ProgramFault::time.
 enum class ProgramFaultKind : std::uint8_t {
-  stall_front,        ///< the front thread of taktd does not run; its bus thread does
-  kill_master,        ///< taktd is killed; it starts again at the end, with another session
+  stall_front,        ///< the front thread of taktd does not run; its bus thread runs on
+  kill_master,        ///< taktd is killed; it starts again at the end, with a new session
   stall_application,  ///< the application does not run (SIGSTOP); its messages wait in its queue
-  slow_application,   ///< it needs `time` for each image
-  kill_application,   ///< it is killed; it starts again at the end
-  end_application,    ///< it releases its outputs and ends; it starts again at the end
-  second_sender,      ///< another program of the same name wants the same axes
-  slow_messages,      ///< all LCM messages take up to `time`
-  replay,             ///< each `time`, commands that are older than 2 s are sent once more
-  forge_command,      ///< each `time`, a command of no cycle, of the future or of another session
-  forge_image,        ///< each `time`, an image of a cycle that has not come yet
-  damage_messages,    ///< each `time`, a message that is cut off, or bytes without sense
+  slow_application,   ///< the application needs an additional `time` for each image
+  kill_application,   ///< the application is killed; it starts again at the end
+  end_application,    ///< the application releases its outputs and ends; it starts again at the end
+  second_sender,      ///< a second program with the same name commands the same axes
+  slow_messages,      ///< every LCM message takes up to `time`
+  replay,             ///< every `time`, commands older than 2 s are sent once more
+  forge_command,      ///< every `time`, a command with a wrong cycle or a wrong session is sent
+  forge_image,        ///< every `time`, an image of a future cycle is sent
+  damage_messages,    ///< every `time`, a truncated message or random bytes are sent
 };
 
-/// One thing that happens to programs.
+/// One fault of the programs.
 struct ProgramFault {
   ProgramFaultKind kind = ProgramFaultKind::stall_front;
-  std::optional<std::size_t> application{};  ///< counted from 0; none: all of them
+  std::optional<std::size_t> application{};  ///< number from 0; empty means all applications
   Time at{};
   Time until = never;
   Time time = std::chrono::milliseconds{10};
 };
 using ProgramFaults = std::vector<ProgramFault>;
 
-/// `kill_application`, as written in fault files.
+/// Name of the kind in fault files, for example `kill_application`.
 std::string_view name(ProgramFaultKind kind) noexcept;
 std::optional<ProgramFaultKind> program_fault_kind(std::string_view name) noexcept;
 /// All names, in the order of the kinds.
 std::vector<std::string_view> program_fault_names();
-/// Whether it happens to an application, so that one can be chosen.
+/// Returns true if the fault concerns an application, so that a fault file can choose one.
 bool concerns_application(ProgramFaultKind kind) noexcept;
 
 }  // namespace takt

@@ -16,10 +16,10 @@ namespace takt {
 
 using VirtualApplications = std::vector<std::unique_ptr<VirtualApplication>>;
 
-/// Lets the faults of a fault file happen to the programs of a run.
+/// Applies the program faults of a fault file to the programs of a run.
 class ProgramTroubles final : public Actor {
  public:
-  /// Those to whom things happen. Each application has a rival of its name.
+  /// The objects that the faults act on. Each application has a rival with the same name.
   struct Cast {
     VirtualLcm& lcm;
     VirtualDaemon& daemon;
@@ -28,12 +28,12 @@ class ProgramTroubles final : public Actor {
     Forger& forger;
   };
 
-  /// Of the faults of the bus, `stall_master` concerns the front thread too.
+  /// Of the bus faults in `bus`, only `stall_master` is used: it stalls the front thread too.
   ProgramTroubles(Cast cast, const ProgramFaults& faults, const sim::Faults& bus);
 
   Time next() const noexcept override { return agenda_.next(); }
   void act(Time now) override { agenda_.act(now); }
-  /// The daemon shall be killed, between two cycles.
+  /// Returns true if the caller has to kill the daemon, between two cycles.
   bool daemon_dies() const noexcept { return daemon_dies_; }
   void daemon_died(Time now);
 
@@ -47,7 +47,7 @@ class ProgramTroubles final : public Actor {
   Cast cast_;
   Agenda agenda_;
   bool daemon_dies_ = false;
-  Time restart_ = never;  // of the daemon
+  Time restart_ = never;  // when the daemon starts again
 };
 
 }  // namespace takt

@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-/// One run of the bus thread alone.
+/// One run of the bus thread without a front thread.
 class Run {
  public:
   Run(const LoadedNetwork& network, const SimulationOptions& options)

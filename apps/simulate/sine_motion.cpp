@@ -8,8 +8,8 @@ namespace takt {
 namespace {
 
 constexpr double frequency = 0.5;            // Hz
-constexpr double amplitude_si = 0.5;         // where the position has a unit
-constexpr double amplitude_counts = 5000.0;  // where it has none
+constexpr double amplitude_si = 0.5;         // in the unit of the position, if it has one
+constexpr double amplitude_counts = 5000.0;  // for a position without a unit
 constexpr std::int64_t cyclic_position = 8;
 
 std::optional<SignalIndex> find(const ImageLayout& layout, NodeId node, std::uint16_t index,
@@ -95,7 +95,7 @@ void SineMotion::lead(Axis& axis, const ImageView& image) noexcept {
     axis.centre = static_cast<double>(image.values[axis.actual]);
   }
   const double t = std::chrono::duration<double>(image.sync_time - *axis.since).count();
-  // begins and ends each period at rest
+  // The motion is at rest at the beginning and the end of each period.
   const double way = axis.amplitude * (1 - std::cos(2 * std::numbers::pi * frequency * t)) / 2;
   set(axis.target, std::llround(axis.centre + way));
 }

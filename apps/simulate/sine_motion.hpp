@@ -10,9 +10,9 @@
 
 namespace takt {
 
-/// Set-points without an application: enables every CiA 402 axis whose PDOs carry controlword,
-/// statusword, target position and actual position, and moves it as a sine about where it stands.
-/// All other outputs are zero.
+/// Makes set-points without an application: enables every CiA 402 axis whose PDOs carry
+/// controlword, statusword, target position and actual position, and moves it along a sine that
+/// starts at its actual position. All other outputs are zero.
 class SineMotion final : public Controller {
  public:
   struct Value {
@@ -22,11 +22,11 @@ class SineMotion final : public Controller {
 
   explicit SineMotion(const BusPlan& plan);
 
-  /// All set-points that answer this image; valid until the next call.
+  /// Returns all set-points that answer this image. The span is valid until the next call.
   std::span<const Value> next(const ImageView& image) noexcept;
   void update(const ImageView& image, OutputWriter& outputs) noexcept override;
   std::size_t axes() const noexcept { return axes_.size(); }
-  /// How many axes have been moving at the same time, at most.
+  /// Greatest number of axes that have moved at the same time.
   std::size_t most_moving() const noexcept { return most_moving_; }
 
  private:
@@ -38,7 +38,7 @@ class SineMotion final : public Controller {
     std::optional<SignalIndex> mode{};
     double amplitude = 0;  ///< counts
     DriveSequence sequence{};
-    bool fault = false;  ///< a reset has been asked for
+    bool fault = false;  ///< the drive is in fault, and a reset has been requested
     std::optional<Time> since{};
     double centre = 0;
   };
@@ -49,7 +49,7 @@ class SineMotion final : public Controller {
 
   std::vector<Axis> axes_;
   std::vector<SignalIndex> others_;
-  std::vector<Value> values_;  ///< room for all outputs
+  std::vector<Value> values_;  ///< has room for all outputs
   std::size_t most_moving_ = 0;
 };
 

@@ -6,17 +6,17 @@
 
 namespace takt {
 
-/// A thread or a program beside the bus thread, in virtual time.
+/// A thread or a program that runs beside the bus thread in virtual time.
 class Actor {
  public:
   virtual ~Actor() = default;
-  /// When it does something next; `never`: not by itself.
+  /// Time of the actor's next action; `never` if it only reacts to others.
   virtual Time next() const noexcept = 0;
-  /// Does what is due at `now`; afterwards next() is later, or it is due again at once.
+  /// Performs the action that is due at `now`. Afterwards next() is later, or again due at once.
   virtual void act(Time now) = 0;
 };
 
-/// All actors of a run. Actors outlive the stage.
+/// All actors of a run. The actors must outlive the stage.
 class Stage {
  public:
   void add(Actor& actor) { actors_.push_back(&actor); }

@@ -10,12 +10,12 @@
 
 namespace takt {
 
-/// The port of a bus thread in virtual time beside which others live: whenever the bus thread
-/// sleeps, those on the stage act whose time comes before it wakes. So they meet the bus thread at
-/// any point between two of its steps, as threads of one machine do.
+/// The port of a bus thread in virtual time that runs beside other actors. Whenever the bus thread
+/// sleeps, all actors on the stage act that are due before it wakes. Therefore they can act between
+/// any two steps of the bus thread, like other threads of the same machine.
 class StagedPort {
  public:
-  /// Hears what the master hands to the interface.
+  /// Called with the frames that the master passes to the interface.
   using Sent = std::function<void(std::span<const Frame> frames, Time now)>;
 
   StagedPort(sim::World& world, sim::RemotePortOptions options, Stage& stage, Sent sent)
@@ -46,7 +46,7 @@ class StagedPort {
   PortNews news() const noexcept { return port_.news(); }
 
  private:
-  /// Whoever is behind with his time acts now: time never goes back.
+  /// Time of the next action. An actor that is overdue acts now, because time never goes back.
   Time due() const noexcept { return std::max(stage_.next(), world_.now()); }
   void pass_to(Time until) noexcept {
     for (Time at = due(); at <= until && at != never; at = due()) {

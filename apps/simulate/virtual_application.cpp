@@ -12,13 +12,13 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t socket_room = 300;      // messages
-constexpr std::int64_t stride = 16;           // counts a command; the low bits name the program
-constexpr std::int64_t downwards = 8;         // one of the low bits
+constexpr std::int64_t stride = 16;           // counts per command; low bits identify the program
+constexpr std::int64_t downwards = 8;         // the low bit that marks a falling position
 constexpr std::int64_t most_push = 100;       // per mille of the rated torque
 constexpr std::int64_t push_velocity = 4;     // counts per second for each unit of push
-constexpr std::uint64_t images_a_reset = 60;  // of a fault: the reset itself takes some
-constexpr double turn_before = 2000;          // counts from a limit
-constexpr Time longest_deafness = 3s;         // a new layout comes once a second
+constexpr std::uint64_t images_a_reset = 60;  // between fault resets, which take several images
+constexpr double turn_before = 2000;          // distance from a limit, in counts
+constexpr Time longest_deafness = 3s;         // the layout is published once a second
 
 }  // namespace
 
@@ -111,8 +111,8 @@ void VirtualApplication::take(std::string_view channel, Bytes data) {
   }
 }
 
-/// A program that hears images has to use the newest of them, whatever comes in between. Images
-/// that waited while the program was stalled count once.
+/// Checks that a program that receives images uses the newest of them, whatever messages come in
+/// between. Images that waited while the program was stalled count once.
 void VirtualApplication::judge_hearing(Time now) {
   if (fresh_) heard_ = 0;
   if (fresh_ || !hears_) return;
@@ -170,7 +170,7 @@ bool VirtualApplication::has_push(AxisControl::Index axis) const {
   return signals.target_velocity || signals.target_torque;
 }
 
-/// Target velocity and target torque, where the drive has them.
+/// Sets target velocity and target torque if the drive has them.
 void VirtualApplication::push(AxisControl::Index axis, command_t& command) {
   Course& course = courses_[static_cast<std::size_t>(axis)];
   if (course.push >= most_push) course.weaker = true;

@@ -15,38 +15,38 @@
 namespace takt {
 
 struct ApplicationOptions {
-  std::string name;         ///< as its commands say it
-  unsigned number = 0;      ///< 0..7, of this program
-  std::vector<bool> nodes;  ///< that it commands, in the order of BusPlan::nodes
+  std::string name;         ///< sender name in the program's commands
+  unsigned number = 0;      ///< number of the program, 0..7
+  std::vector<bool> nodes;  ///< nodes that the program commands, in the order of BusPlan::nodes
 
-  /// Hears each command when it is sent, and the SYNC of the image that it was computed from.
+  /// Called with each command that is sent and the SYNC time of the image it was computed from.
   std::function<void(const command_t& command, Time computed_from)> commanded{};
-  /// It gives up its outputs.
+  /// Called when the program gives up its outputs.
   std::function<void(Time now)> released{};
-  /// It has heard images for a long time, and could use none.
+  /// Called if the program has received images for a long time and could use none of them.
   std::function<void(const std::string& what)> deaf{};
-  /// For tests: the instance that it gives itself, `own` being its random one.
+  /// For tests: returns the instance that the program uses. `own` is its random one.
   std::function<std::int64_t(std::int64_t own)> instance{};
-  /// For tests: false where it does not look at this image.
+  /// For tests: returns false if the program shall ignore this image.
   std::function<bool(const image_t& image)> hears{};
 };
 
-/// A program that moves axes, made of the axis library: it takes the newest image and sends one
-/// command. It counts its positions up, and down again where a limit is near, so that each value on
-/// the wire shows who has sent it and when. Where a drive has target velocities and torques too,
-/// they rise and fall slowly.
+/// A program that moves axes with the axis library: it takes the newest image and sends one
+/// command. It counts its positions up, and down again near a limit, so that each value on the wire
+/// shows which program sent it and when. If a drive also has target velocities and torques, they
+/// rise and fall slowly.
 class VirtualApplication final : public Actor {
  public:
   VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, ApplicationOptions options,
                      sim::Random random);
 
-  /// A new process.
+  /// Starts the program as a new process.
   void start();
   void kill();
-  /// Ends in order: gives up its outputs first.
+  /// Gives up the outputs and ends the program.
   void end(Time now);
-  /// The set-points of its next command lie this many counts away from where they should be: target
-  /// velocities and torques of the drives that have them, positions of the others.
+  /// Shifts the set-points of the next command by this many counts: target velocities and torques
+  /// of the drives that have them, positions of the others.
   void jump(std::int64_t counts) noexcept { jump_ = counts; }
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
   bool runs() const noexcept { return running_; }
@@ -54,15 +54,15 @@ class VirtualApplication final : public Actor {
   unsigned number() const noexcept { return options_.number; }
   const std::vector<bool>& nodes() const noexcept { return options_.nodes; }
   bool commands(std::size_t node_index) const { return options_.nodes[node_index]; }
-  /// From now on it needs so long for each image.
+  /// From now on the program needs this additional time for each image.
   void slow_down(Time reaction) noexcept { slowness_ = reaction; }
-  /// Axes that it leads at this moment.
+  /// Number of axes that the program moves at this moment.
   std::size_t leads() const noexcept;
-  std::uint64_t images() const noexcept { return images_; }  ///< that it has used
-  std::uint64_t sent() const noexcept { return sent_; }      ///< commands
+  std::uint64_t images() const noexcept { return images_; }  ///< images used
+  std::uint64_t sent() const noexcept { return sent_; }      ///< commands sent
   std::uint64_t dropped() const noexcept { return lcm_.dropped(); }
 
-  /// Which one it is, and how its axes are.
+  /// Describes the program by its number and the statuswords of its axes.
   std::string text() const;
 
   Time next() const noexcept override;
@@ -94,19 +94,19 @@ class VirtualApplication final : public Actor {
   AxisControl axes_;
   bool new_layout_ = false;
   bool fresh_ = false;
-  Time sync_{};  // of the newest image
+  Time sync_{};  // SYNC time of the newest image
   struct Course {
-    std::optional<std::int64_t> position;  // as it was commanded last; none: not enabled
+    std::optional<std::int64_t> position;  // last commanded one; empty while not enabled
     bool down = false;
-    std::int64_t push = 0;   // of target torques; target velocities are a multiple
+    std::int64_t push = 0;   // target torque; the target velocity is a multiple of it
     bool weaker = false;     // `push` falls
     std::int64_t apart = 0;  // counts by which target velocity and torque have jumped
   };
-  std::vector<Course> courses_;  // of each axis
-  std::int64_t jump_ = 0;        // of the next command
-  std::uint64_t images_ = 0;     // used
+  std::vector<Course> courses_;  // one for each axis
+  std::int64_t jump_ = 0;        // jump of the next command, in counts
+  std::uint64_t images_ = 0;     // images used
   bool hears_ = false;           // an image came in this round
-  std::uint64_t heard_ = 0;      // rounds with images since the last one that it could use
+  std::uint64_t heard_ = 0;      // rounds with images since the last usable image
   Time heard_since_{};
   std::uint64_t sent_ = 0;
   std::vector<std::byte> buffer_;

@@ -9,11 +9,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t socket_room = 400;  // messages: 200 kB, as much as Linux gives a socket
-constexpr Time longest_step = 60us;       // of the front thread's round
+constexpr std::size_t socket_room = 400;  // messages: 200 kB, the default of a Linux socket
+constexpr Time longest_step = 60us;       // longest step of the front thread's round
 constexpr Time longest_wake_up = 80us;
 
-/// A process hears nothing of what was on the bus before it opened its socket.
+/// Discards waiting frames: a process receives no frame that came before it opened its socket.
 void drain(StagedPort& port) {
   std::array<StampedFrame, 64> frames;
   while (port.receive(frames) != 0) {

@@ -14,13 +14,13 @@
 
 namespace takt {
 
-/// Clocks of the machine that the simulated programs run on.
+/// Clocks of the simulated machine that the programs run on.
 class VirtualClocks final : public Clocks {
  public:
   explicit VirtualClocks(const sim::World& world) : world_{world} {}
   Time now() const noexcept override { return world_.now(); }
   Time wall_offset() const noexcept override { return wall_; }
-  /// Somebody sets the wall clock.
+  /// Sets the wall clock: its offset to the monotonic clock.
   void set_wall(Time offset) noexcept { wall_ = offset; }
 
  private:
@@ -28,17 +28,17 @@ class VirtualClocks final : public Clocks {
   Time wall_ = std::chrono::days{20454};
 };
 
-/// taktd in virtual time: its bus thread is cycle(), its front thread is the actor. Both are those
-/// of the daemon: the Master and the Bridge, in the order of FrontRound.
+/// Runs taktd in virtual time: cycle() is the bus thread, and the actor is the front thread. Both
+/// use the code of the real daemon: the Master and the Bridge, in the order of FrontRound.
 class VirtualDaemon final : public Actor, private FrontGuest {
  public:
   struct Hears {
-    /// Each image when the front thread has it in its hands.
+    /// Called with each image when the front thread receives it.
     std::function<void(const ImageView& image, Time now)> image;
     std::function<void(const Notice& notice)> notice;
     std::function<void(const Event& event)> event;
   };
-  /// Alters the round of each new process, for tests.
+  /// For tests: changes the round of each new process.
   using Meddle = std::function<void(FrontRound& round)>;
 
   VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& lcm, const Clocks& clocks,
@@ -46,16 +46,17 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   void hear(Hears hears) { hears_ = std::move(hears); }
   void meddle(Meddle meddle) { meddle_ = std::move(meddle); }
 
-  /// A new process, with a session of its own.
+  /// Starts a new process with a new session.
   void start();
-  /// The process is gone at once, with everything that waits in its queue. Not within a cycle.
+  /// Ends the process at once and discards all messages in its queue. Must not be called within a
+  /// cycle.
   void kill();
-  /// The next cycle of the bus thread.
+  /// Runs the next cycle of the bus thread.
   void cycle() { master_->cycle(); }
-  /// The front thread does nothing before `until`.
+  /// Keeps the front thread from running before `until`.
   void stall(Time until) noexcept { stalled_until_ = std::max(stalled_until_, until); }
 
-  /// The front thread hears what the bus thread has told until its end.
+  /// Lets the front thread read all that the bus thread has reported before its end.
   void hear_the_end() {
     do {
       bridge_->serve();
@@ -68,7 +69,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   std::int64_t session() const noexcept { return session_; }
   const Master& master() const noexcept { return *master_; }
   const Bridge& bridge() const noexcept { return *bridge_; }
-  /// Messages that found its queue full, of all its processes.
+  /// Number of messages lost because the queue was full, over all processes of this daemon.
   std::uint64_t lost() const noexcept { return lcm_.dropped(); }
   Time stalled_until() const noexcept { return stalled_until_; }
 
@@ -84,7 +85,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
 
   const BusPlan& plan_;
   StagedPort& port_;
-  const Clocks& clocks_;  // of the front thread
+  const Clocks& clocks_;  // clocks of the front thread
   sim::Random random_;
   VirtualEndpoint& lcm_;
   Hears hears_;
@@ -93,7 +94,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   std::unique_ptr<Master> master_;
   std::unique_ptr<Bridge> bridge_;
   FrontRound round_;
-  Time wake_ = never;   // of the wait, or when the next step of the round begins
+  Time wake_ = never;   // end of the wait, or begin of the next step of the round
   bool waits_ = false;  // a message ends the wait
   Time stalled_until_{};
 };

@@ -14,27 +14,28 @@ namespace takt {
 
 class VirtualLcm;
 
-/// Whether a program hears its own messages, too.
+/// Whether a program also receives its own messages.
 enum class Echo : std::uint8_t { heard, unheard };
 
-/// One program's connection to a VirtualLcm: a queue as that of a socket, in which messages wait
-/// until serve() takes them.
+/// One program's connection to a VirtualLcm. Messages wait in a queue, like that of a socket, until
+/// serve() takes them.
 class VirtualEndpoint final : public Transport {
  public:
   VirtualEndpoint(VirtualLcm& lcm, std::size_t room, Echo echo)
       : lcm_{lcm}, room_{room}, echo_{echo} {}
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
-  /// Whole names only, no patterns.
+  /// Accepts whole names only, no patterns.
   void subscribe(const std::string& channel) override { channels_.push_back(channel); }
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>&) const override {}
   bool good() const override { return true; }
   std::string url() const override { return "virtual"; }
 
-  /// When the oldest message that waits has arrived; `never`: none is on its way.
+  /// Arrival time of the oldest message in the queue, which may be in the future; `never` if the
+  /// queue is empty.
   Time next_arrival() const noexcept { return waiting_.empty() ? never : waiting_.front().arrival; }
-  /// Everything that waits is lost, as with the process that had the socket.
+  /// Discards all waiting messages and subscriptions, as the end of the process does.
   void close() {
     waiting_.clear();
     channels_.clear();
@@ -58,17 +59,18 @@ class VirtualEndpoint final : public Transport {
   std::uint64_t dropped_ = 0;
 };
 
-/// LCM in memory and in virtual time: every message reaches everybody who hears its channel after a
-/// random delay, in order; a full queue loses the newest message.
+/// LCM in memory and in virtual time. Every message reaches all subscribers of its channel after a
+/// random delay and in order. A full queue drops the newest message.
 class VirtualLcm {
  public:
   static constexpr Time usual_delay = std::chrono::microseconds{150};
 
   VirtualLcm(const sim::World& world, sim::Random random) : world_{world}, random_{random} {}
 
-  /// A new program whose queue holds `room` messages. It lives as long as this.
+  /// Adds a program whose queue holds `room` messages. The endpoint lives as long as the
+  /// VirtualLcm.
   VirtualEndpoint& join(std::size_t room, Echo echo = Echo::heard);
-  /// Messages take up to this long from now on.
+  /// Sets the longest delay of the messages that are sent from now on.
   void set_delay(Time longest) noexcept { delay_ = longest; }
   Time now() const noexcept { return world_.now(); }
   std::uint64_t messages() const noexcept { return messages_; }

@@ -8,27 +8,28 @@
 
 namespace takt {
 
-/// How evenly SYNC lay on the wire.
+/// How even the SYNC period was on the wire.
 struct SyncOnWire {
   std::uint64_t count = 0;
-  std::uint64_t gaps = 0;  ///< distances of 1.5 periods and more
+  std::uint64_t gaps = 0;  ///< distances of at least 1.5 periods
   Time shortest = Time::max();
   Time longest{};
-  /// Distance of two SYNCs against the period, without the gaps; a bucket is a microsecond.
+  /// Absolute deviation of the SYNC distance from the period, without the gaps. A bucket is a
+  /// microsecond; the last one also holds all greater deviations.
   std::vector<std::uint64_t> deviation = std::vector<std::uint64_t>(10'001);
 
-  /// The deviation that so many parts of 1 stay below.
+  /// Returns the quantile of the deviation. `part` is a fraction of 0..1.
   Time quantile(double part) const;
 };
 
-/// One PDO as it was on the wire.
+/// Counters of one PDO on the wire.
 struct PdoOnWire {
   std::uint64_t frames = 0;
-  std::uint64_t late = 0;  ///< TPDO: ended after the receive window
-  Time worst{};            ///< TPDO: longest time from the start of SYNC to its end
+  std::uint64_t late = 0;  ///< cyclic TPDO: frames that ended after the receive window
+  Time worst{};            ///< cyclic TPDO: longest time from the start of SYNC to the frame's end
 };
 
-/// What was on the wire, counted frame by frame.
+/// Counts the frames on the wire.
 class WireStatistics final : public sim::BusObserver {
  public:
   explicit WireStatistics(const BusPlan& plan);
@@ -38,7 +39,7 @@ class WireStatistics final : public sim::BusObserver {
   const SyncOnWire& sync() const noexcept { return sync_; }
   const PdoOnWire& tpdo(std::size_t row) const noexcept { return tpdos_[row]; }
   const PdoOnWire& rpdo(std::size_t row) const noexcept { return rpdos_[row]; }
-  /// The fullest of the cycles between two SYNCs, in bits; without SYNC 0.
+  /// Number of bits in the busiest cycle between two SYNCs, without gaps. 0 without SYNC.
   std::uint64_t worst_cycle_bits() const noexcept { return worst_bits_; }
   std::uint64_t sdo_frames() const noexcept { return sdo_frames_; }
   std::uint64_t emcy_frames() const noexcept { return emcy_frames_; }

@@ -34,7 +34,7 @@ class Walk {
   Time::rep below(Time::rep limit) {
     return static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(limit));
   }
-  /// Mostly short, now and then long.
+  /// Returns the duration of a fault: mostly up to 300 ms, sometimes up to 3 s.
   Time span() { return Time{1ms} + Time{below(Time{random_.chance(0.1) ? 3s : 300ms}.count())}; }
   NodeId node() {
     return plan_.nodes[random_.below(static_cast<std::uint32_t>(plan_.nodes.size()))].id;
@@ -88,7 +88,8 @@ class Walk {
     }
   }
 
-  /// Another device of the same id: vendor, product, revision or serial number differ.
+  /// Replaces a device by one with the same node-ID and another vendor, product, revision or serial
+  /// number.
   void exchange_device() {
     const NodeId who = node();
     if (other_until_[who.value()] > now_) return;
@@ -141,7 +142,7 @@ class Walk {
   Time now_;
   Time end_;
   Time weather_ = 300ms;
-  std::vector<Time> other_until_;  // per node id: exchanged so long
+  std::vector<Time> other_until_;  // until when a node is exchanged, by node-ID
   sim::Faults faults_;
 };
 

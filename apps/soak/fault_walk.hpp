@@ -5,9 +5,9 @@
 
 namespace takt {
 
-/// A random walk through everything that can go wrong with a bus: calm and stormy times, single
-/// faults and those that come together (a device exchanged for another, a reset in the middle of a
-/// boot, EMCY storms). All are over at `until`.
+/// Returns a random sequence of bus faults: calm and stormy times, single faults, and combined ones
+/// (a device exchanged for another, a reset in the middle of a boot, EMCY storms). All faults end
+/// by `until`.
 sim::Faults fault_walk(const BusPlan& plan, sim::Random random, Time from, Time until);
 
 }  // namespace takt

@@ -23,21 +23,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time calm = 2s;  // all boot, all axes move
+constexpr Time calm = 2s;  // before the first fault; all nodes boot, and all axes move
 constexpr Time time_to_recover = 60s;
-constexpr Time longest_pause = 21ms;  // of pause_before_image, and a step
-constexpr Time usual_jitter = 320us;  // of the master's SYNC
+constexpr Time longest_pause = 21ms;  // longest result of pause_before_image, plus a step
+constexpr Time usual_jitter = 320us;  // jitter of the master's SYNC
 constexpr std::size_t most_applications = 3;
 constexpr std::array<Time, 3> latenesses{0us, 60us, 300us};
 
-/// Each application has the nodes of its turn.
+/// Returns the nodes of one application: every `step`-th one, from `first` on.
 std::vector<bool> every(std::size_t nodes, std::size_t first, std::size_t step) {
   std::vector<bool> mine(nodes);
   for (std::size_t i = first; i < nodes; i += step) mine[i] = true;
   return mine;
 }
 
-/// Half of the runs have faults of the bus as well.
+/// Returns the bus faults. Only half of the runs, those with an even seed, have any.
 sim::Faults faults_of(const BusPlan& plan, const SoakOptions& options) {
   if (options.seed % 2 != 0) return {};
   return fault_walk(plan, sim::Random{options.seed}.fork(11), calm, calm + options.duration);
@@ -48,14 +48,14 @@ sim::RemotePortOptions port_options(const BusPlan& plan, const SoakOptions& opti
   return {.sync = plan.cycle.sync_cob_id, .wake_jitter = late, .spin_jitter = late / 16};
 }
 
-/// The plan as the daemon has it.
+/// Returns the plan of the daemon, which a test may have changed.
 BusPlan daemon_plan(const BusPlan& plan, const FrontMeddle& meddle) {
   BusPlan copy = plan;
   if (meddle.plan) meddle.plan(copy);
   return copy;
 }
 
-/// Frames for the judge and, where wanted, for a file.
+/// Passes the frames on the wire to the judge and, if requested, to a candump file.
 class Ear final : public sim::BusObserver {
  public:
   Ear(const BusPlan& plan, const std::string& candump, WireJudge& judge) : judge_{judge} {
@@ -71,7 +71,7 @@ class Ear final : public sim::BusObserver {
   std::unique_ptr<CandumpLog> log_;
 };
 
-/// What the front thread reads as time.
+/// The clock of the front thread, which a test may change.
 class FrontClocks final : public Clocks {
  public:
   FrontClocks(const VirtualClocks& clocks, const FrontMeddle& meddle)
@@ -80,7 +80,7 @@ class FrontClocks final : public Clocks {
     return meddle_.clock ? meddle_.clock(clocks_.now(), newest_) : clocks_.now();
   }
   Time wall_offset() const noexcept override { return clocks_.wall_offset(); }
-  /// SYNC of the newest image.
+  /// Notes the SYNC time of the newest image.
   void saw(Time sync) noexcept { newest_ = sync; }
 
  private:
@@ -202,10 +202,10 @@ class Run {
     }
   }
 
-  /// The front thread has an image in its hands not much later than it was there, unless it was
-  /// stalled. Where images have stayed away it looks more and more rarely, and finds the next ones
-  /// late; see pause_before_image. While no node exchanges PDOs images are there before the time
-  /// that is predicted for them, and so is the first one after the phase of SYNC has changed.
+  /// Checks that the front thread receives an image soon after its publication, unless the front
+  /// thread was stalled. If images have stayed away, it polls less and less often and finds the
+  /// next ones late; see pause_before_image. While no node exchanges PDOs, images are published
+  /// before their predicted time. So is the first image after a change of the SYNC phase.
   void judge_wait(const ImageView& image, Time now) {
     ++images_;
     cycle_ = image.cycle;
@@ -228,24 +228,24 @@ class Run {
                        std::to_string((now - image.publish_time) / 1us) + " us");
   }
 
-  /// This SYNC isn't whole periods after the one before: that came late out of a stall, or somebody
-  /// else produces it.
+  /// Returns true if this SYNC is not a whole number of periods after the one before: the one
+  /// before came late after a stall, or another producer sends SYNC.
   bool has_shifted(Time sync) noexcept {
     const Time period = plan_.cycle.period;
     const Time off = (sync - std::exchange(sync_.newest, sync)) % period;
     return std::min(off, period - off) > usual_jitter;
   }
 
-  /// Nothing happens any more: each application moves its axes again.
+  /// Runs on without new faults and checks that each application moves its axes again.
   void settle() {
     const Time limit = world_.now() + time_to_recover;
     const auto leads = [&](const auto& application) {
       return world_.now() - wire_.last_move(SenderBit{1} << application->number()) < 100ms ||
              !has_axes(*application);
     };
-    const Time since = world_.now() + 12s;  // the longest trouble is over
+    const Time since = world_.now() + 12s;  // even the longest fault is over by then
     while (verdict_.good() && world_.now() < since) cycle();
-    // Faults of the bus may have left a device in its own state.
+    // Bus faults may have left a device in another state, so the axes may not move.
     if (options_.seed % 2 == 0) return;
     while (verdict_.good() && world_.now() < limit && !std::ranges::all_of(applications_, leads)) {
       cycle();
@@ -257,7 +257,7 @@ class Run {
     }
   }
 
-  /// While the programs go on.
+  /// Stops in order while the programs run on.
   void stop() {
     stop_.begin();
     daemon_.request_stop();
@@ -316,7 +316,7 @@ class Run {
   std::uint64_t events_ = 0;
   struct {
     Time newest{};
-    bool shifted = false;  ///< the newest against the one before
+    bool shifted = false;  ///< the newest SYNC is shifted against the one before
   } sync_;
   Time last_published_{};
   Time excused_until_{};

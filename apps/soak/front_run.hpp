@@ -3,8 +3,8 @@
 
 namespace takt {
 
-/// A whole taktd, front thread included, with several programs in virtual time, and everything that
-/// can happen to them. The same seed gives the same run.
+/// Runs a whole taktd, including its front thread, and several programs in virtual time, with
+/// random faults of all of them. The same seed gives the same run.
 SoakOutcome soak_front(const LoadedNetwork& network, const SoakOptions& options);
 
 }  // namespace takt

@@ -53,7 +53,8 @@ bool ImageJudge::unchanged(const PdoRow& row, const ImageView& image) const noex
   return true;
 }
 
-/// The oldest frame that fits: a newer one with the same values may not have been read yet.
+/// Finds the oldest frame that fits, because a newer one with the same values may not have been
+/// read yet. Returns false if no frame fits.
 bool ImageJudge::find(const PdoRow& row, History& history, const ImageView& image) const noexcept {
   const std::uint64_t oldest = history.seen >= depth ? history.seen - depth + 1 : 1;
   for (std::uint64_t i = std::max(oldest, history.matched + 1); i <= history.seen; ++i) {

@@ -9,11 +9,12 @@
 
 namespace takt {
 
-/// `count` bits of a frame from bit `offset` on, least significant first. CiA 301, 7.1.4.
+/// Returns `count` bits of the frame's data from bit `offset` on, least significant first. CiA 301,
+/// 7.1.4.
 std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexcept;
 
-/// Holds each image against what was on the wire: the values of one PDO come from one frame, that
-/// frame is not older than the one before, cycle numbers and times rise.
+/// Checks each image against the frames on the wire: the values of one PDO come from one frame,
+/// that frame is not older than the one in the image before, and cycle numbers and times rise.
 class ImageJudge final : public sim::BusObserver {
  public:
   ImageJudge(const BusPlan& plan, Verdict& verdict);
@@ -24,14 +25,15 @@ class ImageJudge final : public sim::BusObserver {
   std::uint64_t frames() const noexcept { return frames_; }
 
  private:
-  /// Frames kept of each PDO. A receive queue holds 1024 and drops the newest: while the master is
-  /// stalled and a device babbles, a frame each 60 us, all others of two seconds pass.
+  /// Number of frames kept of each PDO. The receive queue of a stalled master keeps the oldest 1024
+  /// frames and drops newer ones. Meanwhile a babbling device may send a frame every 60 us, so the
+  /// history covers two seconds of such frames.
   static constexpr std::size_t depth = 32768;
 
   struct History {
     std::vector<Frame> frames = std::vector<Frame>(depth);
     std::uint64_t seen = 0;
-    std::uint64_t matched = 0;  ///< the image showed this frame; frames are counted from 1
+    std::uint64_t matched = 0;  ///< number of the frame in the last image, counted from 1
   };
 
   bool shows(const PdoRow& row, const Frame& frame, const ImageView& image) const noexcept;

@@ -29,7 +29,7 @@ Frame Intruder::frame() noexcept {
     frame.data[0] = commands[random_.below(commands.size())];
     frame.data[1] = static_cast<std::uint8_t>(random_.below(16));
   } else if (random_.chance(0.5)) {
-    // an SDO answer that may fit: an initiate, a segment, an abort
+    // An SDO response that may fit: an initiate, a segment or an abort.
     frame.data[0] = static_cast<std::uint8_t>(random_.below(8) << 5 | random_.below(32));
     frame.data[1] = static_cast<std::uint8_t>(random_.below(4));
     frame.data[2] = static_cast<std::uint8_t>(0x10 + random_.below(16));

@@ -5,14 +5,15 @@
 
 namespace takt {
 
-/// Somebody on the bus who sends rubbish: random identifiers, lengths and contents, and frames that
-/// nearly make sense (PDOs of a wrong length, SDO answers to nobody, foreign NMT commands).
+/// A foreign device on the bus that sends rubbish: random identifiers, lengths and contents, and
+/// frames that nearly make sense (PDOs of a wrong length, SDO responses that nobody requested,
+/// foreign NMT commands).
 class Intruder {
  public:
   Intruder(sim::World& world, const BusPlan& plan, sim::Random random)
       : world_{world}, port_{world.attach()}, plan_{plan}, random_{random} {}
 
-  /// Perhaps sends something; to be called often.
+  /// Sends some frames or none, at random. To be called often.
   void act() noexcept;
   void leave() noexcept { gone_ = true; }
   std::uint64_t sent() const noexcept { return sent_; }

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// The simulation's port; the judge sees what the master sends, and the intruder acts while it
-/// sleeps.
+/// Wraps the simulation's port: the judge sees each frame that the master sends, and the intruder
+/// acts whenever the master sleeps.
 class JudgedPort {
  public:
   JudgedPort(sim::SimPort& port, OutputJudge& judge, Intruder& intruder)

@@ -15,16 +15,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes of a device, CiA 402
+constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes in a device, CiA 402
 constexpr std::uint16_t actual_position = 0x6064;
 constexpr Time longest_gap = 50ms;
-constexpr double fewest_cycles = 3;           // of longest_gap
-constexpr double clear_part = 0.2;            // of a cycle, by which a wake-up may be late
-constexpr double cycles_behind = 4;           // of the master's knowledge of the actual position
-constexpr unsigned cycles_of_doubt = 8;       // of its knowledge of the state of an axis
-constexpr std::size_t fewest_remembered = 8;  // positions, where they come rarely
-constexpr std::int64_t profile_position = 1;  // 6060, 6061
-constexpr double real_rounding = 0x1p-20;     // of a value of type REAL
+constexpr double fewest_cycles = 3;           // lower limit of longest_gap in cycles
+constexpr double clear_part = 0.2;            // part of a cycle that a wake-up may be late
+constexpr double cycles_behind = 4;           // age of the actual position that the master knows
+constexpr unsigned cycles_of_doubt = 8;       // age of the axis state that the master knows
+constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
+constexpr std::int64_t profile_position = 1;  // value of 6060 and 6061
+constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
 
 double number(const Signal& signal, std::uint64_t bits) noexcept {
   if (signal.type == DataType::real32) {
@@ -37,7 +37,8 @@ double number(const Signal& signal, std::uint64_t bits) noexcept {
   return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
 }
 
-/// The fallback and the safe value need no command, and they know no limit of a way.
+/// Returns true for the fallback value and the safe value. The master sends them without a command,
+/// and no limit of step, velocity or acceleration applies to them.
 bool is_own_value(const Signal& signal, double value) noexcept {
   const auto is = [&](std::int64_t own) {
     return value == number(signal, static_cast<std::uint64_t>(own));
@@ -84,8 +85,8 @@ void LimitJudge::begin_cycle(Time now) {
   cycles_.back() = now;
   for (Place& place : places_) {
     if (place.doubt != 0) --place.doubt;
-    // A babbling node may have sent a hundred positions in a cycle. All of them waited while the
-    // master was stopped.
+    // A babbling node may have sent a hundred positions in a cycle. All of them may have waited in
+    // the queue while the master was stopped.
     while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
       place.actual.pop_front();
     }
@@ -116,7 +117,7 @@ void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
   }
 }
 
-/// Controlwords and modes say how the targets of their axis are meant.
+/// Notes controlwords and modes, which determine the meaning of the targets of their axis.
 void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
   for (Place& place : places_) {
     if (place.limit == nullptr) continue;
@@ -133,7 +134,7 @@ bool LimitJudge::is_actual(SignalIndex signal, std::uint64_t bits) const noexcep
   return std::ranges::find(place.actual, position, &Seen::position) != place.actual.end();
 }
 
-/// The drive certainly follows set-points, and the master certainly knows it.
+/// Returns true if the drive certainly follows set-points and the master certainly knows it.
 bool LimitJudge::follows(const Place& place) const noexcept {
   return place.doubt == 0 && place.enabled && (place.enables || !place.controlword);
 }
@@ -143,7 +144,8 @@ bool LimitJudge::in_profile(const Place& place) const noexcept {
   return known ? place.mode == profile_position : place.limit->profile;
 }
 
-/// The shorter way where positions turn over. Whole turns count in full.
+/// Returns the distance between two positions, for a rotary axis the shorter one. A distance of a
+/// whole turn or more counts in full.
 double LimitJudge::length(const Place& place, double from, double to) const noexcept {
   const double wrap = place.limit->wraps ? std::ldexp(1.0, signal_of(place).bits) : 0.0;
   const double turn = place.limit->modulus > 0 ? place.limit->modulus : wrap;
@@ -161,7 +163,7 @@ LimitJudge::Way LimitJudge::way_to(const Place& place, double value, Time now) c
           .cycles = static_cast<unsigned>(std::clamp(counted, 1.0, most_cycles_))};
 }
 
-/// How far from its actual position an axis at rest may be sent.
+/// Returns how far from its actual position an axis at rest may be sent, in counts.
 double LimitJudge::reach(const Place& place, double cycles) const noexcept {
   const double rate = std::min(place.limit->step, place.limit->rate);
   if (rate != OutputLimit::none) return std::ceil(rate * cycles);
@@ -182,7 +184,7 @@ bool LimitJudge::near_axis(const Place& place, double value) {
   return way <= reach(place, cycles_behind) + moved;
 }
 
-/// From outside the range an output may come back, but it may not go further.
+/// Checks the range. An output outside its range may move back, but not further away.
 void LimitJudge::judge_range(const Place& place, double value) {
   double low = std::min(place.limit->low, place.value.value_or(OutputLimit::none));
   double high = std::max(place.limit->high, place.value.value_or(-OutputLimit::none));
@@ -210,8 +212,9 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
   judge(place.limit->rate, place.limit->rate_of);
 }
 
-/// Each of three values is rounded to a count, which may feign an acceleration. A way of several
-/// cycles may have begun in any of them, where the same value was commanded again before.
+/// Returns true if the distance needs more than the permitted acceleration. Each of the three
+/// values is rounded to a count, which may look like an acceleration. A distance over several
+/// cycles may have begun in any of them, if the same value was commanded again before.
 bool LimitJudge::too_sharp(const Place& place, const Way& way) const noexcept {
   const double bend = place.limit->bend;
   const auto sharp = [&](unsigned cycles, double before, unsigned gap) {

@@ -13,27 +13,30 @@
 
 namespace takt {
 
-/// Holds every limited output against `limits:` of the network file: range, step, velocity,
-/// acceleration and torque. It reads the frames that the devices get and the TPDOs on the wire, and
-/// uses nothing that the master has computed. A way counts from the value that was sent before,
-/// over the cycles since that value was new, and modulo the turn of the axis. While the drive does
-/// not follow set-points, a position may also go on from where the axis is. Where a frame can mean
-/// two things (a command may be repeated without a change), the judge assumes what is allowed.
+/// Checks every limited output against `limits:` of the network file: range, step, velocity,
+/// acceleration and torque. The judge reads the frames that the devices receive and the TPDOs on
+/// the wire, and uses nothing that the master has computed. A distance ("way") is measured from the
+/// value sent before, over the cycles since that value was new, and modulo the turn of the axis.
+/// While the drive does not follow set-points, a position may also continue from the actual
+/// position of the axis. If a frame can mean two things (a command may be repeated without a
+/// change), the judge assumes the permitted one.
 class LimitJudge {
  public:
   LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// The master begins a cycle and reads the frames that have come since the last one.
+  /// To be called when the master begins a cycle, in which it reads all frames since the last one.
   void begin_cycle(Time now);
-  /// A value of an output is handed to the interface. `begins`: it was not sent in the last cycles.
+  /// To be called when the master passes a value of an output to the interface. `begins` is true if
+  /// the output was not sent in the last cycles.
   void sent(SignalIndex signal, std::uint64_t bits, bool begins, Time now);
-  /// A frame is on the wire. It counts whoever has sent it, because the master cannot know.
+  /// To be called with each frame on the wire. The sender does not matter, because the master
+  /// cannot know it.
   void heard(const Frame& frame);
-  /// The daemon is a new process: nothing was sent so far.
+  /// To be called when the daemon is a new process, which has sent nothing so far.
   void begin_anew();
-  /// Whether this target is one of the newest actual positions on the wire.
+  /// Returns true if this target equals one of the newest actual positions on the wire.
   bool is_actual(SignalIndex signal, std::uint64_t bits) const noexcept;
-  /// How many values were held against a limit.
+  /// Number of values that were checked against a limit.
   std::uint64_t judged() const noexcept { return judged_; }
 
  private:
@@ -41,22 +44,23 @@ class LimitJudge {
     Time when{};
     double position = 0;
   };
-  /// The way to a value: its length in counts, and the most cycles that it may have taken.
+  /// The distance to a value: its length in counts, and the greatest number of cycles that it may
+  /// have taken.
   struct Way {
     double length = 0;
     unsigned cycles = 1;
   };
   struct Place {
     const OutputLimit* limit = nullptr;
-    std::optional<SignalIndex> controlword{};  ///< of the same axis, where it is an output
-    std::optional<double> value{};             ///< sent last
-    Time when{};                               ///< `value` was new
-    std::optional<Way> last_way{};             ///< to `value`, while the drive followed
-    std::int64_t mode = 0;                     ///< 6060 as it was sent, else 6061 as it was heard
-    bool enables = false;                      ///< the controlword that was sent last
-    bool enabled = true;                       ///< the statusword that was heard last
-    unsigned doubt = 0;                        ///< cycles in which the master may not know better
-    std::deque<Seen> actual{};                 ///< on the wire since cycles_[0], newest last
+    std::optional<SignalIndex> controlword{};  ///< of the same axis, if it is an output
+    std::optional<double> value{};             ///< value sent last
+    Time when{};                               ///< when `value` was first sent
+    std::optional<Way> last_way{};  ///< distance to `value`; empty if the drive did not follow
+    std::int64_t mode = 0;          ///< 6060 as sent, otherwise 6061 as received
+    bool enables = false;           ///< the last controlword sent enables operation
+    bool enabled = true;            ///< the last statusword received is enabled
+    unsigned doubt = 0;             ///< cycles in which the master may not know the state
+    std::deque<Seen> actual{};      ///< positions since cycles_[0], newest last
   };
 
   void note_order(SignalIndex signal, std::uint64_t bits);
@@ -79,9 +83,9 @@ class LimitJudge {
   const BusPlan& plan_;
   sim::World& world_;
   Verdict& verdict_;
-  double most_cycles_;            // without a command, that count for one way
-  std::vector<Place> places_;     // by output
-  std::array<Time, 6> cycles_{};  // when the newest began; the oldest is the first
+  double most_cycles_;            // greatest number of cycles that counts for one distance
+  std::vector<Place> places_;     // one for each output
+  std::array<Time, 6> cycles_{};  // start times of the newest cycles, oldest first
   std::uint64_t judged_ = 0;
 };
 

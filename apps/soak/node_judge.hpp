@@ -9,19 +9,20 @@
 
 namespace takt {
 
-/// Every node is in a named state, a boot makes progress, and in the end all are ready.
+/// Checks that every node is always in a known state, that each boot makes progress, and that all
+/// nodes are ready at the end.
 class NodeJudge {
  public:
   NodeJudge(const BusPlan& plan, Verdict& verdict);
 
   void judge(const StatusSnapshot& status, Time now);
   bool all_ready(const StatusSnapshot& status) const noexcept;
-  /// The faults are over and this is what is left.
+  /// Checks after the end of all faults that every node is ready.
   void judge_end(const StatusSnapshot& status);
   std::uint64_t boots(const StatusSnapshot& status) const noexcept;
 
  private:
-  static constexpr Time patience = std::chrono::seconds{60};  ///< for one step of a boot
+  static constexpr Time patience = std::chrono::seconds{60};  ///< limit for one step of a boot
 
   struct Progress {
     BootState boot = BootState::idle;

@@ -24,7 +24,8 @@ void OutputJudge::commanded(SignalIndex signal, std::int64_t value, std::uint32_
                             Time now) {
   const std::size_t output = signal - plan_.layout.inputs;
   const std::uint64_t mask = mask_of(plan_.layout.signals[signal].bits);
-  // One cycle until it is taken, one in which it is sent late, a quarter before that.
+  // Two cycles and a quarter on top: one until the bus thread takes the command, one in which it is
+  // sent late, and a quarter before that.
   commands_[output][count_[output]++ % depth] = {
       .value = static_cast<std::uint64_t>(value) & mask,
       .until = now + (time_to_live + 2) * plan_.cycle.period + plan_.cycle.period / 4};
@@ -53,7 +54,7 @@ void OutputJudge::judge_sync(const Frame& frame, Time now) {
   last_counter_ = frame.data[0];
 }
 
-/// CiA 301, 7.2.5.2.
+/// Notes the NMT commands that let the SYNC counter start at 1. CiA 301, 7.2.5.2.
 void OutputJudge::note_nmt(const Frame& frame, Time now) {
   const auto nmt = decode_nmt(frame);
   if (!nmt) return;
@@ -62,7 +63,8 @@ void OutputJudge::note_nmt(const Frame& frame, Time now) {
   if (nmt->node == 0) stopped_ = stops;
 }
 
-/// The counter may start anew some cycles before a full bus takes the command.
+/// Checks the SYNC counter. It may restart up to ten cycles before its NMT command leaves, if the
+/// bus is full.
 void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
   const Time patience = 10 * plan_.cycle.period;
   const unsigned wanted = last_counter_ % plan_.cycle.sync_overflow + 1U;
@@ -86,8 +88,8 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
   }
 }
 
-/// Values that may be sent without a fresh command: of the fallback, of the ordered stop, the safe
-/// value; and positions that a drive holds.
+/// Returns true for values that may be sent without a fresh command: those of the fallback and of
+/// the ordered stop, the safe value, and positions that a drive holds.
 bool OutputJudge::lasting(const Signal& signal, std::uint64_t value) const noexcept {
   if (signal.fallback == Fallback::hold) return true;
   if (plan_.nodes[signal.node_index].cia402 && signal.object.index == 0x6040) {

@@ -10,23 +10,24 @@
 
 namespace takt {
 
-/// Remembers what was commanded and holds it against what the master hands to the interface: a
-/// value goes out only while its command is within its time to live; SYNC beats evenly and counts
-/// without a gap, from 1 on where NMT of the whole network begins it anew.
+/// Remembers the commands and checks the frames that the master passes to the interface against
+/// them: the master sends a value only within the time to live of its command, two SYNCs never
+/// follow each other in a burst, and the SYNC counter has no gap and starts at 1 only after an NMT
+/// command that resets it.
 class OutputJudge {
  public:
   OutputJudge(const BusPlan& plan, Verdict& verdict);
 
-  /// `time_to_live` in cycles, not 0.
+  /// `time_to_live` is in cycles and must not be 0.
   void commanded(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live, Time now);
   void sent(std::span<const Frame> frames, Time now);
-  /// NMT for the master itself, of which no frame tells.
+  /// To be called for an NMT command to the master itself, which causes no frame.
   void ordered() noexcept { ++own_orders_; }
 
  private:
   struct Command {
     std::uint64_t value = 0;
-    Time until{};  ///< its time to live, and what may be lost between front and bus thread
+    Time until{};  ///< end of the time to live, plus the delay between front and bus thread
   };
   static constexpr std::size_t depth = 32;
 
@@ -43,10 +44,10 @@ class OutputJudge {
   std::vector<std::uint64_t> count_;
   Time last_sync_{};
   std::uint8_t last_counter_ = 0;
-  bool stopped_ = false;     ///< the whole network, and the master with it
-  Time restarts_ = -never;   ///< the newest NMT command that lets the counter start at 1
-  unsigned own_orders_ = 0;  ///< each may let it start at 1 once
-  Time restarted_ = never;   ///< it did so, and no such command is known yet
+  bool stopped_ = false;     ///< NMT has stopped the whole network, including the master
+  Time restarts_ = -never;   ///< time of the newest NMT command that lets the counter start at 1
+  unsigned own_orders_ = 0;  ///< commands to the master, each of which permits one start at 1
+  Time restarted_ = never;   ///< time of a start at 1 whose NMT command is not yet known
 };
 
 }  // namespace takt

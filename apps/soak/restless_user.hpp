@@ -10,19 +10,20 @@
 
 namespace takt {
 
-/// The applications of a run: axes that move, outputs that change, pauses without a word, and
-/// requests of every kind at random times.
+/// Acts as the applications of a run: it moves axes, changes outputs, pauses without notice, and
+/// sends requests of every kind at random times.
 class RestlessUser {
  public:
   RestlessUser(const BusPlan& plan, Exchange& exchange, OutputJudge& judge, Verdict& verdict,
                sim::Random random);
 
-  /// What an application does when an image has come.
+  /// Answers an image as an application does, with commands.
   void on_image(const ImageView& image, Time now);
-  /// Perhaps asks for something; takes the answers.
+  /// Sends a random request, or none. To be called before each cycle.
   void ask(Time now);
+  /// Takes the replies. Blames a second reply to a request, and a request that waits too long.
   void take_replies(Time now);
-  /// From now on only this is asked for: every node is to be reset.
+  /// Requests a reset of all nodes.
   void reset_all(Time now);
 
   std::uint64_t asked() const noexcept { return asked_; }
@@ -30,7 +31,7 @@ class RestlessUser {
   std::size_t most_moving() const noexcept { return motion_.most_moving(); }
 
  private:
-  static constexpr Time patience = std::chrono::seconds{120};  ///< for one answer
+  static constexpr Time patience = std::chrono::seconds{120};  ///< limit for one reply
 
   void command(SignalIndex signal, std::int64_t value, Time now);
   Request request();
@@ -43,10 +44,10 @@ class RestlessUser {
   Verdict& verdict_;
   sim::Random random_;
   SineMotion motion_;
-  std::uint32_t silent_ = 0;  ///< images that the application still ignores
+  std::uint32_t silent_ = 0;  ///< number of images that the application still ignores
   std::uint32_t time_to_live_ = 5;
   std::uint64_t asked_ = 0;
-  std::map<std::uint64_t, Time> open_;  ///< requests without an answer
+  std::map<std::uint64_t, Time> open_;  ///< send times of the requests without a reply, by id
 };
 
 }  // namespace takt

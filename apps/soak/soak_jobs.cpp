@@ -14,7 +14,8 @@
 namespace takt {
 namespace {
 
-/// What a worker writes into the pipe, whole: shorter than PIPE_BUF.
+/// A message that a worker writes into the pipe. It is shorter than PIPE_BUF, so that it arrives in
+/// one piece.
 struct Record {
   std::uint32_t worker = 0;
   bool begins = false;
@@ -91,7 +92,7 @@ bool put(int pipe, const Record& record) {
   return ::write(pipe, &record, sizeof record) == static_cast<ssize_t>(sizeof record);
 }
 
-/// The walk on the bus, and that of the front thread.
+/// Runs the bus part, the front part, or both, as the plan says.
 SoakOutcome run(const LoadedNetwork& network, const SoakPlan& plan, const SoakOptions& options) {
   if (plan.part == SoakPart::front) return soak_front(network, options);
   SoakOutcome outcome = soak(network, options);
@@ -118,7 +119,7 @@ void work(const LoadedNetwork& network, const SoakPlan& plan, std::uint32_t work
 
 struct Worker {
   pid_t pid = 0;
-  std::uint64_t seed = 0;  ///< under way; 0: none
+  std::uint64_t seed = 0;  ///< seed of the run in progress; 0 means none
 };
 
 }  // namespace

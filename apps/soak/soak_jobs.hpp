@@ -6,7 +6,7 @@
 
 namespace takt {
 
-/// Which walks each seed is for.
+/// Selects which runs are made with each seed.
 enum class SoakPart : std::uint8_t {
   bus,    ///< the bus thread and the devices: soak()
   front,  ///< the front thread and programs: soak_front()
@@ -24,11 +24,11 @@ struct SoakPlan {
 /// The end of one run as its process reports it.
 struct SoakReport {
   SoakOutcome outcome{};
-  int signal = 0;  ///< that ended the process in the middle of the run; 0: none
+  int signal = 0;  ///< signal that ended the process within the run; 0: it completed; -1: no signal
 };
 
-/// Runs all seeds in processes of their own, so that a crash names its seed. `told` hears of each
-/// run in the order in which they end.
+/// Runs the seeds in separate worker processes, so that a crash can be assigned to its seed. Calls
+/// `told` for each run, in the order in which the runs end.
 void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
               const std::function<void(const SoakReport&)>& told);
 

@@ -24,10 +24,10 @@ using namespace std::chrono_literals;
 
 constexpr Time calm = 1s;                         // before the first fault
 constexpr Time time_to_recover = 60s;             // after the last one
-constexpr std::size_t memory_slack = 256 * 1024;  // open requests, events in words
+constexpr std::size_t memory_slack = 256 * 1024;  // bytes for open requests and event texts
 constexpr std::array<Time, 4> latenesses{0us, 60us, 300us, 2ms};
 
-/// Frames for the judge and, where wanted, for a file.
+/// Passes the frames on the wire to the judge and, if requested, to a candump file.
 class Ear final : public sim::BusObserver {
  public:
   Ear(const BusPlan& plan, const std::string& candump, ImageJudge& judge) : judge_{judge} {
@@ -59,7 +59,7 @@ sim::RemotePortOptions port_options(const LoadedNetwork& network, const SoakOpti
   return {.sync = network.plan.cycle.sync_cob_id, .wake_jitter = late, .spin_jitter = late / 16};
 }
 
-/// One run: the world, the master in it, its users, and those who judge them.
+/// One run: the simulated world, the master, its users and the judges.
 class Run {
  public:
   Run(const LoadedNetwork& network, const SoakOptions& options)
@@ -136,7 +136,8 @@ class Run {
     }
   }
 
-  /// No fault any more, and all devices switched off and on: rubbish may have reconfigured them.
+  /// Switches all devices off and on, because rubbish may have reconfigured them, and checks that
+  /// all nodes come back and all requests are answered without further faults.
   void settle() {
     intruder_.leave();
     for (const NodePlan& node : plan_.nodes) world_.power(node.id, false);

@@ -10,30 +10,31 @@
 
 namespace takt {
 
-/// Holds the verdict of an ordered stop against the simulated drives themselves: an axis that the
-/// master confirms was at standstill when its power stage went off, and it is off.
+/// Checks the result of an ordered stop against the simulated drives themselves: an axis that the
+/// master confirms must have been at standstill when its power stage went off, and the power stage
+/// must still be off.
 class StopJudge {
  public:
   StopJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// The stop is asked for.
+  /// To be called when the stop is requested.
   void begin();
-  /// After each cycle from then on.
+  /// To be called after each cycle of the stop.
   void look();
   void hear(const Event& event);
-  /// The stop is over.
+  /// To be called when the stop is over.
   void judge(StopResult result);
-  /// Axes that had their power stage on when the stop began, and were confirmed.
+  /// Number of confirmed axes whose power stage was on at some time since the stop began.
   std::uint64_t confirmed() const noexcept { return confirmed_; }
 
  private:
   struct Axis {
     const NodePlan* node = nullptr;
     const AxisPlan* plan = nullptr;
-    bool powered = false;         ///< now
-    bool was_powered = false;     ///< at some time since the stop began
-    std::int64_t speed_then = 0;  ///< when its power stage went off last
-    bool blamed = false;          ///< the master says that it was not stopped
+    bool powered = false;         ///< the power stage is on now
+    bool was_powered = false;     ///< the power stage was on at some time since the stop began
+    std::int64_t speed_then = 0;  ///< speed when the power stage last went off
+    bool blamed = false;          ///< the master reports that the axis was not stopped
   };
 
   sim::World& world_;

@@ -20,7 +20,7 @@ Time Troubles::some(Time longest) {
               static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(longest.count()))};
 }
 
-/// Mostly short, now and then longer than every time to live.
+/// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
 Time Troubles::span() {
   switch (random_.below(8)) {
     case 0:
@@ -87,8 +87,8 @@ void Troubles::stall_front(Time now) {
   cast_.daemon.stall(now + stall);
 }
 
-/// SIGSTOP: both threads. Which of them is the first to go on is chance, and an application may die
-/// meanwhile.
+/// Stalls both threads of taktd, as SIGSTOP does. Chance decides which of them continues first, and
+/// an application may die meanwhile.
 void Troubles::stall_process(Time now) {
   const Time stall = span();
   tell(now, "taktd is stopped", stall);
@@ -109,7 +109,7 @@ void Troubles::stall_application(Time now) {
   application().stall(now + stall);
 }
 
-/// By a little more than its limits allow, or by far.
+/// Lets an application jump, by little more than its limits permit or by far more.
 void Troubles::let_jump(Time now) {
   const std::int64_t counts = std::int64_t{16} << random_.below(16);
   tell(now, "an application jumps", {});

@@ -14,26 +14,27 @@
 
 namespace takt {
 
-/// Those to whom things happen.
+/// The objects that the troubles act on.
 struct Cast {
   sim::World& world;
   VirtualLcm& lcm;
   VirtualClocks& clocks;
   VirtualDaemon& daemon;
   std::vector<std::unique_ptr<VirtualApplication>>& applications;
-  VirtualApplication& rival;  ///< of the first application: the same name, the same axes
+  VirtualApplication& rival;  ///< has the name and the axes of the first application
   Forger& forger;
 };
 
-/// What happens to programs: they are stopped for a time, die and come again, have rivals, their
-/// messages are slow, repeated and forged. All at random times, each for a random time.
+/// Applies random faults to the programs: they are stopped for a time, die and start again, and
+/// have rivals; their messages are slow, repeated and forged. Each fault comes at a random time and
+/// lasts for a random time.
 class Troubles final : public Actor {
  public:
   Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose);
 
   Time next() const noexcept override;
   void act(Time now) override;
-  /// The daemon has been told to die; it does between two cycles.
+  /// Returns true if the caller has to kill the daemon, between two cycles.
   bool daemon_dies() const noexcept { return daemon_dies_; }
   void daemon_died(Time now);
   std::uint64_t count() const noexcept { return count_; }

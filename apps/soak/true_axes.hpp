@@ -8,13 +8,13 @@
 
 namespace takt {
 
-/// An axis as its simulated drive has it at this moment, whatever frames say of it.
+/// The present state of an axis, read from its simulated drive and not from frames.
 struct TrueAxis {
   std::int64_t statusword = 0;
   std::int64_t position = 0;
   std::int64_t velocity = 0;
 
-  /// Its power stage is on. CiA 402-2, table of states.
+  /// Returns true if the power stage is on. CiA 402-2, table of states.
   bool powered() const noexcept {
     const std::int64_t state = statusword & 0x6F;
     return state == 0x27 || state == 0x23 || state == 0x07 || (statusword & 0x4F) == 0x0F;
@@ -22,7 +22,8 @@ struct TrueAxis {
   bool obeys() const noexcept { return (statusword & 0x6F) == 0x27; }
 };
 
-/// `number` counts from 0; its objects lie 0x800 x number higher.
+/// Reads axis `number` of a device, counted from 0. Its objects lie 0x800 x number higher. A device
+/// that is off or missing gives zeros.
 inline TrueAxis true_axis(sim::World& world, NodeId node, unsigned number) noexcept {
   const sim::Device* const device = world.device(node);
   if (device == nullptr || device->state() == sim::DeviceState::off) return {};

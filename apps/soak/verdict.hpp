@@ -8,15 +8,15 @@
 
 namespace takt {
 
-/// What a run must never do, and when it did.
+/// An invariant that a run has broken, and when.
 struct Violation {
   std::uint64_t cycle = 0;
   Time when{};
-  std::string invariant;  ///< "torn image"
+  std::string invariant;  ///< for example "no torn image"
   std::string what;
 };
 
-/// Keeps the first violation of a run; what follows it is often only its consequence.
+/// Keeps the first violation of a run; later ones are often only consequences of it.
 class Verdict {
  public:
   void at(std::uint64_t cycle, Time now) noexcept {

@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 
 constexpr std::uint64_t enabled = 0x0F;  // controlword: bits of "enable operation"
 constexpr std::uint16_t target_position = 0x607A;
-constexpr Time longest_lease = 1s;         // whatever a command says
-constexpr unsigned cycles_on_the_way = 4;  // from the front thread to the wire, late or not
-constexpr unsigned cycles_of_doubt = 5;    // a lease may end so much earlier than it was meant to
+constexpr Time longest_lease = 1s;         // upper limit for every command
+constexpr unsigned cycles_on_the_way = 4;  // longest way from the front thread to the wire
+constexpr unsigned cycles_of_doubt = 5;    // a lease may end this much early
 
 std::uint64_t mask_of(unsigned bits) noexcept { return bits >= 64 ? ~0ULL : (1ULL << bits) - 1; }
 
@@ -79,7 +79,7 @@ void WireJudge::sent(std::span<const Frame> frames, Time now) {
   }
 }
 
-/// Values that may be sent without a fresh command; see OutputJudge.
+/// Returns true for values that may be sent without a fresh command; see OutputJudge.
 bool WireJudge::lasting(const Signal& signal, std::uint64_t value) const noexcept {
   if (plan_.nodes[signal.node_index].cia402 && signal.object.index == 0x6040) {
     return (value & enabled) != enabled;
@@ -93,7 +93,7 @@ bool WireJudge::lasting(const Signal& signal, std::uint64_t value) const noexcep
 void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   const Signal& signal = plan_.layout.signals[index];
   Output& output = this->output(index);
-  // Outputs that begin to be sent begin with what the device has (607A from 6064).
+  // The first value of an output is the one that the device has (607A from 6064).
   const bool begins = now > output.when + 5 * plan_.cycle.period;
   const bool changed = !begins && value != output.last;
   limits_.sent(index, value, begins, now);
@@ -105,7 +105,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
     if (is_target(signal) && changed) judge_holder(signal, *known, now);
     return;
   }
-  // What the master itself sends while an axis does not obey: where the axis is.
+  // While an axis does not obey, the master itself sends its actual position.
   if (is_target(signal) && limits_.is_actual(index, value)) return;
   const bool old = known != nullptr && (is_target(signal) ? changed : !lasting(signal, value));
   if (old || (known == nullptr && !lasting(signal, value))) {
@@ -116,7 +116,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
 void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now) {
   Holder& holder = holders_[signal.node_index];
   ++moves_;
-  if (!std::has_single_bit(known.senders)) return;  // two have commanded the same
+  if (!std::has_single_bit(known.senders)) return;  // two programs commanded the same value
   const auto sender = static_cast<std::size_t>(std::countr_zero(known.senders));
   moved_[sender] = now;
   if (holder.sender != 0 && holder.sender != known.senders && now < holder.until) {
@@ -127,7 +127,7 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
                        std::to_string((holder.until - now) / 1us) + " us");
   }
   if (holder.sender != known.senders) holder = {.sender = known.senders, .until = {}};
-  // What was sent before it gave up its outputs may still be on its way to the wire.
+  // A value from before the release may still be on its way to the wire, and holds nothing.
   if (known.computed_from > released_[sender]) {
     holder.until = std::max(holder.until, known.held_until);
   }

@@ -11,47 +11,48 @@
 
 namespace takt {
 
-/// Who sends commands: one bit for each program.
+/// A set of senders of commands: one bit for each program.
 using SenderBit = std::uint32_t;
 
-/// What an application knows of a value that it has sent.
+/// Describes a value that an application has sent.
 struct SentCommand {
   SenderBit sender = 0;
-  Time computed_from{};            ///< SYNC of the image
-  std::uint32_t time_to_live = 0;  ///< cycles; 0: as configured
+  Time computed_from{};            ///< SYNC time of the image that the value was computed from
+  std::uint32_t time_to_live = 0;  ///< cycles; 0 means as configured
 };
 
-/// Holds the outputs on the wire against what the applications know by the true clock: no value is
-/// older than its time to live, nobody moves an axis that somebody else holds, and each is within
-/// its limits.
+/// Checks the outputs on the wire against the commands of the applications, by the true clock: no
+/// value is older than its time to live, no program moves an axis that another one holds, and each
+/// output is within its limits.
 class WireJudge {
  public:
   WireJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
 
-  /// An application has sent this value.
+  /// To be called when an application has sent this value.
   void commanded(SignalIndex signal, std::int64_t value, const SentCommand& command);
-  /// Nobody may ever see this value on the wire.
+  /// To be called with a forged value, which must never appear on the wire.
   void forged(SignalIndex signal, std::int64_t value);
-  /// This sender has given up its outputs.
+  /// To be called when this sender has given up its outputs.
   void released(SenderBit sender, Time now);
-  /// The daemon is a new process: the outputs belong to nobody, and nothing was sent so far.
+  /// To be called when the daemon is a new process: no sender holds the outputs, and nothing was
+  /// sent so far.
   void begin_anew();
-  /// The master begins a cycle.
+  /// To be called when the master begins a cycle.
   void begin_cycle(Time now) { limits_.begin_cycle(now); }
-  /// Anything on the wire.
+  /// To be called with each frame on the wire.
   void heard(const Frame& frame) { limits_.heard(frame); }
-  /// What the master hands to the interface.
+  /// To be called with the frames that the master passes to the interface.
   void sent(std::span<const Frame> frames, Time now);
-  /// Positions on the wire that an application had commanded.
+  /// Number of positions on the wire that an application had commanded.
   std::uint64_t moves() const noexcept { return moves_; }
-  /// When a position of this sender was on the wire last.
+  /// Time at which a position of this sender was last on the wire.
   Time last_move(SenderBit sender) const noexcept;
 
  private:
   struct Known {
-    Time until = -never;  ///< its time to live, and what is on the way
+    Time until = -never;  ///< end of the time to live, plus the time to the wire
     Time computed_from{};
-    Time held_until{};  ///< its sender certainly holds the node so long
+    Time held_until{};  ///< until then the sender certainly holds the node
     SenderBit senders = 0;
   };
   struct Holder {
@@ -61,7 +62,7 @@ class WireJudge {
   struct Output {
     std::unordered_map<std::uint64_t, Known> known;
     std::uint64_t last = 0;
-    Time when = -never;  ///< of `last`
+    Time when = -never;  ///< time at which `last` was sent
   };
 
   void judge(SignalIndex signal, std::uint64_t value, Time now);
@@ -73,9 +74,9 @@ class WireJudge {
   const BusPlan& plan_;
   Verdict& verdict_;
   std::vector<Output> outputs_;
-  std::vector<Holder> holders_;  // order of BusPlan::nodes
-  std::vector<Time> moved_;      // by the number of the sender's bit
-  std::vector<Time> released_;   // the same
+  std::vector<Holder> holders_;  // in the order of BusPlan::nodes
+  std::vector<Time> moved_;      // time of the last move, by the number of the sender's bit
+  std::vector<Time> released_;   // time of the release, by the number of the sender's bit
   LimitJudge limits_;
   std::uint64_t moves_ = 0;
 };

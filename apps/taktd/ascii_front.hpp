@@ -12,16 +12,18 @@
 
 namespace takt {
 
-/// The CiA 309-3 gateway of a daemon: clients of a socket, and the master behind it. Front thread.
+/// Connects the clients of a socket to the master through the CiA 309-3 gateway. Used only by the
+/// front thread.
 class AsciiFront {
  public:
-  /// Listens on `unix:PATH` or `tcp:PORT`. `plan` outlives it. An error is a sentence.
+  /// Listens on `unix:PATH` or `tcp:PORT`. `plan` must outlive the AsciiFront. The error is a
+  /// sentence for the user.
   static std::expected<std::unique_ptr<AsciiFront>, std::string> open(const std::string& where,
                                                                       const BusPlan& plan);
   AsciiFront(const AsciiFront&) = delete;
   AsciiFront& operator=(const AsciiFront&) = delete;
 
-  /// Before the first serve(); both outlive it.
+  /// Must be called before the first serve(). `master` and `bridge` must outlive the AsciiFront.
   void attach(Master& master, Bridge& bridge);
   void serve();
   void watch(std::vector<pollfd>& descriptors) const { server_->watch(descriptors); }
@@ -34,7 +36,7 @@ class AsciiFront {
   Bridge* bridge_ = nullptr;
   AsciiGateway gateway_;
   std::unique_ptr<AsciiServer> server_;
-  std::uint64_t gaps_ = 0;  // of the bridge, that were heard of
+  std::uint64_t gaps_ = 0;  // value of Bridge::gaps() at the last serve()
 };
 
 }  // namespace takt

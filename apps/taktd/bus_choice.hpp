@@ -7,14 +7,16 @@
 
 namespace takt {
 
-/// Neither the network file nor the command line names a bus: the daemon has none to run on.
+/// Returns true if neither the network file nor the command line names a bus to run on.
 bool lacks_bus(const DaemonOptions& options, const LoadedNetwork& network);
 
-/// The bus to run on: of the command line, else of the network file; "sim": a simulated one. A bus
-/// to which the file gives no name is named after it.
+/// Returns the bus to run on: the one from the command line, otherwise the one from the network
+/// file. "sim" means a simulated bus. Writes the choice into the plan; if the network file gives
+/// the bus no name, a bus from the command line is named after its interface.
 std::string choose_bus(const DaemonOptions& options, LoadedNetwork& network);
 
-/// The file with the keys of LCM, relative to the network file; empty: there are no keys.
+/// Returns the path of the LCM key file, which the network file gives relative to its own folder.
+/// The path is empty if the network file names no keys.
 std::filesystem::path key_file(const DaemonOptions& options, const LoadedNetwork& network);
 
 }  // namespace takt

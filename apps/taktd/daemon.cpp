@@ -18,7 +18,8 @@ namespace takt {
 namespace {
 
 constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
-// What files and stderr get at the end, each: a disk that is stuck keeps nothing from ending.
+// Time limits for the last writes to the files and to stderr. A stuck disk must not keep the daemon
+// from ending.
 constexpr Time last_recording = std::chrono::seconds{2};
 constexpr Time last_lines = std::chrono::seconds{2};
 constexpr std::size_t heap_bytes = 8 << 20;
@@ -69,7 +70,8 @@ Exit Daemon::run() {
   std::_Exit(static_cast<int>(exit_));
 }
 
-/// The bus thread has ended: was every axis seen at standstill and disabled?
+/// Called after the bus thread has ended. Sets the exit code if some axis was not seen at
+/// standstill and disabled.
 void Daemon::judge_stop() {
   StatusSnapshot snapshot;
   master_->status(snapshot);
@@ -79,7 +81,8 @@ void Daemon::judge_stop() {
   reporter_.say(Weight::error, why_);
 }
 
-/// Nobody waits for the end of the stop: what was not confirmed by now is not.
+/// Returns the exit code if the daemon ends before the ordered stop has. An axis that is not yet
+/// confirmed counts as not stopped.
 Exit Daemon::exit_of_cut_stop() const {
   StatusSnapshot snapshot;
   master_->status(snapshot);
@@ -178,7 +181,7 @@ void Daemon::wait(Time next_image, Time latest) {
   wait_.wait(descriptors_, next_image, latest);
 }
 
-/// Nobody waits any longer for the end of the ordered stop.
+/// Returns true if the daemon no longer waits for the end of the ordered stop.
 bool Daemon::gives_up(Time now) const {
   return StopSignal::count() > 1 || (stopping_ && now > stop_limit_);
 }
@@ -200,7 +203,8 @@ void Daemon::watch_conditions(Time now) {
   watch_lateness();
 }
 
-/// Good, unless a mandatory node that was waited for all the time never was ready.
+/// Ends the run of --for. The result is good unless a mandatory node that the master boots has
+/// never been ready.
 void Daemon::end_of_time() {
   const std::string why = "the time of --for is over";
   const std::string missing = options_.observe ? "" : never_ready();
@@ -232,8 +236,9 @@ void Daemon::watch_lateness() {
            std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
 }
 
-/// A mandatory node that never was there keeps the bus from running, once it was asked by SDO too.
-/// One that was ready and goes is booted again by its plan, and the others go on.
+/// Ends the run if the boot of a mandatory node fails before the node was ever ready, and the next
+/// try will not ask the node in another way. A node that was ready before is booted again by its
+/// plan, while the other nodes go on.
 void Daemon::on_notice(const Notice& notice) {
   reporter_.tell(notice);
   recorder_.on_fault(notice);

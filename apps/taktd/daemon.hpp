@@ -27,7 +27,7 @@
 
 namespace takt {
 
-/// Exit codes of the contract.
+/// Exit codes of taktd, documented in its help text.
 enum class Exit : int {
   good = 0,
   refused = 1,
@@ -35,11 +35,11 @@ enum class Exit : int {
   bus_trouble = 3,
   node_missing = 4,
   too_late = 5,
-  not_stopped = 6,  ///< the ordered stop was not confirmed; it wins over all others
+  not_stopped = 6,  ///< the ordered stop was not confirmed; this code overrides all others
 };
 
-/// taktd: one bus, from the compiled network to the end of the ordered stop. Its run() is the front
-/// thread; the bus thread is the Master's.
+/// Runs one bus, from the compiled network to the end of the ordered stop. run() executes on the
+/// front thread; the Master owns the bus thread.
 class Daemon {
  public:
   Daemon(LoadedNetwork network, DaemonOptions options);
@@ -86,19 +86,19 @@ class Daemon {
   RtReport realtime_;
   bool bus_thread_runs_ = false;
   Recorder recorder_;               // outlives master_
-  std::optional<BusClaim> claim_;   // none: we only observe
+  std::optional<BusClaim> claim_;   // empty with --observe
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<Master> master_;
   std::unique_ptr<LcmLink> link_;
-  std::unique_ptr<SecuredTransport> secured_;  // where there are keys
+  std::unique_ptr<SecuredTransport> secured_;  // null without keys
   std::unique_ptr<Bridge> bridge_;
   std::unique_ptr<AsciiFront> gateway_;
-  Time end_ = never;         // of --for
-  Time stop_limit_ = never;  // when patience with the ordered stop ends
+  Time end_ = never;         // when the time of --for is over
+  Time stop_limit_ = never;  // when the daemon stops waiting for the ordered stop
   bool stopping_ = false;
   Exit exit_ = Exit::good;
-  std::string why_;          // of exit_
-  std::string unconfirmed_;  // axes, as a list
+  std::string why_;          // reason for exit_
+  std::string unconfirmed_;  // list of the axes that the ordered stop did not confirm
 };
 
 }  // namespace takt

@@ -24,11 +24,13 @@ class DaemonBus {
       const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices,
       Time spin);
 
-  /// `journal`: where the bus thread writes down what it hears, for the black box; may be null.
+  /// Connects `master` to the bus. The bus thread records what it receives into `journal` for the
+  /// black box; `journal` may be null.
   void attach(Master& master, Journal* journal);
-  /// Hears foreign masters and double senders; null on a simulated bus or where it can't be had.
+  /// Detects foreign masters and COB-IDs with two senders. Returns null on a simulated bus and if
+  /// the socket could not be opened.
   DiagnosticSocket* diagnostics() noexcept { return diagnostics_ ? &*diagnostics_ : nullptr; }
-  /// What will hurt while running, with the command that mends it.
+  /// Each warning names a problem that will disturb the run and, where possible, the remedy.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:

@@ -1,5 +1,5 @@
-// Member functions of Daemon: what is opened, and who else is looked for, before the first frame is
-// sent.
+// Member functions of Daemon that open everything and look for another master before the first
+// frame is sent.
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -16,7 +16,8 @@
 namespace takt {
 namespace {
 
-// For another master: LCM may take a moment to be there, its status comes at 10 Hz.
+// Times of the search for another master. LCM may need a moment to connect; a master publishes its
+// status at 10 Hz.
 constexpr Time lcm_patience = std::chrono::seconds{1};
 constexpr Time status_listening = std::chrono::milliseconds{250};
 constexpr Time look = std::chrono::milliseconds{10};
@@ -64,7 +65,7 @@ std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
     std::ranges::move(TypedChannels::heard(network_.plan), std::back_inserter(heard));
   }
   const std::vector<std::string> guarded = heard;
-  heard.push_back(channels.status);  // of another master
+  heard.push_back(channels.status);  // shows another master
   heard.push_back(channel_name(network_.plan.name, "SECURED"));
   link_ = std::make_unique<LcmLink>(
       std::move(url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
@@ -73,7 +74,7 @@ std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
   return look_for_master();
 }
 
-/// With keys, all that commands the bus has to come in envelopes.
+/// If the bus has keys, every message that commands the bus must come in an envelope.
 std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
   const auto file = key_file(options_, network_);
   if (file.empty()) return std::nullopt;
@@ -104,7 +105,7 @@ std::optional<Exit> Daemon::claim_bus() {
   return std::nullopt;
 }
 
-/// Before the first frame is sent.
+/// Runs before the first frame is sent. Refuses to start if the bus already has a master.
 std::optional<Exit> Daemon::look_for_master() {
   if (options_.observe) return std::nullopt;
   using enum OtherMaster::StatusCounts;
@@ -120,7 +121,8 @@ std::optional<Exit> Daemon::look_for_master() {
   return Exit::good;
 }
 
-/// Commands that come meanwhile are of nobody who has heard from this master, and are dropped.
+/// Listens for another master on the bus and on LCM. Commands that arrive meanwhile are dropped:
+/// their senders cannot yet have heard from this master.
 void Daemon::listen(OtherMaster& other) {
   DiagnosticSocket* const ear = bus_->diagnostics();
   const std::string status = Channels{network_.plan.name}.status;

@@ -30,7 +30,7 @@ const char* colour_of(spdlog::level::level_enum level) noexcept {
 
 }  // namespace
 
-/// Hands each line to a writer.
+/// An spdlog sink that passes each line to a LineWriter.
 class ErrorLog::Sink final : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
   Sink(LineWriter& writer, Colours colours) : writer_{writer}, colours_{colours} {}

@@ -11,9 +11,8 @@ class logger;
 
 namespace takt {
 
-/// Writes sentences for people to stderr, with the time of day. No caller waits for a stderr that
-/// takes nothing. Lines that are lost are counted, and the next line that gets through says how
-/// many there were.
+/// Writes sentences for people to stderr, with the time of day. No caller waits if stderr accepts
+/// no data. The log counts the lines that are lost and reports their number with the next line.
 class ErrorLog {
  public:
   /// Writes to `file` instead of stderr.
@@ -24,7 +23,7 @@ class ErrorLog {
   ErrorLog& operator=(const ErrorLog&) = delete;
 
   void say(Weight weight, const std::string& sentence);
-  /// Returns false where stderr hasn't taken everything after `limit`.
+  /// Returns false if stderr has not accepted everything within `limit`.
   bool flush(Time limit) { return writer_.flush(limit); }
 
  private:

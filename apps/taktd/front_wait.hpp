@@ -7,14 +7,14 @@
 
 namespace takt {
 
-/// How the front thread waits: for file descriptors, and for images, whose bus thread wakes nobody.
-/// It sleeps to the predicted time of the next image and from there looks again every few
-/// microseconds, for a while; an image that stays away is looked for more and more rarely.
+/// Lets the front thread wait for file descriptors and for images. The bus thread does not wake the
+/// front thread, so the front thread sleeps until the predicted time of the next image and then
+/// polls every few microseconds. If the image does not come, it polls less and less often.
 class FrontWait {
  public:
   explicit FrontWait(const sigset_t* mask);
 
-  /// Returns when something may have to be done: at the latest at `latest`.
+  /// Returns when there may be work, and no later than `latest`.
   void wait(std::vector<pollfd>& descriptors, Time next_image, Time latest) const;
 
  private:

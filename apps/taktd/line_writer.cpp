@@ -23,14 +23,15 @@ std::uint64_t lines_in(std::string_view text) {
   return static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
 }
 
-/// A terminal that nobody reads can be ready for poll() and yet take nothing. Without this pause
+/// A terminal that nobody reads can be ready for poll() and yet accept nothing. Without this pause
 /// its writer would spin.
 void pause(Time longest) noexcept {
   const Time time = std::min<Time>(longest, std::chrono::milliseconds{10});
   ::poll(nullptr, 0, static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(time).count()));
 }
 
-/// Returns how many bytes of `text` the file has taken, however long that takes.
+/// Writes `text`, however long that takes. Returns how many bytes the file has accepted before an
+/// error.
 std::size_t write_all(int fd, std::string_view text) noexcept {
   std::size_t done = 0;
   while (done < text.size()) {
@@ -47,8 +48,8 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
 
 enum class Takes : std::uint8_t { more, nothing_now, nothing_ever };
 
-/// Writes what the file takes until `end` and counts it in `done`. No write is longer than what a
-/// pipe that is ready takes whole, for a file that could not be opened as non-blocking.
+/// Writes what the file accepts until `end` and counts the bytes in `done`. The file may be
+/// blocking, so no write is longer than what a pipe that is ready accepts whole.
 Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) noexcept {
   constexpr std::size_t at_once = 512;
   while (done < text.size()) {
@@ -68,7 +69,8 @@ Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) no
   return Takes::more;
 }
 
-/// Removes the last `bytes` of a file, where nobody has appended since.
+/// Removes the last `bytes` of a regular file if nobody has appended to it since. Returns false if
+/// they are still there.
 bool take_back(int fd, std::size_t bytes) noexcept {
   struct stat file{};
   const auto end = ::lseek(fd, 0, SEEK_CUR);
@@ -76,7 +78,7 @@ bool take_back(int fd, std::size_t bytes) noexcept {
   return last && ::ftruncate(fd, end - static_cast<off_t>(bytes)) == 0;
 }
 
-/// Whether the last line of the file was cut by an earlier run.
+/// Returns true if the last line of the file has no end, because an earlier run was cut off.
 bool ends_within_a_line(const std::string& path) noexcept {
   const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   struct stat status{};
@@ -88,8 +90,8 @@ bool ends_within_a_line(const std::string& path) noexcept {
 }  // namespace
 
 struct LineWriter::State {
-  FileDescriptor file;  // only the thread uses it, or the caller where there is no thread
-  bool cut = false;     // as `file`; the file ends within a line
+  FileDescriptor file;  // used only by the thread, or by the caller if there is no thread
+  bool cut = false;     // the file ends within a line; used by the same thread as `file`
   std::mutex mutex;     // protects all members below
   std::condition_variable changed;
   std::string waiting;  // only whole lines
@@ -135,7 +137,7 @@ bool LineWriter::start_detached(std::function<void()> body) {
 }
 
 std::unique_ptr<LineWriter> LineWriter::open(const std::string& path) {
-  // Not blocking, so that a pipe without a reader is refused instead of waited for.
+  // O_NONBLOCK makes open() refuse a pipe without a reader instead of waiting for one.
   const bool cut = ends_within_a_line(path);
   constexpr int flags = O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC;
   FileDescriptor file{::open(path.c_str(), flags, 0666)};
@@ -158,8 +160,8 @@ LineWriter::~LineWriter() {
   state_->changed.notify_all();
 }
 
-/// It is called with the first line, so that the thread inherits the signal mask that the caller
-/// has by then.
+/// Starts the thread with the first line and not in the constructor, so that the thread inherits
+/// the signal mask that the caller has by then.
 void LineWriter::ensure_thread() {
   if (has_thread_) return;
   const Time now = monotonic_now();
@@ -202,7 +204,7 @@ bool LineWriter::flush(Time limit) {
 
 bool LineWriter::write_through(Time limit) {
   if (has_thread_) return true;
-  const std::lock_guard lock{state_->mutex};  // nobody else can hold it, because there is no thread
+  const std::lock_guard lock{state_->mutex};  // never contended, because there is no thread
   std::string& waiting = state_->waiting;
   if (waiting.empty()) return true;
   if (std::exchange(state_->cut, false)) waiting.insert(0, 1, '\n');

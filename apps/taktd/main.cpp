@@ -17,7 +17,7 @@
 namespace takt {
 namespace {
 
-/// The verdict of `takt budget`, told where frames can be too late.
+/// Returns the verdict of `takt budget`. Prints a message if frames can be too late.
 bool fits_the_bus(const LoadedNetwork& network, const std::string& file) {
   if (bus_fits(network.plan)) return true;
   std::fprintf(stderr,
@@ -27,7 +27,8 @@ bool fits_the_bus(const LoadedNetwork& network, const std::string& file) {
   return false;
 }
 
-/// The start would be refused with a key file that is missing, or that others can read.
+/// Returns false and prints the reason if the key file is missing or readable by others: taktd
+/// would refuse to start with it.
 bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
   const auto file = key_file(options, network);
   if (file.empty()) return true;

@@ -14,7 +14,8 @@ bool is_pipe(int fd) noexcept {
   return ::fstat(fd, &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
-/// To open the master side of a pseudo terminal makes a new pair instead.
+/// Returns true if both descriptors are the same terminal. Opening the master side of a
+/// pseudo-terminal creates a new pair instead.
 bool is_same_terminal(int one, int other) noexcept {
   unsigned number = 0;
   unsigned other_number = 0;

@@ -45,7 +45,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   DaemonOptions options;
   std::string rt;
   std::string run_for;
-  int typed = 0;  // -1: --no-typed
+  int typed = 0;  // 1 for --typed, -1 for --no-typed, 0 for neither
   app.add_option("NET.yaml", options.network_file, "network file")->required();
   app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
   app.add_option("--rt", rt, "enforce: no start without real time; try: say what is missing; off")

@@ -11,19 +11,20 @@ namespace takt {
 /// The command line of taktd.
 struct DaemonOptions {
   std::string network_file;
-  std::optional<std::string> bus;  ///< else the network file's interface
-  std::optional<RtMode> rt;        ///< else the network file's
+  std::optional<std::string> bus;  ///< overrides the interface of the network file
+  std::optional<RtMode> rt;        ///< overrides the mode of the network file
   std::string lcm_url;
   std::string events_file;
-  std::string gateway;    ///< CiA 309-3: unix:PATH, tcp:PORT; empty: none
-  std::string black_box;  ///< folder for recordings; empty: none
-  Time run_for{};         ///< 0: until a signal
+  std::string gateway;    ///< CiA 309-3 gateway: unix:PATH or tcp:PORT; empty means no gateway
+  std::string black_box;  ///< folder for recordings; if empty, the network file decides
+  Time run_for{};         ///< 0 means until a signal
   bool check = false;
   bool observe = false;
-  std::optional<bool> typed;  ///< else the network file's
+  std::optional<bool> typed;  ///< overrides the setting of the network file
 };
 
-/// The options, or the exit code when the command line asks for help or is wrong (told already).
+/// Returns the options. If the command line asks for help or is wrong, prints that and returns the
+/// exit code.
 std::expected<DaemonOptions, int> read_command_line(int argc, char** argv);
 
 }  // namespace takt

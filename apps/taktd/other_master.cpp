@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr Time shortest_listening = 150ms;
 constexpr Time longest_listening = 1500ms;
 constexpr Time status_is_alive = 5s;
-constexpr std::size_t longest_name = 64;  // bytes of a foreign name that a sentence shows
+constexpr std::size_t longest_name = 64;  // bytes of a foreign name that are shown in a sentence
 
 }  // namespace
 

@@ -11,32 +11,33 @@
 
 namespace takt {
 
-/// Whether a bus has a master already, found out before the first frame is sent: by a heartbeat of
-/// the master's own node id, and by BUS_STATUS of a bus of the same name. Pure: frames and messages
-/// in, sentences out.
+/// Finds out, before the first frame is sent, whether the bus already has a master: from a
+/// heartbeat with the master's own node-ID, and from BUS_STATUS of a bus of the same name. The
+/// class does no input or output: it takes frames and messages and returns sentences.
 class OtherMaster {
  public:
-  /// What a BUS_STATUS of another session does. It carries no proof of who sent it: where the bus
-  /// has keys, it only warns, or everybody on LCM could keep this master from starting.
+  /// How a BUS_STATUS of another session counts. The message does not prove who sent it. On a bus
+  /// with keys it only causes a warning; otherwise everybody on LCM could keep this master from
+  /// starting.
   enum class StatusCounts : std::uint8_t { as_refusal, as_warning };
 
-  /// `bus` is what sentences call the bus; `session` is our own.
+  /// `bus` is the name of the bus in sentences; `session` is the session of this daemon.
   OtherMaster(const BusPlan& plan, std::string bus, std::int64_t session,
               StatusCounts status = StatusCounts::as_refusal);
 
-  /// How long frames have to be listened to: one and a half times the producer time of the master's
-  /// heartbeat, which the other master is taken to have too, within 150 ms .. 1.5 s.
+  /// Returns how long to listen for frames: 1.5 times the producer time of this master's heartbeat,
+  /// limited to 150 ms .. 1.5 s. This assumes that the other master has the same producer time.
   Time listening_time() const noexcept;
 
   void on_frame(const Frame& frame);
-  /// A status counts when it was sent within the last five seconds (a log that is replayed is
-  /// older), and only of one that has sent frames: a daemon that observes is no master.
+  /// A status counts if its time stamp is within five seconds of `realtime` (messages of a replayed
+  /// log are older) and if its sender has sent frames: a daemon that only observes is no master.
   void on_status(const status_t& status, Time realtime);
 
-  /// Why we may not be the master.
+  /// Reason why this daemon may not be the master. Empty if there is none.
   const std::optional<std::string>& refusal() const noexcept { return refusal_; }
-  /// What speaks for another master and doesn't prove it: somebody else makes SYNC, or a status
-  /// that counts as a warning. One sentence for each of them.
+  /// Signs of another master that prove nothing, one sentence each: a foreign SYNC producer, or a
+  /// status that counts as a warning.
   std::vector<std::string> warnings() const;
 
  private:

@@ -71,7 +71,7 @@ void Recorder::finish_running(const std::string& reason, Time limit) {
   answer_all(false, "taktd has ended");
 }
 
-/// `file` is empty where it could not be written.
+/// `file` is empty if the recording could not be written.
 void Recorder::on_written(const std::string& text, const std::string& file) {
   const Weight weight = file.empty() ? Weight::warning : Weight::note;
   if (bridge_ == nullptr) {

@@ -12,30 +12,32 @@
 
 namespace takt {
 
-/// The daemon's black box and those who ask for recordings: faults, SIGUSR1, requests over LCM.
-/// Each request is answered once, with the file or with the reason why there is none. Front thread.
+/// Owns the daemon's black box and triggers its recordings on faults, on SIGUSR1 and on requests
+/// over LCM. The recorder answers each request once, with the file or with the reason why there is
+/// none. Used only by the front thread.
 class Recorder {
  public:
   using Say = std::function<void(Weight weight, const std::string& sentence)>;
 
   explicit Recorder(Say say) : say_{std::move(say)} {}
 
-  /// Nothing is recorded before. An error is a sentence. `plan` outlives this.
+  /// Starts recording. The error is a sentence for the user. `plan` must outlive the recorder.
   std::expected<void, std::string> open(const BlackBoxOptions& options, const BusPlan& plan,
                                         RecordingHead head);
-  /// Null: nothing is recorded.
+  /// Returns null if nothing is recorded.
   Journal* journal() noexcept { return box_ ? &box_->journal() : nullptr; }
-  /// From here on requests are heard and recordings are told to LCM. Outlives this.
+  /// From this call on, the recorder accepts requests and reports recordings over LCM. `bridge`
+  /// must live until finish() or finish_running() has returned.
   void attach(Bridge& bridge, std::int64_t session);
 
   void on_fault(const Notice& notice);
-  /// Often: begins and ends what is due.
+  /// Begins and ends the recordings that are due. To be called often.
   void serve(Time now);
-  /// The bus thread has ended. Waits for at most `limit`; false: a recording is still being
-  /// written, and the destructor would wait for it.
+  /// To be called after the bus thread has ended. Waits for at most `limit`. Returns false if a
+  /// recording is still being written; the destructor would wait for it.
   bool finish(const std::string& reason, Time limit);
-  /// The bus thread runs on and nobody waits for it any longer: what it has recorded so far is
-  /// written, within `limit`.
+  /// To be called if the daemon ends while the bus thread still runs. Writes what has been recorded
+  /// so far, within `limit`.
   void finish_running(const std::string& reason, Time limit);
 
  private:
@@ -47,7 +49,7 @@ class Recorder {
   std::unique_ptr<BlackBox> box_;
   Bridge* bridge_ = nullptr;
   std::int64_t session_ = 0;
-  std::deque<request_t> waiting_;  // for the next recording
+  std::deque<request_t> waiting_;  // requests that wait for the next recording
 };
 
 }  // namespace takt

@@ -25,7 +25,7 @@ void Reporter::tell(const Notice& notice) {
       "--events: no thread can be created for it; its lines wait, and it is tried again");
 }
 
-/// In the file too, where the gap is.
+/// Reports lost lines on stderr and in the file, at the place of the gap.
 void Reporter::tell_lost() {
   const std::uint64_t lost = events_->take_lost();
   if (lost == 0) return;

@@ -11,20 +11,21 @@
 
 namespace takt {
 
-/// Tells people: notices on stderr in words, and as JSON lines in a file. Front thread.
+/// Writes notices as sentences to stderr and as JSON lines to a file. Used only by the front
+/// thread.
 class Reporter {
  public:
   explicit Reporter(const BusPlan& plan) : plan_{plan} {}
 
-  /// False: the file can't be written, and errno says why.
+  /// Returns false and sets errno if the file cannot be opened.
   bool open_events(const std::string& path);
 
   void tell(const Notice& notice);
-  /// A sentence of the daemon itself.
+  /// Writes a sentence of the daemon itself to stderr.
   void say(Weight weight, const std::string& sentence);
 
-  /// Waits for the file and for stderr, for at most `limit` each. What they don't take is told as
-  /// far as that is possible.
+  /// Waits for the file and for stderr, for at most `limit` each. Reports lost lines as far as
+  /// possible.
   void finish(Time limit);
 
   std::uint64_t told(Weight weight) const noexcept {

@@ -5,26 +5,26 @@
 
 namespace takt {
 
-/// What systemd wants to hear of a `Type=notify` service (sd_notify(3)). Does nothing where there
-/// is no systemd.
+/// Sends systemd the messages of a `Type=notify` service (sd_notify(3)). Does nothing without
+/// systemd.
 class ServiceNotify {
  public:
   ServiceNotify();
 
   void ready(const std::string& status) const { send("READY=1\nSTATUS=" + status); }
-  /// The ordered stop has begun; it may take so long, whatever TimeoutStopSec says.
+  /// Reports that the ordered stop has begun and may take `limit`, whatever TimeoutStopSec is.
   void stopping(Time limit) const {
     const auto us = std::chrono::duration_cast<std::chrono::microseconds>(limit).count();
     send("STOPPING=1\nEXTEND_TIMEOUT_USEC=" + std::to_string(us));
   }
-  /// Keeps the watchdog quiet; to be called while everything is well, as often as one likes.
+  /// Resets the watchdog. To be called while the daemon works, as often as convenient.
   void alive(Time now);
 
  private:
   void send(const std::string& text) const;
 
   std::string socket_;
-  Time watchdog_{};  // half of systemd's limit; 0: none
+  Time watchdog_{};  // half of systemd's limit; 0 means no watchdog
   Time last_alive_{};
 };
 

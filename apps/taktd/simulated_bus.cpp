@@ -6,7 +6,8 @@
 namespace takt {
 namespace {
 
-/// Late by more than this is a stall of the machine, not the scheduling that a bus would see.
+/// A larger delay is a stall of the machine and not ordinary scheduling, which a real bus would
+/// see.
 constexpr Time longest_lag = std::chrono::milliseconds{1};
 
 }  // namespace
@@ -58,7 +59,7 @@ PortNews SimulatedBus::news() const noexcept {
   return news;
 }
 
-/// `expected`: when this call would have come on a machine with nothing else to do.
+/// `expected` is the time at which this call would have come on an otherwise idle machine.
 void SimulatedBus::catch_up(Time expected) noexcept {
   caught_up_ = monotonic_now();
   if (caught_up_ - expected > longest_lag) {

@@ -10,10 +10,10 @@
 
 namespace takt {
 
-/// `--bus sim`: the devices of the plan as a Port, in real time and inside the bus thread. Each
-/// call first lets the world catch up with the clock, so nothing has to be scheduled beside the
-/// master. A bus thread that is held up holds the devices up too: what a stalled machine does to a
-/// simulation would tell nothing about a bus.
+/// The bus of `--bus sim`: simulates the devices of the plan behind a Port, in real time and inside
+/// the bus thread. Each call first advances the world to the current time, so no further thread is
+/// needed. If the machine stalls the bus thread, the devices stall too: a simulation that went on
+/// alone would say nothing about a real bus.
 class SimulatedBus {
  public:
   SimulatedBus(std::span<const DeviceTable> devices, const BusPlan& plan, Time spin);
@@ -33,10 +33,10 @@ class SimulatedBus {
   sim::World world_;
   sim::RemotePort& port_;
   Time spin_;
-  Time caught_up_;     // monotonic, of the newest call
+  Time caught_up_;     // monotonic time of the newest call
   Time start_;         // monotonic time of the world's time 0
-  Time held_at_{};     // world time of the newest hold-up
-  Time start_before_;  // start_ before it
+  Time held_at_{};     // world time of the newest stall
+  Time start_before_;  // value of start_ before the newest stall
 };
 static_assert(Port<SimulatedBus>);
 

@@ -27,7 +27,7 @@ void on_stop_signal(int) {
   begin_stop();
 }
 
-/// nohup: the terminal may close.
+/// Returns true if the signal is ignored, as nohup does with SIGHUP so that the terminal may close.
 bool is_ignored(int number) noexcept {
   struct sigaction now{};
   return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
@@ -38,7 +38,7 @@ bool is_ignored(int number) noexcept {
 StopSignal::StopSignal() {
   struct sigaction action{};
   action.sa_handler = on_stop_signal;
-  action.sa_flags = SA_RESTART;  // for the calls that wait for nobody and yet may be interrupted
+  action.sa_flags = SA_RESTART;  // for short system calls that a signal can still interrupt
   sigemptyset(&action.sa_mask);
   sigset_t stops;
   sigemptyset(&stops);
@@ -54,7 +54,7 @@ StopSignal::StopSignal() {
   for (const int number : stop_numbers) sigdelset(&wait_mask_, number);
   sigdelset(&wait_mask_, SIGUSR1);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more is a write that fails
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit fails instead
 }
 
 void StopSignal::stop_with(std::atomic<bool>* request) noexcept {

@@ -4,25 +4,26 @@
 
 namespace takt {
 
-/// SIGTERM, SIGINT and SIGHUP as a counter, and SIGUSR1, which asks for a recording. Blocked in all
-/// threads from here on, except while one waits with wait_mask(), and in the thread that calls
-/// let_through(). A SIGHUP that is ignored already (nohup) stays so.
+/// Counts SIGTERM, SIGINT and SIGHUP, and notes SIGUSR1, which asks for a recording. The
+/// constructor blocks these signals in the calling thread and in all threads that it starts later.
+/// They arrive only while a thread waits with wait_mask() and in the thread that calls
+/// let_through(). If SIGHUP is already ignored (nohup), it stays ignored.
 class StopSignal {
  public:
   StopSignal();
 
-  /// How many have come.
+  /// Number of stop signals that have arrived so far.
   static int count() noexcept;
-  /// SIGUSR1 has come since the last call.
+  /// Returns true if SIGUSR1 has arrived since the last call.
   static bool take_recording_wish() noexcept;
-  /// The first stop signal sets `request` from within its handler, so that the ordered stop begins
-  /// at once, whatever the front thread is doing; null: no longer. One that has come already sets
-  /// it too.
+  /// From this call on, a stop signal sets `request` from within its handler, so that the ordered
+  /// stop begins at once, whatever the front thread is doing. If a stop signal has already arrived,
+  /// the call itself sets `request`. Null ends this.
   static void stop_with(std::atomic<bool>* request) noexcept;
-  /// From here on the signals interrupt the calling thread wherever it is. Threads that it starts
-  /// inherit that.
+  /// From this call on, the signals interrupt the calling thread at any point. Threads that it
+  /// starts inherit the mask.
   void let_through() const noexcept;
-  /// The mask for ppoll: stop signals get through.
+  /// The signal mask for ppoll, which lets the signals of this class through.
   const sigset_t* wait_mask() const noexcept { return &wait_mask_; }
 
  private:

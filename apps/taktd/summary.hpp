@@ -7,10 +7,11 @@
 
 namespace takt {
 
-/// What `taktd --check` prints: the size of what would run.
+/// Returns the text that `taktd --check` prints: nodes, PDOs, signals and boot steps of the plan.
 std::string plan_summary(const LoadedNetwork& network);
 
-/// What taktd says at its end: cycles, lateness, frames, nodes.
+/// Returns the summary that taktd writes at its end: cycles, times, frames, images, commands and
+/// events.
 std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_t errors,
                         std::uint64_t warnings);
 
