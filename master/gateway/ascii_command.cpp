@@ -81,7 +81,7 @@ Read<void> read_reset(Words words, AsciiCommand& out) {
   return end_at(words, 2);
 }
 
-/// A client's own settings; what the network file says is not changed while taktd runs.
+/// Reads the settings of a client. Settings of the network file do not change while taktd runs.
 Read<void> read_set(Words words, AsciiCommand& out) {
   struct Setting {
     std::string_view name;
@@ -148,7 +148,7 @@ Read<void> read_command(Words words, AsciiCommand& out) {
   return wrong("no command '" + name.text + "'; there is 'help'");
 }
 
-/// `[seq]`, also with blanks inside. The words behind it.
+/// Reads `[seq]`, also with blanks inside, and returns the rest of the line.
 Read<std::string_view> read_sequence(std::string_view line, std::uint32_t& sequence) {
   const std::size_t close = line.find(']');
   if (!line.starts_with('[') || close == line.npos) {
@@ -178,8 +178,8 @@ bool about_network(const AsciiCommand& command) noexcept {
   }
 }
 
-/// Numbers in front of the command: `node`, or `net node`; of a command that concerns the network,
-/// `net`.
+/// Reads the numbers before the command: `node` or `net node`, or `net` for a command that concerns
+/// the network.
 Read<std::size_t> read_address(Words words, std::vector<std::uint32_t>& numbers) {
   std::size_t at = 0;
   while (at < words.size() && at < 2) {

@@ -54,7 +54,7 @@ enum class AsciiVerb : std::uint8_t {
   lss_all_nodes,
 };
 
-/// A line of a client: `[seq] [[net] node] command`.
+/// One line of a client: `[seq] [[net] node] command`.
 struct AsciiCommand {
   std::uint32_t sequence = 0;
   std::optional<std::uint32_t> net;
@@ -62,13 +62,14 @@ struct AsciiCommand {
   AsciiVerb verb = AsciiVerb::help;
   ObjectKey object{};
   AsciiType type{};
-  std::vector<std::byte> value;  ///< of an SDO write
+  std::vector<std::byte> value;  ///< value of an SDO write
   NmtCommand nmt = NmtCommand::start;
-  std::uint32_t number = 0;          ///< PDO, default, time-out in ms, first node id; 1 = enable
-  std::vector<std::int64_t> values;  ///< of a PDO
+  /// PDO, default, time-out in ms or first node-ID; 1 means enable.
+  std::uint32_t number = 0;
+  std::vector<std::int64_t> values;  ///< values of a PDO
   LssCommand lss{};
-  std::uint32_t lss_timeout_ms = 0;  ///< 0: the default
-  bool lss_all_parts = false;        ///< inquires the whole LSS address
+  std::uint32_t lss_timeout_ms = 0;  ///< 0 selects the default
+  bool lss_all_parts = false;        ///< the command inquires the whole LSS address
   bool store = false;
 };
 
@@ -78,17 +79,18 @@ struct AsciiRefusal {
   std::string why;
 };
 
-/// None: an empty line or a comment. `line` is any bytes, without the line break.
+/// Returns std::nullopt for an empty line or a comment. `line` may hold any bytes, without the line
+/// break.
 std::expected<std::optional<AsciiCommand>, AsciiRefusal> parse_ascii(std::string_view line);
 
-/// What the first line of a client is. An HTTP request, a TLS hello and the like are foreign, and
+/// Kind of the first line of a client. An HTTP request, a TLS hello and the like are foreign, and
 /// so is a line with a syntax error: such a client speaks another protocol.
 enum class FirstLine : std::uint8_t { command, nothing, foreign };
 FirstLine judge_first_line(std::string_view line);
-/// False: these bytes, the beginning of a line, can't become a command or a comment.
+/// Returns false if `beginning`, the start of a line, cannot become a command or a comment.
 bool may_become_command(std::string_view beginning) noexcept;
 
-/// What `help` answers.
+/// The answer to `help`.
 std::string_view ascii_help() noexcept;
 
 }  // namespace takt

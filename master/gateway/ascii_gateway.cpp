@@ -83,7 +83,7 @@ void AsciiGateway::refuse_long_line(int client) {
   refuse(client, {.sequence = 0, .error = AsciiError::syntax, .why = "the line is too long"});
 }
 
-/// False: it was refused.
+/// Returns false if the command was refused.
 bool AsciiGateway::address(int client, const Client& state, const AsciiCommand& command,
                            std::uint32_t& node) {
   if (command.net && *command.net != only_net) {
@@ -245,7 +245,7 @@ void AsciiGateway::take(const Reply& reply) {
   finish(pending.client, command.sequence, *value);
 }
 
-/// One device after the other, until nobody is left or all ids are given.
+/// Assigns node-IDs to one device after the other, until no device or no node-ID is left.
 void AsciiGateway::follow_all_nodes(Pending pending, const Reply& reply) {
   const int client = pending.client;
   AsciiCommand& command = pending.command;

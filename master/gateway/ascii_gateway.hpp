@@ -13,36 +13,38 @@
 
 namespace takt {
 
-/// What the gateway can do to the bus.
+/// The actions of the gateway on the bus and its clients.
 struct AsciiPorts {
-  /// Hands a request to the bus thread; false: it has too many.
+  /// Hands a request to the bus thread. Returns false if the bus thread has too many requests.
   std::function<bool(const Request&)> submit;
-  /// Commands outputs; false: they are refused, and that was told as an event.
+  /// Commands outputs. Returns false if they are refused; an event reports the refusal, except for
+  /// commands that may have waited during a gap of the front thread.
   std::function<bool(const std::vector<SignalIndex>&, const std::vector<std::int64_t>&)> write;
-  /// A line (without its end) to one client.
+  /// Sends one line (without its end) to one client.
   std::function<void(int client, const std::string& line)> send;
 };
 
-/// CiA 309-3: text commands of clients become requests, replies and events become lines. There is
-/// one network, of number 1. Knows no sockets. Front thread.
+/// The gateway of CiA 309-3 turns text commands of clients into requests, and replies and events
+/// into lines. It has one network, with the number 1. It does not know sockets. Front thread.
 class AsciiGateway final : public FrontGuest {
  public:
-  static constexpr std::size_t most_pending = 16;  ///< commands of one client
+  static constexpr std::size_t most_pending = 16;  ///< most unanswered commands of one client
 
   AsciiGateway(const BusPlan& plan, AsciiPorts ports);
 
   void connect(int client) { clients_[client] = {}; }
   void disconnect(int client);
-  /// A command of this client is still to be answered.
+  /// Returns true if a command of this client is still unanswered.
   bool owes(int client) const {
     const auto found = clients_.find(client);
     return found != clients_.end() && found->second.pending != 0;
   }
-  /// One line, any bytes. Each command is answered exactly once, by the number in front of it.
+  /// Takes one line of any bytes. Each command gets exactly one answer, under the number in front
+  /// of the command.
   void command(int client, std::string_view line);
-  /// The same of a line that waited while nobody served: it is refused, whatever it says.
+  /// Refuses a line that waited while the front thread did not run, whatever the line says.
   void refuse_waited(int client, std::string_view line, Time waited);
-  /// A line was so long that it was dropped.
+  /// Answers a line that was dropped because it was too long.
   void refuse_long_line(int client);
 
   void take(const Reply& reply) override;
@@ -51,13 +53,13 @@ class AsciiGateway final : public FrontGuest {
 
  private:
   struct Client {
-    std::uint32_t node = 0;  // 0: no default
-    Time sdo_timeout{};      // 0: the node's own
+    std::uint32_t node = 0;  // 0 means no default
+    Time sdo_timeout{};      // 0 selects the time-out of the node
     bool tells_bootups = true;
     std::size_t pending = 0;
   };
   struct Pending {
-    int client = -1;  // -1: it has left
+    int client = -1;  // -1 if the client has left
     AsciiCommand command;
   };
   using Answer = std::expected<std::string, AsciiError>;
@@ -78,7 +80,7 @@ class AsciiGateway final : public FrontGuest {
   std::map<int, Client> clients_;
   std::unordered_map<std::uint64_t, Pending> pending_;
   std::uint64_t next_id_ = 1;
-  std::vector<std::int64_t> values_;  // of the newest image
+  std::vector<std::int64_t> values_;  // values of the newest image
   std::vector<std::uint64_t> stale_;
 };
 

@@ -2,12 +2,12 @@
 
 #include "master/gateway/ascii_words.hpp"
 
-// LSS commands of CiA 309-3; those that begin with `_` are Lely's and CANopenNode's.
+// LSS commands of CiA 309-3. Those that begin with `_` come from Lely and CANopenNode.
 
 namespace takt::ascii {
 namespace {
 
-/// `count` numbers behind the command itself.
+/// Reads `count` numbers behind the command name.
 Read<void> lss_numbers(Words words, std::size_t count, AsciiCommand& out) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto value = number(words, 1 + i, 0xFFFF'FFFF, "number");
@@ -34,8 +34,8 @@ Read<void> lss_bit_rate(Words words, AsciiCommand& out) {
   return end_at(words, has_table ? 3 : 2);
 }
 
-/// The parts of an LSS address by number, as CANopenNode's gateway does, or by the code of their
-/// LSS request, as Lely's.
+/// Reads a part of the LSS address, either by number as in CANopenNode's gateway or by the code of
+/// its LSS request as in Lely's.
 Read<void> lss_inquire(Words words, AsciiCommand& out) {
   constexpr std::uint32_t first_code = 0x5A;
   constexpr std::uint32_t parts = 4;
@@ -55,7 +55,7 @@ Read<void> lss_inquire(Words words, AsciiCommand& out) {
   return end_at(words, 2);
 }
 
-/// Nothing, a time-out in ms, or an LSS address with a mask behind each part.
+/// Reads nothing, a time-out in ms, or an LSS address with a mask behind each part.
 Read<void> lss_fast_scan(Words words, AsciiCommand& out) {
   if (words.size() <= 2) {
     if (words.size() == 1) return {};
@@ -73,7 +73,8 @@ Read<void> lss_fast_scan(Words words, AsciiCommand& out) {
   return {};
 }
 
-/// Time-out, first node id, store, then for each part 0 scan, 1 ignore or 2 match, and a number.
+/// Reads the time-out, the first node-ID and the store flag, then for each part of the address a
+/// type (0 scan, 1 ignore, 2 match) and a number.
 Read<void> lss_all_nodes(Words words, AsciiCommand& out) {
   constexpr std::size_t most = 12;
   std::array<std::uint32_t, most> given{0, 2, 0};

@@ -21,8 +21,8 @@ std::unexpected<std::string> failed(const std::string& where, int error) {
   return std::unexpected{"--gateway " + where + ": " + std::strerror(error)};
 }
 
-/// A socket that a daemon which has died left behind is removed; one that somebody serves, or
-/// another file, is not.
+/// Removes the socket that a dead daemon has left behind. A socket in use, or a file of another
+/// kind, stays; the function then returns false.
 bool make_room(const sockaddr_un& address) noexcept {
   struct stat status{};
   if (::stat(address.sun_path, &status) != 0) return errno == ENOENT;
@@ -96,7 +96,8 @@ void AsciiServer::accept_clients() {
   }
 }
 
-/// The oldest client that has given no command yet gives way to a new one.
+/// Closes the oldest client that has given no command yet, to make room for a new one. Returns
+/// false if there is none.
 bool AsciiServer::displace_silent() {
   const auto silent = std::ranges::find(clients_, false, &Client::has_commanded);
   if (silent == clients_.end()) return false;
@@ -145,7 +146,7 @@ void AsciiServer::receive(Client& client, const TimeBudget& budget) {
   }
 }
 
-/// What the budget leaves over waits in `unread`.
+/// Takes whole lines. Lines for which the budget has no time left wait in `unread`.
 void AsciiServer::take_lines(Client& client, const TimeBudget& budget) {
   std::size_t from = 0;
   client.unhandled = false;
@@ -191,7 +192,8 @@ void AsciiServer::drop_long_line(Client& client) {
   handler_.too_long(client.id);
 }
 
-/// Whoever speaks another protocol can't be made to command a machine: a web page, for one.
+/// Closes a client that speaks another protocol. It must not command a machine by accident; a web
+/// page is an example.
 void AsciiServer::close_foreign(Client& client) {
   send(client.id,
        "[0] ERROR: 101 (syntax error: the first line is no command of CiA 309-3, such as '[1] "
@@ -200,7 +202,8 @@ void AsciiServer::close_foreign(Client& client) {
   client.closed = true;
 }
 
-/// Everything that it has sent was read: a place is for those who command.
+/// Closes a client that has given no command in time, because places are for clients that command.
+/// Everything it has sent was read before.
 void AsciiServer::close_silent(Client& client) {
   const bool waits = !client.closed && !client.ended && !client.has_commanded;
   if (!waits || clock_() - client.since < first_line_limit) return;
@@ -209,11 +212,11 @@ void AsciiServer::close_silent(Client& client) {
   client.closed = true;
 }
 
-/// It has ended, and so has all that it may still read.
+/// Returns true if the client has ended its writing side and will read nothing more.
 bool AsciiServer::is_through(const Client& client) const {
   if (!client.ended) return false;
   pollfd state{.fd = client.socket.get(), .events = 0, .revents = 0};
-  if (::poll(&state, 1, 0) == 1) return true;  // it reads no more either
+  if (::poll(&state, 1, 0) == 1) return true;  // the client has closed its reading side as well
   return client.unsent.empty() && !handler_.owed(client.id);
 }
 
@@ -223,7 +226,7 @@ void AsciiServer::serve() {
   remove_closed();
 }
 
-/// The round begins with another client each time that the budget ends before the clients do.
+/// If the budget ends before all clients are served, the next round begins with the next client.
 void AsciiServer::receive_all() {
   const TimeBudget budget{clock_, front_budget::gateway};
   const std::size_t count = clients_.size();
@@ -246,7 +249,7 @@ void AsciiServer::remove_closed() {
   std::erase_if(clients_, [](const auto& client) { return client->closed; });
 }
 
-/// Lines that wait for the next round end its wait by POLLOUT.
+/// For lines that wait for the next round, POLLOUT ends the wait.
 void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
   descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
   for (const auto& client : clients_) {

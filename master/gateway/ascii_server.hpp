@@ -13,56 +13,62 @@
 
 namespace takt {
 
-/// Lines of text from and to clients of a UNIX socket, or of TCP on loopback. Everything is
-/// bounded: clients, the length of a line, what waits to be sent, the time of each serve(). A
-/// client whose first line is no command of CiA 309-3 is closed before anything of it is handed
-/// over, and one that gives no command within 2 s is closed, too. No call waits. One thread.
+/// Exchanges lines of text with clients of a UNIX socket, or of TCP on loopback. Everything is
+/// bounded: the number of clients, the length of a line, the unsent bytes and the time of each
+/// serve(). The server closes a client whose first line is not a command of CiA 309-3 before it
+/// hands over anything from it. It also closes a client that gives no command within 2 s. No call
+/// waits. One thread.
 class AsciiServer {
  public:
   static constexpr std::size_t most_clients = 8;
   static constexpr std::size_t longest_line = 4096;
   static constexpr Time first_line_limit = std::chrono::seconds{2};
-  static constexpr std::size_t most_unsent = 256 * 1024;  ///< a client that reads no more is left
+  /// A client with more unsent bytes is closed.
+  static constexpr std::size_t most_unsent = 256 * 1024;
 
   struct Handler {
     std::function<void(int client)> connected;
     std::function<void(int client, std::string_view line)> line;
-    std::function<void(int client, std::string_view line)> old_line;  ///< see mark_waiting()
-    std::function<void(int client)> too_long;                         ///< a line, which is dropped
+    /// For lines marked by mark_waiting().
+    std::function<void(int client, std::string_view line)> old_line;
+    /// For a line that was too long and was dropped.
+    std::function<void(int client)> too_long;
     std::function<void(int client)> gone;
-    /// An answer is on its way: a client that writes no more is kept until it has it.
+    /// Returns true if an answer is due: a client that has ended its writing side stays until it
+    /// has the answer.
     std::function<bool(int client)> owed;
   };
 
-  /// `unix:PATH` or `tcp:PORT` (0: any free one). An error is a sentence.
+  /// `where` is `unix:PATH` or `tcp:PORT` (port 0 selects any free port). The error is a sentence.
   static std::expected<std::unique_ptr<AsciiServer>, std::string> listen(
       const std::string& where, Handler handler, FrontClock clock = monotonic_now);
   ~AsciiServer();
   AsciiServer(const AsciiServer&) = delete;
   AsciiServer& operator=(const AsciiServer&) = delete;
 
-  /// Adds the end of the line. To a client that has gone: nothing.
+  /// Sends a line and adds its end. Does nothing if the client has gone.
   void send(int client, std::string_view line);
-  /// Nobody has served for long: every line that has begun to arrive by now is an old one.
+  /// Tells that the front thread did not run for long. Every line that has begun to arrive by now
+  /// counts as old.
   void mark_waiting();
-  /// Takes clients and lines, sends what can be sent.
+  /// Accepts clients, takes their lines and sends as much as possible.
   void serve();
   void watch(std::vector<pollfd>& descriptors) const;
-  /// As others write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
+  /// The address as other programs write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
   const std::string& where() const noexcept { return where_; }
 
  private:
   struct Client {
     int id = 0;
     FileDescriptor socket;
-    Time since{};  // when it connected
+    Time since{};  // time of the connection
     std::string unread;
     std::string unsent;
-    std::size_t old = 0;  // bytes, of `unread` and then of the socket, that are to be old lines
+    std::size_t old = 0;  // bytes that belong to old lines, first in `unread`, then in the socket
     bool has_commanded = false;
     bool unhandled = false;  // whole lines wait for the next round
-    bool skips = false;      // the rest of a line that was too long
-    bool ended = false;      // it writes no more
+    bool skips = false;      // the rest of a line that was too long is skipped
+    bool ended = false;      // the client has ended its writing side
     bool closed = false;
   };
 
@@ -87,11 +93,11 @@ class AsciiServer {
 
   FileDescriptor listener_;
   std::string where_;
-  std::string path_;  // to remove at the end
+  std::string path_;  // file to remove at the end
   Handler handler_{};
   FrontClock clock_{};
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
-  std::size_t turn_ = 0;                          // of the client that is served first
+  std::size_t turn_ = 0;                          // index of the client served first
   int next_id_ = 1;
 };
 

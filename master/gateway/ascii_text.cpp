@@ -44,7 +44,7 @@ std::string error_event(AsciiError error) {
          ")";
 }
 
-/// `EMCY code register vendor bytes`, as CiA 309-3 has it.
+/// Formats `EMCY code register vendor bytes` as in CiA 309-3.
 std::string emcy_event(const Event& event) {
   char text[64];
   const auto& b = event.bytes;

@@ -9,22 +9,22 @@
 #include "master/core/request.hpp"
 #include "master/gateway/ascii_command.hpp"
 
-// Lines of CiA 309-3 that go to clients.
+// Formats the lines of CiA 309-3 that go to clients.
 
 namespace takt::ascii {
 
 /// `[seq] ERROR: code (why)`.
 std::string error_line(std::uint32_t sequence, const std::string& code, std::string_view why);
 std::string abort_line(std::uint32_t sequence, std::uint32_t code);
-/// Of a reply that is not good and has no abort code.
+/// Error code for a reply that failed and has no abort code.
 AsciiError error_of(const Reply& reply);
 
 std::vector<LssResult> lss_results(const Reply& reply);
 std::string address_text(const LssResult& result);
-/// Of a service that is done.
+/// Answer to an LSS service that succeeded.
 std::string lss_answer(const AsciiCommand& command, const Reply& reply);
 
-// What clients are told of an event; empty: nothing.
+// Texts of events for clients; empty if clients are not informed of the event.
 std::string node_event(const Event& event);
 std::string bus_event(EventKind kind);
 bool is_bootup(const Event& event) noexcept;

@@ -48,7 +48,7 @@ std::expected<std::vector<std::byte>, std::string> from_base64(std::string_view 
   return bytes;
 }
 
-/// Control characters must not break the line.
+/// Quotes a string and escapes control characters, which must not break the line.
 std::string quoted(std::span<const std::byte> bytes) {
   std::string text{'"'};
   for (const std::byte byte : bytes) {

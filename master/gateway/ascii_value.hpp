@@ -12,28 +12,30 @@
 
 namespace takt {
 
-/// A data type as CiA 309-3 names it, and how its values are written.
+/// A data type by its name in CiA 309-3, and the notation of its values.
 struct AsciiType {
   enum class Form : std::uint8_t {
-    plain,   ///< numbers in decimal
-    hex,     ///< x8 ... x64: numbers in hex; hex: bytes
-    quoted,  ///< vs: "text"
+    plain,   ///< decimal numbers
+    hex,     ///< x8 ... x64 as hex numbers, hex as bytes
+    quoted,  ///< vs as "text"
     base64,  ///< os, us, d
   };
   DataType type = DataType::domain;
   Form form = Form::hex;
 };
 
-/// `b`, `i8`, `u32`, `x16`, `r64`, `vs`, `os`, `us`, `d`, `hex` ...
+/// Parses `b`, `i8`, `u32`, `x16`, `r64`, `vs`, `os`, `us`, `d`, `hex` ...
 std::optional<AsciiType> parse_ascii_type(std::string_view name);
 
-/// One word (without its quotes) as bytes for the wire; an error is a sentence.
+/// Converts one word (without its quotes) to bytes for the wire. The error is a sentence.
 std::expected<std::vector<std::byte>, std::string> ascii_bytes(AsciiType type,
                                                                const std::string& word);
-/// None: these are not as many bytes as the type has. One line, whatever the bytes are.
+/// Returns the value in one line, whatever its bytes are. Returns std::nullopt if the number of
+/// bytes does not fit the type.
 std::optional<std::string> ascii_text(AsciiType type, std::span<const std::byte> bytes);
 
-/// An integer as C writes it, without octal; none: it is none.
+/// Parses an integer in the notation of C, without octal. Returns std::nullopt if the word is not
+/// an integer.
 std::optional<std::int64_t> parse_ascii_integer(std::string_view word);
 
 }  // namespace takt

@@ -6,7 +6,8 @@
 namespace takt::ascii {
 namespace {
 
-/// A word in quotes, `""` in it is one; `at` stands behind the opening quote.
+/// Reads a word in quotes, in which `""` stands for one quote. `at` points behind the opening
+/// quote.
 Read<std::string> quoted_word(std::string_view line, std::size_t& at) {
   std::string text;
   while (at < line.size()) {

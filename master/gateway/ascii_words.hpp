@@ -7,7 +7,7 @@
 
 #include "master/gateway/ascii_command.hpp"
 
-// The words of a line, and how they are read.
+// Splits a line into words and reads them.
 
 namespace takt::ascii {
 
@@ -17,7 +17,7 @@ struct Word {
 };
 using Words = std::span<const Word>;
 
-/// Why a line is not understood.
+/// The reason why a line is not understood.
 struct Wrong {
   AsciiError error = AsciiError::syntax;
   std::string why;
@@ -29,16 +29,16 @@ std::unexpected<Wrong> wrong(std::string why);
 std::unexpected<Wrong> unsupported(std::string why);
 
 bool blank(char c) noexcept;
-/// `#` begins a comment.
+/// Splits a line into words; `#` begins a comment.
 Read<std::vector<Word>> split(std::string_view line);
 Read<std::uint32_t> number(Words words, std::size_t at, std::uint32_t most, const char* what);
-/// The word is `full`, or its short form.
+/// Returns true if the word is `full` or its short form.
 bool is(const Word& word, std::string_view short_form, std::string_view full);
 inline bool is(const Word& word, std::string_view full) { return is(word, full, full); }
-/// All of the words were needed.
+/// Checks that the line has no further words.
 Read<void> end_at(Words words, std::size_t count);
 
-/// A command that begins with `lss_` or `_lss_`.
+/// Reads a command that begins with `lss_` or `_lss_`.
 Read<void> read_lss(Words words, AsciiCommand& out);
 
 }  // namespace takt::ascii

@@ -16,10 +16,10 @@
 namespace takt {
 namespace {
 
-// For so long states of the bus wait for an image that they can follow, one behind each.
+// Longest time for which due states of the bus wait for an image. One state follows each image.
 constexpr int most_images = 5;
 constexpr Time longest_wait = std::chrono::milliseconds{20};
-constexpr unsigned most_behind = 8;  // images: further ones of a jam go out without typed messages
+constexpr unsigned most_behind = 8;  // further images of a backlog go out without typed messages
 
 }  // namespace
 
@@ -108,7 +108,7 @@ bool Bridge::serve() {
   serve_requests();
   take_events();
   publish_states(some);
-  notice_gap();  // this thread may have been stopped since it looked for messages
+  notice_gap();  // this thread may have stood still since it looked for messages
   gap_.sleeps_until(first_state().next);
   return some;
 }
@@ -122,8 +122,8 @@ const Bridge::PeriodicState& Bridge::first_state() const noexcept {
   return *std::ranges::min_element(states_, {}, &PeriodicState::next);
 }
 
-/// Images come first: a state that goes out just before one would make it late. So one state
-/// follows an image, and the others follow the next images.
+/// Images have precedence: a state that goes out just before an image would delay it. Therefore one
+/// state follows this image, and the other states follow the next images.
 void Bridge::publish_states(bool after_image) {
   const Time now = clocks_.now();
   const auto publish = [&](PeriodicState& state) {
@@ -171,7 +171,7 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
 }
 
 void Bridge::publish_outputs() {
-  // The time when the age was judged, not this one: this thread may have stood still in between.
+  // Uses the time at which the age was judged, because this thread may have stood still since then.
   if (std::exchange(outputs_staged_, false)) master_.publish_outputs(judged_);
 }
 
@@ -292,7 +292,9 @@ void Bridge::add_sender(const Event& event, Notice& notice) const {
 }
 
 void Bridge::tell(const Event& event) {
-  if (event.kind == EventKind::stopping) stop_text_.clear();  // axes of an NMT stop before it
+  if (event.kind == EventKind::stopping)
+    // Removes the axes of an earlier NMT stop.
+    stop_text_.clear();
   if (event.kind == EventKind::axis_not_stopped) {
     if (std::exchange(stop_told_, event.when) != event.when) stop_text_.clear();
     stop_text_ += (stop_text_.empty() ? "" : "\n") + named_axis_stop_text(master_.plan(), event);
@@ -309,7 +311,7 @@ void Bridge::tell(const Event& event) {
   }
 }
 
-/// An error code of 0 says that all errors are gone.
+/// Remembers the error code of an EMCY, except code 0, which reports that all errors are gone.
 void Bridge::remember(const Event& event) {
   const auto code = load_le<std::uint16_t>(std::span{event.bytes});
   const bool coded = event.kind == EventKind::emcy && event.detail != 1;
@@ -326,7 +328,8 @@ void Bridge::tell(Notice notice) {
   send(notice);
 }
 
-/// Texts of devices and of senders are in it: what it shows goes to terminals and logs.
+/// Sends a notice. Its text may contain texts of devices and senders, and goes to terminals and
+/// logs, so it is made printable first.
 void Bridge::send(Notice notice) {
   notice.text = printable_lines(notice.text);
   event_t message = to_message(master_.plan(), notice);

@@ -28,66 +28,68 @@
 
 namespace takt {
 
-/// LCM channels of one bus.
+/// The LCM channels of one bus.
 struct Channels {
   explicit Channels(const std::string& bus);
   std::string image, layout, command, status, sync, pdos, timing, event, request, reply, transfer,
       transfer_state;
-  /// Those that the daemon hears.
+  /// The channels that the daemon receives.
   std::vector<std::string> heard() const { return {command, request, transfer}; }
 };
 
 struct BridgeOptions {
   std::int64_t session = 0;
   bool observe = false;
-  std::string interface;  ///< told in status_t
-  std::string realtime;   ///< told in status_t
-  bool typed = true;      ///< a typed message of each node as well, see TypedChannels
+  std::string interface;  ///< reported in status_t
+  std::string realtime;   ///< reported in status_t
+  bool typed = true;      ///< also publishes a typed message for each node, see TypedChannels
 };
 
-/// The work of the front thread: images, states and events of a Master become messages, messages
-/// become set-points and requests. Reads clocks, never waits.
+/// The work of the front thread: turns images, states and events of a Master into messages, and
+/// messages into set-points and requests. Reads clocks and never waits.
 class Bridge {
  public:
-  /// `tell` hears what LCM hears of events and of the gateway's own notices, after it has.
+  /// `tell` receives all events and notices of the gateway, right after LCM.
   Bridge(Master& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
          NoticeSink tell);
 
-  /// Somebody else who hears images, events and the answers to requests with FrontGuest::mark.
-  /// Outlives this.
+  /// Registers a guest that receives images, events and the replies to requests with
+  /// FrontGuest::mark. The guest must outlive this object.
   void welcome(FrontGuest& guest) noexcept { guest_ = &guest; }
-  /// Commands outputs as a command_t would that was computed in this cycle. False: refused, and
-  /// told.
+  /// Commands outputs as a command_t computed in this cycle would. Returns false if the command is
+  /// refused. Refusals are reported; commands that may have waited during a gap are only counted.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
                std::span<const std::int64_t> values);
-  /// How often this thread did not run for so long that requests which waited are discarded.
+  /// Number of gaps in which this thread did not run for so long that waiting requests are
+  /// discarded.
   std::uint64_t gaps() const noexcept { return gaps_; }
   Time newest_gap() const noexcept { return gap_.length(); }
-  /// Everything that can be done now. True: there was an image.
+  /// Does everything that can be done now. Returns true if there was an image.
   bool serve();
-  /// Events or answers of the bus thread are left over for the next round, or may be.
+  /// Returns true if events or replies of the bus thread are, or may be, left for the next round.
   bool owes_news() const noexcept { return replies_left_ || events_left_; }
-  /// When serve() has to be called again at the latest: at once where something is left over, else
-  /// when status_t, pdo_status_t, layout_t or timing_t go out.
+  /// Latest time of the next serve() call: at once if anything is left over, otherwise when
+  /// status_t, pdo_status_t, layout_t or timing_t is due.
   Time next_message() const noexcept;
-  /// An event of the bus thread or of the diagnostic socket.
+  /// Takes an event of the bus thread or of the diagnostic socket.
   void tell(const Event& event);
-  /// A notice of somebody else. Told to LCM and to `tell`, unless there are too many of its kind.
+  /// Takes a notice from elsewhere. Sends it to LCM and to `tell`, unless there are too many of its
+  /// kind.
   void tell(Notice notice);
 
-  /// Who answers `record` requests, by answer(); without one they are refused.
+  /// Answers `record` requests by answer(). Without a handler, the bridge refuses these requests.
   using Record = std::function<void(const request_t& request)>;
   void record_with(Record record) { record_ = std::move(record); }
-  /// Answers a request that the bus thread has no part in.
+  /// Answers a request that does not involve the bus thread.
   void answer(const request_t& request, bool good, const std::string& text);
 
   const StatusSnapshot& status() const noexcept { return snapshot_; }
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t commands_taken() const noexcept { return commands_.taken(); }
   std::uint64_t commands_refused() const noexcept { return commands_.refused(); }
-  /// By reason, in the order of CommandRefusal.
+  /// Refused commands by reason, in the order of CommandRefusal.
   const auto& refusals() const noexcept { return commands_.refusals(); }
-  /// Messages that could not be read.
+  /// Number of messages that could not be decoded.
   std::uint64_t damaged() const noexcept { return damaged_count_; }
   const Histogram& sync_to_lcm() const noexcept { return sync_to_lcm_; }
   const Channels& channels() const noexcept { return channels_; }
@@ -95,17 +97,17 @@ class Bridge {
  private:
   bool publish_images();
   void publish_image(const ImageView& image, bool typed);
-  /// Looks whether this thread has stood still. What waited meanwhile is not acted upon.
+  /// Checks whether this thread stood still. If so, messages that waited meanwhile have no effect.
   void notice_gap();
-  /// The cycle of this moment by the clock: images that were not seen yet count as well.
+  /// Returns the present cycle by the clock; this includes cycles whose images were not seen yet.
   std::uint64_t cycle_at(Time now) const noexcept;
   bool take_at(const command_t& command, Time now);
   void publish_outputs();
-  /// Why a request is too old to be done; empty: it isn't.
+  /// Returns why a request is too old to be executed; empty if it is not too old.
   std::string age_trouble(std::int64_t utime, Time now) const;
   void take_events();
   void take_event(const Event& event);
-  /// By the bus thread, and on the way from there.
+  /// Events lost in the bus thread and on the way from it.
   std::uint64_t events_lost() const noexcept;
   void tell_lost_events();
   void add_sender(const Event& event, Notice& notice) const;
@@ -124,7 +126,7 @@ class Bridge {
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);
   void tell_damaged(const std::string& channel, DecodeFault fault);
-  /// A message that goes out by the clock.
+  /// A message that is published periodically.
   struct PeriodicState {
     Time period;
     void (Bridge::*publish)(Time now);
@@ -159,41 +161,41 @@ class Bridge {
   std::vector<layout_t> layout_messages_;
   StatusMessages status_messages_;
   TimingMessages timing_messages_;
-  Histogram sync_to_lcm_;  // from SYNC until the image is handed over, typed messages included
+  Histogram sync_to_lcm_;  // from SYNC until the image, with its typed messages, is handed over
   Commands commands_;
   Requests requests_;
   Transfers transfers_;
   PdoOutages outages_;
   NoticeLimit limit_;
   EmcyHistory emcys_;
-  std::string stop_text_;  ///< a line for each axis that the newest stop did not confirm
-  Time stop_told_{};       ///< when that stop ended
+  std::string stop_text_;  ///< one line for each axis that the newest stop did not confirm
+  Time stop_told_{};       ///< end of that stop
   std::uint64_t damaged_count_ = 0;
   RateLimit damaged_{std::chrono::seconds{10}};
   std::vector<std::byte> buffer_;
   StatusSnapshot snapshot_;
-  std::vector<PdoMark> marks_;  // of the newest image
+  std::vector<PdoMark> marks_;  // marks of the newest image
   EmcyLog emcy_log_;
   Time wall_minus_monotonic_{};
   std::array<PeriodicState, 4> states_{{{std::chrono::seconds{1}, &Bridge::publish_layout},
                                         {std::chrono::milliseconds{100}, &Bridge::publish_status},
                                         {std::chrono::milliseconds{500}, &Bridge::publish_pdos},
                                         {std::chrono::seconds{1}, &Bridge::publish_timing}}};
-  /// So long a state that is due waits for an image that it can follow.
+  /// Longest time for which a due state waits for an image that it can follow.
   Time image_wait_;
-  std::uint64_t cycle_ = 0;  // of the newest image
-  Time sync_time_{};         // of the newest image
-  Time judged_{};            // of the commands that are staged: when their age was judged first
+  std::uint64_t cycle_ = 0;  // cycle of the newest image
+  Time sync_time_{};         // SYNC of the newest image
+  Time judged_{};            // time at which the age of the oldest staged command was judged
   FrontGap gap_;
   std::uint64_t gaps_ = 0;
-  bool skip_images_ = false;  // those that waited over a gap
+  bool skip_images_ = false;  // images that waited during a gap are skipped
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;
-  bool replies_left_ = false;    // when the budget of this round ended
-  bool transfers_left_ = false;  // steps of them
+  bool replies_left_ = false;    // the budget of this round ended before the replies
+  bool transfers_left_ = false;  // steps of transfers are left over
   bool events_left_ = false;
-  std::int64_t instance_;  // of the daemon itself, as a sender of commands
+  std::int64_t instance_;  // instance of the daemon itself as a sender of commands
 };
 
 }  // namespace takt

@@ -27,7 +27,7 @@ void Bridge::take_reply(const Reply& reply) {
   }
   if (reply.fault == SdoFault::axes_not_stopped) {
     do {
-      take_events();  // they say which, and came before the reply
+      take_events();  // events sent before the reply name the axes
     } while (events_left_);
   }
   if (auto message = requests_.finish(reply, clocks_.now(), stop_text_)) {
@@ -83,7 +83,7 @@ void Bridge::answer(const request_t& request, bool good, const std::string& text
   answer(std::move(reply));
 }
 
-/// Answered here: the bus thread keeps no history.
+/// Answers from the log of the bridge, because the bus thread keeps no history.
 void Bridge::answer_history(const request_t& request) {
   reply_t reply = reply_to(request);
   reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;

@@ -27,8 +27,8 @@ void BusView::new_session(std::int64_t session) {
   layout_hash_ = 0;
 }
 
-/// Only status_t and layout_t, which come again and again, begin another session: a single other
-/// message of another one, forged or late, must not make everything be forgotten.
+/// Only status_t and layout_t, which are sent periodically, begin another session. A single other
+/// message from another session, forged or late, must not discard the state of this one.
 bool BusView::is_of_this_session(std::int64_t session) {
   if (session_ == 0) new_session(session);
   return session == session_;

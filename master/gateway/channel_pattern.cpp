@@ -24,8 +24,8 @@ void for_each(const Set& set, F visit) {
 
 }  // namespace
 
-/// Builds the automaton of Glushkov while it reads: one position for each character of the pattern
-/// that stands for a character of the name.
+/// Builds a Glushkov automaton while it reads the pattern. Each character of the pattern that
+/// stands for a character of the name becomes one position.
 class PatternParser {
  public:
   explicit PatternParser(ChannelPattern& out) : out_{out}, left_{out.text_} {}
@@ -170,7 +170,7 @@ class PatternParser {
     return position(inverted ? ~takes : takes);
   }
 
-  /// There are at most as many positions as characters in the pattern.
+  /// Adds a position. There are at most as many positions as characters in the pattern.
   Part position(const std::bitset<256>& takes) {
     Part part{.first = {}, .last = {}, .takes_nothing = false};
     const std::size_t at = out_.positions_.size();

@@ -9,16 +9,16 @@
 
 namespace takt {
 
-/// One regular expression over whole channel names, as LCM programs subscribe: literals, `.`,
-/// classes such as `[A-C]`, `*`, `+`, `?`, alternatives in groups, and `^` and `$` at the ends. It
-/// is matched without backtracking: the cost is at most the length of the pattern times that of the
-/// name. Everything else of regular expressions is refused.
+/// A regular expression over whole channel names, as LCM programs use it in subscriptions:
+/// literals, `.`, classes such as `[A-C]`, `*`, `+`, `?`, alternatives in groups, and `^` and `$`
+/// at the ends. Matching uses no backtracking: its cost is at most the length of the pattern times
+/// the length of the name. All other constructs of regular expressions are refused.
 class ChannelPattern {
  public:
   static constexpr std::size_t longest = 128;  ///< characters
-  static constexpr std::size_t deepest = 16;   ///< groups inside each other
+  static constexpr std::size_t deepest = 16;   ///< levels of nested groups
 
-  /// An error says what can't be matched.
+  /// The error says which construct is not supported.
   static std::expected<ChannelPattern, std::string> parse(std::string_view text);
 
   bool match(std::string_view channel) const noexcept;
@@ -27,7 +27,7 @@ class ChannelPattern {
  private:
   friend class PatternParser;
   using Set = std::array<std::uint64_t, longest / 64>;  // positions of the pattern
-  /// A place in the pattern that takes one character, and the places that may take the next one.
+  /// A place in the pattern that takes one character, with the places that may take the next one.
   struct Position {
     std::bitset<256> takes;
     Set next{};
@@ -37,7 +37,7 @@ class ChannelPattern {
   std::vector<Position> positions_;
   Set first_{};
   Set last_{};
-  bool takes_nothing_ = false;  // the empty name matches
+  bool takes_nothing_ = false;  // the pattern matches the empty name
 };
 
 }  // namespace takt

@@ -10,19 +10,19 @@
 
 namespace takt {
 
-/// The subscriptions of one program: patterns over whole channel names, as LCM's. They come from
-/// outside, so their number and their size are bounded, and so is the cost of each match.
+/// The subscriptions of one program: patterns over whole channel names, as in LCM. They come from
+/// outside, so their number, their size and the cost of each match are bounded.
 class ChannelPatterns {
  public:
   static constexpr std::size_t most_patterns = 256;
-  static constexpr std::size_t most_characters = 8192;  ///< of all patterns together
+  static constexpr std::size_t most_characters = 8192;  ///< total of all patterns
 
-  /// An error says why this pattern is not served.
+  /// The error says why this pattern is refused.
   std::expected<void, std::string> add(std::string_view pattern);
   void remove(std::string_view pattern);
-  /// Answers are remembered per channel.
+  /// Returns true if a pattern matches. The result is cached per channel.
   bool match(std::string_view channel) const;
-  /// Of all patterns.
+  /// Total length of all patterns.
   std::size_t characters() const noexcept { return characters_; }
 
  private:

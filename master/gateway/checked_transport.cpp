@@ -29,7 +29,7 @@ void CheckedTransport::serve(const MessageHandler& handler) {
   inner_->serve([&](std::string_view channel, Bytes data) { take(channel, data, handler); });
 }
 
-/// A file that can't be read leaves the keys as they were.
+/// Reads a changed key file. If the file cannot be read, the previous keys stay in use.
 void CheckedTransport::reread_keys() {
   const Time now = wall_();
   if (now >= next_look_ - look_pause && now < next_look_) return;

@@ -13,13 +13,13 @@
 
 namespace takt {
 
-/// A program's transport that believes only what the daemon has signed (`authenticate: images`):
-/// it hears the envelopes of BUS_SIGNED and hands over what is inside. Messages without an
-/// envelope, and forged, altered, repeated, delayed or reordered envelopes, are dropped. The key
-/// file is read again within a second when it changes. One thread.
+/// A transport for programs that accept only messages signed by the daemon (`authenticate:
+/// images`). It receives the envelopes of BUS_SIGNED and hands over their contents. It drops
+/// messages without an envelope, and forged, altered, repeated, delayed or reordered envelopes. It
+/// reads a changed key file again within a second. One thread.
 class CheckedTransport final : public Transport {
  public:
-  /// `wall` gives the time of CLOCK_REALTIME.
+  /// `wall` returns the time of CLOCK_REALTIME.
   CheckedTransport(std::unique_ptr<Transport> inner, WatchedKeyFile keys,
                    std::function<Time()> wall = realtime_now);
 
@@ -33,7 +33,7 @@ class CheckedTransport final : public Transport {
   bool good() const override { return inner_->good(); }
   std::string url() const override { return inner_->url() + " (signed messages only)"; }
 
-  /// Messages that were dropped.
+  /// Number of dropped messages.
   std::uint64_t refused() const noexcept { return refused_; }
 
  private:

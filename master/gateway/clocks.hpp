@@ -4,13 +4,13 @@
 
 namespace takt {
 
-/// The clocks of a front thread or of an application: those of the machine, or of a simulation.
+/// The clocks of a front thread or of an application, either of the machine or of a simulation.
 class Clocks {
  public:
   virtual ~Clocks() = default;
-  /// Monotonic, the time of everything inside takt.
+  /// Monotonic time, the time base of takt.
   virtual Time now() const noexcept = 0;
-  /// The wall clock minus now().
+  /// Returns the wall clock time minus now().
   virtual Time wall_offset() const noexcept = 0;
 };
 

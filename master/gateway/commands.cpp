@@ -27,7 +27,7 @@ std::string signal_text(const BusPlan& plan, const Signal& signal) {
 
 bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
-/// The name as it may be shown: it comes from outside and goes to terminals and logs.
+/// Makes the sender's name printable: it comes from outside and goes to terminals and logs.
 std::string shown(const std::string& sender) {
   std::string name = sender.substr(0, longest_sender);
   std::ranges::replace_if(name, is_control, '?');
@@ -95,7 +95,8 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
   return true;
 }
 
-/// Only a command that was computed from an image of this run can be judged.
+/// Checks the cycle of the command. Only a command computed from an image of this run can be
+/// judged.
 bool Commands::check_cycle(const command_t& command, const CommandContext& context) {
   if (command.cycle < 1) {
     return refuse({context, command, CommandRefusal::no_cycle},

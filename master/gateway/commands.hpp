@@ -18,24 +18,24 @@
 
 namespace takt {
 
-/// Stages one output for the bus thread. A time to live of output_released gives it up.
+/// Stages one output for the bus thread. The time to live output_released releases the output.
 using SetOutput =
     std::function<void(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live)>;
 
-/// Why a command is refused.
+/// Reason for refusing a command.
 enum class CommandRefusal : std::uint8_t {
   observing,
   schema,
-  session,     ///< of another run of taktd
-  sender,      ///< its name, or instance 0
-  no_cycle,    ///< it names no cycle that it was computed from
-  future,      ///< it was computed from a cycle that has not come yet
-  bad_signal,  ///< no output of the layout
-  bad_value,   ///< it does not fit the bits of its signal
+  session,     ///< the command is for another run of taktd
+  sender,      ///< the sender has no valid name, or instance 0
+  no_cycle,    ///< the command does not name the cycle of its image
+  future,      ///< the cycle of its image has not come yet
+  bad_signal,  ///< a signal is not an output of the layout
+  bad_value,   ///< a value does not fit the bits of its signal
   too_old,
   not_ready,  ///< the node has not booted, or is not operational
-  held,       ///< by another sender
-  waited,     ///< while the front thread stood still
+  held,       ///< another sender holds the node
+  waited,     ///< the command waited while the front thread stood still
 };
 inline constexpr std::size_t command_refusals = 12;
 std::string_view name(CommandRefusal refusal) noexcept;  ///< "too_old"
@@ -45,27 +45,28 @@ struct CommandsOptions {
   bool observe = false;
 };
 
-/// What is known when a command arrives.
+/// The state of the bus when a command arrives.
 struct CommandContext {
-  std::uint64_t cycle = 0;  ///< of this moment, by the clock; 0: no image so far
+  std::uint64_t cycle = 0;  ///< present cycle by the clock; 0 before the first image
   Time now{};
-  std::span<const NodeStatus> nodes;  ///< order of BusPlan::nodes
+  std::span<const NodeStatus> nodes;  ///< in the order of BusPlan::nodes
 };
 
-/// command_t -> set-points. A message counts for a node as a whole or not at all. What is refused
-/// is told, at most once a second for the same reason, sender and node. Front thread.
+/// Turns command_t messages into set-points. A node takes either all or none of its values in a
+/// message. Refusals are reported at most once per second for the same reason, sender and node.
+/// Front thread.
 class Commands {
  public:
   Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink tell);
 
-  /// True: at least one output was staged.
+  /// Returns true if at least one output was staged.
   bool take(const command_t& command, const CommandContext& context);
 
   std::uint64_t taken() const noexcept { return taken_; }
   std::uint64_t refused() const noexcept {
     return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
   }
-  /// By reason, in the order of CommandRefusal.
+  /// Refused commands by reason, in the order of CommandRefusal.
   const std::array<std::uint64_t, command_refusals>& refusals() const noexcept { return refused_; }
   std::string_view holder(std::size_t node_index, std::uint64_t cycle) const noexcept {
     return leases_.holder(node_index, cycle);
@@ -73,14 +74,14 @@ class Commands {
   std::string_view last_holder(std::size_t node_index) const noexcept {
     return leases_.last_holder(node_index);
   }
-  /// A message that was not looked at, since it may have waited for long.
+  /// Counts a message that was not examined because it may have waited for long.
   void discard() noexcept { count(CommandRefusal::waited); }
 
  private:
   struct Item {
     SignalIndex signal = 0;
     std::int64_t value = 0;
-    std::uint32_t cycles = 0;  ///< left of its time to live
+    std::uint32_t cycles = 0;  ///< remaining cycles of its time to live; 0 means no limit
   };
   enum class Verdict : std::uint8_t { unknown, accepted, refused };
 
@@ -92,7 +93,7 @@ class Commands {
                          const CommandContext& context) const;
   bool release(const command_t& command, const CommandContext& context);
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
-  /// What is refused, and in whose name.
+  /// The refused command, the reason and the node concerned.
   struct Refused {
     const CommandContext& context;
     const command_t& command;
@@ -106,11 +107,11 @@ class Commands {
   CommandsOptions options_;
   SetOutput set_output_;
   NoticeSink tell_;
-  std::uint32_t second_;  // in cycles
+  std::uint32_t second_;  // cycles in one second
   LeaseTable leases_;
   RateLimit told_{std::chrono::seconds{1}};
-  std::vector<Item> items_;        // of the message in hand
-  std::vector<Verdict> verdicts_;  // per node, of the message in hand
+  std::vector<Item> items_;        // items of the current message
+  std::vector<Verdict> verdicts_;  // per node, for the current message
   std::uint64_t taken_ = 0;
   std::array<std::uint64_t, command_refusals> refused_{};
 };

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// The bus at a glance. What happened "since the last message" is counted from the last call.
+/// Fills the summary of the bus state. Changes "since the last message" count from the last call.
 class Diagnosis {
  public:
   explicit Diagnosis(const BusPlan& plan) : plan_{plan} {}

@@ -6,10 +6,10 @@
 
 namespace takt {
 
-/// The newest error codes of each node, the newest first. Front thread.
+/// Keeps the newest error codes of each node, newest first. Front thread.
 class EmcyHistory {
  public:
-  static constexpr std::size_t kept = 10;  ///< a node
+  static constexpr std::size_t kept = 10;  ///< error codes per node
 
   explicit EmcyHistory(std::size_t nodes) : codes_(nodes) {}
 

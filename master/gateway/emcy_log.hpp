@@ -13,7 +13,7 @@
 
 namespace takt {
 
-/// One EMCY as it was on the wire, and when.
+/// One EMCY frame as it was on the wire, with its time.
 struct EmcyRecord {
   std::int64_t utime = 0;  ///< us since 1970
   std::array<std::uint8_t, 8> bytes{};
@@ -25,26 +25,27 @@ struct EmcyRecord {
   bool operator==(const EmcyRecord&) const = default;
 };
 
-/// The newest EMCYs of each node. Front thread.
+/// Keeps the newest EMCYs of each node. Front thread.
 class EmcyLog {
  public:
-  static constexpr std::size_t depth = 32;  ///< records of one node
+  static constexpr std::size_t depth = 32;  ///< records per node
 
-  /// Events of other kinds, and EMCYs of one byte, which have no code, are left alone.
+  /// Ignores events of other kinds, and EMCYs of one byte, which have no error code.
   void take(const Event& event, std::int64_t utime);
-  /// Oldest first.
+  /// Returns the records of a node, oldest first.
   const std::vector<EmcyRecord>& of(std::uint8_t node) const;
 
  private:
   std::map<std::uint8_t, std::vector<EmcyRecord>> records_;
 };
 
-/// As the reply to "emcy_history" carries them: 8 bytes time, 8 bytes frame each, little endian.
+/// Encodes records for the reply to "emcy_history": per record 8 bytes of time and the 8 bytes of
+/// the frame, little endian.
 std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records);
 std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes);
 
-/// What the device data says of these error codes, as the text of that reply carries it: a line
-/// `0x1000 words` each. Codes that it does not know are left out.
+/// Texts of the device data for these error codes, in the form of the reply text: one line `0x1000
+/// words` per code. Codes without a text are left out.
 std::string pack_texts(std::span<const EmcyRecord> records, std::span<const EmcyText> texts);
 std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines);
 

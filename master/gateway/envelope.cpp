@@ -13,7 +13,7 @@ constexpr std::int16_t envelope_schema = 1;
 constexpr std::size_t mac_bytes = 32;
 using Mac = std::array<std::uint8_t, mac_bytes>;
 
-/// Of an encoded envelope: of all its bytes but those of the MAC, which are the last.
+/// MAC over all bytes of an encoded envelope except the MAC itself, which comes last.
 Mac mac_of(Bytes encoded, const EnvelopeKey& key) noexcept {
   Mac mac{};
   ::crypto_generichash(mac.data(), mac.size(),
@@ -82,7 +82,7 @@ std::expected<envelope_t, EnvelopeFault> EnvelopeGuard::open(Bytes bytes, Time w
   const auto key = std::ranges::find(keys_, envelope->key, &EnvelopeKey::name);
   if (key == keys_.end()) return std::unexpected{EnvelopeFault::unknown_key};
   if (!has_mac(bytes, mac_of(bytes, *key))) return std::unexpected{EnvelopeFault::forged};
-  // From here on somebody with a key has made it.
+  // The MAC proves that a holder of a key has made this envelope.
   if (session_ && envelope->session != *session_)
     return std::unexpected{EnvelopeFault::other_session};
   constexpr std::int64_t last_utime = Time::max().count() / 1000;
@@ -96,7 +96,8 @@ std::expected<envelope_t, EnvelopeFault> EnvelopeGuard::open(Bytes bytes, Time w
   return std::move(*envelope);
 }
 
-/// A sender is forgotten when all of its envelopes have become too old anyway.
+/// Checks and stores the counter of the sender. If the table is full, senders are forgotten whose
+/// envelopes have all become too old anyway.
 std::expected<void, EnvelopeFault> EnvelopeGuard::check_sender(const envelope_t& envelope,
                                                                Time made, Time wall) {
   const auto found = std::ranges::find_if(senders_, [&](const Sender& sender) {

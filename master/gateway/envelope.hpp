@@ -19,13 +19,13 @@ template <>
 inline constexpr std::string_view message_layout<envelope_t> =
     "lhlllssn(b)bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb";
 
-/// Puts messages into envelopes: the sender's side. One thread.
+/// Puts messages into envelopes, on the side of the sender. One thread.
 class EnvelopeSeal {
  public:
-  /// `instance` is a random number, another one at each start of the sender.
+  /// `instance` is a random number that differs at each start of the sender.
   EnvelopeSeal(EnvelopeKey key, std::int64_t instance);
 
-  /// The encoded envelope, valid until the next call. `wall` is the time of CLOCK_REALTIME.
+  /// Returns the encoded envelope, valid until the next call. `wall` is the time of CLOCK_REALTIME.
   Bytes seal(std::string_view channel, Bytes message, std::int64_t session, Time wall);
 
  private:
@@ -34,30 +34,30 @@ class EnvelopeSeal {
   std::vector<std::byte> buffer_;
 };
 
-/// Why an envelope is refused.
+/// Reason for refusing an envelope.
 enum class EnvelopeFault : std::uint8_t {
   damaged,
   other_schema,
   unknown_key,
-  forged,           ///< the MAC doesn't fit: forged, altered, or made with another secret
-  other_session,    ///< a replayed log, or the daemon was started again
-  too_old,          ///< by the clock
-  from_the_future,  ///< by the clock
-  repeated,         ///< its counter has been there, or a higher one
+  forged,           ///< the MAC does not match: forged, altered, or made with another secret
+  other_session,    ///< the envelope is from a replayed log, or the daemon has restarted
+  too_old,          ///< older than the limit by the clock
+  from_the_future,  ///< newer than the limit by the clock
+  repeated,         ///< this sender has already used this counter or a higher one
   too_many_senders,
 };
 std::string_view text(EnvelopeFault fault) noexcept;
 
-/// Opens envelopes: the side of whoever hears them. What it lets through was made by somebody who
-/// has a key, for this session, within the last second, and comes once and in order. Remembers at
-/// most `most_senders` senders. One thread.
+/// Opens envelopes, on the side of the receiver. An envelope passes if a holder of a key made it
+/// for this session within the last second, and each one passes only once and in order. Remembers
+/// at most `most_senders` senders. One thread.
 class EnvelopeGuard {
  public:
   static constexpr Time longest_age = std::chrono::seconds{1};
   static constexpr std::size_t most_senders = 256;
-  static constexpr std::size_t most_bytes = 65536;  ///< of an envelope
+  static constexpr std::size_t most_bytes = 65536;  ///< largest envelope
 
-  /// No session: envelopes of any one are good.
+  /// Without a session, the guard accepts envelopes of any session.
   explicit EnvelopeGuard(std::optional<std::int64_t> session) : session_{session} {}
 
   void set_keys(std::vector<EnvelopeKey> keys) { keys_ = std::move(keys); }
@@ -69,7 +69,7 @@ class EnvelopeGuard {
     std::string key;
     std::int64_t instance = 0;
     std::int64_t counter = 0;
-    Time newest{};  // by the clock of its newest envelope
+    Time newest{};  // clock time of its newest envelope
   };
 
   std::expected<void, EnvelopeFault> check_sender(const envelope_t& envelope, Time made, Time wall);

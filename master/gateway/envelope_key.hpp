@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// A secret that senders and the daemon share, by the name that envelopes give.
+/// A secret shared by senders and the daemon, with the name that envelopes carry.
 struct EnvelopeKey {
   static constexpr std::size_t bytes = 32;
 

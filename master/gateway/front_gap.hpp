@@ -3,23 +3,25 @@
 
 namespace takt {
 
-/// Finds out that the front thread did not run (stopped, swapped out, starved), by its own
-/// timetable. What waited in the transports meanwhile is to be discarded. Front thread.
+/// Detects that the front thread did not run (stopped, swapped out, starved) by comparing the clock
+/// with the thread's own schedule. Messages that waited in the transports meanwhile must be
+/// discarded. Front thread.
 class FrontGap {
  public:
   explicit FrontGap(Time period) noexcept;
 
-  /// The thread runs at `now`. True: it should have run long before.
+  /// Notes that the thread runs at `now`. Returns true if it should have run long before.
   bool ran(Time now) noexcept;
-  /// It may sleep until `due`.
+  /// Notes that the thread may sleep until `due`.
   void sleeps_until(Time due) noexcept { due_ = due; }
 
-  /// Length of the newest gap: how long the front thread did not run.
+  /// Length of the newest gap, in which the front thread did not run.
   Time length() const noexcept { return length_; }
-  /// Commands that come now may have waited over the gap. A transport's own thread needs a moment
-  /// to hand over what was in the kernel's buffers.
+  /// Returns true if commands that arrive now may have waited during the gap. The own thread of a
+  /// transport needs a moment to hand over messages from the kernel's buffers.
   bool discards_commands(Time now) const noexcept { return now < discard_until_; }
-  /// So may requests; short gaps do them no harm.
+  /// Returns true if requests that arrive now may have waited too long. Short gaps do not harm
+  /// requests.
   bool discards_requests(Time now) const noexcept;
 
  private:

@@ -5,17 +5,18 @@
 
 namespace takt {
 
-/// Somebody beside LCM who asks things of the master and hears from it. Front thread.
+/// Another user of the master beside LCM: it submits requests and receives images, events and
+/// replies. Front thread.
 class FrontGuest {
  public:
-  /// In the ids of a guest's requests; those of LCM's have it not.
+  /// This bit marks the ids of a guest's requests. The ids of LCM requests do not have it.
   static constexpr std::uint64_t mark = std::uint64_t{1} << 62;
 
   virtual ~FrontGuest() = default;
-  /// The answer to one of its requests.
+  /// Takes the reply to one of its requests.
   virtual void take(const Reply& reply) = 0;
   virtual void hear(const Event& event) = 0;
-  /// Each image; valid during the call.
+  /// Takes each image, which is valid during the call.
   virtual void see(const ImageView& image) = 0;
 };
 

@@ -13,7 +13,7 @@ constexpr Time longest_pause = std::chrono::milliseconds{20};
 
 Time pause_before_image(Time now, Time next_image) noexcept {
   if (now < next_image) return std::min(next_image - now, longest_pause);
-  // A tenth of the delay so far: an image is late by at most that much more.
+  // A tenth of the present delay: an image then waits at most this much longer.
   return std::clamp((now - next_image) / 10, fine_pause, longest_pause);
 }
 

@@ -6,17 +6,17 @@
 
 namespace takt {
 
-/// One round of the front thread, whose wait is not ended by the bus thread: it sleeps to the
-/// predicted time of the next image by itself. The order of the three steps is what keeps it from
-/// sleeping over an image. The prediction is read before images are looked for, so an image that is
-/// published between the two steps is either found, or the prediction is still the one for that
-/// image, and the wait ends at once. In the other order the prediction would already be for the
-/// image after it, and the image would lie there for a whole period.
+/// One round of the front thread. The bus thread does not wake the front thread: it sets its own
+/// timer to the predicted time of the next image. The order of the three steps keeps it from
+/// sleeping past an image. The round reads the prediction before it looks for images. If an image
+/// is published between the two steps, either the round finds the image, or the prediction still
+/// belongs to that image and the wait ends at once. In the other order, the prediction would
+/// already belong to the following image, and the image would wait for a whole period.
 struct FrontRound {
-  /// When the next image is predicted to be there; see Master::next_publish().
+  /// Returns the predicted time of the next image; see Master::next_publish().
   std::function<Time()> next_image;
-  /// Does everything that can be done now, images included. Returns when it has to be called again
-  /// at the latest.
+  /// Does everything that can be done now, images included. Returns the latest time of the next
+  /// call.
   std::function<Time()> serve;
   /// Waits for work or for the next image.
   std::function<void(Time next_image, Time latest)> wait;
@@ -26,7 +26,7 @@ struct FrontRound {
       step();
     } while (due != Step::predict);
   }
-  /// One of the three steps of run(), for a simulation in which time passes between them.
+  /// Runs one of the three steps of run(), for a simulation in which time passes between them.
   void step() {
     switch (due) {
       case Step::predict:
@@ -39,8 +39,9 @@ struct FrontRound {
         return;
       case Step::wait:
         due = Step::predict;
-        // An image was published meanwhile: whether it was found is for the next round to see. Its
-        // prediction is over, and after a stall in the middle of this round would be long over.
+        // If an image was published meanwhile, the next round checks whether it was found. The
+        // prediction for that image has passed, and after a stall within this round it would have
+        // passed long ago.
         if (next_image() == predicted) wait(predicted, latest);
         return;
     }
@@ -52,7 +53,7 @@ struct FrontRound {
   Time latest{};
 };
 
-/// How long to sleep at `now` when the next image is predicted for `next_image`.
+/// Returns the time to sleep at `now` if the next image is predicted for `next_image`.
 Time pause_before_image(Time now, Time next_image) noexcept;
 
 }  // namespace takt

@@ -10,22 +10,22 @@
 
 namespace takt {
 
-/// Values in one image_t at most: any mix of values and stale marks stays below message_bytes.
+/// Most values in one image_t: any mix of values and stale marks stays below message_bytes.
 inline constexpr std::size_t values_a_message = 100;
 
-/// The image of a cycle as messages; kept, so that a cycle allocates nothing.
+/// The messages for the image of a cycle. They are kept, so that a cycle allocates nothing.
 class ImageMessages {
  public:
   ImageMessages(const BusPlan& plan, std::int64_t session);
 
-  /// `wall_minus_monotonic` turns SYNC's time into wall clock time.
+  /// Fills the messages. `wall_minus_monotonic` converts the time of SYNC to wall clock time.
   const std::vector<image_t>& fill(const ImageView& image, Time wall_minus_monotonic);
 
  private:
   std::vector<image_t> parts_;
 };
 
-/// What the values mean; a few signals a message.
+/// Describes the values, with a few signals per message.
 std::vector<layout_t> layout_messages(const BusPlan& plan, std::int64_t session);
 
 }  // namespace takt

@@ -50,7 +50,7 @@ bool read_secret(std::string_view hex, EnvelopeKey& key) noexcept {
   return true;
 }
 
-/// The error tells what to do about it.
+/// Checks the owner, the mode and the size. The error says what to do about it.
 std::expected<void, std::string> check_permissions(const std::string& path,
                                                    const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return failed(path, "it is not a regular file");

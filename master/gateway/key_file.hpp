@@ -11,28 +11,29 @@
 
 namespace takt {
 
-/// The keys in the text of a key file: lines of a name and 64 hex digits, `#` begins a comment. An
-/// error is a sentence with `where` and the line.
+/// Parses the text of a key file: each line holds a name and 64 hex digits, and `#` begins a
+/// comment. The error is a sentence with `where` and the line number.
 std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::string& where,
                                                                 std::string_view text);
 
-/// The keys in a file. It has to be a regular file that only its owner can read, and its owner is
-/// this user or root. The error is a sentence.
+/// Reads the keys of a file. The file must be a regular file that only its owner can access, and
+/// the owner must be this user or root. The error is a sentence.
 std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string& path);
 
-/// Makes a file with one new random key, mode 0600. A file that is there already is left alone.
+/// Creates a file with one new random key, mode 0600. Fails if the file already exists, and leaves
+/// it unchanged.
 std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name);
 
-/// A key file that may be changed while it is used.
+/// A key file that may change while it is in use.
 class WatchedKeyFile {
  public:
-  /// Reads the file for the first time.
+  /// Opens the file and reads it for the first time.
   static std::expected<WatchedKeyFile, std::string> open(std::string path);
 
   const std::vector<EnvelopeKey>& keys() const noexcept { return keys_; }
   const std::string& path() const noexcept { return path_; }
-  /// Nothing: the file is as it was. Else: it was read again, or can't be, and the keys from before
-  /// are kept.
+  /// Returns std::nullopt if the file is unchanged. Otherwise tells whether the file could be read
+  /// again; after an error the previous keys stay in use.
   std::optional<std::expected<void, std::string>> reread();
 
  private:

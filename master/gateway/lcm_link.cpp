@@ -36,7 +36,7 @@ LcmLink::LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say
   }
 }
 
-/// `broker: true`: the hub is ours or there is none.
+/// With `broker: true`, the daemon serves its own hub or has none.
 void LcmLink::begin_hub() {
   next_try_ = std::chrono::steady_clock::now() + retry_pause;
   const std::uint16_t port = url_.scheme == "tcpq" ? url_.port : tcpq::default_port;
@@ -82,8 +82,8 @@ void LcmLink::begin_lcm() {
     const std::string obstacle = multicast_obstacle(url_);
     if (!obstacle.empty()) return fall_back(obstacle);
   }
-  // With the first subscription LCM tests multicast, for up to ten seconds: beside the front
-  // thread, and not waited for when taktd ends.
+  // With the first subscription, LCM tests multicast for up to ten seconds. The test runs in a
+  // thread beside the front thread, and taktd does not wait for it at its end.
   std::promise<std::unique_ptr<LcmTransport>> promise;
   auto opening = promise.get_future();
   auto thread =

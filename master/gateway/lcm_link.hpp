@@ -15,15 +15,16 @@
 
 namespace takt {
 
-/// The daemon's connection to LCM, whatever the machine allows: LCM's own multicast, the tcpq://
-/// hub that the URL names, or a hub of our own. It works or it is tried again; nothing here waits,
-/// since the bus has to run on. Where the port of our own hub is taken, whoever has it may be
-/// anybody: we become the client of a hub only where a URL says so. Front thread.
+/// The connection of the daemon to LCM by whatever way the machine allows: LCM's multicast, the
+/// tcpq:// hub that the URL names, or a hub of its own. The link retries a connection that fails
+/// and never waits, because the bus must run on. If another program holds the port of the own hub,
+/// that program may be anybody: the daemon becomes the client of a hub only if a URL says so. Front
+/// thread.
 class LcmLink final : public Transport {
  public:
   using Say = std::function<void(const std::string& sentence)>;
 
-  /// `say` hears what people have to know: which URL to set, what is missing. All `patterns` are
+  /// `say` receives what users must know: which URL to set, or what is missing. All `patterns` are
   /// subscribed from the start.
   LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say);
 
@@ -33,7 +34,7 @@ class LcmLink final : public Transport {
   void serve(const MessageHandler& handler) override;
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
-  /// What other programs set; empty while there is no connection.
+  /// The URL that other programs must set; empty while there is no connection.
   std::string url() const override;
 
  private:
@@ -50,10 +51,10 @@ class LcmLink final : public Transport {
   LcmUrl url_;
   bool broker_;
   Say say_;
-  std::string told_;  // the newest sentence that is not repeated with each try
+  std::string told_;  // the newest sentence that each retry would repeat
   std::vector<std::string> patterns_;
-  std::unique_ptr<Transport> main_;      // what the URL asks for
-  std::unique_ptr<Transport> fallback_;  // the hub, where the URL could not be had
+  std::unique_ptr<Transport> main_;      // the transport that the URL names
+  std::unique_ptr<Transport> fallback_;  // the hub in use while the URL cannot be used
   std::future<std::unique_ptr<LcmTransport>> opening_;
   std::chrono::steady_clock::time_point next_try_{};
 };

@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-constexpr int queue_capacity = 100;  // messages of one subscription that wait for serve()
+constexpr int queue_capacity = 100;  // messages per subscription that may wait for serve()
 
 }  // namespace
 

@@ -10,10 +10,11 @@
 
 namespace takt {
 
-/// LCM's own library behind the common face: udpm://, memq://, file://.
+/// The LCM library as a Transport: udpm://, memq://, file://.
 class LcmTransport final : public Transport {
  public:
-  /// Null: LCM refuses (its reason is on stderr). May take seconds: LCM tests multicast.
+  /// Returns nullptr if LCM refuses (it prints the reason to stderr). May take seconds, because LCM
+  /// tests multicast.
   static std::unique_ptr<LcmTransport> create(const std::string& url,
                                               FrontClock clock = monotonic_now);
 
@@ -36,7 +37,7 @@ class LcmTransport final : public Transport {
   std::unique_ptr<lcm_t, Destroy> lcm_;
   std::string url_;
   FrontClock clock_;
-  const MessageHandler* handler_ = nullptr;  // during serve()
+  const MessageHandler* handler_ = nullptr;  // set during serve()
   bool good_ = true;
 };
 

@@ -23,30 +23,31 @@
 
 namespace takt {
 
-/// Version of all messages, in their field `schema`.
+/// Version of all messages; their field `schema` carries it.
 inline constexpr std::int16_t message_schema = 2;
 
-/// Largest message where the sender can choose: one Ethernet frame with LCM's header and channel.
+/// Largest message, if the sender can choose: one Ethernet frame with LCM's header and channel
+/// name.
 inline constexpr std::size_t message_bytes = 1300;
 
 using Bytes = std::span<const std::byte>;
 
-/// Why bytes are not the message that was expected.
+/// Reason why bytes are not the expected message.
 enum class DecodeFault : std::uint8_t {
-  schema_1,       ///< the fingerprint is the one that this type had in schema 1
-  other_version,  ///< the fingerprint is another one: the publisher has other .lcm files
-  malformed,      ///< sizes inside do not fit the message
-  out_of_range,   ///< a number that no raw value stands for
+  schema_1,       ///< the fingerprint is that of this type in schema 1
+  other_version,  ///< another fingerprint: the publisher uses other .lcm files
+  malformed,      ///< sizes inside the message are inconsistent
+  out_of_range,   ///< a number that no raw value can represent
 };
 
 std::string_view text(DecodeFault fault) noexcept;
 
-/// What the daemon tells an application whose messages have another schema than its own.
+/// Text of the daemon for an application whose messages have another schema.
 std::string schema_refusal(std::int16_t schema);
-/// What a program says that hears a daemon of another schema.
+/// Text of a program that receives messages of a daemon with another schema.
 std::string daemon_schema_text(std::int16_t schema);
 
-/// What a type's messages of schema 1 begin with; 0: the type has not changed since.
+/// Fingerprint of a type in schema 1; 0 if the type has not changed since.
 template <class T>
 inline constexpr std::uint64_t fingerprint_of_schema_1 = 0;
 template <>
@@ -56,7 +57,7 @@ inline constexpr std::uint64_t fingerprint_of_schema_1<image_t> = 0x802677B48765
 template <>
 inline constexpr std::uint64_t fingerprint_of_schema_1<status_t> = 0xB1E043970713C28C;
 
-/// Layout of a type's bytes, see has_shape.
+/// Layout of the bytes of a type, see has_shape.
 template <class T>
 inline constexpr std::string_view message_layout;
 template <>
@@ -85,7 +86,7 @@ inline constexpr std::string_view message_layout<transfer_t> = "lhllsshihilln(b)
 template <>
 inline constexpr std::string_view message_layout<transfer_state_t> = "lhllssllllsln(b)";
 
-/// Bytes from outside to a message; hostile bytes cost no more than their own size.
+/// Decodes bytes from outside. Hostile bytes cost no more than their own size.
 template <class T>
 std::expected<T, DecodeFault> decode(Bytes bytes) {
   if (bytes.size() < 8 || bytes.size() > 0x7FFF'FFFF) {
@@ -107,7 +108,7 @@ std::expected<T, DecodeFault> decode(Bytes bytes) {
   return message;
 }
 
-/// The message as bytes, in a buffer that is used again and again.
+/// Encodes the message into a buffer that the caller reuses.
 template <class T>
 Bytes encode(const T& message, std::vector<std::byte>& buffer) {
   const int size = message.getEncodedSize();

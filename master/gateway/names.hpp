@@ -6,10 +6,10 @@
 
 namespace takt {
 
-/// The bus of a channel that ends in `_what`; empty where it does not.
+/// Returns the bus part of a channel name that ends in `_what`; empty if the name does not.
 std::string_view bus_of_channel(std::string_view channel, std::string_view what) noexcept;
 
-/// A pattern for LCM subscriptions that matches this channel of any bus.
+/// Returns a pattern for LCM subscriptions that matches this channel of any bus.
 std::string any_bus(std::string_view what);
 
 }  // namespace takt

@@ -80,7 +80,7 @@ std::string_view name(Weight weight) noexcept {
 }
 
 Notice to_notice(const BusPlan& plan, const Event& event) {
-  // CiA 301, 7.2.7.1: error code 0 tells that an error has gone.
+  // CiA 301, 7.2.7.1: error code 0 reports that an error has gone.
   const bool all_clear =
       event.kind == EventKind::emcy && event.bytes[0] == 0 && event.bytes[1] == 0;
   return {.when = event.when,

@@ -11,19 +11,20 @@
 
 namespace takt {
 
-/// Weight of an event, as event_t codes it.
+/// Severity of an event, with the codes of event_t.
 enum class Weight : std::int16_t { note = 0, warning = 1, error = 2 };
 
-/// One thing to tell: on stderr, in the event file, on LCM. Made by the bus thread (an Event) or by
+/// One message for stderr, the event file and LCM. It comes from the bus thread (an Event) or from
 /// the gateway itself.
 struct Notice {
   Time when{};  ///< monotonic
   std::uint64_t cycle = 0;
-  std::uint8_t node = 0;  ///< 0: the bus
+  std::uint8_t node = 0;  ///< 0 means the bus
   std::string kind;       ///< "boot_failed"
   Weight weight = Weight::note;
   std::string text;
-  /// boot_failed: the next try of this boot asks the node in another way, so it isn't missing yet.
+  /// For boot_failed: the next attempt of this boot asks the node in another way, so the node does
+  /// not count as missing yet.
   bool asks_on = false;
 };
 
@@ -32,14 +33,15 @@ using NoticeSink = std::function<void(const Notice&)>;
 Weight weight_of(EventKind kind) noexcept;
 std::string_view name(Weight weight) noexcept;  ///< "note", "warning", "error"
 
-/// The event in words.
+/// Describes the event in words.
 Notice to_notice(const BusPlan& plan, const Event& event);
 
-/// `utime` and `session` are left to the caller. The text is cut where the message would grow
-/// beyond one datagram.
+/// The caller sets `utime` and `session`. A text that would make the message longer than one
+/// datagram is cut.
 event_t to_message(const BusPlan& plan, const Notice& notice);
 
-/// "shoulder"; empty for the bus and for nodes that the plan does not have.
+/// Returns the name of the node, such as "shoulder"; empty for the bus and for nodes outside the
+/// plan.
 std::string_view node_name(const BusPlan& plan, std::uint8_t node) noexcept;
 
 }  // namespace takt

@@ -10,16 +10,17 @@
 
 namespace takt {
 
-/// Bounds what is told: of each kind and node 16 at once, and two a second in the long run.
-/// Remembers as many entries as there are kinds times nodes. Front thread.
+/// Limits the number of notices: for each kind and node, 16 at once and two per second in the long
+/// run. Remembers as many entries as there are pairs of kind and node. Front thread.
 class NoticeLimit {
  public:
-  /// Nothing: not now. Else: tell it; the value is how many were kept back since the last one.
+  /// Returns std::nullopt if the notice must be withheld. Otherwise returns how many notices were
+  /// withheld since the last one.
   std::optional<std::uint64_t> allow(const Notice& notice);
 
  private:
   struct Account {
-    Time free_at{};  ///< when all that was told has been paid for
+    Time free_at{};  ///< time at which the cost of all notices so far is paid
     std::uint64_t kept_back = 0;
   };
   std::map<std::pair<std::string, std::uint8_t>, Account> accounts_;

@@ -9,11 +9,11 @@
 
 namespace takt {
 
-/// PDOs in one pdo_status_t at most: it stays below message_bytes.
+/// Most PDOs in one pdo_status_t, which then stays below message_bytes.
 inline constexpr std::size_t pdos_a_message = 16;
 
-/// The state of every PDO as messages: TPDOs, then RPDOs, in the order of the plan. `marks` are
-/// those of the image of `cycle`; empty: none so far.
+/// Returns the state of every PDO as messages: TPDOs, then RPDOs, in the order of the plan. `marks`
+/// belong to the image of `cycle`; they are empty before the first image.
 std::vector<pdo_status_t> pdo_messages(const BusPlan& plan, const StatusSnapshot& snapshot,
                                        std::span<const PdoMark> marks, std::uint64_t cycle);
 

@@ -14,7 +14,8 @@ namespace {
 constexpr Time pause = std::chrono::seconds{1};
 constexpr std::size_t most_lines = 8;
 
-/// Sums of all PDOs fall due together, so that many can share a line.
+/// Returns the time of the next sum. The sums of all PDOs fall due together, so that many can share
+/// a line.
 Time next_sum(Time now, Time told) {
   return std::chrono::ceil<std::chrono::seconds>(std::max(now, told + pause));
 }

@@ -12,10 +12,10 @@
 
 namespace takt {
 
-/// Keeps TPDOs that come and go from flooding the log, LCM and the event file. Of each PDO the
-/// first "missing" and the "back" that follows are told at once. What else comes, until it was in
-/// order for ten seconds, is summed up: one line a second and PDO; many at a time share one line.
-/// Front thread.
+/// Keeps intermittent TPDOs from flooding the log, LCM and the event file. For each PDO, the first
+/// "missing" and the following "back" are reported at once. Later events, until ten seconds have
+/// passed without one, are summed up: one line per second and PDO; many PDOs share one line. Front
+/// thread.
 class PdoOutages {
  public:
   explicit PdoOutages(const BusPlan& plan) : plan_{plan} {}
@@ -23,25 +23,26 @@ class PdoOutages {
   static bool concerns(EventKind kind) noexcept {
     return kind == EventKind::pdo_missing || kind == EventKind::pdo_back;
   }
-  /// What to tell of this event now; nothing: it is kept for take_due().
+  /// Returns the notice for this event, or std::nullopt if the event is kept for take_due().
   std::optional<Notice> on_event(const Event& event);
-  /// The sums that are due at `now`.
+  /// Returns the sums that are due at `now`.
   std::vector<Notice> take_due(Time now);
-  /// All that has not been told, at the end.
+  /// Returns everything that is not yet reported, at the end.
   std::vector<Notice> take_rest(Time now);
 
  private:
   static constexpr Time calm = std::chrono::seconds{10};
 
   struct Outage {
-    Time last = -calm;  ///< newest event
-    Time told{};        ///< the line before the next sum
-    Time since{};       ///< begin of what `missed` counts
-    Time due = never;   ///< of the next sum
+    Time last = -calm;  ///< time of the newest event
+    Time told{};        ///< time of the last report before the next sum
+    Time since{};       ///< begin of the time that `missed` covers
+    Time due = never;   ///< time of the next sum
     std::uint64_t cycle = 0;
-    std::uint64_t missed = 0;  ///< not told yet
+    std::uint64_t missed = 0;  ///< not yet reported
     bool missing = false;
-    bool back_at_once = false;  ///< its "missing" was told at once, so will be its "back"
+    /// Its "missing" was reported at once, so its "back" will be as well.
+    bool back_at_once = false;
   };
   struct Pdo {
     std::uint8_t node = 0;
@@ -55,8 +56,8 @@ class PdoOutages {
   Notice many(const std::vector<Row*>& rows, Time now) const;
 
   const BusPlan& plan_;
-  std::map<Pdo, Outage> outages_;  // at most one a TPDO of the plan
-  Time next_look_ = never;         // nothing is due before
+  std::map<Pdo, Outage> outages_;  // at most one per TPDO of the plan
+  Time next_look_ = never;         // nothing is due before this time
 };
 
 }  // namespace takt

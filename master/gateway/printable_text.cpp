@@ -7,7 +7,7 @@ namespace takt {
 namespace {
 
 struct Character {
-  std::size_t bytes = 0;  // 0: this is no UTF-8
+  std::size_t bytes = 0;  // 0 means that the text is not UTF-8
   char32_t code = 0;
 };
 

@@ -4,10 +4,10 @@
 
 namespace takt {
 
-/// Text from outside as a terminal or a log may show it, in one line: control characters (C0, DEL,
-/// C1), marks that turn the direction of writing, and bytes that are no UTF-8 become '?'.
+/// Makes text from outside safe for a terminal or a log, in one line: replaces control characters
+/// (C0, DEL, C1), marks that change the writing direction, and bytes that are not UTF-8 by '?'.
 std::string printable_text(std::string_view text);
-/// Makes a text of several lines printable; its line breaks are kept.
+/// Makes a text of several lines printable and keeps its line breaks.
 std::string printable_lines(std::string_view text);
 
 }  // namespace takt

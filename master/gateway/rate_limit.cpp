@@ -17,7 +17,7 @@ std::optional<std::uint64_t> RateLimit::allow(const std::string& thing, Time now
   }
   if (entries_.size() == capacity_) {
     const auto oldest = std::ranges::min_element(entries_, {}, &Entry::told);
-    if (now - oldest->told < pause_) return std::nullopt;  // a flood of different things
+    if (now - oldest->told < pause_) return std::nullopt;  // a flood of different texts
     entries_.erase(oldest);
   }
   entries_.push_back({.thing = thing, .told = now, .kept_back = 0});

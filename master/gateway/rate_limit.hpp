@@ -8,13 +8,14 @@
 
 namespace takt {
 
-/// Lets the same thing be told once at first and then at most once a `pause`, with the number of
-/// times it was kept back. Remembers a bounded number of things.
+/// Lets the same text pass once and then at most once per `pause`, and counts how often it was
+/// withheld. Remembers a bounded number of texts.
 class RateLimit {
  public:
   explicit RateLimit(Time pause, std::size_t capacity = 64) : pause_{pause}, capacity_{capacity} {}
 
-  /// Nothing: not now. Else: tell it; the value is how often it was kept back since the last time.
+  /// Returns std::nullopt if the text must be withheld. Otherwise returns how often it was withheld
+  /// since the last time.
   std::optional<std::uint64_t> allow(const std::string& thing, Time now);
 
  private:

@@ -22,8 +22,8 @@ constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
 constexpr std::size_t longest_sender = 64;
 constexpr std::size_t longest_service = 32;
-constexpr Time remembered = 10s;   // from the answer on
-constexpr Time echo_limit = 50ms;  // between the ways of one message
+constexpr Time remembered = 10s;   // time after the answer
+constexpr Time echo_limit = 50ms;  // time between the arrivals of one message by two ways
 
 bool same_asker(const request_t& a, const request_t& b) {
   return a.id == b.id && a.sender == b.sender;
@@ -137,7 +137,7 @@ std::optional<std::string> Requests::oversize(const request_t& message) {
 bool Requests::is_echo(const request_t& message, Time now) {
   while (!heard_.empty() && now - heard_.front().when > echo_limit) heard_.pop_front();
   const auto same = [&](const Heard& heard) { return same_message(heard.message, message); };
-  if (oversize(message)) return false;  // it will be refused
+  if (oversize(message)) return false;  // the caller will refuse it
   if (std::ranges::any_of(heard_, same)) return true;
   if (heard_.size() == most_heard) heard_.pop_front();
   heard_.push_back({message, now});
@@ -154,7 +154,7 @@ void Requests::forget(Time now) {
   if (answered != known_.end()) known_.erase(answered);
 }
 
-/// What is on its way is answered once.
+/// Answers a known request again. A request in progress gets no second answer.
 std::optional<reply_t> Requests::take_again(const Known& known, const request_t& message) const {
   if (known.answered == never) return std::nullopt;
   if (same_message(known.message, message)) return known.reply;
@@ -219,7 +219,7 @@ std::expected<Request, std::string> Requests::translate_lss(const request_t& mes
   return request;
 }
 
-/// `index` is the number of the PDO.
+/// `index` of the message is the number of the PDO.
 std::expected<Request, std::string> Requests::translate_pdo(const request_t& message) const {
   const auto node = static_cast<std::uint8_t>(message.node_id);
   if (node_name(plan_, node).empty()) {

@@ -20,36 +20,37 @@ struct RequestsOptions {
   bool observe = false;
 };
 
-/// request_t -> Request, Reply -> reply_t: each request gets exactly one answer, and is done once
-/// however often it is sent. One that is sent again within some seconds of its answer gets that
-/// answer again; another one of the same sender and id is refused for so long. One that was refused
-/// may be sent again at once. Front thread.
+/// Turns request_t messages into Requests, and Replies into reply_t messages. Each request gets
+/// exactly one answer and is executed once, however often it is sent. A request that is repeated
+/// within some seconds of its answer gets that answer again. Within the same time, another request
+/// with the same sender and id is refused. A refused request may be sent again at once. Front
+/// thread.
 class Requests {
  public:
-  /// `submit` hands a request to the bus thread; false: it has too many.
+  /// `submit` hands a request to the bus thread; it returns false if the bus thread has too many.
   Requests(const BusPlan& plan, RequestsOptions options,
            std::function<bool(const Request&)> submit);
 
-  /// Why a message is refused before anything of it is kept: a text in it is too long.
+  /// Returns why a message is refused before any of it is stored: a text in it is too long.
   static std::optional<std::string> oversize(const request_t& message);
 
-  /// True: the very same message came a moment ago, by another way (udpm and the hub). Once for
-  /// each message, before anything else is done with it.
+  /// Returns true if the very same message came a moment ago by another way (udpm and the hub).
+  /// Must be called once per message, before anything else is done with it.
   bool is_echo(const request_t& message, Time now);
-  /// An answer that can be given at once; none: it comes later.
+  /// Returns an answer that is available at once, or std::nullopt if the answer comes later.
   std::optional<reply_t> take(const request_t& message, Time now);
-  /// The answer to whoever asked; none: nobody did.
-  /// `axes`: a line for each axis that the newest stop did not confirm.
+  /// Returns the answer for the requester, or std::nullopt if nobody made the request. `axes` has
+  /// one line for each axis that the newest stop did not confirm.
   std::optional<reply_t> finish(const Reply& reply, Time now, const std::string& axes = {});
 
   std::size_t pending() const noexcept { return pending_.size(); }
 
  private:
-  /// A request that is done or being done.
+  /// A request that is complete or in progress.
   struct Known {
     request_t message;
     Time answered = never;
-    reply_t reply{};  // when it is
+    reply_t reply{};  // valid once answered
   };
   struct Heard {
     request_t message;
@@ -79,10 +80,10 @@ class Requests {
   std::deque<Heard> heard_;
 };
 
-/// Why an LSS request failed, in words: of the last of its results.
+/// Returns why an LSS request failed, from the last of its results.
 std::string lss_fault_text(const Reply& reply);
 
-/// Why an SDO transfer or a command failed, in words; empty where it did not.
+/// Returns why an SDO transfer or a command failed, in words; empty if it did not fail.
 std::string fault_text(SdoFault fault, std::uint32_t abort_code);
 
 }  // namespace takt

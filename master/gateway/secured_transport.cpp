@@ -30,7 +30,7 @@ SecuredTransport::SecuredTransport(Transport& inner, const Clocks& clocks, Watch
   use_keys();
 }
 
-/// The first key of the file signs.
+/// The first key of the file signs messages.
 void SecuredTransport::use_keys() {
   guard_.set_keys(keys_.keys());
   if (options_.signs) seal_.emplace(keys_.keys().front(), random_number());
@@ -89,7 +89,8 @@ void SecuredTransport::take(std::string_view channel, Bytes data, const MessageH
   handler(channel, data);
 }
 
-/// The very same envelope came a moment ago by another way (udpm and the hub): not worth telling.
+/// Returns true if the same envelope came a moment ago by another way (udpm and the hub). Such an
+/// envelope needs no report.
 bool SecuredTransport::is_echo(Bytes envelope, Time now) {
   while (!opened_.empty() && now - opened_.front().when > echo_limit) opened_.pop_front();
   if (envelope.size() < mac_bytes) return false;

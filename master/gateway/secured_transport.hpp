@@ -13,20 +13,20 @@
 
 namespace takt {
 
-/// The daemon's transport where keys are configured: commands, requests and transfers come through
-/// in envelopes only. The key file is read again within a second when it changes. One thread.
+/// The transport of a daemon with keys: commands, requests and transfers are accepted in envelopes
+/// only. It reads a changed key file again within a second. One thread.
 class SecuredTransport final : public Transport {
  public:
   struct Options {
     std::string bus;
     std::int64_t session = 0;
-    std::vector<std::string> guarded;  ///< channels that need an envelope
-    bool signs = false;  ///< what is published goes out on BUS_SIGNED as well, in envelopes
-    /// Hears what was refused, at most once a second for the same reason.
+    std::vector<std::string> guarded;  ///< channels that require an envelope
+    bool signs = false;  ///< published messages also go out on BUS_SIGNED, in envelopes
+    /// Receives the reasons of refusals, at most once per second for the same reason.
     std::function<void(const std::string& sentence)> say;
   };
 
-  /// `inner` has BUS_SECURED subscribed; it and `clocks` outlive this.
+  /// `inner` must have subscribed BUS_SECURED. `inner` and `clocks` must outlive this object.
   SecuredTransport(Transport& inner, const Clocks& clocks, WatchedKeyFile keys, Options options);
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
@@ -53,7 +53,7 @@ class SecuredTransport final : public Transport {
   Options options_;
   std::string secured_channel_;
   std::string signed_channel_;
-  std::optional<EnvelopeSeal> seal_;  // none: nothing is signed
+  std::optional<EnvelopeSeal> seal_;  // empty if nothing is signed
   EnvelopeGuard guard_;
   RateLimit told_{std::chrono::seconds{1}};
   Time next_look_{};
@@ -61,7 +61,7 @@ class SecuredTransport final : public Transport {
     Octets mac;
     Time when{};
   };
-  std::deque<Opened> opened_;  // of the last 50 ms
+  std::deque<Opened> opened_;  // opened within the last 50 ms
 };
 
 }  // namespace takt

@@ -13,18 +13,18 @@
 
 namespace takt {
 
-/// What status_t tells beyond the bus thread's own counters.
+/// Parts of status_t that do not come from the bus thread.
 struct GatewayStatus {
   std::uint64_t image_overruns = 0;
   std::uint64_t event_overruns = 0;
   std::uint64_t commands_taken = 0;
   std::uint64_t commands_refused = 0;
-  std::vector<std::string> holders;  ///< per node: who commands its outputs
+  std::vector<std::string> holders;  ///< per node: the sender that commands its outputs
   const EmcyHistory* emcys = nullptr;
-  std::string stop_text{};  ///< a line for each axis that the ordered stop did not confirm
+  std::string stop_text{};  ///< one line for each axis that the ordered stop did not confirm
 };
 
-/// Share of time that the wire is busy, over about the last second.
+/// Share of the time in which the wire is busy, over about the last second.
 class LoadMeter {
  public:
   explicit LoadMeter(std::uint32_t bitrate) : bitrate_{bitrate} {}
@@ -39,14 +39,14 @@ class LoadMeter {
   std::deque<Sample> samples_;
 };
 
-/// Fixed part of status_t.
+/// The fixed part of status_t.
 struct StatusIdentity {
   std::int64_t session = 0;
   std::string interface;
   std::string realtime;
 };
 
-/// The state of the bus and of its nodes; a few nodes a message.
+/// The state of the bus and of its nodes, with a few nodes per message.
 class StatusMessages {
  public:
   StatusMessages(const BusPlan& plan, StatusIdentity identity);
@@ -68,7 +68,7 @@ histogram_t histogram_message(std::string name, const HistogramSnapshot& times);
 class TimingMessages {
  public:
   explicit TimingMessages(std::int64_t session) : session_{session} {}
-  /// `sync_to_lcm`: from SYNC until the front thread has handed the image to LCM.
+  /// `sync_to_lcm` measures from SYNC until the front thread has handed the image to LCM.
   timing_t fill(const TimingHistograms& timing, const Histogram& sync_to_lcm, std::uint64_t cycle);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// Who makes SYNC, and whether the cycle keeps to it.
+/// Reports the source of SYNC and whether the cycle follows it.
 sync_status_t sync_message(const BusPlan& plan, const BusStatus& bus);
 
 }  // namespace takt

@@ -9,13 +9,13 @@
 
 namespace takt {
 
-/// A socket that this machine's programs can connect to. Its accept() doesn't wait.
+/// A listening socket for programs of this machine. Its accept() does not wait.
 struct LoopbackListener {
   FileDescriptor socket;
   std::uint16_t port = 0;
 };
 
-/// Port 0: any free one. An error is an errno.
+/// Listens on loopback; port 0 selects any free port. The error is an errno.
 inline std::expected<LoopbackListener, int> listen_on_loopback(std::uint16_t port) noexcept {
   LoopbackListener listener{
       .socket = FileDescriptor{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)}};
@@ -37,7 +37,7 @@ inline std::expected<LoopbackListener, int> listen_on_loopback(std::uint16_t por
   return listener;
 }
 
-/// The call that failed with this would have waited, and nothing is wrong.
+/// Returns true if a call failed with `error` only because it would have had to wait.
 constexpr bool would_wait(int error) noexcept {
   return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
 }

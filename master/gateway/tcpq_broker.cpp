@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-constexpr int most_accepts = 16;  // in one round
+constexpr int most_accepts = 16;  // connections accepted in one round
 
 }  // namespace
 
@@ -73,9 +73,10 @@ void TcpqBroker::accept_clients(Time now) {
   }
 }
 
-/// Connections that have asked for nothing give way to a new one, the oldest first; then, one in a
-/// second, the one that has sent nothing for the longest time. LCM's clients connect again, so that
-/// in the end everybody has a turn; a program that commands is never the one that is idle.
+/// Makes room for a new connection. First, the oldest connection that has asked for nothing gives
+/// way. If there is none, the connection that has sent nothing for the longest time gives way, at
+/// most one per second. LCM's clients reconnect, so that in the end everybody has a turn. A program
+/// that sends commands is never the idle one.
 bool TcpqBroker::make_room(Time now) {
   const std::string full = "there are " + std::to_string(most_clients) + " connections already";
   auto unasked = std::ranges::find_if(
@@ -96,7 +97,8 @@ bool TcpqBroker::make_room(Time now) {
   return true;
 }
 
-/// The one that sent something the longest time ago; null: all of them work, or it is too soon.
+/// Returns the connection whose last message is the oldest. Returns nullptr if all of them are
+/// active, or if another one gave way less than displacing_pause ago.
 TcpqBroker::Client* TcpqBroker::idle_client(Time now) {
   if (now - displaced_ < displacing_pause) return nullptr;
   const auto idle =
@@ -111,7 +113,8 @@ void TcpqBroker::close_unopened(Time now) {
   }
 }
 
-/// What it does not read would wait for it for ever, up to a megabyte.
+/// Closes connections that do not read. Their unsent messages, up to a megabyte each, would wait
+/// for ever.
 void TcpqBroker::close_unread(Time now) {
   for (const auto& client : clients_) {
     const bool reads =
@@ -157,7 +160,7 @@ void TcpqBroker::take(Client& client, const tcpq::Message& message, Time now,
   }
 }
 
-/// The round begins with another client each time that the budget ends before the clients do.
+/// If the budget ends before all clients are served, the next round begins with the next client.
 void TcpqBroker::receive(Time now, const MessageHandler& handler) {
   const TimeBudget budget{options_.clock, front_budget::broker};
   const std::size_t count = clients_.size();

@@ -15,28 +15,29 @@
 
 namespace takt {
 
-/// LCM's tcpq:// server on loopback: programs that set `LCM_DEFAULT_URL=tcpq://127.0.0.1:7700`
-/// exchange messages through it without a multicast route. What its owner publishes goes to the
-/// clients, what clients publish goes to the owner and to the other clients. Connections, patterns,
-/// bytes and the time of each serve() are bounded.
+/// A server of LCM's tcpq:// protocol on loopback. Programs that set
+/// `LCM_DEFAULT_URL=tcpq://127.0.0.1:7700` exchange messages through it without a multicast route.
+/// Messages of its owner go to the clients, and messages of a client go to the owner and to the
+/// other clients. Connections, patterns, bytes and the time of each serve() are bounded.
 class TcpqBroker final : public Transport {
  public:
   static constexpr std::size_t most_clients = 64;
-  static constexpr std::size_t most_characters = 32768;  ///< of the patterns of all connections
-  static constexpr std::size_t longest_name = 63;        ///< of a channel, as LCM's own
+  /// Total of the patterns of all connections.
+  static constexpr std::size_t most_characters = 32768;
+  static constexpr std::size_t longest_name = 63;  ///< longest channel name, as in LCM
   static constexpr Time opening_limit = std::chrono::seconds{2};
   static constexpr Time reading_limit = std::chrono::seconds{10};  ///< without reading anything
-  /// Where there is no place left, a connection that has sent nothing for so long gives way.
+  /// If all places are taken, a connection that has sent nothing for this time gives way.
   static constexpr Time idle_limit = std::chrono::seconds{10};
   static constexpr Time displacing_pause = std::chrono::seconds{1};
 
   struct Options {
     FrontClock clock = monotonic_now;
-    /// Hears why a connection is closed, at most once in 10 s for the same reason.
+    /// Receives the reason for closing a connection, at most once in 10 s for the same reason.
     std::function<void(const std::string& sentence)> say = [](const std::string&) {};
   };
 
-  /// Port 0: any free one. An error is an errno; EADDRINUSE: there is a broker already.
+  /// Port 0 selects any free port. The error is an errno; EADDRINUSE means that the port is taken.
   static std::expected<std::unique_ptr<TcpqBroker>, int> listen(std::uint16_t port,
                                                                 Options options = defaults());
 
@@ -55,10 +56,10 @@ class TcpqBroker final : public Transport {
   struct Client {
     tcpq::Connection connection;
     ChannelPatterns patterns{};
-    Time since{};            // when it connected
-    Time heard{};            // when it sent a message
-    Time read{};             // when it read, or there was nothing to read
-    std::uint64_t taken{};   // by then
+    Time since{};            // time of the connection
+    Time heard{};            // time of its newest message
+    Time read{};             // last time at which it read, or had nothing to read
+    std::uint64_t taken{};   // bytes that the kernel had taken by then
     bool has_asked = false;  // it has subscribed or published
   };
 
@@ -81,8 +82,8 @@ class TcpqBroker final : public Transport {
   std::uint16_t port_;
   Options options_;
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
-  std::size_t turn_ = 0;                          // of the client that is served first
-  Time displaced_ = -displacing_pause;            // when a connection last gave way that had asked
+  std::size_t turn_ = 0;                          // index of the client served first
+  Time displaced_ = -displacing_pause;            // when a connection that had asked last gave way
   ChannelPatterns own_;
   RateLimit told_{std::chrono::seconds{10}};
 };

@@ -39,7 +39,7 @@ void TcpqClient::connect() {
 }
 
 bool TcpqClient::publish(const std::string& channel, std::span<const std::byte> data) {
-  if (!connected()) return false;  // kept, it would come too late and look fresh
+  if (!connected()) return false;  // a message kept for later would arrive too late and look fresh
   const bool taken =
       connection_->queue({.type = tcpq::Type::publish, .channel = channel, .data = data});
   connection_->flush();

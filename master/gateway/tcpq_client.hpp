@@ -13,13 +13,13 @@
 
 namespace takt {
 
-/// The client side of LCM's tcpq:// protocol. Unlike LCM's own it never waits for the server and
-/// comes back by itself when the server does.
+/// A client of LCM's tcpq:// protocol. Unlike LCM's own client, it never waits for the server and
+/// reconnects by itself when the server comes back.
 class TcpqClient final : public Transport {
  public:
   TcpqClient(std::string address, std::uint16_t port, FrontClock clock = monotonic_now);
 
-  /// True once the server has answered.
+  /// Returns true once the server has answered.
   bool connected() const noexcept { return connection_ && connection_->opened(); }
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
@@ -40,7 +40,7 @@ class TcpqClient final : public Transport {
   FrontClock clock_;
 };
 
-/// Whether something that speaks tcpq:// answers there. Waits at most `limit`.
+/// Returns true if a server of the tcpq:// protocol answers at this address. Waits at most `limit`.
 bool tcpq_server_answers(const std::string& address, std::uint16_t port,
                          std::chrono::milliseconds limit);
 

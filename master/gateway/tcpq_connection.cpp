@@ -21,7 +21,7 @@ void set_option(int fd, int level, int option, int value) noexcept {
 Connection::Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic)
     : socket_{std::move(socket)}, parser_{other_magic} {
   set_option(fd(), IPPROTO_TCP, TCP_NODELAY, 1);
-  // A stopped reader should find seconds, not minutes, of old messages when it goes on.
+  // A reader that resumes after a stop should find seconds, not minutes, of old messages.
   set_option(fd(), SOL_SOCKET, SO_SNDBUF, 128 * 1024);
   append_opening(unsent_, own_magic);
 }
@@ -58,8 +58,8 @@ void Connection::flush() noexcept {
 void Connection::receive(const std::function<void(const Message&)>& handler,
                          const TimeBudget& budget) {
   std::array<std::byte, 16384> chunk;
-  // LCM's client sends a message in five small pieces without TCP_NODELAY: each must be
-  // acknowledged at once, or a command takes 40 ms. The kernel forgets this option by itself.
+  // LCM's client sends a message in five small pieces without TCP_NODELAY. Each piece must be
+  // acknowledged at once, or a command takes 40 ms. The kernel resets this option by itself.
   set_option(fd(), IPPROTO_TCP, TCP_QUICKACK, 1);
   while (hand_over(handler, budget)) {
     const ssize_t size = ::recv(fd(), chunk.data(), chunk.size(), MSG_DONTWAIT);
@@ -72,7 +72,7 @@ void Connection::receive(const std::function<void(const Message&)>& handler,
   }
 }
 
-/// False: the budget ended before the messages did, or the connection is closed.
+/// Returns false if the budget ended before the messages did, or if the connection is closed.
 bool Connection::hand_over(const std::function<void(const Message&)>& handler,
                            const TimeBudget& budget) {
   unhandled_ = false;

@@ -14,7 +14,7 @@ namespace takt::tcpq {
 /// One TCP connection with bounded buffers. No call waits.
 class Connection {
  public:
-  /// Unsent bytes at most; a message that finds no room is lost as a whole.
+  /// Most unsent bytes. A message that does not fit is lost as a whole.
   static constexpr std::size_t unsent_limit = 1 << 20;
 
   Connection(FileDescriptor socket, std::uint32_t own_magic, std::uint32_t other_magic);
@@ -24,20 +24,20 @@ class Connection {
   bool opened() const noexcept { return parser_.opened(); }
   bool wants_to_write() const noexcept { return sent_ < unsent_.size(); }
   std::uint64_t lost() const noexcept { return lost_; }
-  /// Bytes that the kernel has taken since the beginning.
+  /// Bytes that the kernel has taken since the start.
   std::uint64_t taken() const noexcept { return taken_; }
 
-  /// False: no room, the message is lost.
+  /// Returns false if there is no room; the message is lost.
   bool queue(const Message& message);
   /// Sends as much as the kernel takes.
   void flush() noexcept;
-  /// Reads, and hands over messages, until nothing is left or the budget is used up. Each call
-  /// makes progress, however small the budget is.
+  /// Reads and hands over messages until nothing is left or the budget is used up. Each call makes
+  /// progress, however small the budget is.
   void receive(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
-  /// Messages were read that the last receive() had no time to hand over.
+  /// Returns true if the last receive() read messages that it had no time to hand over.
   bool has_unhandled() const noexcept { return unhandled_; }
-  /// What poll() has to watch beside POLLIN. Messages that wait here for the next round end its
-  /// wait by POLLOUT, since nearly every socket can be written to.
+  /// Events for poll() in addition to POLLIN. Messages that wait here for the next round end its
+  /// wait by POLLOUT, because nearly every socket is writable.
   short other_reason_to_wake() const noexcept {
     return wants_to_write() || unhandled_ ? POLLOUT : 0;
   }
@@ -49,7 +49,7 @@ class Connection {
   FileDescriptor socket_;
   Parser parser_;
   std::vector<std::byte> unsent_;
-  std::size_t sent_ = 0;  // of unsent_
+  std::size_t sent_ = 0;  // bytes of unsent_ already sent
   std::uint64_t lost_ = 0;
   std::uint64_t taken_ = 0;
   bool unhandled_ = false;

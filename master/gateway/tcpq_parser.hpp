@@ -8,16 +8,17 @@
 
 namespace takt {
 
-/// LCM's tcpq:// protocol, version 1.0. All numbers are big endian, 32 bits. Both sides open with
-/// a magic number and the version; then messages: type, length, channel, and for `publish` again
-/// length, data. A server sends `publish` only.
+/// LCM's tcpq:// protocol, version 1.0. All numbers have 32 bits and are big endian. Each side
+/// opens with a magic number and the version. Messages follow: type, length, channel, and for
+/// `publish` another length and the data. A server sends only `publish`.
 namespace tcpq {
 
 inline constexpr std::uint32_t magic_server = 0x2876'17FA;
 inline constexpr std::uint32_t magic_client = 0x2876'17FB;
 inline constexpr std::uint32_t version = 0x0100;
 inline constexpr std::uint16_t default_port = 7700;
-inline constexpr std::size_t longest_channel = 255;  ///< LCM's channels have 63, patterns more
+/// LCM channels have at most 63 characters; patterns may be longer.
+inline constexpr std::size_t longest_channel = 255;
 inline constexpr std::size_t largest_data = 1 << 20;
 
 enum class Type : std::uint32_t { publish = 1, subscribe = 2, unsubscribe = 3 };
@@ -30,19 +31,20 @@ struct Message {
 
 /// Appends one message.
 void append(std::vector<std::byte>& out, const Message& message);
-/// Appends the opening of a side.
+/// Appends the opening of one side.
 void append_opening(std::vector<std::byte>& out, std::uint32_t magic);
 
-/// Cuts the stream of the other side into messages. Holds at most one message and what one read
-/// gave.
+/// Splits the stream of the other side into messages. Holds at most one message and the bytes of
+/// one read.
 class Parser {
  public:
   explicit Parser(std::uint32_t expected_magic) noexcept : expected_magic_{expected_magic} {}
 
   void feed(std::span<const std::byte> bytes);
-  /// The next whole message; it points into the parser and is good until the next call.
+  /// Returns the next whole message. It points into the parser and is valid until the next call.
   std::optional<Message> next();
-  /// The other side does not speak this protocol, or a message is larger than is allowed.
+  /// Returns true if the other side does not speak this protocol or sent a message above the size
+  /// limit.
   bool broken() const noexcept { return broken_; }
   bool opened() const noexcept { return opened_; }
 
@@ -53,7 +55,7 @@ class Parser {
 
   std::uint32_t expected_magic_;
   std::vector<std::byte> buffer_;
-  std::size_t start_ = 0;  // of what has not been taken yet
+  std::size_t start_ = 0;  // begin of the bytes that are not yet taken
   bool opened_ = false;
   bool broken_ = false;
 };

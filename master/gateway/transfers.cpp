@@ -12,10 +12,10 @@
 namespace takt {
 namespace {
 
-/// The ids of requests made here have this bit set; the ids of Requests do not.
+/// Requests made here have this bit in their ids; those of Requests do not.
 constexpr std::uint64_t transfer_mark = std::uint64_t{1} << 63;
 constexpr Time progress_period = std::chrono::milliseconds{500};
-/// So many bytes are added to the buffer of an upload in one step, before the request is submitted.
+/// Bytes by which one step enlarges the buffer of an upload before the request is submitted.
 constexpr std::size_t room_step = 64U << 10;
 
 }  // namespace
@@ -114,8 +114,7 @@ std::expected<Request, std::string> Transfers::translate(const transfer_t& messa
   return request;
 }
 
-/// Takes parts only in order. The state that is sent after each part says where the sender has to
-/// go on.
+/// Takes parts only in order. The state sent after each part tells the sender where to continue.
 void Transfers::fill(Job& job, const transfer_t& message) {
   const std::size_t size = message.data.size();
   if (job.stage != Stage::filling || job.submitted) return;
@@ -126,13 +125,13 @@ void Transfers::fill(Job& job, const transfer_t& message) {
   if (job.received == job.total) submit(job);
 }
 
-/// Where the bus thread has no room, on_time() tries again.
+/// Submits the request. If the bus thread has no room, on_time() tries again.
 void Transfers::submit(Job& job) {
   job.submitted = sinks_.submit(job.request);
   job.stage = Stage::running;
 }
 
-/// on_time() sends these parts. They replace the parts that an earlier message asked for.
+/// Selects the parts that on_time() sends. They replace the parts of an earlier "more" message.
 void Transfers::ask_for_parts(Job& job, const transfer_t& message) {
   const std::size_t total = job.buffer->data.size();
   if (message.offset < 0 || static_cast<std::uint64_t>(message.offset) > total) {
@@ -216,8 +215,8 @@ void Transfers::watch(Job& job, Time now) {
   sinks_.state(state_of(job));
 }
 
-/// Makes room for a file that will be read, hands a request to the bus thread, or sends a part.
-/// Returns false where there is nothing to do now.
+/// Enlarges the buffer for an upload, hands a request to the bus thread, or sends a part. Returns
+/// false if there is nothing to do now.
 bool Transfers::step(Job& job) {
   if (job.stage == Stage::done && job.part_begin < job.part_end) {
     send_part(job);
@@ -241,7 +240,7 @@ transfer_state_t Transfers::state_of(const Job& job) const {
   const bool has_all = job.request.kind == RequestKind::sdo_download || job.stage == Stage::done;
   const std::size_t size = job.stage == Stage::done
                                ? job.buffer->data.size()
-                               : job.total;  // its length is known once it is done
+                               : job.total;  // the length of an upload is known once it is done
   state.total = has_all ? static_cast<std::int64_t>(size)
                         : job.buffer->announced.load(std::memory_order_relaxed);
   state.received = static_cast<std::int64_t>(job.received);

@@ -26,7 +26,8 @@ void put(std::vector<std::byte>& out, T value) {
   }
 }
 
-/// Takes values from the front of a message; fails for good at its end.
+/// Takes values from the front of a message. After the end of the message, every further call
+/// fails.
 class Taker {
  public:
   explicit Taker(Bytes bytes) : bytes_{bytes} {}
@@ -48,7 +49,7 @@ class Taker {
     if (!text.empty()) text.pop_back();
     return text;
   }
-  /// Everything was there, and nothing is left.
+  /// Returns true if every value was present and no bytes are left.
   bool whole() const noexcept { return good_ && bytes_.empty(); }
 
  private:
@@ -66,7 +67,7 @@ class Taker {
   bool good_ = true;
 };
 
-/// A number of the message: an integer as it is, SI of a float or double.
+/// A number of the message: integers as they are, floats and doubles in SI units.
 struct Number {
   std::int64_t integer = 0;
   std::optional<double> real{};
@@ -92,7 +93,7 @@ Number take_number(Taker& from, LcmPrimitive type) {
   return {};
 }
 
-/// The fields `instance` and `release` came with schema 2.
+/// Schema 2 has added the fields `instance` and `release`.
 std::uint64_t fingerprint_of_schema_1_of(TypedMessage command) {
   std::erase_if(command.fields, [](const TypedField& field) {
     return !field.signal && (field.name == "instance" || field.name == "release");

@@ -16,28 +16,28 @@
 
 namespace takt {
 
-/// BUS_NODE_STATE and BUS_NODE_COMMAND: the image and set-points of one node each, in the types of
-/// typed_messages(), encoded as lcm-gen's code would. Front thread.
+/// BUS_NODE_STATE and BUS_NODE_COMMAND: the image and the set-points of one node each, in the types
+/// of typed_messages() and with the encoding of lcm-gen's code. Front thread.
 class TypedChannels {
  public:
   TypedChannels(const BusPlan& plan, std::int64_t session);
 
-  /// The state of every node that has inputs, where somebody hears it. Allocates nothing.
+  /// Publishes the state of every node that has inputs, if anybody receives it. Allocates nothing.
   void publish(const ImageView& image, Time wall_minus_monotonic, Transport& transport);
 
-  /// A message of a command channel as a command_t; outputs that are NaN are left as they are.
-  /// None: the channel is none of these.
+  /// Converts a message of a command channel to a command_t and leaves out outputs that are NaN.
+  /// Returns std::nullopt if the channel is not a command channel.
   std::optional<std::expected<command_t, DecodeFault>> command(std::string_view channel,
                                                                Bytes data) const;
 
-  /// Channels of commands.
+  /// The command channels.
   static std::vector<std::string> heard(const BusPlan& plan);
 
  private:
   struct Type {
     TypedMessage message;
     std::uint64_t fingerprint = 0;
-    std::uint64_t fingerprint_of_schema_1 = 0;  // of commands
+    std::uint64_t fingerprint_of_schema_1 = 0;  // for commands
   };
 
   void encode(const Type& state, const ImageView& image, Time wall_minus_monotonic);

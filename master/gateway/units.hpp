@@ -9,7 +9,7 @@
 
 namespace takt {
 
-/// How one value of the image is to be read.
+/// How to interpret one value of the image.
 struct ValueFormat {
   DataType type = DataType::integer32;
   std::uint8_t bits = 32;
@@ -17,7 +17,7 @@ struct ValueFormat {
   double offset = 0.0;
 };
 
-/// Raw image values to SI and back, all at once.
+/// Converts raw image values to SI units, all at once, and back.
 class Units {
  public:
   Units() = default;
@@ -26,25 +26,26 @@ class Units {
   std::size_t size() const noexcept { return formats_.size(); }
   const ValueFormat& format(std::size_t signal) const noexcept { return formats_[signal]; }
 
-  /// All values; `raw` and `si` have size() elements.
+  /// Converts all values; `raw` and `si` have size() elements.
   void to_si(std::span<const std::int64_t> raw, Eigen::Ref<Eigen::ArrayXd> si) const;
 
-  /// One value, rounded to the nearest raw value and held inside what its bits can carry. NaN
-  /// gives the raw value of 0 SI.
+  /// Converts one value: rounds to the nearest raw value and limits it to the range of the signal's
+  /// bits. NaN gives the raw value of 0 SI.
   std::int64_t to_raw(std::size_t signal, double si) const;
 
-  /// The same for a number from outside, not held inside anything: what the signal's bits can't
-  /// carry stays too large for them. None: infinite, or more than 64 bits.
+  /// Converts a number from outside without limiting it: a value too large for the signal's bits
+  /// stays too large. Returns std::nullopt if the number is not finite or needs more than 64 bits.
   std::optional<std::int64_t> raw_of(std::size_t signal, double si) const;
 
  private:
   std::vector<ValueFormat> formats_;
   Eigen::ArrayXd scale_;
   Eigen::ArrayXd offset_;
-  std::vector<std::size_t> patterns_;  // signals whose int64_t is a bit pattern: REAL, unsigned 64
+  // Signals whose int64_t is a bit pattern: REAL and UNSIGNED64.
+  std::vector<std::size_t> patterns_;
 };
 
-/// The number that an image value stands for, without scale.
+/// Returns the number that an image value represents, without scale.
 double number_of(DataType type, std::int64_t raw) noexcept;
 
 /// Smallest and largest raw value of `bits` bits.
@@ -54,7 +55,7 @@ struct RawRange {
 };
 RawRange raw_range(DataType type, unsigned bits) noexcept;
 
-/// Whether `raw` can be sent as `bits` bits of `type` without loss.
+/// Returns true if `raw` can be sent as `bits` bits of `type` without loss.
 bool fits(DataType type, unsigned bits, std::int64_t raw) noexcept;
 
 }  // namespace takt

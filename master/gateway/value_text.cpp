@@ -107,7 +107,7 @@ std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
   const std::uint64_t limit = is_signed(type)
                                   ? (std::uint64_t{1} << (bits - 1)) - (negative ? 0 : 1)
                                   : (negative ? 0 : ~std::uint64_t{0} >> (64 - bits));
-  // 0xFFFE for an INTEGER16 is a bit pattern that people write.
+  // Users write 0xFFFE for an INTEGER16 as a bit pattern.
   const bool pattern = !negative && text.starts_with("0x") && bits < 64 && *magnitude >> bits == 0;
   if (*magnitude > limit && !pattern) {
     return std::unexpected{text + " does not fit " + std::string{name(type)}};

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// CLOCK_MONOTONIC, the time of everything inside takt. A vDSO read, no system call.
+/// CLOCK_MONOTONIC, the time base of takt. This reads the vDSO and makes no system call.
 inline Time monotonic_now() noexcept {
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -18,15 +18,15 @@ inline Time realtime_now() noexcept {
   return std::chrono::seconds{t.tv_sec} + Time{t.tv_nsec};
 }
 
-/// CLOCK_REALTIME minus CLOCK_MONOTONIC now. Being preempted between the two reads is noticed and
-/// the reading repeated, so the error stays in the order of a microsecond.
+/// Returns CLOCK_REALTIME minus CLOCK_MONOTONIC. The function detects preemption between the two
+/// reads and repeats the reading, so the error stays in the order of a microsecond.
 Time realtime_offset() noexcept;
 
-/// One clock_nanosleep to an absolute monotonic time; never early.
+/// Sleeps with clock_nanosleep until an absolute monotonic time; never returns early.
 void sleep_until(Time until) noexcept;
 
-/// Sleeps to `until - spin` and burns the rest. Late only by what the scheduler takes beyond
-/// `spin`.
+/// Sleeps until `until - spin` and spins for the rest. The return is late only by the time that the
+/// scheduler takes beyond `spin`.
 void sleep_precisely_until(Time until, Time spin) noexcept;
 
 constexpr timespec to_timespec(Time time) noexcept {

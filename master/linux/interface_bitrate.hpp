@@ -5,13 +5,15 @@
 
 namespace takt {
 
-/// Whether set_interface_bitrate() would be allowed to: `ip link` and root (CAP_NET_ADMIN). Empty:
-/// yes, or the interface has no bit rate. Else a sentence. Changes nothing.
+/// Checks whether set_interface_bitrate() would be allowed: it needs `ip link` and root
+/// (CAP_NET_ADMIN). Returns an empty string if it is allowed or the interface has no bit rate,
+/// otherwise a sentence with the reason. Changes nothing.
 std::string interface_bitrate_trouble(const std::string& bus);
 std::string interface_bitrate_trouble(const CanLink& link);
 
-/// Gives a CAN interface another bit rate (`ip link`, needs root). What has none, a virtual
-/// interface or a unix bus, is left as it is. Empty, or a sentence with the commands to type.
+/// Sets the bit rate of a CAN interface (`ip link`, needs root). Leaves interfaces without a bit
+/// rate unchanged (virtual interfaces and unix buses). Returns an empty string, or a sentence with
+/// the commands to type.
 std::string set_interface_bitrate(const std::string& bus, int bitrate);
 
 }  // namespace takt

@@ -9,45 +9,48 @@
 
 namespace takt {
 
-/// What the machine granted of the real time that was asked for.
+/// What the machine granted of the requested real-time properties.
 struct RtReport {
   RtMode mode = RtMode::attempt;
-  int priority = 0;                    ///< of SCHED_FIFO; 0: ordinary scheduling
-  std::optional<int> cpu{};            ///< pinned to it
-  bool memory_locked = false;          ///< now and in future
-  bool preempt_rt = false;             ///< the kernel is a PREEMPT_RT one
-  std::vector<std::string> missing{};  ///< each: what was refused, why, and what grants it
+  int priority = 0;            ///< SCHED_FIFO priority; 0 means ordinary scheduling
+  std::optional<int> cpu{};    ///< the CPU that the thread is pinned to
+  bool memory_locked = false;  ///< current and future memory is locked
+  bool preempt_rt = false;     ///< the kernel is a PREEMPT_RT one
+  /// One entry per refusal: what was refused, why, and what grants it.
+  std::vector<std::string> missing{};
 
-  /// Everything asked for was granted. (An ordinary kernel is reported but refuses nothing.)
+  /// Returns true if every request was granted. (An ordinary kernel is reported, but refuses
+  /// nothing.)
   bool complete() const noexcept { return missing.empty(); }
-  /// The thread may start: not under `enforce` with something missing.
+  /// Returns true if the thread may start; false under `enforce` if something is missing.
   bool may_run() const noexcept { return mode != RtMode::enforce || complete(); }
 };
 
-/// `SCHED_FIFO 80 on cpu 1, memory locked, kernel PREEMPT_RT: no; missing: ...`. One line.
+/// Returns one line, such as `SCHED_FIFO 80 on cpu 1, memory locked, kernel PREEMPT_RT: no;
+/// missing: ...`.
 std::string to_string(const RtReport& report);
 
-/// Gives the calling thread what `options` ask for: SCHED_FIFO, one CPU, locked memory (of the
-/// whole process), its stack touched, no timer slack. Never fails: the report says what was
-/// refused.
+/// Applies `options` to the calling thread: SCHED_FIFO, one CPU, locked memory (of the whole
+/// process), a touched stack and no timer slack. Never fails: the report says what was refused.
 RtReport apply_realtime(const RealtimeOptions& options);
 
-/// Lets the calling thread run before ordinary ones: nice -20, for the front thread. Unlike
-/// SCHED_FIFO that leaves some time to everybody else, however much work comes from outside.
-/// Threads that it starts are ordinary ones. False: the machine does not allow it (RLIMIT_NICE).
+/// Gives the calling thread precedence over ordinary ones (nice -20), for the front thread. Unlike
+/// SCHED_FIFO, this leaves some time to all other threads, however much work comes from outside.
+/// Threads that the calling thread starts are ordinary ones. Returns false if the machine does not
+/// allow it (RLIMIT_NICE).
 bool prefer_this_thread() noexcept;
 
-/// Makes the heap keep what it has (no trimming, no mmap of single blocks) and touches `bytes` of
-/// it, so that what is allocated later brings no page fault. Once, before the threads start.
+/// Makes the heap keep its memory (no trimming, no mmap of single blocks) and touches `bytes` of
+/// it, so that later allocations cause no page fault. To be called once, before the threads start.
 void prefault_heap(std::size_t bytes);
 
-/// A thread with real time applied before its body runs. Joins when destroyed: the owner makes the
-/// body return first.
+/// A thread with real-time properties applied before its body runs. The destructor joins, so the
+/// owner must make the body return first.
 class RtThread {
  public:
   RtThread() = default;
-  /// Returns when the report is known. The body runs only where report().may_run(). `name` is what
-  /// `ps -L` shows, at most 15 characters.
+  /// Returns when the report is known. The body runs only if report().may_run(). `name` appears in
+  /// `ps -L` and has at most 15 characters.
   RtThread(const RealtimeOptions& options, const char* name, std::function<void()> body);
 
   const RtReport& report() const noexcept { return report_; }

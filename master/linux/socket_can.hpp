@@ -17,21 +17,22 @@ namespace takt {
 struct SocketCanOptions {
   std::string interface;
   std::vector<can_filter> filters;  ///< at most max_kernel_filters; see filters_for
-  /// Own frames of this identifier are echoed by the kernel when they were on the wire; the newest
-  /// echo is news().last_sync_echo. Only identifiers that pass `filters` are echoed.
+  /// The kernel echoes own frames with this identifier when they were on the wire;
+  /// news().last_sync_echo is the newest echo. The kernel echoes only identifiers that pass
+  /// `filters`.
   std::optional<CobId> sync_cob_id{};
-  Time spin{};                 ///< of sleep_precisely_until
-  SentFrames* sent = nullptr;  ///< counts what was sent, for a DiagnosticSocket
+  Time spin{};                 ///< spin time of sleep_precisely_until
+  SentFrames* sent = nullptr;  ///< counts the sent frames for a DiagnosticSocket
 };
 
-/// A CAN interface of the kernel as a Port. One system call for each sleep, wait, receive and send;
-/// more only in trouble: the rest of a batch that was cut short is tried once, a full batch in
-/// which something was for the port alone is filled up, and an interface that is gone is looked for
-/// at most every 50 ms, by name, from within receive().
+/// A CAN interface of the kernel as a Port. Each sleep, wait, receive and send makes one system
+/// call. There are more calls only in trouble: the port tries the rest of a batch that was cut
+/// short once, it refills a full batch that contained messages for the port alone, and receive()
+/// looks for a missing interface by name, at most every 50 ms.
 class SocketCanPort {
  public:
   static std::expected<SocketCanPort, BusError> open(const SocketCanOptions& options);
-  /// As the bus thread needs it: filters and SYNC from the plan.
+  /// Opens the port for the bus thread, with filters and SYNC from the plan.
   static std::expected<SocketCanPort, BusError> open(const std::string& interface,
                                                      const BusPlan& plan, Time spin,
                                                      SentFrames* sent = nullptr);

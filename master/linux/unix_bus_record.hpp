@@ -6,19 +6,21 @@
 
 namespace takt {
 
-/// One message of the bus between processes: a frame, when the hub had it, and what the receiver
-/// has lost. All processes run on one machine, so the layout is that of the memory.
+/// One message of the bus between processes: a frame, the time at which the hub had it, and the
+/// number of frames that the receiver has lost. All processes run on one machine, so the message
+/// has the layout of the memory.
 struct UnixBusRecord {
   static constexpr std::uint32_t signature = 0x544B'0001;  ///< "TK", version 1
 
   std::uint32_t magic = signature;
-  std::uint32_t can_id = 0;  ///< with the flags of SocketCAN
+  std::uint32_t can_id = 0;  ///< identifier with the flags of SocketCAN
   std::uint8_t length = 0;   ///< 0..8
-  std::uint8_t own = 0;      ///< 1: the receiver itself has sent it
+  std::uint8_t own = 0;      ///< 1 if the receiver itself has sent the frame
   std::uint16_t reserved = 0;
-  std::uint32_t lost = 0;  ///< frames that this receiver was too slow for, since it connected
+  std::uint32_t lost = 0;  ///< frames that this receiver was too slow for since it connected
   std::uint8_t data[8]{};
-  std::int64_t when = 0;  ///< monotonic ns: of the hub, between two members of the sender
+  /// Monotonic time in ns: set by the hub, or by the sender on a bus of two members.
+  std::int64_t when = 0;
 };
 static_assert(sizeof(UnixBusRecord) == 32);
 static_assert(std::is_trivially_copyable_v<UnixBusRecord>);
