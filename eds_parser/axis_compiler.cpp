@@ -185,7 +185,7 @@ class AxisCompiler {
     axis.position_window = std::max<std::int64_t>(2, std::llround(std::min(travel, most)));
   }
 
-  // Per second; Standstill::standstill_time is 50 ms.
+  // The reciprocal of Standstill::standstill_time, which is 50 ms.
   static constexpr double looks_in_a_second = 20;
 
   const BootedValues& values_;

@@ -350,7 +350,7 @@ class ValueSteps {
   const BootContext& context_;
   BootSteps& steps_;
   NetworkReport& report_;
-  std::set<ObjectKey> set_already_;  ///< by parts of the boot before this one
+  std::set<ObjectKey> set_already_;  ///< objects that earlier parts of the boot set
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ class ExpansionBudget {
   std::size_t used_ = 0;
 };
 
-/// Returns the sub 0 that such notations imply.
+/// Returns the sub 0 that a short notation with `count` sub-objects implies.
 SubObject count_sub(const Object& object, std::uint8_t count);
 
 /// Adds sub 0 and `count` copies of `pattern` to an object. Sub-objects that the object already has

@@ -24,7 +24,7 @@ struct NumberRange {
   }
 };
 
-/// The identity of a node as far as it is known before the node is asked.
+/// The identity of a node as far as it is known before the master reads it.
 struct DeviceIdentity {
   std::uint32_t vendor = 0;
   std::uint32_t product = 0;

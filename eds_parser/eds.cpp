@@ -38,7 +38,7 @@ struct Outline {
   const IniSection* tool_list = nullptr;  ///< [Tools]
   std::vector<const IniSection*> tools;   ///< [ToolN]
   std::vector<ObjectSection> links;
-  /// X and section of [MxModuleInfo].
+  /// The number x and the section of each [MxModuleInfo].
   std::vector<std::pair<std::uint16_t, const IniSection*>> modules;
 };
 

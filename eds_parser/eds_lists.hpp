@@ -19,8 +19,7 @@ bool is_count_key(std::string_view key) noexcept;
 /// Returns the key of an entry of an object list or value list as a number. Such keys are always
 /// decimal, and leading zeros do not matter.
 std::optional<std::uint32_t> entry_number(std::string_view key) noexcept;
-/// Returns true if the key is the word and a number as above, for example `Line12` with the word
-/// `line`.
+/// Returns true if the key is the word followed by a decimal number: `Line12` with the word `line`.
 bool is_numbered(std::string_view key, std::string_view lower_word) noexcept;
 /// Counts the entries whose key is a number after `lower_word`. NrOfEntries, Lines ... state this
 /// count.

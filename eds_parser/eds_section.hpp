@@ -48,7 +48,7 @@ struct SectionName {
 };
 
 SectionName classify_section(std::string_view name) noexcept;
-/// Does the same for a section of a file, in which the sub-index may be decimal.
+/// Classifies the name of a section of a file, in which the sub-index may be decimal.
 SectionName classify_section(const IniSection& section) noexcept;
 
 /// Reports that a name has a blank in it or around it.

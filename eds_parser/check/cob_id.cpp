@@ -40,7 +40,7 @@ struct Range {
   std::string_view use;
 };
 
-/// CiA 301, 7.3.5, table 40.
+/// The restricted CAN-IDs. CiA 301, 7.3.5, table 40.
 constexpr Range restricted[] = {{0x000, 0x000, "NMT"},           {0x001, 0x07F, "reserved"},
                                 {0x101, 0x180, "reserved"},      {0x581, 0x5FF, "SDO responses"},
                                 {0x601, 0x67F, "SDO requests"},  {0x6E0, 0x6FF, "reserved"},
