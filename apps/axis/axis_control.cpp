@@ -19,7 +19,7 @@ ValueFormat format_of(const signal_t& signal) {
           .offset = signal.offset};
 }
 
-/// Whether drives obey 0x607A in this mode.
+/// Returns true if drives obey the target position 0x607A in this mode.
 bool is_position_mode(std::int8_t mode) noexcept {
   return mode == std::to_underlying(DriveMode::profile_position) ||
          mode == std::to_underlying(DriveMode::cyclic_position);
@@ -31,7 +31,8 @@ bool missing(AxisSignals::Position signal, const ImageInput& input) {
   return signal && input.stale(*signal);
 }
 
-/// Whether the image shows a target position that is sent to a drive which obeys it.
+/// Returns true if the image carries a target position and a controlword that enables operation, so
+/// that the drive obeys this target.
 bool shows_set_points(const AxisSignals& signals, const ImageInput& input) {
   constexpr std::int64_t enable_operation = 0x000F;
   const std::int64_t controlword = input.values()[*signals.controlword];
@@ -91,7 +92,7 @@ void AxisControl::step(Axis& axis, const ImageInput& input) {
   axis.stale = missing(axis.signals.statusword, input) || missing(axis.signals.position, input);
   const auto mode = axis.signals.mode_display ? axis.signals.mode_display : axis.signals.mode;
   if (mode) axis.shown_mode = static_cast<std::int8_t>(input.values()[*mode]);
-  if (missing(axis.signals.statusword, input)) return;  // hold the controlword
+  if (missing(axis.signals.statusword, input)) return;  // The last controlword is held.
   axis.statusword = static_cast<std::uint16_t>(input.values()[*axis.signals.statusword]);
   const bool placed = axis.seeded || !missing(axis.signals.position, input);
   axis.controlword = axis.drive.step(axis.statusword, placed ? Enabling::goes_on : Enabling::waits);
@@ -100,7 +101,8 @@ void AxisControl::step(Axis& axis, const ImageInput& input) {
   }
 }
 
-/// In Operation enabled and in a position mode, by command and by what the image shows.
+/// Returns true if the axis is in Operation enabled and in a position mode, both as commanded and
+/// as the image shows.
 bool AxisControl::takes_positions(const Axis& axis) const noexcept {
   const bool shown = axis.signals.mode_display || axis.signals.mode;
   return axis.drive.enabled() && is_position_mode(std::to_underlying(mode_)) &&

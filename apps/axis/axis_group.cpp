@@ -14,9 +14,10 @@ namespace takt {
 namespace {
 
 constexpr std::size_t most_events = 256;
-/// Of emptying the queue, so that a flood of messages cannot hold the caller.
+/// Most rounds in which one call empties the queue, so that a flood of messages cannot hold the
+/// caller.
 constexpr int most_rounds = 16;
-/// Staleness is looked at so often.
+/// How often wait() checks whether the newest image is stale.
 constexpr std::chrono::milliseconds longest_pause{1};
 
 timespec to_timespec(std::chrono::nanoseconds time) {
@@ -88,7 +89,7 @@ void AxisGroup::tell_schema(std::int16_t schema) {
 void AxisGroup::serve() {
   std::vector<pollfd> descriptors;
   int ready = 1;
-  for (int i = 0; i < most_rounds && ready > 0; ++i) {  // all that waits: only the newest counts
+  for (int i = 0; i < most_rounds && ready > 0; ++i) {  // empties the queue: only the newest counts
     input_.set_time(std::chrono::nanoseconds{Clock::now().time_since_epoch()}.count());
     lcm_->serve(
         [this](std::string_view channel, std::span<const std::byte> data) { take(channel, data); });

@@ -16,55 +16,72 @@
 
 namespace takt {
 
+/// Options of an AxisGroup.
 struct AxisGroupOptions {
-  std::string bus;                 ///< empty: the first bus that is heard
-  std::string sender = "axes";     ///< one sender holds a node's outputs at a time
-  std::int32_t stale_cycles = 5;   ///< an image older than this is stale
-  std::int32_t time_to_live = 20;  ///< of the commands, in cycles; 0: as configured
+  /// Name of the bus in the network file. Empty selects the first bus whose layout arrives.
+  std::string bus;
+  /// Name of the sender in events and in status_t. One sender holds the outputs of a node at a
+  /// time.
+  std::string sender = "axes";
+  /// The newest image is stale if it is older than this number of cycles.
+  std::int32_t stale_cycles = 5;
+  /// Time to live of the commands, in cycles. 0 selects the configured one; the shorter of both
+  /// counts.
+  std::int32_t time_to_live = 20;
 };
 
-/// What waiting for the next image came to.
+/// Results of AxisGroup::wait().
 enum class Input : std::uint8_t {
-  fresh,      ///< the newest image is new
-  nothing,    ///< no image yet, or none in this time
-  stale,      ///< the newest image has become older than `stale_cycles`
-  restarted,  ///< the daemon or its layout is another one; all axes shall be disabled
+  fresh,      ///< A new image has arrived.
+  nothing,    ///< No image arrived in the given time.
+  stale,      ///< The newest image is older than `stale_cycles`. Each gap is reported once.
+  restarted,  ///< A new layout or a new run of taktd; every goal is DriveGoal::disabled again.
 };
 
-/// The axes of one bus over LCM. Takes only the newest image; commands carry the session and the
-/// cycle that they were computed from. One thread.
+/// Commands the axes of one bus over LCM. Only the newest image counts; older ones that wait in the
+/// queue are skipped. Each command carries the session and the cycle of the image from which it was
+/// computed. All calls come from one thread; only wait() waits.
 class AxisGroup {
  public:
+  /// Subscribes to the channels of the bus. open_lcm() makes the transport.
   AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options);
-  /// Releases what it commands.
+  /// Calls release().
   ~AxisGroup();
   AxisGroup(const AxisGroup&) = delete;
   AxisGroup& operator=(const AxisGroup&) = delete;
 
-  /// Sends commands in envelopes from now on, where the daemon has `keys`.
+  /// Puts all further commands into envelopes with this key. This is necessary if `keys` is
+  /// configured for taktd.
   void sign_with(EnvelopeKey key);
-  /// Waits for the next image, `longest` at most, and steps the axes with it.
+  /// Waits at most `longest` for the next image, and steps the axes with it.
   Input wait(std::chrono::nanoseconds longest);
-  /// Of the commands from now on, in cycles; 0: as configured.
+  /// Sets the time to live of all further commands, in cycles. 0 selects the configured one.
   void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
-  /// Sends the set-points of all axes. False: LCM did not take them.
+  /// Sends the set-points of all axes. Returns false if LCM did not take the message.
   bool send();
-  /// Gives up the outputs that it commands: they take their fallback at once, without a warning,
-  /// and another sender may have them. The next send() asks for them again. False: LCM did not take
-  /// it.
+  /// Gives up the outputs that this group commands. They take their fallback at once, without a
+  /// warning, and another sender may take them over. The next send() asks for them again. Returns
+  /// false if LCM did not take the message.
   bool release();
-  /// Loads a target position for each axis and sends them as one command: with synchronous RPDOs
-  /// all become valid with one SYNC. Axes that are not in Operation enabled keep to their position.
+  /// Sets a target position for each axis and sends all of them as one command. If the RPDOs are
+  /// synchronous, all target positions become valid with one SYNC. Axes that are not in Operation
+  /// enabled keep to their actual position. Returns false if LCM did not take the message.
   bool load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions);
 
+  /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
   AxisControl& axes() noexcept { return axes_; }
+  /// Returns the layout and the newest image.
   const ImageInput& input() const noexcept { return input_; }
-  const std::string& bus() const noexcept { return bus_; }  ///< empty: none heard yet
-  std::chrono::nanoseconds period() const noexcept;         ///< of SYNC; 0: not known yet
-  /// Age of the newest image by this machine's clock.
+  /// Returns the name of the bus. Empty if none was configured and no layout has arrived.
+  const std::string& bus() const noexcept { return bus_; }
+  /// Returns the period of SYNC. 0 means that no layout has arrived yet.
+  std::chrono::nanoseconds period() const noexcept;
+  /// Returns the time since wait() took the newest image, by the monotonic clock of this machine.
+  /// The value means nothing before the first image.
   std::chrono::nanoseconds age() const;
-  /// What the daemon has told since the last call (boots, refused commands, faults), 256 at most.
-  /// Once an `other_schema` of this library's own, where the daemon is of another takt.
+  /// Returns the events of taktd since the last call (boots, refused commands, faults), at most
+  /// 256. The library itself adds one event `other_schema` if taktd speaks another schema of the
+  /// messages.
   std::vector<event_t> take_events();
 
  private:
@@ -82,7 +99,7 @@ class AxisGroup {
   std::unique_ptr<Transport> lcm_;
   AxisGroupOptions options_;
   std::string bus_;
-  std::string heard_;  // a bus whose layout came while none was chosen
+  std::string heard_;  // first bus whose layout arrived; only if no bus was configured
   std::string image_channel_;
   std::string layout_channel_;
   std::string command_channel_;
@@ -97,7 +114,7 @@ class AxisGroup {
   bool commands_ = false;  // something was sent since the last release
   Clock::time_point arrival_{};
   std::int64_t instance_;
-  std::optional<EnvelopeSeal> seal_;  // none: no key
+  std::optional<EnvelopeSeal> seal_;  // empty if there is no key
   std::vector<event_t> events_;
   std::vector<std::byte> buffer_;
 };

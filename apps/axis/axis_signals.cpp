@@ -7,7 +7,7 @@
 namespace takt {
 namespace {
 
-/// Axis n of a device has its objects n * 0x800 higher. CiA 402-2.
+/// The objects of axis n of a device are n * 0x800 higher than those of axis 0. CiA 402-2.
 constexpr std::int32_t axis_step = 0x800;
 constexpr std::int32_t first_profile_object = 0x6000;
 constexpr std::int32_t last_profile_object = 0x9FFF;
@@ -33,7 +33,8 @@ constexpr std::array meanings{
     Meaning{0x60B2, true, &AxisSignals::torque_offset},
 };
 
-/// What the object means within its axis; null: nothing to the axis library.
+/// Returns the meaning of the object within its axis, or null if the axis library does not use the
+/// object.
 const Meaning* meaning_of(const signal_t& signal) {
   if (signal.index < first_profile_object || signal.index > last_profile_object) return nullptr;
   const std::int32_t object = first_profile_object + signal.index % axis_step;

@@ -9,29 +9,32 @@
 
 namespace takt {
 
-/// Where in the image the values of one CiA 402 axis are; none where the PDOs do not carry it.
+/// Places of the values of one CiA 402 axis in the image. The objects are those of the first axis
+/// of a device; axis n has them at n * 0x800 above (n = 0, 1 ...).
 struct AxisSignals {
+  /// Index of a value in the layout. Empty if no PDO carries the value.
   using Position = std::optional<std::size_t>;
 
-  std::string name;  ///< of the node; "gantry.2" for the second axis of a device
-  std::int16_t node = 0;
+  std::string name;       ///< name of the node, or "gantry.2" for the second axis of a device
+  std::int16_t node = 0;  ///< node-ID, 1..127
 
-  Position statusword;    // 6041
-  Position mode_display;  // 6061
-  Position position;      // 6064
-  Position velocity;      // 606C
-  Position torque;        // 6077
+  Position statusword;    ///< 0x6041
+  Position mode_display;  ///< 0x6061, modes of operation display
+  Position position;      ///< 0x6064, position actual value
+  Position velocity;      ///< 0x606C, velocity actual value
+  Position torque;        ///< 0x6077, torque actual value
 
-  Position controlword;      // 6040
-  Position mode;             // 6060
-  Position target_position;  // 607A
-  Position target_velocity;  // 60FF
-  Position target_torque;    // 6071
-  Position velocity_offset;  // 60B1
-  Position torque_offset;    // 60B2
+  Position controlword;      ///< 0x6040
+  Position mode;             ///< 0x6060, modes of operation
+  Position target_position;  ///< 0x607A
+  Position target_velocity;  ///< 0x60FF
+  Position target_torque;    ///< 0x6071
+  Position velocity_offset;  ///< 0x60B1
+  Position torque_offset;    ///< 0x60B2
 };
 
-/// The axes of a layout: what has both a controlword and a statusword, by node and axis.
+/// Finds the axes of a layout. An axis has both a controlword and a statusword. The result is
+/// sorted by node-ID, then by the number of the axis in its device.
 std::vector<AxisSignals> find_axes(std::span<const signal_t> signals);
 
 }  // namespace takt

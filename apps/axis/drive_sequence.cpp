@@ -6,7 +6,7 @@ namespace {
 constexpr std::uint16_t disable_voltage = 0x0000;
 constexpr std::uint16_t quick_stop = 0x0002;
 constexpr std::uint16_t shutdown = 0x0006;
-constexpr std::uint16_t switch_on = 0x0007;  // in Operation enabled: disable operation
+constexpr std::uint16_t switch_on = 0x0007;  // "disable operation" in Operation enabled
 constexpr std::uint16_t enable_operation = 0x000F;
 constexpr std::uint16_t fault_reset = 0x0080;
 
@@ -82,7 +82,7 @@ void DriveSequence::notice(State402 state) noexcept {
 }
 
 std::uint16_t DriveSequence::reset_word() noexcept {
-  if (state_ != State402::fault) return disable_voltage;  // the reaction has to end first
+  if (state_ != State402::fault) return disable_voltage;  // The fault reaction must end first.
   if (reset_steps_ == limits_.reset_low_steps) return fault_reset;
   ++reset_steps_;
   return disable_voltage;

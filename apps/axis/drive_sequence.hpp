@@ -5,40 +5,63 @@
 
 namespace takt {
 
-/// Where a drive shall go.
-enum class DriveGoal : std::uint8_t { disabled, enabled, quick_stopped };
-
-/// Whether a drive may be led towards Operation enabled; one that is there stays.
-enum class Enabling : std::uint8_t { waits, goes_on };
-
-/// Limits of a DriveSequence, in steps (one a cycle).
-struct DriveSequenceLimits {
-  std::uint32_t reset_low_steps = 10;  ///< bit 7 rests low so long before its edge
-  std::uint32_t hop_steps = 2500;      ///< a drive that does not change for longer is stuck
+/// State to which a DriveSequence leads its drive.
+enum class DriveGoal : std::uint8_t {
+  disabled,      ///< Switch on disabled
+  enabled,       ///< Operation enabled
+  quick_stopped  ///< Quick stop active, or Switch on disabled if the drive was not enabled
 };
 
-/// Leads one drive through the CiA 402 state machine: statusword in, controlword out, once a cycle.
-/// Each word is held until the statusword acknowledges it, so that no edge is lost on a channel
-/// where only the newest value counts. A drive that leaves Operation enabled by itself (fault, safe
-/// torque off) is not enabled again until it is told to.
+/// Whether a drive may be led towards Operation enabled. A drive that is already in that state
+/// stays there in either case.
+enum class Enabling : std::uint8_t {
+  waits,   ///< The drive is not enabled for the time being.
+  goes_on  ///< The drive may be enabled.
+};
+
+/// Limits of a DriveSequence, in steps. There is one step in each cycle.
+struct DriveSequenceLimits {
+  /// Number of steps for which bit 7 of the controlword is low before its rising edge.
+  std::uint32_t reset_low_steps = 10;
+  /// A drive that has not reached its goal is stuck if its state does not change for more steps.
+  std::uint32_t hop_steps = 2500;
+};
+
+/// Leads one drive through the CiA 402 state machine: each step takes a statusword and gives the
+/// controlword, once in each cycle. Each controlword is held until the statusword acknowledges it,
+/// so that no edge is lost on a channel where only the newest value counts. If a drive has a fault
+/// or leaves Operation enabled by itself (safe torque off), its goal becomes DriveGoal::disabled,
+/// and the drive is not enabled again before the next set_goal().
 class DriveSequence {
  public:
+  /// The goal of a new sequence is DriveGoal::disabled.
   explicit DriveSequence(DriveSequenceLimits limits = {}) noexcept : limits_{limits} {}
 
+  /// Sets the goal. The following steps lead the drive there.
   void set_goal(DriveGoal goal) noexcept;
-  /// Asks for one fault reset; without effect when the drive is not in Fault.
+  /// Asks for one fault reset. The call has no effect unless the drive is in Fault or in Fault
+  /// reaction active.
   void reset_fault() noexcept;
 
-  /// The controlword (without mode-specific bits) that answers this statusword. CiA 402-2, 1.4.
+  /// Returns the controlword (without mode-specific bits) that answers this statusword. CiA 402-2,
+  /// 1.4.
   std::uint16_t step(std::uint16_t statusword, Enabling enabling = Enabling::goes_on) noexcept;
 
+  /// Returns the goal, which is DriveGoal::disabled after a fault.
   DriveGoal goal() const noexcept { return goal_; }
-  /// Last known state; a statusword that tells none leaves it as it was.
+  /// Returns the last known state. A statusword with an unknown pattern does not change it.
   State402 state() const noexcept { return state_; }
+  /// Returns true if the last statusword has a pattern that the profile does not define.
   bool unknown_statusword() const noexcept { return unknown_; }
+  /// Returns true if the drive is in Operation enabled.
   bool enabled() const noexcept { return state_ == State402::operation_enabled; }
+  /// Returns true if the drive is in Fault or in Fault reaction active.
   bool in_fault() const noexcept;
-  bool reached() const noexcept;  ///< the goal
+  /// Returns true if the drive has reached its goal. Not ready to switch on and Fault also count as
+  /// disabled.
+  bool reached() const noexcept;
+  /// Returns true if the drive has not reached its goal and its state has not changed for more
+  /// than DriveSequenceLimits::hop_steps steps.
   bool stuck() const noexcept { return waited_ > limits_.hop_steps; }
 
  private:
@@ -50,10 +73,10 @@ class DriveSequence {
   DriveGoal goal_ = DriveGoal::disabled;
   State402 state_ = State402::not_ready_to_switch_on;
   bool unknown_ = false;
-  bool was_enabled_ = false;  // since the goal was set
+  bool was_enabled_ = false;  // true if the drive was enabled since the goal was set
   bool resetting_ = false;
   std::uint32_t reset_steps_ = 0;
-  std::uint32_t waited_ = 0;  // steps since the last change of state, while short of the goal
+  std::uint32_t waited_ = 0;  // steps without a change of state before the goal is reached
 };
 
 }  // namespace takt

@@ -8,16 +8,19 @@
 namespace takt {
 namespace {
 
-/// The bound on what a layout may make this program allocate.
+/// Most signals of a layout. It bounds the memory that a layout can make this program allocate.
 constexpr std::int32_t most_signals = 65536;
 constexpr std::int16_t most_parts = 4096;
-constexpr int most_strange = 3;  // images: so many that follow each other are the bus
+/// This number of unexpected images that follow each other is taken as the true cycle of the bus.
+constexpr int most_strange = 3;
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t quiet_periods = 20;
 constexpr std::int64_t longest_period_ns = 60 * second_ns;
-constexpr std::uint64_t least_ahead = 16;  // cycles, however long they are
+/// A gap of this number of cycles is accepted even if it is longer than a second.
+constexpr std::uint64_t least_ahead = 16;
 
-/// How many cycles `to` is ahead of `from`, which is not greater; the two may be anything.
+/// Returns the number of cycles from `from` to `to`, which is not smaller. The difference of any
+/// two values fits into the result.
 std::uint64_t cycles_between(std::int64_t from, std::int64_t to) noexcept {
   return static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from);
 }
@@ -87,8 +90,8 @@ void ImageInput::finish() {
   stale_.assign(signals_.size(), 0);
 }
 
-/// Whoever forges a layout while the daemon runs changes nothing; one that has restarted repeats
-/// its layout once a second.
+/// While images of the present session arrive, a forged layout changes nothing. A taktd that was
+/// restarted repeats its layout once a second, so that nothing is lost.
 bool ImageInput::session_lives() const noexcept {
   return has_image_ && now_ns_ - image_ns_ < std::max(quiet_ns, quiet_periods * period_ns_);
 }
@@ -99,16 +102,18 @@ bool ImageInput::belongs(const image_t& part) const noexcept {
          is_range(part.first_signal, part.num_values, signals_.size());
 }
 
-/// A gap of up to a second is ordinary. The first image may have any cycle.
+/// A gap of up to one second, or of 16 cycles if that is longer, is ordinary. The first image may
+/// have any cycle number.
 bool ImageInput::is_next(std::int64_t cycle) const noexcept {
   if (cycle <= new_cycle_) return false;
   const auto a_second = static_cast<std::uint64_t>(second_ns / period_ns_);
   return new_cycle_ < 0 || cycles_between(new_cycle_, cycle) <= std::max(a_second, least_ahead);
 }
 
-/// Whether an image that does not follow the newest one is one of several that follow each other.
+/// Returns true if an image that does not follow the newest one is the third of a row of such
+/// images that follow each other.
 bool ImageInput::is_confirmed(std::int64_t cycle) noexcept {
-  if (strange_images_ != 0 && cycle == strange_cycle_) return false;  // another part of it
+  if (strange_images_ != 0 && cycle == strange_cycle_) return false;  // same image, another part
   const bool follows = strange_images_ != 0 && cycle > strange_cycle_ &&
                        cycles_between(strange_cycle_, cycle) <= least_ahead;
   strange_images_ = follows ? strange_images_ + 1 : 1;

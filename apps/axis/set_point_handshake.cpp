@@ -24,7 +24,7 @@ std::uint16_t SetPointHandshake::step(std::uint16_t statusword) noexcept {
     again_ = false;
   }
   if (phase_ == Phase::before && !seen) {
-    phase_ = Phase::raised;  // the drive has room: raise the edge
+    phase_ = Phase::raised;  // The drive can take a set-point: raise bit 4.
   } else if (phase_ == Phase::raised && seen) {
     phase_ = Phase::lowered;
   }

@@ -3,15 +3,19 @@
 
 namespace takt {
 
-/// Hands one profile position (pp) set-point to a drive: bit 4 of the controlword rises and stays
-/// until statusword bit 12 acknowledges it, falls and stays until bit 12 has fallen. One step a
-/// cycle; its bits are added to the controlword of DriveSequence. CiA 402-2, 4.1 handshake.
+/// Hands one set-point of the profile position mode (pp) to a drive. Bit 4 of the controlword rises
+/// and stays high until bit 12 of the statusword acknowledges it; then bit 4 falls and stays low
+/// until bit 12 has fallen. There is one step in each cycle, and the caller adds its bits to the
+/// controlword of DriveSequence. CiA 402-2, 4.1 handshake.
 class SetPointHandshake {
  public:
-  /// The target in 607A is new. While a handshake runs, it is repeated afterwards.
+  /// Starts a handshake for a new target in 0x607A. If a handshake is running, another one follows
+  /// it.
   void begin() noexcept;
-  /// Bits 4 and 5 (new set-point, change at once) for this statusword.
+  /// Returns bits 4 and 5 of the controlword (new set-point, change at once) that answer this
+  /// statusword. Bit 5 is always set.
   std::uint16_t step(std::uint16_t statusword) noexcept;
+  /// Returns true if no handshake is running and none is to follow.
   bool done() const noexcept { return phase_ == Phase::idle && !again_; }
 
  private:

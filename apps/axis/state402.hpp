@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// States of a drive. CiA 402-2, power drive state machine.
+/// States of the power drive state machine. CiA 402-2.
 enum class State402 : std::uint8_t {
   not_ready_to_switch_on,
   switch_on_disabled,
@@ -17,10 +17,11 @@ enum class State402 : std::uint8_t {
   fault,
 };
 
-/// State that a statusword (0x6041) tells; none for a pattern that the profile does not know.
+/// Returns the state that a statusword (0x6041) reports, or std::nullopt if the profile does not
+/// define its pattern.
 std::optional<State402> decode_statusword(std::uint16_t statusword) noexcept;
 
-/// "operation enabled".
+/// Returns the name of the state for messages, for example "operation enabled".
 std::string_view name(State402 state) noexcept;
 
 }  // namespace takt
