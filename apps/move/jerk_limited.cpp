@@ -6,14 +6,14 @@
 namespace takt {
 namespace {
 
-/// Jerk time and ramp time to reach `velocity` from rest.
+/// Durations of one jerk segment and of the whole ramp from rest to a velocity.
 struct Ramp {
   double jerk_time;
   double time;
 };
 
 Ramp ramp_to(double velocity, const MotionLimits& limits) noexcept {
-  const double full = limits.acceleration / limits.jerk;  // until the acceleration is reached
+  const double full = limits.acceleration / limits.jerk;  // time to the full acceleration
   if (velocity >= limits.acceleration * full) {
     return {full, velocity / limits.acceleration + full};
   }
@@ -21,7 +21,7 @@ Ramp ramp_to(double velocity, const MotionLimits& limits) noexcept {
   return {jerk_time, 2.0 * jerk_time};
 }
 
-/// Velocity at which a ramp up and a ramp down together cover `distance`.
+/// Returns the velocity at which a ramp up and a ramp down together cover `distance`.
 double peak_velocity(double distance, const MotionLimits& limits) noexcept {
   const double full = limits.acceleration / limits.jerk;
   const double a = limits.acceleration;
@@ -65,7 +65,7 @@ MotionPoint JerkLimited::speeding_up(double seconds) const noexcept {
   go(jerk_, jerk_time_);
   go(0.0, ramp_ - 2.0 * jerk_time_);
   go(-jerk_, jerk_time_);
-  if (seconds >= ramp_) point.acceleration = 0.0;  // not what rounding left of it
+  if (seconds >= ramp_) point.acceleration = 0.0;  // removes the rounding error
   go(0.0, cruise_);
   return point;
 }

@@ -2,7 +2,8 @@
 
 namespace takt {
 
-/// What a motion may not exceed, in the unit of the distance and seconds; all above zero.
+/// Limits that a motion does not exceed, in the unit of the distance and in seconds. All are above
+/// zero.
 struct MotionLimits {
   double velocity = 1.0;
   double acceleration = 1.0;
@@ -15,15 +16,18 @@ struct MotionPoint {
   double acceleration = 0.0;
 };
 
-/// The fastest symmetric motion of seven constant-jerk segments from rest at 0 to rest at a
-/// distance. Velocity, acceleration and jerk stay within their limits; the end is met exactly.
+/// The fastest symmetric motion from rest at 0 to rest at a given distance. It consists of seven
+/// segments of constant jerk. Velocity, acceleration and jerk stay within their limits, and the
+/// motion meets its end exactly.
 class JerkLimited {
  public:
   /// `distance` is not negative.
   JerkLimited(double distance, const MotionLimits& limits) noexcept;
 
+  /// Returns the duration in seconds.
   double duration() const noexcept { return 2.0 * ramp_ + cruise_; }
-  /// Before the start and after the end: at rest there.
+  /// Returns the point at this time since the start. Before the start and after the end, the motion
+  /// rests at 0 and at the distance.
   MotionPoint at(double seconds) const noexcept;
 
  private:
@@ -31,9 +35,9 @@ class JerkLimited {
 
   double distance_;
   double jerk_;
-  double jerk_time_ = 0.0;  // of each of the four jerk segments
-  double ramp_ = 0.0;       // from rest to the highest velocity
-  double cruise_ = 0.0;     // at the highest velocity
+  double jerk_time_ = 0.0;  // duration of each of the four jerk segments
+  double ramp_ = 0.0;       // duration from rest to the highest velocity
+  double cruise_ = 0.0;     // duration at the highest velocity
 };
 
 }  // namespace takt

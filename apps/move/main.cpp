@@ -17,12 +17,14 @@ volatile std::sig_atomic_t stop = 0;
 
 void on_signal(int) { stop = stop == 0 ? 1 : 2; }
 
-/// The terminal is gone. It may tell so again and again, which makes no second signal.
+/// The terminal is gone. SIGHUP and SIGPIPE may come several times; they never count as the second
+/// signal.
 void on_hangup(int) {
   if (stop == 0) stop = 1;
 }
 
-/// Ahead of ordinary programs and behind taktd, where the machine grants it.
+/// Asks for a priority above ordinary programs and below taktd. Without the rights for it, the
+/// program keeps its ordinary priority.
 void ask_for_real_time() {
   const sched_param parameters{.sched_priority = 20};
   ::sched_setscheduler(0, SCHED_FIFO, &parameters);
@@ -35,7 +37,7 @@ int main(int argc, char** argv) {
   if (exit_code) return *exit_code;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // under nohup
   std::signal(SIGPIPE, on_hangup);
   ask_for_real_time();
   auto lcm = takt::open_lcm(options.lcm_url);

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Why an axis is not known to be in this mode of operation (CiA 402-2, 0x6060 and 0x6061), and
-/// what to do about it. Empty: it is in the mode.
+/// Returns a text that says why an axis is not known to be in this mode of operation (CiA 402-2,
+/// 0x6060 and 0x6061), and what the user can do about it. Empty if the axis is in the mode.
 std::string mode_hint(const AxisSignals& signals, const ImageInput& input, DriveMode mode);
 
 }  // namespace takt

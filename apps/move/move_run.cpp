@@ -20,23 +20,26 @@ constexpr int exit_not_followed = 1;
 constexpr int exit_wrong_use = 2;
 constexpr int exit_no_daemon = 3;
 
-/// Seconds from full speed to standstill when the motion is held.
+/// Duration from full speed to standstill when the motion is held, seconds.
 constexpr double hold_ramp = 0.2;
-/// Set-points under way: one in the next SYNC, one in this machine's queues, one new.
+/// Most set-points under way, in cycles: one for the next SYNC, one in the queues of this machine,
+/// and one new.
 constexpr double longest_lead = 3;
-/// Seconds in which the bus takes no set-point although images come.
+/// Longest time in which the bus may take no set-point although images arrive, seconds.
 constexpr double longest_refusal = 1.0;
-/// Longest wait for an image before the motion is looked at again.
+/// Longest wait for an image before the motion is checked again.
 constexpr std::chrono::milliseconds tick{2};
-/// A drive may need so long for its brake and its DC link.
+/// Longest wait until all axes are enabled, seconds. A drive needs time for its brake and its DC
+/// link.
 constexpr double enable_seconds = 5.0;
-/// Of waiting in vain for the axes that shall be disabled, all together.
+/// Longest wait for axes that do not confirm that they are disabled, seconds for all axes together.
 constexpr double disable_seconds = 2.0;
-/// For the axes whose turn did not come in that time, or before a second signal.
+/// Wait for the axes whose turn did not come in that time or before a second signal, seconds.
 constexpr double last_seconds = 0.2;
 constexpr int second_stop = 2;
 constexpr int any_stops = 3;
-/// How long a set-point lives when this program stalls, where the network file allows as much.
+/// Time to live of a set-point if this program stalls. The network file may configure a shorter
+/// one.
 constexpr std::chrono::milliseconds set_point_life{1000};
 
 }  // namespace
@@ -66,7 +69,7 @@ bool MoveRun::hear_bus() {
   return false;
 }
 
-/// Whether there is something to move, and targets for it.
+/// Returns true if there are axes that can be moved, and if the number of targets fits them.
 bool MoveRun::fits() {
   if (axes_.size() == 0) {
     progress_.say("no axis with profile cia402 on bus " + group_.bus() +
@@ -209,7 +212,7 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
     if (restarted_ || axes_lost()) return false;
     const std::chrono::duration<double> passed = Clock::now() - last_tick;
     const bool fresh = input == Input::fresh;
-    if (!fresh && holding_ == Hold::no) continue;  // the next image sets the pace
+    if (!fresh && holding_ == Hold::no) continue;  // wait for the next image
     last_tick = Clock::now();
     if (fresh) motion.seen(axes_.sent_positions());
     const double step = fresh ? real_step() : std::min(passed.count(), longest_step());
@@ -229,13 +232,14 @@ void MoveRun::compare(const char* what) {
   progress_.positions(axes_, following_, what);
 }
 
-/// Of SYNC, seconds.
+/// Returns the period of SYNC in seconds.
 double MoveRun::period() const { return std::chrono::duration<double>(group_.period()).count(); }
 
-/// Seconds. A gap, of the images or of this program itself, does not make the motion jump.
+/// Returns the longest step of the motion in seconds. It keeps the motion from a jump after a gap
+/// in the images or a stall of this program.
 double MoveRun::longest_step() const { return period() * options_.stale_cycles; }
 
-/// Seconds of bus time since the last image.
+/// Returns the bus time since the last image in seconds, at most longest_step().
 double MoveRun::real_step() {
   const std::int64_t cycle = group_.input().cycle();
   const auto cycles = static_cast<double>(cycle - std::exchange(last_cycle_, cycle));
@@ -296,7 +300,8 @@ void MoveRun::disable() {
   }
 }
 
-/// Axes with more than the allowed following error; empty: all followed.
+/// Returns the names and limits of the axes that exceeded the allowed following error. Empty if all
+/// axes followed.
 std::string MoveRun::too_far() const {
   std::string text;
   for (std::size_t i = 0; i < sizes_.size(); ++i) {

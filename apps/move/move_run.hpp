@@ -13,13 +13,15 @@
 
 namespace takt {
 
-/// Finds the axes of a bus, enables them, moves them, disables them in order and sums up.
+/// One run of takt-move: finds the axes of a bus, enables them, moves them, disables them one after
+/// the other and prints a summary.
 class MoveRun {
  public:
-  /// `stop` becomes 1 when the user wants an end, 2 when disabling takes too long.
+  /// `stop` becomes 1 with the first signal, which ends the motion, and 2 with the second one,
+  /// which ends the wait for axes that do not confirm that they are disabled.
   MoveRun(AxisGroup& group, const MoveOptions& options, const volatile std::sig_atomic_t& stop);
 
-  /// The exit code of takt-move.
+  /// Does the whole run. Returns the exit code of takt-move.
   int run();
 
  private:
@@ -41,8 +43,8 @@ class MoveRun {
   bool axes_lost();
   bool not_taken();
   void disable();
-  /// Serves images and sends commands until `done`, true; or for this long, or until the user has
-  /// stopped so often.
+  /// Takes images and sends commands until `done` is true, and then returns true. Returns false
+  /// after `seconds`, after `stops` signals, or if taktd has restarted.
   bool hold_until(const std::function<bool()>& done, double seconds, int stops = 1);
   std::string verdict() const;
   std::string too_far() const;
@@ -55,10 +57,10 @@ class MoveRun {
   const volatile std::sig_atomic_t& stop_;
   Progress progress_;
   Following following_{0};
-  std::vector<MoveSizes> sizes_;    // one an axis
-  std::vector<std::string> units_;  // the same
+  std::vector<MoveSizes> sizes_;    // one for each axis
+  std::vector<std::string> units_;  // one for each axis
   bool good_ = true;
-  bool commanding_ = false;  // before its devices answer, takt-move only listens
+  bool commanding_ = false;  // false while takt-move only listens until the devices answer
   bool restarted_ = false;
   Hold holding_ = Hold::no;
   int stale_images_ = 0;

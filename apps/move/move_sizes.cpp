@@ -3,7 +3,7 @@
 namespace takt {
 namespace {
 
-/// A distance that looks like a motion and fits most machines.
+/// Returns a distance that is visible as a motion and that fits most machines.
 double default_distance(const std::string& unit) {
   if (unit == "rad") return 1.5;
   if (unit == "deg" || unit == "°") return 90.0;

@@ -13,7 +13,8 @@ struct MoveSizes {
   MotionLimits limits;
 };
 
-/// As the user asked; defaults by the axis' unit, empty: counts.
+/// Returns the sizes that the user asked for, and defaults for all others. The defaults depend on
+/// the unit of the axis; an empty unit stands for raw counts.
 MoveSizes sizes_for(const MoveOptions& options, const std::string& unit);
 
 }  // namespace takt

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// CLI11's own checks let "nan" pass.
+/// Refuses a number that is not finite, because the checks of CLI11 accept "nan".
 std::string finite(const std::string& text) {
   double value = 0.0;
   const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value);

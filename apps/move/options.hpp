@@ -7,16 +7,18 @@
 
 namespace takt {
 
-/// What the user of takt-move asked for. Lengths in the unit of each axis, times in seconds.
+/// Options of takt-move. Lengths are in the unit of each axis, times in seconds.
 struct MoveOptions {
-  std::string bus;
+  std::string bus;  ///< empty: the first bus whose layout arrives
   std::string lcm_url;
-  std::string keys;           ///< key file; empty: no envelopes
-  bool check_images = false;  ///< only what the daemon has signed is believed
-  std::vector<double> to;     ///< one an axis, or one for all; empty: a default distance from here
+  std::string keys;           ///< path of the key file; empty means no envelopes
+  bool check_images = false;  ///< true: messages of taktd without a valid signature are ignored
+  /// Target positions, one for each axis or one for all axes. Empty means a default distance from
+  /// the present position.
+  std::vector<double> to;
   bool point = true;
   bool sine = true;
-  double seconds = 10.0;  ///< of the point-to-point move and the sine together
+  double seconds = 10.0;  ///< duration of the point-to-point move and the sine together
   std::optional<double> amplitude;
   double frequency = 0.5;
   std::optional<double> velocity;
@@ -24,10 +26,10 @@ struct MoveOptions {
   std::optional<double> jerk;
   std::optional<double> following_limit;
   int stale_cycles = 5;
-  double wait_seconds = 10.0;  ///< for the daemon and for its devices
+  double wait_seconds = 10.0;  ///< longest wait for taktd, and again for its devices
 };
 
-/// From the command line. A value is the exit code where there is nothing to run.
+/// Result of reading the command line. If there is an exit code, the program ends with it.
 struct ParsedMove {
   MoveOptions options;
   std::optional<int> exit_code;

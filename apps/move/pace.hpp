@@ -5,15 +5,16 @@ namespace takt {
 
 enum class Hold : unsigned char { no, yes };
 
-/// The time along a trajectory, which stands still while the motion is held. Its rate goes between
-/// 0 and 1 in a ramp, so that holding and going on are smooth and the path stays the same.
+/// Time along a trajectory. It does not advance while the motion is held. Its rate changes between
+/// 0 and 1 in a ramp, so that the motion stops and continues smoothly on the same path.
 class Pace {
  public:
-  /// `ramp`: seconds from full speed to standstill, above zero.
+  /// `ramp` is the duration from full speed to standstill in seconds, above zero.
   explicit Pace(double ramp) noexcept : ramp_{ramp} {}
 
-  /// Advances by a step of real time, above zero, not beyond `latest`, where it stops at once and
-  /// goes on in a ramp. Returns the time along the trajectory. Seconds.
+  /// Advances by a step of real time in seconds, above zero. Returns the time along the trajectory
+  /// in seconds. At the time `latest` the trajectory stops at once; from there it continues in a
+  /// ramp.
   double step(double seconds, Hold hold,
               double latest = std::numeric_limits<double>::infinity()) noexcept;
   double time() const noexcept { return time_; }

@@ -14,7 +14,7 @@ void Progress::say(std::string_view text) {
 }
 
 void Progress::print(const std::string& text) {
-  std::fputs(text.c_str(), stdout);  // fmt::print throws where stdout is gone
+  std::fputs(text.c_str(), stdout);  // fmt::print throws if stdout is closed
   std::fflush(stdout);
 }
 

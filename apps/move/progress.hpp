@@ -12,18 +12,20 @@
 
 namespace takt {
 
-/// Lines about a running motion on stdout, each with the time since the start: every change of an
-/// axis' state, and the positions a few times a second. Where stdout is gone, they are lost.
+/// Prints lines about a running motion on stdout, each with the time since the start: every change
+/// of the state of an axis, and the positions a few times a second. Lines are lost if stdout is
+/// closed.
 class Progress {
  public:
   void say(std::string_view text);
   static void print(const std::string& text);
-  /// States that changed since the last call, and the daemon's warnings: one a kind and node in
-  /// two seconds.
+  /// Prints the states that have changed since the last call, and the warnings and errors of taktd:
+  /// at most one for each kind and node in two seconds.
   void states(AxisGroup& group);
-  /// At most four lines a second.
+  /// Prints the positions, at most four lines a second.
   void positions(const AxisControl& axes, const Following& following, std::string_view what);
-  void set_units(std::vector<std::string> units) { units_ = std::move(units); }  ///< one an axis
+  /// Sets the units, one for each axis.
+  void set_units(std::vector<std::string> units) { units_ = std::move(units); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -8,7 +8,8 @@
 namespace takt {
 namespace {
 
-/// 0 to 1 with velocity and acceleration zero at both ends, and its derivatives.
+/// A function that rises from 0 to 1 with first and second derivative zero at both ends, and its
+/// derivatives.
 struct Fade {
   double value;
   double first;
@@ -24,7 +25,8 @@ Fade fade_at(double x) noexcept {
           .third = 60.0 - 360.0 * x * (1.0 - x)};
 }
 
-/// What a sine of amplitude 1 and 1 rad/s at any phase reaches while it fades in over `angle` rad.
+/// Returns the highest velocity, acceleration and jerk of a sine of amplitude 1, 1 rad/s and any
+/// phase that fades in over `angle` rad.
 MotionLimits peaks(double angle) noexcept {
   constexpr int steps = 256;
   MotionLimits peak{.velocity = 1.0, .acceleration = 1.0, .jerk = 1.0};

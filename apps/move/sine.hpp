@@ -5,21 +5,21 @@
 
 namespace takt {
 
-/// A sine around a point, the axes shifted in phase against each other; its amplitude grows from
-/// zero and returns to zero over one period each, or over half of the time where that is less, so
-/// that it starts and ends at rest at the centre.
+/// A sine around a point. The axes are shifted in phase against each other. The amplitude grows
+/// from zero and returns to zero, each over one period or over half of the duration if that is
+/// less, so that the motion starts and ends at rest at the centre.
 class Sine {
  public:
   struct Shape {
-    Eigen::VectorXd amplitude;  ///< one an axis, in its unit
+    Eigen::VectorXd amplitude;  ///< one for each axis, in the unit of the axis
     double frequency = 0.5;     ///< Hz
-    double duration = 10.0;     ///< s, at least one period; shorter ones are stretched
+    double duration = 10.0;     ///< s; a duration below one period becomes one period
   };
 
   Sine(Eigen::VectorXd centre, const Shape& shape);
 
   double duration() const noexcept { return shape_.duration; }
-  /// The largest amplitude that keeps an axis within these limits.
+  /// Returns the largest amplitude that keeps an axis within these limits.
   double amplitude_within(const MotionLimits& limits) const;
   void set_amplitude(Eigen::Index axis, double amplitude) { shape_.amplitude(axis) = amplitude; }
   Eigen::VectorXd position(double seconds) const;

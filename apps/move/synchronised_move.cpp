@@ -8,7 +8,8 @@
 namespace takt {
 namespace {
 
-/// The share of the way from 0 to 1 within limits that keep every axis within its own.
+/// Returns the profile of the covered share of the way, 0 to 1. Its limits keep every axis within
+/// the limits of that axis.
 JerkLimited profile_of(const Eigen::VectorXd& way, std::span<const MotionLimits> limits) {
   constexpr double none = std::numeric_limits<double>::infinity();
   MotionLimits strictest{.velocity = none, .acceleration = none, .jerk = none};

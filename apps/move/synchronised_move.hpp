@@ -6,11 +6,11 @@
 
 namespace takt {
 
-/// A jerk-limited move of all axes along the straight line from one point to another: they start
-/// together, arrive together, and each stays within its own limits.
+/// A jerk-limited move of all axes along the straight line from one point to another. The axes
+/// start together and arrive together, and each axis stays within its own limits.
 class SynchronisedMove {
  public:
-  /// `limits`: one an axis.
+  /// `limits` holds the limits of each axis.
   SynchronisedMove(Eigen::VectorXd from, Eigen::VectorXd to, std::span<const MotionLimits> limits);
 
   double duration() const noexcept { return profile_.duration(); }
@@ -20,7 +20,7 @@ class SynchronisedMove {
  private:
   Eigen::VectorXd from_;
   Eigen::VectorXd to_;
-  JerkLimited profile_;  // of the share of the way, 0 to 1
+  JerkLimited profile_;  // the covered share of the way, 0 to 1
 };
 
 }  // namespace takt

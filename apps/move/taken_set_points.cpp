@@ -15,7 +15,8 @@ void TakenSetPoints::sent(double time, const Eigen::VectorXd& shown) {
   under_way_[count_++] = {.time = time, .shown = shown};
 }
 
-/// The nearest, for a device may round what it shows; the newest of equals.
+/// Looks for the nearest set-points, because a device may round the values that it shows. Among
+/// equally near ones the newest counts.
 void TakenSetPoints::seen(const Eigen::VectorXd& shown) {
   std::size_t nearest = 0;
   double distance = (under_way_[0].shown - shown).norm();

@@ -5,20 +5,22 @@
 
 namespace takt {
 
-/// How far along a trajectory the bus has taken its set-points: the image shows which ones were
-/// sent. Those of a daemon that stood still collapse into the newest, and none is sent while it
-/// does; the motion shall not run away from the axes meanwhile.
+/// Tells how far along a trajectory the bus has taken the set-points: each image shows which
+/// set-points were sent. While taktd stalls, it sends none, and afterwards only the newest one
+/// counts. The motion must not run away from the axes meanwhile.
 class TakenSetPoints {
  public:
-  /// The axes rest at the trajectory's beginning.
+  /// The axes rest at the beginning of the trajectory, `begin` as an image shows it.
   explicit TakenSetPoints(const Eigen::VectorXd& begin);
 
-  /// Set-points of a time along the trajectory, seconds; never an earlier one than before.
-  /// `shown`: as an image will show them.
+  /// Records set-points that were sent. `time` is their time along the trajectory in seconds; a
+  /// time that is not later than the last one is ignored. `shown` holds them as an image will show
+  /// them.
   void sent(double time, const Eigen::VectorXd& shown);
-  /// What the newest image shows as sent.
+  /// Takes the set-points that the newest image shows as sent.
   void seen(const Eigen::VectorXd& shown);
-  /// Of the newest set-points that the bus has taken. Seconds along the trajectory.
+  /// Returns the time along the trajectory, in seconds, of the newest set-points that the bus has
+  /// taken.
   double time() const noexcept { return time_; }
 
  private:
@@ -26,9 +28,9 @@ class TakenSetPoints {
     double time = 0.0;
     Eigen::VectorXd shown;
   };
-  static constexpr std::size_t most = 16;  ///< that can be under way
+  static constexpr std::size_t most = 16;  // set-points that can be under way
 
-  std::array<SetPoint, most> under_way_;  ///< oldest first; the first is the newest one taken
+  std::array<SetPoint, most> under_way_;  // oldest first; the first is the newest one taken
   std::size_t count_ = 1;
   double time_ = 0.0;
 };
