@@ -7,7 +7,7 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t no_object = 0x0602'0000;
-constexpr std::uint32_t timed_out = 0x0504'0000;  // sent by the master
+constexpr std::uint32_t timed_out = 0x0504'0000;  // abort code that the master itself sends
 constexpr std::uint32_t no_sub_index = 0x0609'0011;
 
 struct IndexRange {
@@ -15,7 +15,7 @@ struct IndexRange {
   std::uint16_t last;
 };
 
-/// What an audit looks at. Option codes of axis n lie 0x800 x n higher.
+/// Objects that an audit needs. The option codes of axis n are n * 0x800 higher.
 constexpr std::array<IndexRange, 12> asked{{{0x1006, 0x1006},
                                             {0x100C, 0x100D},
                                             {0x1016, 0x1017},

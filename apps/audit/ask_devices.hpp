@@ -10,18 +10,18 @@
 
 namespace takt {
 
-/// Why an object could not be read.
+/// Reason why an object could not be read.
 struct UnreadObject {
-  std::uint32_t abort_code = 0;  ///< 0: no answer
+  std::uint32_t abort_code = 0;  ///< SDO abort code; 0 means that the device did not answer
   std::string sentence{};
 };
 
-/// Reads one object of a device by SDO. Nothing is written.
+/// Reads one object of a device by SDO. The function writes nothing to the device.
 using ReadObject =
     std::function<std::expected<std::vector<std::byte>, UnreadObject>(NodeId, ObjectKey)>;
 
-/// Asks a device for all that an audit is about. False: it did not answer, and what EDS and network
-/// file say is left as it was.
+/// Reads all objects that an audit needs from a device. Returns false if the device did not answer;
+/// `values` then keeps the values of the EDS and the network file.
 bool ask_device(NodeId node, DeviceValues& values, const ReadObject& read);
 
 }  // namespace takt

@@ -65,7 +65,8 @@ class NodeAuditor {
     out_.remedy.push_back(line + "]   # beside what stands there");
   }
 
-  /// CiA 401 ties error values to a failure; not every device sees one while it stays OPERATIONAL.
+  /// Handles a device that stays OPERATIONAL. CiA 401 applies error values after a failure, and not
+  /// every device sees a failure while it stays OPERATIONAL.
   void keep_in_operational(Reaction& reaction) {
     if (out_.state != ErrorState::operational) return;
     if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::untold;

@@ -82,7 +82,8 @@ Json json_of(const NodeAudit& node) {
   return json;
 }
 
-/// "2 of 3 devices stop or go to their error values, 1 keeps its last set-points".
+/// Returns the number of devices for each verdict, for example "2 safe by themselves, 1 with their
+/// last set-points for ever".
 std::string summary(const Audit& audit) {
   std::array<unsigned, 4> count{};
   for (const NodeAudit& node : audit.nodes) ++count[std::to_underlying(node.verdict)];

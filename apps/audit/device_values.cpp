@@ -20,7 +20,7 @@ bool writes(BootAction action) {
          action == enable_pdo;
 }
 
-/// 0x1016 without its count, 0x100C and 0x100D.
+/// Returns true for 0x1016 (except sub-index 0), 0x100C and 0x100D.
 bool is_supervision(ObjectKey key) {
   return key.index == 0x100C || key.index == 0x100D || (key.index == 0x1016 && key.sub != 0);
 }

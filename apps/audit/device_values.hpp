@@ -18,26 +18,31 @@ class DeviceValues {
  public:
   DeviceValues(const NodePlan& node, const DeviceTable& device);
 
-  /// None: the device has no such object, or it is no number.
+  /// Returns the value of an object, or std::nullopt if the device has no such object. Only the
+  /// first eight bytes of an object count.
   std::optional<std::uint64_t> get(ObjectKey key) const;
-  /// 16 bits, signed: the option codes of CiA 402.
+  /// Returns sub-index 0 of an object as a signed number of 16 bits, like the option codes of
+  /// CiA 402. Returns std::nullopt if the device has no such object.
   std::optional<int> option(std::uint16_t index) const;
+  /// Returns true if the device has at least one sub-index of this object.
   bool has(std::uint16_t index) const;
-  /// The object can be written, and `value` is within its limits. By the EDS.
+  /// Returns true if by the EDS the object can be written and `value` is within its limits. This
+  /// works for the objects of the heartbeat consumer (0x1016) and of life guarding (0x100C,
+  /// 0x100D); returns false for all others.
   bool takes(ObjectKey key, std::int64_t value) const;
   const std::map<ObjectKey, std::uint64_t>& all() const noexcept { return values_; }
 
-  /// The device has answered. Where it holds another value than was expected, that is noted.
+  /// Takes a value that the device has answered. Adds a note if it is not the expected value.
   void answered(ObjectKey key, std::span<const std::byte> bytes);
-  /// The device says that it does not have the object.
+  /// Removes an object because the device says that it does not exist. Adds a note.
   void missing(ObjectKey key);
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// What was found out while the device was asked.
+  /// Returns the findings from the questions to the device.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:
   std::map<ObjectKey, std::uint64_t> values_;
-  std::vector<DeviceObject> supervision_;  ///< writable objects of heartbeat and life guarding
+  std::vector<DeviceObject> supervision_;  // writable objects of heartbeat and life guarding
   std::vector<std::string> notes_;
 };
 

@@ -6,12 +6,12 @@
 namespace takt {
 namespace {
 
-/// Outputs of one width, with the objects that say what becomes of them.
+/// Outputs of one width, with the objects of their error mode and error value.
 struct OutputKind {
   std::uint16_t outputs;
   std::uint16_t mode;
   std::uint16_t value;
-  bool mask;  ///< the mode is a bit mask; else 1: takes the value
+  bool mask;  ///< true: the error mode is a bit mask; false: error mode 1 applies the error value
   std::uint64_t all;
 };
 
@@ -24,7 +24,7 @@ constexpr std::array<OutputKind, 8> kinds{{{0x6200, 0x6206, 0x6207, true, 0xFF},
                                            {0x6412, 0x6443, 0x6444, false, 1},
                                            {0x6413, 0x6443, 0x6445, false, 1}}};
 
-/// What becomes of one output, so that neighbours with the same fate are told together.
+/// Reaction of one output. Neighbours with the same reaction are reported together.
 struct Fate {
   ObjectKey first;
   std::uint8_t last = 0;

@@ -47,7 +47,8 @@ class Finder {
     }
   }
 
-  /// A device that makes a heartbeat does not answer guarding. CiA 301, 7.2.8.2.2.3.
+  /// Life guarding counts only if the device produces no heartbeat, because a device that produces
+  /// one does not answer guarding requests. CiA 301, 7.2.8.2.2.3.
   void life_guarding() {
     const std::uint64_t life =
         values_.get({0x100C, 0}).value_or(0) * values_.get({0x100D, 0}).value_or(0);
@@ -74,7 +75,8 @@ class Finder {
     found_.by_sync = true;
   }
 
-  /// An expired deadline is an EMCY; CiA 301 asks for no reaction.
+  /// Reports the deadlines of RPDOs. An expired deadline causes an EMCY; CiA 301 requires no
+  /// reaction.
   void deadlines() {
     for (const PdoRow& row : plan_.pdos.rpdos) {
       if (row.node_index != index_) continue;
@@ -108,14 +110,14 @@ constexpr int missed_heartbeats = 3;
 constexpr std::int64_t guard_ms = 100;
 constexpr std::int64_t life_time_factor = 3;
 
-/// 0x1016 as the boot would write it.
+/// Returns the entry of 0x1016 that the boot would write.
 std::int64_t consumer_entry(const BusPlan& plan) {
   const std::int64_t ms = plan.master_heartbeat == Time{} ? usual_heartbeat_ms
                                                           : plan.master_heartbeat / milliseconds{1};
   return (std::int64_t{plan.master_id.value()} << 16) | (missed_heartbeats * ms);
 }
 
-/// What an entry of 0x1016 is to the master.
+/// Use of an entry of 0x1016, as the master sees it.
 enum class Entry : std::uint8_t { of_master, watches_nobody, of_another };
 
 Entry entry_of(const BusPlan& plan, const DeviceValues& values, std::uint8_t sub) {
@@ -131,7 +133,8 @@ std::uint8_t entries_of(const DeviceValues& values) {
   return static_cast<std::uint8_t>(count);
 }
 
-/// The entry that the boot chooses: the master's, else the first that watches nobody.
+/// Returns the entry that the boot chooses: the one for the master, or else the first that watches
+/// nobody.
 std::optional<std::uint8_t> chosen_entry(const BusPlan& plan, const DeviceValues& values) {
   std::optional<std::uint8_t> unused;
   for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
@@ -142,7 +145,7 @@ std::optional<std::uint8_t> chosen_entry(const BusPlan& plan, const DeviceValues
   return unused;
 }
 
-/// An entry that watches nobody, and takes what the one that the boot chooses does not.
+/// Returns the first entry that watches nobody and that accepts the master's node-ID and time.
 std::optional<std::uint8_t> wide_entry(const BusPlan& plan, const DeviceValues& values) {
   for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
     const bool unused = entry_of(plan, values, sub) == Entry::watches_nobody;
@@ -151,7 +154,8 @@ std::optional<std::uint8_t> wide_entry(const BusPlan& plan, const DeviceValues& 
   return std::nullopt;
 }
 
-/// With `heartbeat_consumer: true`, the default, the boot writes it.
+/// Returns true if the boot writes an entry of 0x1016. It does so with `heartbeat_consumer: true`,
+/// which is the default.
 bool boot_writes_consumer(const NodePlan& node) {
   return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
     return step.object.index == 0x1016 && step.object.sub != 0;
@@ -176,7 +180,8 @@ void watch_guarding(const DeviceValues& values, SupervisionRemedy& remedy) {
   }
 }
 
-/// False: no entry of 0x1016 can watch the master.
+/// Adds the lines with which the device watches the heartbeat of the master. Returns false if no
+/// entry of 0x1016 can do that.
 bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
                      SupervisionRemedy& remedy) {
   const auto chosen = chosen_entry(plan, values);
@@ -190,7 +195,7 @@ bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValu
                  " can't be written, or by the limits of its EDS does not hold the master's node "
                  "id and a time, but another entry does: name that one, or correct the EDS";
     remedy.node.push_back(explicit_entry(plan, *wide));
-  } else if (!silent && node.boot && !boot_writes_consumer(node)) {  // the file says false
+  } else if (!silent && node.boot && !boot_writes_consumer(node)) {  // set to false
     remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
   }
   return true;

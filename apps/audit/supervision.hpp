@@ -10,24 +10,32 @@
 
 namespace takt {
 
-/// How a device notices that the master is gone.
+/// Ways in which a device notices that the master is gone.
 struct Supervision {
-  std::optional<Time> after{};  ///< longest time; none: never
-  bool by_sync = false;         ///< it acts when SYNC stays away, after a time that 0x1006 hints at
-  std::string how{};            ///< "the master's heartbeat stays away (1016:01)"
-  std::vector<std::string> besides{};  ///< deadlines that tell of errors and ensure nothing
+  /// Longest time until the device notices. Empty if neither heartbeat nor life guarding notices
+  /// it.
+  std::optional<Time> after{};
+  /// True if the device reacts to missing SYNC, after a time that depends on 0x1006.
+  bool by_sync = false;
+  std::string how{};  ///< "the master's heartbeat stays away (1016:01)"
+  /// Further remarks, for example on deadlines that report errors but ensure no reaction.
+  std::vector<std::string> besides{};
 };
 
-/// Heartbeat consumer (0x1016), life guarding (0x100C, 0x100D), SYNC (0x1006), deadlines of RPDOs.
+/// Evaluates heartbeat consumer (0x1016), life guarding (0x100C, 0x100D), SYNC (0x1006) and the
+/// deadlines of RPDOs.
 Supervision supervision_of(const BusPlan& plan, std::size_t node_index, const DeviceValues& values);
 
-/// Lines for the network file that make it notice, none that are the default already. `master`: the
-/// one for the master is needed. Both empty: nothing in the network file can make it notice.
+/// Lines for the network file that make a device notice the loss of the master. Lines that only
+/// repeat a default are left out. If both `node` and `master` are empty, no entry of the network
+/// file can make the device notice.
 struct SupervisionRemedy {
-  std::vector<std::string> node{};
-  std::string master{};
-  std::string why{};  ///< why it can't watch heartbeats although it has 0x1016
+  std::vector<std::string> node{};  ///< lines below the node's name
+  std::string master{};             ///< line for the master; empty if none is needed
+  std::string why{};  ///< why the device can't watch heartbeats although it has 0x1016
 };
+
+/// Finds the lines for a device that does not notice the loss of the master.
 SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
                                      const DeviceValues& values);
 
