@@ -12,8 +12,9 @@
 
 namespace takt {
 
-/// The numbers that a device holds once it has booted: its power-on values, and over them what the
-/// boot plan writes; or what it answered itself.
+/// Values of the objects of a device after its boot: the power-on values of the EDS, overwritten by
+/// the values that the boot plan writes. A value that the device itself has answered takes
+/// precedence.
 class DeviceValues {
  public:
   DeviceValues(const NodePlan& node, const DeviceTable& device);

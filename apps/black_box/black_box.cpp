@@ -22,10 +22,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time aftermath = 1s;
-constexpr Time distance = 10s;  // of two recordings
-constexpr Time silence = 5min;  // of one kind of fault
+constexpr Time distance = 10s;  // shortest time between two recordings
+constexpr Time silence = 5min;  // shortest time between two recordings of one kind of fault
 
-/// Files may not be named with all that a bus may be.
+/// Returns the name of the bus without the characters that a file name can't contain.
 std::string file_name(const std::string& bus) {
   std::string name = bus.substr(0, 64);
   std::ranges::replace_if(
@@ -33,7 +33,7 @@ std::string file_name(const std::string& bus) {
   return name.empty() ? "bus" : name;
 }
 
-/// `lift-20260314T150926`.
+/// Returns the name of the bus with the local time, for example `lift-20260314T150926`.
 std::string time_name(const std::string& bus) {
   return fmt::format("{}-{:%Y%m%dT%H%M%S}", bus, fmt::localtime(std::time(nullptr)));
 }
@@ -44,7 +44,7 @@ bool is_recording_of(const std::string& name, const std::string& bus) {
          std::isdigit(static_cast<unsigned char>(name[digits])) != 0;
 }
 
-/// What a run left behind that was ended while it wrote.
+/// Removes the files that an earlier run left behind when it ended while it was writing.
 void forget_incomplete(const std::filesystem::path& folder, const std::string& bus) {
   std::set<std::filesystem::path> found;
   std::error_code error;
@@ -103,7 +103,8 @@ void BlackBox::on_fault(const std::string& kind, std::uint8_t node, const std::s
 
 void BlackBox::on_request(const std::string& reason, Time now) { ask(reason, now); }
 
-/// What is due already is not put off, but for the distance to the one before.
+/// A new request never delays a recording that is already due. Only the distance to the previous
+/// recording does.
 void BlackBox::ask(const std::string& reason, Time at) {
   if (last_ != Time{}) at = std::max(at, last_ + distance);
   if (reason_.empty()) reason_ = reason;
@@ -144,7 +145,8 @@ bool BlackBox::finish(const std::string& reason, Time limit) {
   return true;
 }
 
-/// The writer is through. It looks every millisecond.
+/// Waits until the writer has ended; checks every millisecond. Returns false after the time
+/// `until`.
 bool BlackBox::await_writer(Time until) const {
   while (writing_.load(std::memory_order_acquire)) {
     if (monotonic_now() > until) return false;
@@ -165,14 +167,15 @@ bool BlackBox::finish_running(const std::string& reason, Time limit) {
   for (; tape == nullptr && monotonic_now() < until; tape = journal_.wanted()) {
     std::this_thread::sleep_for(1ms);
   }
-  if (tape == nullptr) return false;  // the bus thread begins no cycle any more
+  if (tape == nullptr) return false;  // the bus thread no longer begins a cycle
   if (reason_.empty()) reason_ = reason;
   if (!write(*tape) || !await_writer(until)) return false;
   end_writing();
   return !failed_;
 }
 
-/// False: there is no thread to write with, which is told; the tape is not needed any longer.
+/// Starts the writer. Returns false, after a report, if no thread can be created; the tape is then
+/// no longer needed.
 bool BlackBox::write(const Tape& tape) {
   head_.reason = std::exchange(reason_, {});
   head_.follows = tape.whole() ? previous_ : "";
@@ -193,7 +196,7 @@ bool BlackBox::write(const Tape& tape) {
   return false;
 }
 
-/// The writer's thread, with the folder to itself.
+/// Runs in the writer's thread, which alone uses the folder.
 void BlackBox::write_files(const Tape& tape, const RecordingHead& head) {
   std::filesystem::path stem = options_.folder;
   std::expected<void, std::string> result;
@@ -226,7 +229,8 @@ std::filesystem::path BlackBox::next_stem(const std::string& bus) const {
   return stem;
 }
 
-/// Only once a new one is complete: a disk that takes nothing any more costs no recording.
+/// Removes the oldest recordings. This happens only after a new one is complete, so that a full
+/// disk costs no recording.
 void BlackBox::forget_oldest(const std::string& bus) const {
   std::set<std::string> stems;
   std::error_code error;

@@ -15,23 +15,27 @@
 
 namespace takt {
 
+/// Options of a BlackBox.
 struct BlackBoxOptions {
   std::filesystem::path folder;
-  std::size_t bytes = 16 << 20;  ///< of each of the two tapes
-  std::size_t keep = 20;  ///< recordings of this bus; older ones go when a new one is complete
+  std::size_t bytes = 16 << 20;  ///< size of each of the two tapes
+  /// Number of recordings of this bus to keep. Older ones are removed after a new one is complete.
+  std::size_t keep = 20;
 };
 
-/// The black box of a running master: holds the journal of the bus thread and writes it to files
-/// after a fault or when asked. A fault is written with what comes in the second after it; one kind
-/// of fault of one node at most every five minutes, and no two recordings within ten seconds. Front
-/// thread; the files are written by a thread of their own.
+/// Black box of a running master. It holds the journal of the bus thread and writes the journal to
+/// files after a fault or on request. The recording of a fault includes the second after the fault.
+/// The same kind of fault of the same node is written at most every five minutes, and recordings
+/// are at least ten seconds apart. All calls come from the front thread; a separate thread writes
+/// the files.
 class BlackBox {
  public:
-  /// A recording is written; `file` is empty where that failed.
+  /// Reports that a recording was written. `file` is empty if the recording failed.
   using Say = std::function<void(const std::string& sentence, const std::string& file)>;
 
-  /// An error is a sentence: the folder can't be written. A disk that only takes nothing now is
-  /// none: each recording is tried, and what becomes of it is told. `plan` outlives the box.
+  /// Returns an error sentence if the folder can't be written. A disk that only refuses data for
+  /// the moment is no error: the black box tries each recording and reports the result. `plan` must
+  /// outlive the black box.
   static std::expected<std::unique_ptr<BlackBox>, std::string> open(const BlackBoxOptions& options,
                                                                     const BusPlan& plan,
                                                                     RecordingHead head, Say say);
@@ -41,16 +45,18 @@ class BlackBox {
 
   Journal& journal() noexcept { return journal_; }
 
-  /// Something went wrong: it will be written.
+  /// Schedules a recording of a fault.
   void on_fault(const std::string& kind, std::uint8_t node, const std::string& text, Time now);
-  /// It is to be written as soon as may be.
+  /// Schedules a recording as soon as possible.
   void on_request(const std::string& reason, Time now);
-  /// Often: begins and ends what is due.
+  /// Begins and ends the recordings that are due. The front thread calls this function often.
   void serve(Time now);
-  /// The bus thread has ended: writes what is due, and `reason` where there is one. Waits for at
-  /// most `limit`; false: the writer is still at it, and the destructor would wait for it.
+  /// Writes a last recording after the bus thread has ended, if one is due or if `reason` is not
+  /// empty. Waits for at most `limit`. Returns false if the writer has not ended by then; the
+  /// destructor would wait for the writer.
   bool finish(const std::string& reason, Time limit);
-  /// The same while the bus thread runs on. Waits for at most `limit`; false: it was not written.
+  /// Writes a last recording while the bus thread is still running. Waits for at most `limit`.
+  /// Returns false if the recording was not written.
   bool finish_running(const std::string& reason, Time limit);
 
  private:
@@ -69,15 +75,16 @@ class BlackBox {
   RecordingHead head_;
   Say say_;
   Journal journal_;
-  std::map<std::pair<std::string, std::uint8_t>, Time> faults_;  // when each was written last
-  std::string reason_;  // of the recording that is due; empty: none
+  // Time of the last fault of each kind and node that was to be recorded.
+  std::map<std::pair<std::string, std::uint8_t>, Time> faults_;
+  std::string reason_;  // reason of the recording that is due; empty if none is due
   Time due_ = never;
-  Time last_{};          // the newest recording was begun; 0: none was
-  bool wanted_ = false;  // the bus thread was asked for its tape
+  Time last_{};          // begin of the newest recording; 0 if there is none
+  bool wanted_ = false;  // true if the bus thread was asked for its tape
   std::thread writer_;
   std::atomic<bool> writing_{false};
-  // The writer's, until writing_ is false:
-  std::string previous_;  // recording that ends where the running tape begins
+  // Only the writer may use the following members until writing_ is false.
+  std::string previous_;  // recording that ends where the current tape begins
   std::string written_;
   bool failed_ = false;
 };

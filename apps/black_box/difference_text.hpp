@@ -7,14 +7,14 @@
 
 namespace takt {
 
-/// The difference in words; `logs` are the paths of the candump logs.
+/// Describes a difference. `logs` are the paths of the candump logs.
 std::string difference_text(const ReplayDifference& difference,
                             const std::vector<std::string>& logs);
-/// The recorded decision and the one in its place.
+/// Describes a decision that differs from the recorded one.
 std::string decision_text(const Decision& recorded, const Decision& decision);
-/// One more decision than recorded.
+/// Describes a decision that is not in the recording.
 std::string surplus_text(const Decision& decision);
-/// A recorded decision that was not taken again.
+/// Describes a recorded decision that the replay did not repeat.
 std::string lack_text(const Decision& recorded);
 
 }  // namespace takt

@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::span<const std::uint64_t>;
 
-/// Words of the record behind its first, as they are in a file. See Recording.
+/// Returns the number of words that follow the first word of a record in a file. See Recording.
 std::uint64_t length_of(std::uint64_t word) noexcept {
   const std::uint64_t payload = journal::payload_of(word);
   switch (journal::mark_of(word)) {
@@ -42,7 +42,7 @@ std::uint64_t length_of(std::uint64_t word) noexcept {
   return 0;
 }
 
-/// What comes before the first checkpoint of some words.
+/// Number of words and events before the first checkpoint.
 struct Before {
   std::size_t words = 0;
   std::size_t events = 0;

@@ -3,7 +3,8 @@
 
 namespace takt {
 
-/// Leaves out what lies before the first checkpoint, but for the frames. False: there is none.
+/// Removes everything before the first checkpoint, except the frames. Returns false if the
+/// recording has no checkpoint.
 bool begin_with_checkpoint(LoadedRecording& recording);
 
 }  // namespace takt

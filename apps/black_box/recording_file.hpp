@@ -12,19 +12,19 @@
 
 namespace takt {
 
-/// What a recording says of itself.
+/// Properties of a recording, as its file states them.
 struct RecordingHead {
   std::string bus{};
-  std::string interface{};    ///< it ran on; events name it
+  std::string interface{};    ///< interface of the bus; events name it
   std::string network{};      ///< path of the network file, as it was given
-  std::string fingerprint{};  ///< of the plan, see plan_fingerprint()
-  std::string reason{};       ///< why it was written
-  bool observe = false;       ///< the master only listened
-  bool from_start = false;    ///< it begins where the master was started
-  std::string follows{};      ///< recording that ends where this one begins, else empty
+  std::string fingerprint{};  ///< fingerprint of the plan, see plan_fingerprint()
+  std::string reason{};       ///< reason of the recording
+  bool observe = false;       ///< true if the master only listened
+  bool from_start = false;    ///< true if the recording begins with the start of the master
+  std::string follows{};      ///< recording that ends where this one begins; empty if none
 };
 
-/// An event as it stands in a file.
+/// An event in the form in which the file holds it.
 struct Decision {
   std::int64_t time = 0;  ///< monotonic, ns
   std::uint64_t cycle = 0;
@@ -40,30 +40,32 @@ struct Decision {
 
 Decision to_decision(const BusPlan& plan, const Event& event);
 
-/// A recording as it was read.
+/// A recording that was read from its files, together with the recordings that it follows.
 struct LoadedRecording {
-  RecordingHead head;             ///< of the last part
-  std::vector<Recording> parts;   ///< that follow one another
-  std::vector<std::string> logs;  ///< paths of their candump logs
+  RecordingHead head;             ///< head of the last part
+  std::vector<Recording> parts;   ///< parts in the order of time
+  std::vector<std::string> logs;  ///< paths of the candump logs of the parts
   std::vector<Decision> decisions;
-  /// What the master knew where the replay begins; empty: it begins with the master's start.
+  /// State of the master at the point where the replay begins. Empty if the replay begins with the
+  /// start of the master.
   std::vector<std::uint64_t> checkpoint{};
-  std::optional<std::string> fault;  ///< why it can't be replayed, as a sentence
+  std::optional<std::string> fault;  ///< reason why the recording can't be replayed, a sentence
 };
 
-/// Another one for each plan that makes the master do something else; neither the names of bus and
-/// interface nor the real time that was asked for count.
+/// Returns a hash of everything in the plan that affects the actions of the master. The names of
+/// bus and interface and the requested real-time rights do not count.
 std::string plan_fingerprint(const BusPlan& plan);
 
-/// Writes `stem.log` (as `candump -L` does), `stem.events.json` and `stem.journal`. `records` are
-/// those of a tape. The three have other names until all of them are complete; where one can't be
-/// written, none is left behind. An error is a sentence.
+/// Writes `stem.log` (in the format of `candump -L`), `stem.events.json` and `stem.journal`.
+/// `records` are the records of a tape. The three files have other names until all of them are
+/// complete; if one can't be written, none is left behind. On failure, returns a sentence.
 std::expected<void, std::string> write_recording(const std::filesystem::path& stem,
                                                  const BusPlan& plan, const RecordingHead& head,
                                                  const std::vector<std::uint64_t>& records);
 
-/// Reads the three files, and those of the recordings that it follows; `file` is any of the three,
-/// or the path without ending. Any content is safe.
+/// Reads the three files of a recording, and those of the recordings that it follows. `file` is any
+/// of the three files, or their path without ending. The files may have any content. On failure,
+/// returns a sentence.
 std::expected<LoadedRecording, std::string> read_recording(const std::filesystem::path& file);
 
 }  // namespace takt

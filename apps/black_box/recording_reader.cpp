@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-constexpr std::uintmax_t most_bytes = 1U << 30;  // of one file
+constexpr std::uintmax_t most_bytes = 1U << 30;  // size limit of one file
 constexpr std::size_t most_parts = 1000;
 
 template <class T>
@@ -104,7 +104,7 @@ void read_events(std::istream& in, LoadedRecording& loaded, std::size_t& frames)
   }
 }
 
-/// One recording, without what it follows.
+/// Reads one recording, without the recordings that it follows.
 Result<LoadedRecording> read_part(const std::string& stem) {
   LoadedRecording loaded;
   const std::string log = stem + recording_format::log_ending;
@@ -146,7 +146,7 @@ void put_before(LoadedRecording& earlier, LoadedRecording& loaded) {
   join(earlier.decisions, loaded.decisions);
 }
 
-/// Back to where the master was started, as far as the recordings reach.
+/// Reads the earlier recordings, back to the start of the master as far as the files reach.
 void read_earlier(const std::filesystem::path& folder, LoadedRecording& loaded) {
   std::string follows = loaded.head.follows;
   while (!is_from_start(loaded.parts.front())) {

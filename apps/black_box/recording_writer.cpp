@@ -65,7 +65,7 @@ void write_events(std::ostream& out, const BusPlan& plan, const RecordingHead& h
   out << json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
 
-/// candump separates by blanks.
+/// Returns the name of the interface without blanks, because candump separates columns by blanks.
 std::string interface_of(const BusPlan& plan) {
   std::string text = plan.interface.empty() ? plan.name : plan.interface;
   for (char& letter : text) {
@@ -74,13 +74,14 @@ std::string interface_of(const BusPlan& plan) {
   return text.empty() ? "bus" : text;
 }
 
-/// A disk may refuse late what it has taken at first (quotas, network).
+/// Returns true if the file has reached the disk. Some disks accept data at first and refuse it
+/// later (quotas, network).
 bool reaches_the_disk(const std::string& path) noexcept {
   const FileDescriptor file{::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
   return file && (::fsync(file.get()) == 0 || errno == EINVAL || errno == EROFS);
 }
 
-/// The files of one recording, under other names until all are complete.
+/// Files of one recording. They have other names until all of them are complete.
 class UnfinishedFiles {
  public:
   explicit UnfinishedFiles(const std::filesystem::path& stem)
@@ -107,7 +108,7 @@ class UnfinishedFiles {
     file.close();
     if (!file || !reaches_the_disk(path)) refuse(ending, errno);
   }
-  /// Gives all of them their names.
+  /// Gives all files their final names.
   std::expected<void, std::string> finish() {
     std::error_code error;
     for (std::size_t i = 0; i < endings_.size() && !error_; ++i) {
@@ -127,7 +128,7 @@ class UnfinishedFiles {
 
   std::string stem_;
   std::string unfinished_;
-  std::vector<std::string> made_;  // removed where the recording isn't finished
+  std::vector<std::string> made_;  // files to remove if the recording is not finished
   std::vector<const char*> endings_;
   std::optional<std::string> error_;
 };

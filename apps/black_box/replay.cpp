@@ -31,7 +31,8 @@ class Replay {
   }
 
  private:
-  /// False: the recording begins in the middle of the run of another plan.
+  /// Returns false if the recording begins in the middle of the run of another plan or of another
+  /// version of takt.
   bool begin() {
     if (recording_.checkpoint.empty()) {
       loop_.start();
@@ -54,8 +55,8 @@ class Replay {
     ++outcome_.cycles;
   }
 
-  /// What the port sees comes first in a cycle; the first event that differs then says what it
-  /// leads to.
+  /// Compares the events of one cycle. In a cycle, the port detects a difference before the events
+  /// do; the first event that differs then shows the consequence.
   void compare_events() {
     std::string event_differs;
     for (Event event; exchange_->events.pop(event);) {
@@ -71,7 +72,7 @@ class Replay {
     }
   }
 
-  /// Empty: it is as recorded.
+  /// Returns an empty text if the decision is as recorded.
   std::string compare(const Decision& decision) {
     if (outcome_.decisions == recording_.decisions.size()) return surplus_text(decision);
     const Decision& recorded = recording_.decisions[outcome_.decisions];

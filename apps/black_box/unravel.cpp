@@ -98,7 +98,8 @@ class Unraveller {
     keep(bits + ((parts & journal::state) != 0 ? journal::state_words : 0));
   }
 
-  /// The word is its number until all are sorted.
+  /// Adds a frame. Its word in the journal gets the number of the frame after all frames are
+  /// sorted.
   void add(const LoggedFrame& frame) {
     numbers_.push_back(tape_.words.size());
     tape_.words.push_back(0);
@@ -120,7 +121,7 @@ class Unraveller {
 
   std::span<const std::uint64_t> rest_;
   UnravelledTape tape_;
-  std::vector<std::size_t> numbers_;  // of each frame: the word that names it
+  std::vector<std::size_t> numbers_;  // for each frame, the position of its word in the journal
   Time now_{};
 };
 

@@ -8,21 +8,22 @@
 
 namespace takt {
 
-/// A frame of the tape and its place in the log.
+/// A frame of the tape and its time, which determines its place in the log.
 struct LoggedFrame {
   Time when{};  ///< monotonic
   Frame frame{};
 };
 
-/// A tape, taken apart.
+/// Contents of a tape, separated into journal, frames and events.
 struct UnravelledTape {
-  std::vector<std::uint64_t> words;  ///< as Recording::words
-  std::vector<LoggedFrame> frames;   ///< in the order of their times
+  std::vector<std::uint64_t> words;  ///< words of the journal, see Recording::words
+  std::vector<LoggedFrame> frames;   ///< frames in the order of their times
   std::vector<Event> events;
-  Time since_1970{};  ///< the newest; 0 = not known
+  /// Newest offset from the monotonic clock to the time since 1970. 0 means unknown.
+  Time since_1970{};
 };
 
-/// `records` as Tape::read() gives them.
+/// Separates the records that Tape::read() returns.
 UnravelledTape unravel(const std::vector<std::uint64_t>& records);
 
 }  // namespace takt

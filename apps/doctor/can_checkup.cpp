@@ -10,7 +10,7 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t usual_bitrate = 1'000'000;
-constexpr std::size_t usual_frames = 100;  // of a cycle: outputs of fifty drives
+constexpr std::size_t usual_frames = 100;  // frames of a cycle with the outputs of fifty drives
 
 std::string up_command(const std::string& name, std::uint32_t bitrate) {
   return "ip link set " + name + " up type can bitrate " + std::to_string(bitrate) +

@@ -16,25 +16,27 @@ enum class Verdict : std::uint8_t { good, hint, bad };
 struct Remark {
   Verdict verdict = Verdict::good;
   std::string subject;    ///< "can0", "multicast"
-  std::string text;       ///< what was found; where it isn't good, what to do
-  std::string command{};  ///< mends it; empty: nothing to mend, or no single command does
+  std::string text;       ///< the finding, and advice if the verdict is not good
+  std::string command{};  ///< command that repairs it; empty if no single command does
 };
 
-/// Whether the kernel opens CAN sockets.
+/// Checks that the kernel opens CAN sockets.
 Remark check_can_support();
 
-/// The CAN interface `name`: there, up, fit for a cycle. `bitrate`: what it ought to run at; none:
-/// whatever it has.
+/// Checks that the CAN interface `name` exists, is up and suits a cycle. `bitrate` is the bit rate
+/// that the interface should have, in bit/s; std::nullopt accepts any.
 std::vector<Remark> check_interface(const std::string& name, std::optional<std::uint32_t> bitrate);
+/// Judges an interface whose properties were already read. See check_interface().
 std::vector<Remark> judge_link(const CanLink& link, std::optional<std::uint32_t> bitrate);
 
-/// Kernel, clock and frequency governor as files below `root` ("/") say.
+/// Checks kernel, clock and frequency governor. Reads the files of the kernel below `root` ("/").
 std::vector<Remark> check_machine(const std::filesystem::path& root);
 
-/// What a thread gets that asks for SCHED_FIFO and locked memory.
+/// Judges the result of a thread that asked for SCHED_FIFO and locked memory.
 std::vector<Remark> judge_realtime(const RtReport& report);
 
-/// Multicast route and socket buffers for LCM at `url`; buffers as files below `root` say.
+/// Checks multicast route and socket buffers for LCM at `url`. Reads the size of the buffers below
+/// `root`.
 std::vector<Remark> check_lcm(const std::string& url, const std::filesystem::path& root);
 
 }  // namespace takt

@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-constexpr std::uint64_t wanted_buffer = 2 << 20;  // bytes; LCM asks for as much
+constexpr std::uint64_t wanted_buffer = 2 << 20;  // bytes, the size that LCM requests
 
 Remark check_route(const LcmUrl& url) {
   if (url.scheme != "udpm") return {Verdict::good, "LCM", url.text + " needs no multicast"};

@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// First line of a file of the kernel; empty where there is none.
+/// Returns the first line of a file of the kernel. Empty if the file does not exist.
 std::string line_of(const fs::path& path) {
   std::ifstream file{path};
   std::string line;

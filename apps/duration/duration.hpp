@@ -6,7 +6,9 @@
 
 namespace takt {
 
-/// `10s`, `500ms`, `250us`, `1.5min` or `1.5m`, `2h`, and `10`, which is seconds; at most 30 years.
+/// Reads a duration: a number with a unit, such as `10s`, `500ms`, `250us`, `50ns`, `1.5min`,
+/// `1.5m` or `2h`. A number without a unit means seconds. Returns std::nullopt if the text is no
+/// duration or more than 1e18 ns (about 31 years).
 std::optional<Time> parse_duration(std::string_view text) noexcept;
 
 }  // namespace takt
