@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_kept = 4096;  // bytes of one value
+constexpr std::size_t most_kept = 4096;  // bytes of one value that are kept
 
 std::string size_text(const std::optional<std::uint32_t>& size) {
   return size ? fmt::format("{} bytes", *size) : "of unknown size";
@@ -60,12 +60,13 @@ std::string BlockText::from_sink(const Frame& frame, const std::string& name) {
 }
 
 std::string BlockText::segment(const Frame& frame, const std::string& name) {
-  // After a gap a frame with the zeros of an end is the end: the last segment was not seen.
+  // After a gap, a frame that looks like an end with its zeros is the end; the last segment was not
+  // seen.
   const bool zeros =
       std::ranges::all_of(std::span{frame.data}.subspan(3), [](auto b) { return b == 0; });
   if (gap_ && is_block_end(frame) && zeros) return end(frame, name);
   const SdoBlockSegment part = decode_block_segment(frame);
-  if (part.number == 1 && !sub_block_.empty()) lose_track();  // its confirmation was not seen
+  if (part.number == 1 && !sub_block_.empty()) lose_track();  // confirmation not seen
   if (part.last) last_number_ = part.number;
   if (part.number == sub_block_.size() + 1) sub_block_.push_back(part);
   return fmt::format("block segment {} of {}{}", part.number, name, part.last ? ", the last" : "");
@@ -106,7 +107,7 @@ std::string BlockText::end(const Frame& frame, const std::string& name) {
   return text;
 }
 
-/// The receiver has taken more than this recording shows.
+/// Notes that the receiver has taken more segments than this recording shows.
 void BlockText::lose_track() noexcept {
   gap_ = true;
   whole_ = false;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint32_t error_flag = 0x2000'0000;
 
-/// Three digits are an 11-bit identifier, eight a 29-bit one, or the class of an error frame.
+/// Reads an identifier. Three digits are an 11-bit identifier; eight digits are a 29-bit identifier
+/// or the class of an error frame.
 bool read_id(std::string_view text, CandumpLine& line) {
   const auto id = number_in<std::uint32_t>(text, 16);
   if (!id || (text.size() != 3 && text.size() != 8)) return false;
@@ -27,7 +28,7 @@ bool add_byte(std::string_view text, Frame& frame) {
   return true;
 }
 
-/// `185#3706`, `705#R`, `705#R1`; dots between bytes are allowed.
+/// Reads a frame like `185#3706`, `705#R` or `705#R1`. Dots between bytes are allowed.
 bool read_log_frame(std::string_view text, CandumpLine& line) {
   const std::size_t hash = text.find('#');
   if (hash == std::string_view::npos || !read_id(text.substr(0, hash), line)) return false;
@@ -48,7 +49,7 @@ bool read_log_frame(std::string_view text, CandumpLine& line) {
   return true;
 }
 
-/// `185 [2] 37 06`, `705 [1] remote request`.
+/// Reads a frame like `185 [2] 37 06` or `705 [1] remote request`.
 bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& line) {
   if (words.size() < 2 || !read_id(words[0], line)) return false;
   const std::string_view bracket = words[1];
@@ -67,7 +68,7 @@ bool read_terminal_frame(std::span<const std::string_view> words, CandumpLine& l
   return true;
 }
 
-/// Colours of `-c`.
+/// Removes the colours that the option `-c` of candump adds.
 std::string without_escapes(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -80,7 +81,8 @@ std::string without_escapes(std::string_view text) {
   return plain;
 }
 
-/// `(1436509052.249713)`, or `(2015-07-10 08:17:32.249713)` of -tA. False: it has no end.
+/// Reads a time stamp like `(1436509052.249713)`, or `(2015-07-10 08:17:32.249713)` with the option
+/// `-tA`. Returns true if the line has no time stamp, and false if a time stamp has no end.
 bool read_stamp(std::span<const std::string_view>& words, CandumpLine& line) {
   if (words.empty() || !words[0].starts_with('(')) return true;
   const std::size_t count = words[0].ends_with(')') ? 1 : 2;
@@ -92,7 +94,8 @@ bool read_stamp(std::span<const std::string_view>& words, CandumpLine& line) {
   return true;
 }
 
-/// `-x` shows the direction and flags before the identifier: `RX - -`, `TX B -`.
+/// Removes the direction and the flags that the option `-x` shows before the identifier: `RX - -`,
+/// `TX B -`.
 std::span<const std::string_view> without_direction(std::span<const std::string_view> words) {
   if (words.empty() || (words[0] != "RX" && words[0] != "TX")) return words;
   words = words.subspan(1);

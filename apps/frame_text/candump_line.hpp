@@ -7,18 +7,20 @@
 
 namespace takt {
 
-/// One line of candump, of its log format (`-L`) or of its terminal format with or without a stamp.
+/// One line of candump, in its log format (`-L`) or in its terminal format, with or without a time
+/// stamp.
 struct CandumpLine {
   std::string stamp{};  ///< as written, without brackets; may be empty
   std::string interface{};
   Frame frame{};
-  bool error_frame = false;  ///< of the controller: `frame.id` is its class, `frame` its bytes
+  bool error_frame = false;  ///< true: error frame; `frame.id` is its class, `frame` its bytes
 };
 
-/// None: not a line of candump, or a frame of CAN FD.
+/// Reads a line of candump. Returns std::nullopt if the text is another line or a frame of CAN FD.
 std::optional<CandumpLine> parse_candump(std::string_view text);
 
-/// `(1436509052.249713)  vcan0  185   [2]  37 06`, the stamp only where there is one.
+/// Returns a line like `(1436509052.249713)  vcan0  185   [2]  37 06`, without brackets if the line
+/// has no time stamp.
 std::string to_string(const CandumpLine& line);
 
 }  // namespace takt

@@ -5,8 +5,8 @@
 
 namespace takt {
 
-/// An EMCY of `node` in the words of its device data, of CiA 402 and of CiA 301. Frames that are
-/// shorter than eight bytes are told as what they are. CiA 301, 7.2.7.
+/// Describes an EMCY of `node` in the words of its device data, of CiA 402 or of CiA 301. The text
+/// also states the length of a frame that does not have eight bytes. CiA 301, 7.2.7.
 FrameMeaning emergency_meaning(const FrameNames& names, NodeId node, const Frame& frame);
 
 }  // namespace takt

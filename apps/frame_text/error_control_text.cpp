@@ -52,7 +52,7 @@ FrameMeaning ErrorControlText::meaning(unsigned node, const std::string& name, c
   }
   Guarding& guarding = nodes_[node & 0x7F];
   if (frame.data[0] == 0) {
-    guarding = {.asked = false, .toggle = true};  // the first answer has toggle 0
+    guarding = {.asked = false, .toggle = true};  // the first answer has toggle bit 0
     return {.service = "BOOTUP", .node = node, .text = name};
   }
   if (guarding.asked) return answer(node, name, frame.data[0]);

@@ -8,16 +8,16 @@
 
 namespace takt {
 
-/// Heartbeats, boot-up messages, and guarding with its toggle bit, which is followed for each node.
-/// CiA 301, 7.2.8.3.
+/// Describes heartbeats, boot-up messages, and guarding frames. It follows the toggle bit of
+/// guarding for each node. CiA 301, 7.2.8.3.
 class ErrorControlText {
  public:
   FrameMeaning meaning(unsigned node, const std::string& name, const Frame& frame);
 
  private:
   struct Guarding {
-    bool asked = false;            // a request without an answer so far
-    std::optional<bool> toggle{};  // of the newest answer; none: not known
+    bool asked = false;            // true if a request has no answer so far
+    std::optional<bool> toggle{};  // toggle bit of the newest answer; empty if unknown
   };
 
   FrameMeaning request(unsigned node, const std::string& name);

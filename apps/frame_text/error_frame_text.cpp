@@ -8,7 +8,8 @@
 namespace takt {
 namespace {
 
-// Numbers of linux/can/error.h; a recording may be read where there is no such header.
+// Numbers of linux/can/error.h. They are repeated here because a recording may be read on a system
+// without that header.
 constexpr std::uint32_t lost_arbitration = 0x002;
 constexpr std::uint32_t controller = 0x004;
 constexpr std::uint32_t protocol = 0x008;

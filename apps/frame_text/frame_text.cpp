@@ -30,7 +30,8 @@ std::string_view command_text(NmtCommand command) {
   return "unknown";
 }
 
-/// TIME_OF_DAY: milliseconds since midnight (28 bits), days since 1984-01-01. CiA 301, 7.1.6.6.
+/// Describes TIME_OF_DAY: milliseconds since midnight (28 bits) and days since 1984-01-01. CiA 301,
+/// 7.1.6.6.
 std::string time_text(const Frame& frame) {
   const auto time = decode_time(frame);
   if (!time) return fmt::format("of {} bytes (always 6)", frame.length);
@@ -44,7 +45,8 @@ std::string time_text(const Frame& frame) {
                      unsigned{date.month()}, unsigned{date.day()}, clock, time->days);
 }
 
-/// Who is the master: several may ask each other. CiA 302-2, flying master.
+/// Describes the frames with which several masters agree on the active one. CiA 302-2, flying
+/// master.
 std::string_view master_text(std::uint32_t id) {
   switch (id) {
     case 0x071:
@@ -84,7 +86,7 @@ FrameMeaning FrameText::sync(const Frame& frame) const {
   return {.service = "SYNC", .text = std::move(text)};
 }
 
-/// What is for all, or of no node.
+/// Describes frames that concern all nodes or no node in particular.
 std::optional<FrameMeaning> FrameText::broadcast(const Frame& frame) const {
   const BusPlan* plan = names_.plan();
   const CobId sync_id = plan == nullptr ? CobId::base(0x080) : plan->cycle.sync_cob_id;

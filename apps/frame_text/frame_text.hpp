@@ -10,14 +10,16 @@
 
 namespace takt {
 
-/// Reads frames one after the other, of one bus.
+/// Describes the frames of one bus, one after the other. It follows transfers across frames.
 class FrameText {
  public:
   FrameText() : sdo_{names_} {}
+  /// Keeps a reference to the network, which gives the names and PDOs.
   explicit FrameText(const LoadedNetwork& network) : names_{network}, sdo_{names_, network} {}
   FrameText(const FrameText&) = delete;
   FrameText& operator=(const FrameText&) = delete;
 
+  /// Describes the next frame of the bus.
   FrameMeaning meaning(const Frame& frame);
 
  private:

@@ -82,7 +82,7 @@ std::string inquire_text(std::uint8_t code, const Frame& frame, bool of_master) 
                    : fmt::format("{} is 0x{:08X}", name, word(frame));
 }
 
-/// The question of the scan: do the upper bits of a part of the address agree?
+/// Describes a question of the scan: do the upper bits of a part of the LSS address agree?
 std::string fast_scan_text(const Frame& frame) {
   const std::uint8_t bit = frame.data[5];
   if (bit == lss::FastScan::everybody) return "fastscan: who has no node id?";

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// An LSS frame of the master (0x7E5) or of a device (0x7E4) in words. CiA 305.
+/// Describes an LSS frame of the master (0x7E5) or of a device (0x7E4). CiA 305.
 std::string lss_text(const Frame& frame, bool from_master);
 
 }  // namespace takt

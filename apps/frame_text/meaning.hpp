@@ -4,11 +4,11 @@
 
 namespace takt {
 
-/// What a frame means to CANopen.
+/// Meaning of a frame in CANopen.
 struct FrameMeaning {
   std::string_view service = "?";  ///< "NMT", "SYNC", "EMCY", "TIME", "TPDO", "RPDO", "SDO", ...
-  unsigned node = 0;               ///< 0: none, or all
-  std::string text{};              ///< after the service: "shoulder operational"
+  unsigned node = 0;               ///< node-ID; 0 means no node or all nodes
+  std::string text{};              ///< text after the service, "shoulder operational"
 };
 
 }  // namespace takt

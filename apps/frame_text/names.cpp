@@ -13,7 +13,7 @@ struct Range {
   std::uint16_t first;
   std::uint16_t last;
   std::string_view name;
-  DataType type = DataType::unknown;  // of sub-index 0 of a variable
+  DataType type = DataType::unknown;  // type of sub-index 0 of a variable
 };
 
 constexpr std::array<Range, 64> communication_objects{{

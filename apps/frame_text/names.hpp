@@ -8,33 +8,37 @@
 
 namespace takt {
 
-/// Names and types of nodes and objects, from the network where one is given, else from CiA 301.
+/// Names and types of nodes and objects. They come from the network if one is given, or else from
+/// CiA 301.
 class FrameNames {
  public:
   FrameNames() = default;
-  /// Keeps a reference.
+  /// Keeps a reference to the network.
   explicit FrameNames(const LoadedNetwork& network) : network_{&network} {}
 
-  /// `shoulder`, else `node 5`.
+  /// Returns the name of a node, `shoulder`, or `node 5` if the name is unknown.
   std::string node(unsigned id) const;
-  /// `6041:00 statusword`; without a name where none is known.
+  /// Returns index, sub-index and name of an object, `6041:00 statusword`. The name is left out if
+  /// it is unknown.
   std::string object(unsigned node, ObjectKey key) const;
-  /// Type of an object, unknown where nothing tells it.
+  /// Returns the type of an object, or DataType::unknown.
   DataType type(unsigned node, ObjectKey key) const;
 
-  /// An EMCY code in the words of the node's device data, else of CiA 402 and CiA 301.
+  /// Returns the text of an EMCY code from the device data of the node, or else from CiA 402 and
+  /// CiA 301.
   std::string_view emcy(unsigned node, std::uint16_t code) const;
-  /// Whose EMCY has this identifier.
+  /// Returns the node whose EMCY has this COB-ID, or std::nullopt if there is none.
   std::optional<NodeId> emcy_sender(CobId id) const;
 
+  /// Returns the plan of the network, or null without a network.
   const BusPlan* plan() const { return network_ == nullptr ? nullptr : &network_->plan; }
 
  private:
   const LoadedNetwork* network_ = nullptr;
 };
 
-/// Name of an object of the communication profile (`1017:00`: "producer heartbeat time", `1801:02`:
-/// "TPDO2 transmission type"); empty for others. CiA 301, 7.5.
+/// Returns the name of an object of the communication profile (`1017:00`: "producer heartbeat
+/// time", `1801:02`: "TPDO2 transmission type"). Empty for other objects. CiA 301, 7.5.
 std::string communication_object_name(ObjectKey key);
 
 }  // namespace takt

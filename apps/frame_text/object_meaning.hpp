@@ -7,8 +7,9 @@
 
 namespace takt {
 
-/// What the value of an object of the communication profile says, where its number does not:
-/// identifiers, mapping entries, heartbeat consumers, "save", NMT requests. Empty: nothing to add.
+/// Describes the value of an object of the communication profile whose number alone does not show
+/// its meaning: identifiers, mapping entries, heartbeat consumers, "save", NMT requests. Empty for
+/// all other objects.
 std::string object_meaning(const FrameNames& names, unsigned node, ObjectKey key,
                            std::span<const std::uint8_t> bytes);
 

@@ -10,9 +10,9 @@
 namespace takt {
 namespace {
 
-constexpr std::uint8_t destination_flag = 0x80;  // first byte of a DAM-MPDO
+constexpr std::uint8_t destination_flag = 0x80;  // bit 7 of the first byte of a DAM-MPDO
 
-/// A PDO of the plan and its direction, seen from the device.
+/// A PDO of the plan and its direction, from the device's view.
 struct Found {
   const PdoRow* row = nullptr;
   bool tpdo = false;
@@ -24,7 +24,8 @@ std::uint64_t bits_of(const Frame& frame, const PdoField& field) {
   return all >> field.bit_offset & mask;
 }
 
-/// The row of an MPDO's object; a DAM frame to all nodes is for the row's node, too.
+/// Returns true if the row describes the object of this MPDO. A DAM frame to all nodes also
+/// addresses the node of the row.
 bool is_of(const PdoRow& row, const Frame& frame) {
   if (!row.multiplexed() || frame.rtr) return true;
   const auto header = load_le<std::uint32_t>(std::span{frame.data});
@@ -37,7 +38,7 @@ Found find(const std::vector<PdoRow>& rows, bool tpdo, const Frame& frame) {
   for (const PdoRow& row : rows) {
     if (row.cob_id != frame.id) continue;
     if (is_of(row, frame)) return {&row, tpdo};
-    if (found.row == nullptr) found = {&row, tpdo};  // the MPDO, with an object not in the plan
+    if (found.row == nullptr) found = {&row, tpdo};  // MPDO with another object
   }
   return found;
 }
@@ -52,7 +53,7 @@ std::string fields_text(const BusPlan& plan, const PdoRow& row, const Frame& fra
   return text;
 }
 
-/// `DAM to shoulder`, `SAM from shoulder`.
+/// Describes an MPDO, beginning with `DAM to shoulder` or `SAM from shoulder`.
 std::string mpdo_text(const FrameNames& names, const PdoRow& row, const Frame& frame) {
   const std::uint8_t first = frame.data[0];
   const unsigned address = first & 0x7FU;
@@ -65,7 +66,7 @@ std::string mpdo_text(const FrameNames& names, const PdoRow& row, const Frame& f
                             bytes_text(std::span{frame.data}.subspan(4)));
 }
 
-/// Request and answer of a converter whose PDO 1 carries parameters.
+/// Describes a request or an answer of a frequency converter whose PDO 1 carries parameters.
 std::string channel_text(bool tpdo, const Frame& frame) {
   const std::span bytes{frame.data};
   const unsigned word = load_le<std::uint16_t>(bytes);

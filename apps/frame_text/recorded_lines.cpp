@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t longest_pause_s = 1'000'000'000;
 
-/// `12.5` in microseconds; what is no time takes none.
+/// Converts seconds like `12.5` to microseconds. Returns 0 if the text is no time.
 std::uint64_t microseconds(std::string_view seconds) {
   const std::size_t dot = std::min(seconds.find('.'), seconds.size());
   const auto whole = number_in<std::uint64_t>(seconds.substr(0, dot), 10);
@@ -25,7 +25,8 @@ std::uint64_t microseconds(std::string_view seconds) {
 
 }  // namespace
 
-/// Each line with a time counts from the one before, whether it is a frame or not.
+/// Adds the time of a line. The time of each line counts from the line before, even if that line
+/// holds no frame.
 void RecordedLines::advance(std::string_view text) {
   const auto words = words_of(text);
   if (!words.empty()) us_ += microseconds(words[0]);

@@ -7,11 +7,12 @@
 
 namespace takt {
 
-/// A recording line by line, in any of the forms of parse_recorded(). What the head of a Vector log
-/// says of its numbers and times holds for the lines that follow.
+/// Reads a recording line by line, in any of the formats of parse_recorded(). The head of a Vector
+/// log determines how the numbers and times of the following lines are read.
 class RecordedLines {
  public:
-  /// Stamps that are differences become times since the head. None: no frame.
+  /// Reads the next line. Time stamps that are differences become times since the head. Returns
+  /// std::nullopt if the line holds no frame.
   std::optional<CandumpLine> parse(std::string_view text);
 
  private:
@@ -19,7 +20,7 @@ class RecordedLines {
 
   int base_ = 16;
   bool relative_ = false;
-  std::uint64_t us_ = 0;  ///< since the head, where times are relative
+  std::uint64_t us_ = 0;  // microseconds since the head; only if times are relative
 };
 
 }  // namespace takt

@@ -23,7 +23,7 @@ std::optional<CobId> cob_id(const DeviceTable& device, ObjectKey key) {
   return (raw & extended_bit) != 0 ? CobId::extended(raw) : CobId::base(raw);
 }
 
-/// `shoulder`, `shoulder (channel 2)`.
+/// Returns the name of a node with its channel: `shoulder`, `shoulder (channel 2)`.
 std::string speaker(const FrameNames& names, unsigned node, unsigned number) {
   if (number == 1) return names.node(node);
   return fmt::format("{} (channel {})", names.node(node), number);
@@ -71,7 +71,8 @@ std::optional<FrameMeaning> SdoChannels::meaning(const Frame& frame) {
   const auto speaks = [&](const Channel& channel) {
     return channel.ids.request == frame.id || channel.ids.answer == frame.id;
   };
-  // A channel that was given comes before the default one of another node with that identifier.
+  // A configured channel takes precedence over the default channel of another node that has the
+  // same COB-ID.
   auto found = std::ranges::find_if(channels_.begin() + nodes, channels_.end(), speaks);
   if (found == channels_.end()) {
     const unsigned node = frame.id.id() & 0x7F;

@@ -9,29 +9,30 @@
 
 namespace takt {
 
-/// The SDO channels of a bus: the default one of every node, those that the network file gives, and
-/// those of the devices' descriptions (0x1201 and so on). Each follows its own transfers.
+/// SDO channels of a bus: the default channel of every node, the channels in the network file, and
+/// the channels in the EDS files of the devices (0x1201 to 0x127F). Each channel follows its own
+/// transfers.
 class SdoChannels {
  public:
   explicit SdoChannels(const FrameNames& names);
   /// Adds the channels of the network.
   SdoChannels(const FrameNames& names, const LoadedNetwork& network);
 
-  /// None: no frame of an SDO channel.
+  /// Describes a frame. Returns std::nullopt if it belongs to no SDO channel.
   std::optional<FrameMeaning> meaning(const Frame& frame);
 
  private:
   struct Channel {
     unsigned node;
     SdoChannel ids;
-    unsigned number;  // 1: the default one
+    unsigned number;  // 1 is the default channel
     SdoText text;
   };
 
   void add(unsigned node, const SdoChannel& ids);
 
   const FrameNames* names_;
-  std::vector<Channel> channels_;  // the default ones first, at node id - 1
+  std::vector<Channel> channels_;  // default channels first, at index node-ID - 1
 };
 
 }  // namespace takt

@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_kept = 4096;  // bytes of one value
+constexpr std::size_t most_kept = 4096;  // bytes of one value that are kept
 
 }  // namespace
 
@@ -25,14 +25,16 @@ void SdoText::keep(std::span<const std::uint8_t> bytes) {
 
 std::string SdoText::object() const { return names_->object(node_, transfer_.object); }
 
-/// `1591 (0x637)`, `1073742213 (0x40000185): 0x185, valid, no RTR`.
+/// Returns a value with its meaning: `1591 (0x637)`, `1073742213 (0x40000185): 0x185, valid, no
+/// RTR`.
 std::string SdoText::value(ObjectKey key, std::span<const std::uint8_t> bytes) const {
   std::string text = value_text(names_->type(node_, key), bytes);
   const std::string meaning = object_meaning(*names_, node_, key, bytes);
   return meaning.empty() ? text : text + ": " + meaning;
 }
 
-/// The toggle bit of a segment frame, which has to change from frame to frame of the same side.
+/// Checks the toggle bit of a segment frame, which must change from frame to frame of the same
+/// side. Empty if it is right.
 std::string_view SdoText::toggle_text(std::optional<bool>& last, const Frame& frame) {
   const bool toggle = sdo_toggle(frame);
   const bool wrong = toggle != !last.value_or(true);
@@ -40,7 +42,7 @@ std::string_view SdoText::toggle_text(std::optional<bool>& last, const Frame& fr
   return wrong ? ", its toggle bit is wrong" : "";
 }
 
-/// The frame with the object and, expedited, with its value.
+/// Describes the frame that names the object and, in an expedited transfer, holds its value.
 std::string SdoText::initiate(const Frame& frame, const char* verb) {
   const SdoInitiate begin = decode_initiate(frame);
   transfer_ = {.object = begin.object, .open = !begin.expedited, .announced = begin.size};
@@ -75,7 +77,8 @@ std::string SdoText::abort(const Frame& frame) {
                      abort_text(code));
 }
 
-/// A frame that begins a block transfer: the request of either.
+/// Begins a block transfer if the frame is the request of a block download or a block upload.
+/// Returns false for all other frames.
 bool SdoText::begins_block(const Frame& frame) {
   const SdoRequest command = sdo_request(frame);
   const bool download = command == SdoRequest::block_download && is_block_initiate(frame);
@@ -86,7 +89,8 @@ bool SdoText::begins_block(const Frame& frame) {
   return true;
 }
 
-/// A frame of a running block transfer, sent by the side that has the data in `data_go`.
+/// Describes a frame of a running block transfer. Its sender is the side that sends the data of a
+/// transfer in the direction `data_go`.
 std::string SdoText::block(BlockText::Direction data_go, const Frame& frame) {
   const std::string name = names_->object(node_, block_.object());
   const bool source = block_.uploads() == (data_go == BlockText::Direction::upload);
@@ -96,7 +100,7 @@ std::string SdoText::block(BlockText::Direction data_go, const Frame& frame) {
   return text + " = " + value(block_.object(), whole);
 }
 
-/// A block transfer whose end was not seen.
+/// Gives up a block transfer whose end was not seen.
 void SdoText::lose_block() noexcept {
   if (!block_.running()) return;
   block_.stop();

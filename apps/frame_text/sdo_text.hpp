@@ -12,26 +12,28 @@
 
 namespace takt {
 
-/// SDO frames of one channel in words. Follows the transfer, so that segments name their object,
-/// the last one shows the value, and a repeated toggle bit or a wrong length is told. CiA
-/// 301, 7.2.4.3.
+/// Describes the SDO frames of one channel. It follows the transfer, so that segments name their
+/// object, the last segment shows the value, and a repeated toggle bit or a wrong length is
+/// reported. CiA 301, 7.2.4.3.
 class SdoText {
  public:
-  /// `node`: the server.
+  /// `node` is the node-ID of the SDO server.
   SdoText(const FrameNames& names, unsigned node) : names_{&names}, node_{node} {}
 
+  /// Describes a frame of the client.
   std::string request(const Frame& frame);
+  /// Describes a frame of the server.
   std::string answer(const Frame& frame);
 
  private:
   struct Transfer {
     ObjectKey object;
-    bool open = false;       // segments follow
-    bool truncated = false;  // longer than what is kept
+    bool open = false;       // true if segments follow
+    bool truncated = false;  // true if the value is longer than the part that is kept
     std::optional<std::uint32_t> announced{};
-    std::optional<bool> asked_toggle{};     // of the client's newest segment frame
-    std::optional<bool> answered_toggle{};  // of the server's
-    std::size_t length = 0;                 // bytes that were in segments so far
+    std::optional<bool> asked_toggle{};     // toggle bit of the client's newest segment frame
+    std::optional<bool> answered_toggle{};  // toggle bit of the server's newest segment frame
+    std::size_t length = 0;                 // number of bytes in all segments so far
     std::vector<std::uint8_t> value{};
   };
 

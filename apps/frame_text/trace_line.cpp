@@ -14,18 +14,18 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-constexpr const char* unnamed_interface = "can0";  // of a trace that names none
+constexpr const char* unnamed_interface = "can0";  // for a trace without names
 
 bool is_direction(std::string_view word) { return word == "Rx" || word == "Tx"; }
 
-/// Digits with one dot or none.
+/// Returns true if the word consists of digits with at most one dot.
 bool is_time(std::string_view word) {
   return !word.empty() && std::ranges::count(word, '.') <= 1 &&
          std::ranges::all_of(word,
                              [](unsigned char c) { return c == '.' || std::isdigit(c) != 0; });
 }
 
-/// Milliseconds as PCAN counts them, `46268.2`, as `46.268200`.
+/// Converts the milliseconds of PCAN to seconds: `46268.2` becomes `46.268200`.
 std::string seconds_of(std::string_view milliseconds) {
   const std::size_t dot = std::min(milliseconds.find('.'), milliseconds.size());
   const auto whole = number_in<std::uint64_t>(milliseconds.substr(0, dot), 10).value_or(0);
@@ -34,13 +34,14 @@ std::string seconds_of(std::string_view milliseconds) {
   return fmt::format("{}.{:03}{}", whole / 1000, whole % 1000, micros);
 }
 
-/// Where there is no channel other words take its place.
+/// Returns the name of the interface for a channel. A line without a channel has another word in
+/// its place.
 std::string interface_of(std::string_view channel) {
   const bool is_channel = channel.size() <= 3 && number_in<std::uint8_t>(channel, 10);
   return is_channel ? fmt::format("can{}", channel) : unnamed_interface;
 }
 
-/// A length, then its bytes, or `RTR`; what follows is not read.
+/// Reads a length, then the bytes or `RTR`. Further words are ignored.
 bool read_payload(Words words, Frame& frame, int base = 16) {
   if (words.empty()) return false;
   const auto length = number_in<std::uint8_t>(words[0], 10);
@@ -57,7 +58,7 @@ bool read_payload(Words words, Frame& frame, int base = 16) {
   return true;
 }
 
-/// Four digits are an 11-bit identifier, eight a 29-bit one.
+/// Reads an identifier. Four digits are an 11-bit identifier, eight digits a 29-bit one.
 bool read_padded_id(std::string_view text, Frame& frame) {
   const auto id = number_in<std::uint32_t>(text, 16);
   if (!id || (text.size() != 4 && text.size() != 8)) return false;
@@ -78,8 +79,8 @@ bool is_numbered(Words words) {
          number_in<std::uint64_t>(words[0].substr(0, words[0].size() - 1), 10);
 }
 
-/// `13)  45412.6  Tx  0601  8  40 ...`; since 1.2 with a channel before `Tx`, since 1.3 with a `-`
-/// before the length, 1.0 without a direction.
+/// Reads a line like `13)  45412.6  Tx  0601  8  40 ...`. Version 1.0 has no direction. Since
+/// version 1.2 there is a channel before `Tx`, since version 1.3 a `-` before the length.
 std::optional<CandumpLine> parse_pcan_1(Words words) {
   if (!is_numbered(words)) return {};
   if (words[2] == "Error") return error_frame(seconds_of(words[1]), {});
@@ -99,8 +100,8 @@ std::optional<CandumpLine> parse_pcan_1(Words words) {
   return line;
 }
 
-/// `904  4023.599 DT  0601 Rx 8  40 ...`; 2.1 with a channel before the identifier and a `-` before
-/// the length. `RR` is a remote frame, `ER` an error frame.
+/// Reads a line like `904  4023.599 DT  0601 Rx 8  40 ...`. Version 2.1 has a channel before the
+/// identifier and a `-` before the length. `RR` is a remote frame, `ER` an error frame.
 std::optional<CandumpLine> parse_pcan_2(Words words) {
   if (words.size() < 6 || !is_time(words[1])) return {};
   if (words[2] == "ER") return error_frame(seconds_of(words[1]), words[3]);
@@ -121,8 +122,9 @@ std::optional<CandumpLine> parse_pcan_2(Words words) {
   return line;
 }
 
-/// `1.001000 1  601  Tx  d 8 40 ...`; `x` behind the identifier: 29 bits; `r`: remote.
-/// `1.001000 1  ErrorFrame`, with words behind it or none.
+/// Reads a line like `1.001000 1  601  Tx  d 8 40 ...`. An `x` after the identifier marks 29 bits,
+/// an `r` instead of `d` a remote frame. `1.001000 1  ErrorFrame` is an error frame, with or
+/// without further words.
 std::optional<CandumpLine> parse_vector(Words words, int base) {
   if (words.size() >= 3 && is_time(words[0]) && is_time(words[1]) && words[2] == "ErrorFrame") {
     return error_frame(std::string{words[0]}, words[1]);
@@ -143,8 +145,8 @@ std::optional<CandumpLine> parse_vector(Words words, int base) {
   return line;
 }
 
-/// `Timestamp: 1572.18 ID: 0601 S Rx DL: 8 40 ... Channel: can0`; `X` is a 29-bit identifier, `R`
-/// among the letters a remote frame, the length was once `DLC:`.
+/// Reads a line like `Timestamp: 1572.18 ID: 0601 S Rx DL: 8 40 ... Channel: can0`. The letter `X`
+/// marks a 29-bit identifier, `R` a remote frame. Older versions write `DLC:` before the length.
 std::optional<CandumpLine> parse_python_can(Words words) {
   if (words.size() < 7 || words[0] != "Timestamp:" || words[2] != "ID:") return {};
   CandumpLine line{.stamp = std::string{words[1]}, .interface = interface_of({})};
@@ -168,14 +170,14 @@ std::optional<CandumpLine> parse_python_can(Words words) {
   return line;
 }
 
-/// `date Sat Sep 30 22:06:13.191 2017`, in some language.
+/// Returns true for a line like `date Sat Sep 30 22:06:13.191 2017`, in any language.
 bool is_date(Words words) {
   return words.size() >= 5 && words[0] == "date" && words.back().size() == 4 &&
          number_in<unsigned>(words.back(), 10);
 }
 
-/// `0.000000 Start of measurement`, `1.004000 1  Statistic: D 0 ...`, `1.0 CAN 1 Status:chip ...`,
-/// `1.0 SV: 2 0 1 ::Env = 1`.
+/// Returns true for lines like `0.000000 Start of measurement`, `1.004000 1  Statistic: D 0 ...`,
+/// `1.0 CAN 1 Status:chip ...` and `1.0 SV: 2 0 1 ::Env = 1`.
 bool is_vector_event(Words words) {
   if (words.size() < 3 || !is_time(words[0])) return false;
   if (words[1] == "SV:" || words[2] == "Statistic:") return true;
@@ -183,8 +185,9 @@ bool is_vector_event(Words words) {
   return words[1] == "Start" && words[2] == "of";
 }
 
-/// Of the controller: `2)  1060.0  Warng  FFFFFFFF ...` and, since 2.0, `2  1060.0 ST ...` (its
-/// state), `EC` (its error counters), `EV` (of the user).
+/// Returns true for lines on the state of the controller: `2)  1060.0  Warng  FFFFFFFF ...` and,
+/// since version 2.0, `2  1060.0 ST ...` (state), `EC` (error counters) and `EV` (event of the
+/// user).
 bool is_pcan_state(Words words) {
   if (is_numbered(words)) {
     const auto begin = words.first(std::min<std::size_t>(words.size(), 5));

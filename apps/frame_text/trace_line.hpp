@@ -6,23 +6,24 @@
 
 namespace takt {
 
-/// One line of a recording: of candump, else of a PCAN trace (.trc, versions 1.0 to 2.1), of a
-/// Vector log (.asc, its numbers to `vector_base`) or of what python-can prints. The stamp of a
-/// PCAN trace becomes seconds; an error frame of a trace or a log has no class. None: another line,
-/// or a frame of CAN FD.
+/// Reads one line of a recording. The formats are candump, PCAN trace (.trc, versions 1.0 to 2.1),
+/// Vector log (.asc, numbers to the base `vector_base`) and the text that python-can prints. The
+/// time stamp of a PCAN trace becomes seconds. An error frame of a trace or a log has no class.
+/// Returns std::nullopt if the text is another line or a frame of CAN FD.
 std::optional<CandumpLine> parse_recorded(std::string_view text, int vector_base = 16);
 
-/// What holds for the lines of a Vector log.
+/// Settings in the head of a Vector log that apply to its lines.
 struct VectorHead {
-  int base = 16;          ///< of its numbers
-  bool relative = false;  ///< a time is the difference to that of the line before
+  int base = 16;          ///< base of the numbers, 10 or 16
+  bool relative = false;  ///< true: each time is the difference to the line before
 };
 
-/// `base dec  timestamps relative`. None: another line.
+/// Reads a head like `base dec  timestamps relative`. Returns std::nullopt if the text is another
+/// line.
 std::optional<VectorHead> vector_head(std::string_view text);
 
-/// Blank, or a line that such files hold beside frames: comments, heads, triggers, states of the
-/// controller.
+/// Returns true if the line is blank or holds something else than a frame: a comment, a head, a
+/// trigger, or a state of the controller.
 bool is_remark(std::string_view text);
 
 }  // namespace takt

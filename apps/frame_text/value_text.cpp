@@ -22,7 +22,7 @@ std::string number_text(DataType type, unsigned bits, std::uint64_t raw) {
   return fmt::format("{}", raw);
 }
 
-/// Objects of CiA 301 and CiA 402 whose bits are flags.
+/// Returns true for objects of CiA 301, CiA 402 and CiA 401 whose bits are flags.
 bool is_bit_field(ObjectKey object) {
   switch (object.index) {
     case 0x1001:
@@ -33,7 +33,7 @@ bool is_bit_field(ObjectKey object) {
     case 0x60FE:
       return true;
     default:
-      return object.index >= 0x6000 && object.index <= 0x6380;  // CiA 401: blocks of I/O
+      return object.index >= 0x6000 && object.index <= 0x6380;  // CiA 401: digital I/O
   }
 }
 

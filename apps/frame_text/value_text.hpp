@@ -7,15 +7,15 @@
 
 namespace takt {
 
-/// `37 06`.
+/// Returns bytes in hex, `37 06`.
 std::string bytes_text(std::span<const std::uint8_t> bytes);
 
-/// Bytes of an object, least significant first, as its type reads them: `1591 (0x637)`, `-5`,
-/// `1.5`,
-/// `"Drive"`. Bytes where they do not fit the type.
+/// Returns the value of an object as its type reads it: `1591 (0x637)`, `-5`, `1.5` or `"Drive"`.
+/// The bytes begin with the least significant one. Returns bytes_text() if they do not fit the
+/// type.
 std::string value_text(DataType type, std::span<const std::uint8_t> bytes);
 
-/// A mapped value in its unit: `12.3 rad`; words of bits (statusword, controlword) in hex.
+/// Returns a mapped value in its unit, `12.3 rad`. Bit fields (statusword, controlword) are in hex.
 std::string value_text(const Signal& signal, std::uint64_t raw);
 
 }  // namespace takt

@@ -6,10 +6,11 @@
 
 namespace takt {
 
-/// What blanks separate; of a long line the first 32.
+/// Splits a text at its blanks. Returns at most the first 32 words.
 std::vector<std::string_view> words_of(std::string_view text);
 
-/// None: not a number as a whole, or too large for `T`.
+/// Reads a number to the given base. Returns std::nullopt if the whole text is not one number, or
+/// if the number is too large for `T`.
 template <class T>
 std::optional<T> number_in(std::string_view text, int base) {
   T value{};

@@ -5,14 +5,16 @@
 
 namespace takt {
 
-/// What is wrong with the names of commands and options on a command line, with the name that is
-/// most likely meant; empty: all are known. CLI11 itself would tell what is missing instead.
+/// Returns a message on the first unknown command or option of a command line, with the name that
+/// is most likely meant. Empty if all names are known. CLI11 itself would report what is missing
+/// instead.
 std::string unknown_word(const CLI::App& app, int argc, const char* const* argv);
 
-/// `, did you mean 'start'?`, or nothing.
+/// Returns `, did you mean 'start'?`, or an empty text if no name is similar to the word.
 std::string guess(const std::string& word, const std::vector<std::string>& names);
 
-/// The value of an option that is one of these words; another one is told with a guess.
+/// Returns a check that accepts only these words as the value of an option. For another word, the
+/// message suggests a similar one.
 CLI::Validator one_of(std::vector<std::string> words);
 
 }  // namespace takt

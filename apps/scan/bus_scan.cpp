@@ -36,7 +36,7 @@ void BusScan::on_frame(const Frame& frame, Time now) {
   }
   if (frame.rtr || frame.id.is_extended()) return;
   const std::uint32_t id = frame.id.id();
-  if (id > 0x600 && id < 0x680) met_another_client_ = true;  // own frames do not come back
+  if (id > 0x600 && id < 0x680) met_another_client_ = true;  // own frames are not received
   for (const auto& dialogue : running_) {
     if (frame.id == dialogue->client.channel().answer) dialogue->client.on_frame(frame, now);
   }
@@ -52,7 +52,8 @@ void BusScan::on_time(Time now, Outbox& out) {
   });
 }
 
-/// A client that had to abort is idle only when the abort is sent.
+/// Serves one dialogue. A client that had to abort a transfer is idle only after its abort was
+/// sent.
 void BusScan::go_on(Dialogue& dialogue, Time now, Outbox& out) {
   dialogue.client.on_time(now, out);
   if (const auto result = dialogue.client.take_result()) take(dialogue, *result);
@@ -78,7 +79,7 @@ void BusScan::take(Dialogue& dialogue, const SdoResult& result) {
   ScannedNode& node = nodes_[dialogue.node.value()];
   node.answers = true;
   const std::size_t step = dialogue.step++;
-  if (result.fault != SdoFault::none) return;  // an object that it does not have
+  if (result.fault != SdoFault::none) return;  // the node does not have the object
   const auto bytes = std::span{dialogue.buffer}.first(result.size);
   if (step == 0) {
     node.device_type = number(bytes);

@@ -15,21 +15,23 @@
 
 namespace takt {
 
-/// What a node has shown of itself.
+/// Findings on one node.
 struct ScannedNode {
-  NmtState state = NmtState::unknown;        ///< of its newest heartbeat or boot-up message
-  bool answers = false;                      ///< its SDO server does
+  NmtState state = NmtState::unknown;        ///< state in the newest heartbeat or boot-up message
+  bool answers = false;                      ///< true if the SDO server answers
   std::optional<std::uint32_t> device_type;  ///< 0x1000
-  std::array<std::optional<std::uint32_t>, 4> identity;  ///< 0x1018: vendor to serial number
-  std::string name;                                      ///< 0x1008
+  /// 0x1018: vendor-ID, product code, revision number and serial number.
+  std::array<std::optional<std::uint32_t>, 4> identity;
+  std::string name;  ///< 0x1008
 };
 
-/// Who is on a bus: reads 0x1000, 0x1018 and 0x1008 of all 127 nodes, some at a time, and listens
-/// to heartbeats meanwhile. Changes nothing; sends no NMT command and no remote frame (which would
-/// start the life guarding of a device). One thread.
+/// Finds the nodes of a bus: reads 0x1000, 0x1018 and 0x1008 of all 127 node-IDs, several at a
+/// time, and listens to heartbeats meanwhile. The scan changes nothing: it sends no NMT command and
+/// no remote frame (which would start the life guarding of a device). All calls come from one
+/// thread.
 class BusScan {
  public:
-  /// `timeout`: longest silence of a node that is there.
+  /// `timeout` is the longest time that an SDO server may take to answer.
   explicit BusScan(Time timeout, std::size_t most_at_once = 16);
 
   void on_frame(const Frame& frame, Time now);
@@ -37,13 +39,14 @@ class BusScan {
   Time deadline() const noexcept;
   bool done() const noexcept { return running_.empty() && next_ > last_node; }
 
-  /// By node id; only those that were heard.
+  /// Returns the nodes that were heard, by node-ID.
   const std::map<std::uint8_t, ScannedNode>& nodes() const noexcept { return nodes_; }
-  /// Requests to nodes that were not ours: two clients of one server confuse each other.
+  /// Returns true if another SDO client sent requests. Two clients of one server disturb each
+  /// other.
   bool met_another_client() const noexcept { return met_another_client_; }
 
  private:
-  /// One node being asked, object after object.
+  /// Questions to one node, object after object.
   struct Dialogue {
     explicit Dialogue(NodeId id) : node{id}, client{id} {}
     NodeId node;
