@@ -17,7 +17,7 @@ class FrontGap {
 
   /// Length of the newest gap, in which the front thread did not run.
   Time length() const noexcept { return length_; }
-  /// Returns true if commands that arrive now may have waited during the gap. The own thread of a
+  /// Returns true if commands that arrive now may have waited during the gap. The thread of a
   /// transport needs a moment to hand over messages from the kernel's buffers.
   bool discards_commands(Time now) const noexcept { return now < discard_until_; }
   /// Returns true if requests that arrive now may have waited too long. Short gaps do not harm

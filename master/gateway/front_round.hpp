@@ -6,12 +6,13 @@
 
 namespace takt {
 
-/// One round of the front thread. The bus thread does not wake the front thread: it sets its own
-/// timer to the predicted time of the next image. The order of the three steps keeps it from
-/// sleeping past an image. The round reads the prediction before it looks for images. If an image
-/// is published between the two steps, either the round finds the image, or the prediction still
-/// belongs to that image and the wait ends at once. In the other order, the prediction would
-/// already belong to the following image, and the image would wait for a whole period.
+/// One round of the front thread. The bus thread does not wake the front thread, so the front
+/// thread sleeps until the predicted time of the next image. The order of the three steps keeps the
+/// front thread from sleeping past an image. The round reads the prediction before it looks for
+/// images. If an image is published between the two steps, either the round finds the image, or the
+/// prediction still belongs to that image and the wait ends at once. In the other order, the
+/// prediction would already belong to the following image, and the image would wait for a whole
+/// period.
 struct FrontRound {
   /// Returns the predicted time of the next image; see Master::next_publish().
   std::function<Time()> next_image;

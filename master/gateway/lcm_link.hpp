@@ -17,9 +17,9 @@ namespace takt {
 
 /// The connection of the daemon to LCM by whatever way the machine allows: LCM's multicast, the
 /// tcpq:// hub that the URL names, or a hub of its own. The link retries a connection that fails
-/// and never waits, because the bus must run on. If another program holds the port of the own hub,
-/// that program may be anybody: the daemon becomes the client of a hub only if a URL says so. Front
-/// thread.
+/// and never waits, because the bus must run on. If another program holds the port of the daemon's
+/// hub, that program may be anybody: the daemon becomes the client of a hub only if a URL says so.
+/// Front thread.
 class LcmLink final : public Transport {
  public:
   using Say = std::function<void(const std::string& sentence)>;

@@ -13,8 +13,8 @@ namespace takt {
 /// The LCM library as a Transport: udpm://, memq://, file://.
 class LcmTransport final : public Transport {
  public:
-  /// Returns nullptr if LCM refuses (it prints the reason to stderr). May take seconds, because LCM
-  /// tests multicast.
+  /// Returns nullptr if LCM refuses (it prints the reason to stderr). The first subscribe() may
+  /// take seconds, because LCM then tests multicast.
   static std::unique_ptr<LcmTransport> create(const std::string& url,
                                               FrontClock clock = monotonic_now);
 

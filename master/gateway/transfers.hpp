@@ -22,7 +22,7 @@ class Transfers {
  public:
   static constexpr std::size_t part_bytes = 1024;       ///< in one message
   static constexpr std::size_t most_bytes = 16U << 20;  ///< of one file
-  static constexpr std::size_t parts_at_once = 16;      ///< answers to one "more"
+  static constexpr std::size_t parts_at_once = 16;      ///< most answers to one "more"
 
   struct Sinks {
     std::function<bool(const Request&)> submit;  ///< to the bus thread; false if it has no room
@@ -33,13 +33,13 @@ class Transfers {
             Sinks sinks);
 
   void take(const transfer_t& message, Time now);
-  /// Answers a message that has waited for too long: nothing is done, and the answer says why, or
-  /// how far the file is.
+  /// Answers a message that has waited for too long and does nothing else. The answer gives the
+  /// reason, or the progress of a known transfer.
   void take_old(const transfer_t& message, const std::string& why);
-  /// Returns false where the reply belongs to a request of somebody else.
+  /// Returns false if the reply belongs to a request from elsewhere.
   bool finish(const Reply& reply);
   /// Reports progress, ends transfers whose sender is gone, and then does one step of each transfer
-  /// in turn until the budget ends. Returns true where steps may be left over.
+  /// in turn until the budget ends. Returns true if steps may be left over.
   bool on_time(Time now, const TimeBudget& budget);
 
  private:

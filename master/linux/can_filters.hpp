@@ -13,7 +13,7 @@ inline constexpr std::size_t max_kernel_filters = 512;
 
 /// Filters for everything that the bus thread must receive: TPDOs, SDO answers, error control and
 /// EMCY of every node, LSS answers, heartbeats of nodes that are not in the plan, and SYNC (the
-/// echo of the own SYNC gives its time on the wire). RTR frames never pass.
+/// echo of the master's SYNC gives its time on the wire). RTR frames never pass.
 std::vector<can_filter> filters_for(const BusPlan& plan);
 
 /// Filters that let all of `ids` pass. The filters are exact if there are at most `limit`

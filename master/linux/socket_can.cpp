@@ -106,7 +106,7 @@ std::size_t SocketCanPort::State::fetch(std::size_t most) noexcept {
 }
 
 /// Takes message i of the batch. Returns false if the message is for the port alone (an error frame
-/// or an own frame).
+/// or the echo of a frame of this port).
 bool SocketCanPort::State::take(std::size_t i, Time offset, Time now,
                                 StampedFrame& frame) noexcept {
   if (in.bytes(i) != CAN_MTU) return false;

@@ -17,7 +17,7 @@ namespace takt {
 struct SocketCanOptions {
   std::string interface;
   std::vector<can_filter> filters;  ///< at most max_kernel_filters; see filters_for
-  /// The kernel echoes own frames with this identifier when they were on the wire;
+  /// The kernel echoes frames of this port with this identifier when they were on the wire;
   /// news().last_sync_echo is the newest echo. The kernel echoes only identifiers that pass
   /// `filters`.
   std::optional<CobId> sync_cob_id{};

@@ -7,10 +7,11 @@
 
 namespace takt {
 
-/// The wire of `unix:PATH`. Every resident process on the bus owns a hub. Exactly one of them, the
-/// holder of the lock file PATH.lock, listens on PATH and hands each frame to all others, and back
-/// to its sender as an echo. When that process ends, however it ends, another one takes over within
-/// 20 ms. If it ends in order, the frames that it has taken still arrive.
+/// The wire of `unix:PATH`. Every process on the bus owns a hub, except guests that found a host
+/// when they joined. Exactly one of them, the holder of the lock file PATH.lock, listens on PATH
+/// and hands each frame to all others, and back to its sender as an echo. When that process ends,
+/// however it ends, another one takes over within 20 ms. If it ends in order, the frames that it
+/// has taken still arrive.
 ///
 /// A client that does not read loses frames (each later frame carries the number lost) and never
 /// blocks the bus. At most 64 clients.

@@ -80,7 +80,7 @@ class BusLoop {
   static constexpr Time round_distance = std::chrono::milliseconds{10};
   /// Successive stalls tolerated before a SYNC.
   static constexpr unsigned patience_with_stalls = 16;
-  /// Longest absence of this thread, in periods, that needs no excuse.
+  /// Longest absence of this thread, in periods, that time-outs need not take into account.
   static constexpr int longest_lapse = 2;
   static constexpr Time status_interval = std::chrono::milliseconds{10};
 

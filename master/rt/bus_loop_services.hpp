@@ -27,8 +27,8 @@ void BusLoop<P, N>::excuse_absence() noexcept {
   pdo_requests_.excuse(away);
 }
 
-/// Returns true if this thread stood still since SYNC. The absence must be excused before anything
-/// times out.
+/// Returns true if this thread stood still since SYNC. The time-outs must take this absence into
+/// account before the state machines run again.
 template <Port P, class N>
 bool BusLoop<P, N>::stalled(Time now) const noexcept {
   return now - sync_sent_ > longest_lapse * clock_.period();

@@ -148,7 +148,7 @@ bool BusLoop<P, N>::outputs_rest() const noexcept {
          stop_.stage() == StopStage::running;
 }
 
-/// Begins the beat: sends the own SYNC, or notes whether the followed SYNC came.
+/// Begins the beat: sends the master's SYNC, or notes whether the followed SYNC came.
 template <Port P, class N>
 void BusLoop<P, N>::begin_beat() noexcept {
   const bool heard = follower_.used() ? followed_ : send_sync();

@@ -16,7 +16,8 @@ namespace takt {
 
 /// Timing of the cycle, recorded by the bus thread.
 struct TimingHistograms {
-  /// Time from the deadline to the moment at which SYNC was handed over.
+  /// Time from the deadline to the moment at which SYNC was handed over. If the master follows the
+  /// SYNC of another device: deviation of its arrival from the deadline.
   Histogram sync_lateness;
   /// Time from the deadline to the echo of SYNC, if the port has echoes.
   Histogram sync_on_wire;

@@ -18,16 +18,17 @@ struct SendResult {
 /// State and counters of the interface itself. The port updates them, and the loop takes them once
 /// per cycle.
 struct PortNews {
-  bool interface_down = false;         ///< current state
-  bool error_passive = false;          ///< current state
-  bool bus_off = false;                ///< current state
-  std::uint32_t receive_overruns = 0;  ///< frames that the kernel dropped since the start
-  std::uint32_t error_frames = 0;      ///< CAN error frames since the start
+  bool interface_down = false;  ///< current state
+  bool error_passive = false;   ///< current state
+  bool bus_off = false;         ///< current state
+  std::uint32_t receive_overruns =
+      0;                           ///< frames lost in the kernel or the controller since the start
+  std::uint32_t error_frames = 0;  ///< CAN error frames since the start
   std::uint8_t tx_error_counter = 0;
   std::uint8_t rx_error_counter = 0;
-  int last_error = 0;  ///< errno of the newest trouble
+  int last_error = 0;  ///< errno of the newest failure
   Time since_1970{};   ///< UTC minus the clock of the port; 0 if unknown
-  /// Time of our newest SYNC on the wire, by its echo; 0 before the first echo.
+  /// Time of the master's newest SYNC on the wire, by its echo; 0 before the first echo.
   Time last_sync_echo{};
 
   template <class Archive>
@@ -49,8 +50,8 @@ concept Port = requires(P port, const P constant, Time until, std::span<const Fr
   { port.sleep_precisely_until(until) } noexcept;
   /// Sleeps until a frame can be received (returns true) or until the given time (returns false).
   { port.wait_frame(until) } noexcept -> std::same_as<bool>;
-  /// Takes the received frames in order, without waiting. Echoes of the own SYNC appear only in
-  /// news().
+  /// Takes the received frames in order, without waiting. Echoes of the master's SYNC appear only
+  /// in news().
   { port.receive(in) } noexcept -> std::same_as<std::size_t>;
   /// Hands frames to the bus in order, without waiting.
   { port.send(out) } noexcept -> std::same_as<SendResult>;

@@ -13,7 +13,7 @@ namespace takt {
 /// Identifies an image and the time at which it was taken.
 struct ImageStamp {
   std::uint64_t cycle = 0;  ///< cycle number; jumps by the number of missed periods
-  std::uint64_t beat = 0;   ///< SYNCs sent so far
+  std::uint64_t beat = 0;   ///< SYNCs sent or followed so far
   Time sync_time{};         ///< time of SYNC, by its echo if there is one
   Time publish_time{};
   std::uint32_t missing = 0;  ///< expected PDOs that did not arrive

@@ -26,7 +26,7 @@ enum class SyncState : std::uint8_t {
 struct BusStatus {
   Time when{};
   std::uint64_t cycle = 0;  ///< number of the newest cycle
-  std::uint64_t beats = 0;  ///< SYNCs sent, or cycles run if the network has no SYNC
+  std::uint64_t beats = 0;  ///< SYNCs sent or followed; cycles if there is no SYNC
   /// Periods without SYNC: skipped, or held back while frames could not leave.
   std::uint64_t cycles_missed = 0;
   std::uint64_t cycles_late = 0;      ///< SYNCs that were late by more than a tenth of the period
