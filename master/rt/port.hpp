@@ -21,8 +21,8 @@ struct PortNews {
   bool interface_down = false;  ///< current state
   bool error_passive = false;   ///< current state
   bool bus_off = false;         ///< current state
-  std::uint32_t receive_overruns =
-      0;                           ///< frames lost in the kernel or the controller since the start
+  /// Frames lost in the kernel or in the controller since the start.
+  std::uint32_t receive_overruns = 0;
   std::uint32_t error_frames = 0;  ///< CAN error frames since the start
   std::uint8_t tx_error_counter = 0;
   std::uint8_t rx_error_counter = 0;
