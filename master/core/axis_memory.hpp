@@ -15,21 +15,22 @@ class AxisMemory {
   /// while it charges its intermediate circuit.
   static constexpr std::uint8_t standing_cycles = 100;
 
-  /// Is called once a cycle. `statusword` was received by PDO; it is empty unless it is fresh.
-  /// `controlword` is what PDOs command; it is empty where they command nothing.
+  /// Call this once a cycle. `statusword` is the one that was received by PDO; it is empty unless
+  /// it is fresh. `controlword` is the one that PDOs command; it is empty if they command nothing.
   void look(std::optional<std::int64_t> statusword,
             std::optional<std::int64_t> controlword) noexcept;
-  /// This statusword was read by SDO.
+  /// Takes a statusword that was read by SDO.
   void see(std::int64_t statusword) noexcept;
-  /// A service (an SDO download, or an RPDO on request) is asked to bring this controlword.
+  /// Notes that a service (an SDO download, or an RPDO on request) was requested to write this
+  /// controlword.
   void write(std::int64_t controlword) noexcept;
   /// Such a service is not answered yet, as far as is known.
   bool awaits_answer() const noexcept { return word_ == ServiceWord::under_way; }
-  /// Every service that can bring a controlword is answered.
+  /// Notes that every service that can bring a controlword is answered.
   void note_answer() noexcept;
-  /// A stop that commands the axis itself has seen it at standstill and then disabled.
+  /// Notes that a stop which commands the axis itself has seen it at standstill and then disabled.
   void confirm() noexcept;
-  /// The node says that it is OPERATIONAL although this master has not booted it.
+  /// Notes that the node reports OPERATIONAL although this master has not booted it.
   void note_operational() noexcept { operational_ = true; }
 
   /// The axis was seen disabled, and nothing could enable it since.

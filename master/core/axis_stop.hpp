@@ -74,12 +74,12 @@ class Standstill {
   void rest(Time now, bool within) noexcept;
 
   std::int64_t velocity_window_;
-  std::int64_t position_window_;  ///< The way that counts as standstill, in standstill_time.
+  std::int64_t position_window_;  ///< largest distance in standstill_time that counts as standstill
   std::int64_t velocity_ = 0;
   std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
   std::int64_t position_ = 0;
   Time position_at_{};
-  Time since_{};  ///< The axis is at rest since then.
+  Time since_{};  ///< start of the current rest
   Time last_{};   ///< The time of the newest value.
   bool measured_ = false;
   bool resting_ = false;
@@ -102,10 +102,10 @@ class AxisStop {
   void step(Time now, const AxisSample& sample) noexcept;
   /// The time in which the axis can come to standstill is over.
   void cut() noexcept;
-  /// The device has answered the read of its statusword with this abort code.
+  /// Notes that the device has refused the read of its statusword with this abort code.
   void refuse(std::uint32_t abort_code) noexcept { refusal_ = abort_code; }
-  /// The device says that it has no such statusword, and that it is no drive. It may have been one
-  /// when this master had booted it.
+  /// Notes that the device has no such statusword and is no drive. It may have been a drive when
+  /// this master had booted it.
   void absent() noexcept {
     const bool foreign = state_ == AxisState::unseen && prior_ == AxisPrior::foreign;
     if (foreign || state_ == AxisState::asked) state_ = AxisState::exempt;
@@ -124,6 +124,7 @@ class AxisStop {
   }
   /// The axis was seen at standstill and disabled, and its newest statusword still says disabled.
   bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
+  /// The controlword that this axis has to receive now.
   std::int64_t controlword() const noexcept;
   Time silence(Time now) const noexcept { return now - answered_; }
   /// The velocity when the axis was disabled, else the newest one.

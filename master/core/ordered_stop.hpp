@@ -14,89 +14,94 @@
 
 namespace takt {
 
-/// How far the ordered stop of a bus is.
+/// Stage of the ordered stop of a bus.
 enum class StopStage : std::uint8_t {
-  running,     ///< no stop asked for
-  fallback,    ///< every output takes its declared fallback
-  quick_stop,  ///< axes stop quickly; each is disabled when it was seen at standstill
-  disable,     ///< the time is over: axes that are still enabled are disabled
-  disarm,      ///< what the devices watch of the master is disarmed
-  nmt,         ///< nodes get their last NMT command
-  done,        ///< SYNC may end
+  running,     ///< No stop was requested.
+  fallback,    ///< Every output takes its declared fallback.
+  quick_stop,  ///< The axes stop quickly; each is disabled after it was seen at standstill.
+  disable,     ///< The time is over; axes that are still enabled are disabled.
+  disarm,      ///< The supervision of the master by the devices is disarmed.
+  nmt,         ///< The nodes receive their last NMT command.
+  done,        ///< The stop is over; SYNC may end.
 };
 
-/// Whether the ordered stop was seen to succeed. The numbers are those of `stop` in status_t.
+/// Whether the ordered stop was confirmed. The numbers are those of `stop` in status_t.
 enum class StopResult : std::uint8_t {
   none,         ///< no stop asked for
-  under_way,    ///< it is not decided yet
-  confirmed,    ///< every axis was seen at standstill and disabled, or was disabled before
-  unconfirmed,  ///< some axis was not
+  under_way,    ///< The result is not decided yet.
+  confirmed,    ///< Every axis was seen at standstill and disabled, or was disabled before.
+  unconfirmed,  ///< Some axis was not.
 };
 
-/// One CiA 402 axis: where its words are in the image. What is not mapped is read by SDO.
+/// One CiA 402 axis and the places of its values in the image. Values that are not mapped are read
+/// by SDO.
 struct StopAxis {
   std::uint8_t node_index = 0;
-  std::uint8_t number = 0;  ///< of the axis within its device, from 0
+  std::uint8_t number = 0;  ///< axis number within its device, from 0
   std::optional<SignalIndex> controlword;
   std::optional<SignalIndex> statusword;
   std::optional<SignalIndex> velocity;
   std::optional<SignalIndex> position;
 };
 
-/// What the ordered stop sees once a cycle.
+/// Input of the ordered stop in one cycle.
 struct StopView {
-  std::span<const std::int64_t> values;  ///< the image
-  std::span<const std::uint64_t> stale;  ///< of the image, a bit for each signal
-  std::span<const bool> exchanging;      ///< per node: its PDOs are exchanged
+  std::span<const std::int64_t> values;  ///< values of the image
+  std::span<const std::uint64_t> stale;  ///< stale signals of the image, one bit for each
+  std::span<const bool> exchanging;      ///< by node index: its PDOs are exchanged
   std::span<const NodeStatus> nodes;
   bool disarmed = false;
   bool network_stopped = false;
 };
 
-/// Fallback of each axis -> quick stop -> standstill seen -> disabled seen -> disarmed, where every
-/// axis was confirmed -> NMT -> end. Each stage has a limit, the whole ends within
-/// BusPlan::stop_timeout. CiA 402-2, state machine of the drive.
+/// The ordered stop of a bus: fallback of each axis -> quick stop -> standstill seen -> disabled
+/// seen -> supervision disarmed (only if every axis was confirmed) -> NMT -> end. Each stage has a
+/// time limit, and the whole stop ends within BusPlan::stop_timeout. Bus thread only. CiA 402-2,
+/// state machine of the drive.
 class OrderedStop {
  public:
   static constexpr std::int64_t quick_stop_word = AxisStop::quick_stop_word;
   static constexpr std::int64_t disable_voltage_word = AxisStop::disable_voltage_word;
-  /// Other axes do not wait longer for one that can't be reached.
+  /// The longest time for which other axes wait for an axis that does not answer.
   static constexpr Time longest_silence = std::chrono::seconds{1};
 
   explicit OrderedStop(const BusPlan& plan);
   static std::vector<StopAxis> axes_of(const BusPlan& plan);
 
+  /// Value of target() for a stop of all nodes.
   static constexpr std::uint8_t every_node = 0xFF;
 
-  /// The node itself says that it is OPERATIONAL: that it obeys a broadcast is only assumed.
+  /// The node itself reports OPERATIONAL. The master only assumes the state of a node after it has
+  /// sent a broadcast.
   static bool says_operational(const NodeStatus& node) noexcept {
     return node.nmt == NmtState::operational && node.last_heartbeat != Time{};
   }
 
-  /// From `running` or `done` on. `node_index`: only the axes of this node are stopped. `memory`:
-  /// of each axis; empty: nothing is remembered.
+  /// Begins a stop; the stage must be `running` or `done`. `node_index` restricts the stop to the
+  /// axes of one node. `memory` holds one entry for each axis; an empty span means that nothing is
+  /// remembered.
   void begin(Time now, std::span<const NodeStatus> nodes, std::uint8_t node_index = every_node,
              std::span<const AxisMemory> memory = {}) noexcept;
-  /// Nothing was asked for: a master that only listens stops nobody.
+  /// Begins a stop without any action on the axes, for a master that only listens.
   void begin_idle(Time now) noexcept;
-  /// What an SDO has read of an axis; used in the next step.
+  /// Takes the values of an axis that were read by SDO; the next step() uses them.
   void take(std::size_t axis, const AxisSample& sample) noexcept;
-  /// The device has refused to tell the statusword of this axis.
+  /// Notes that the device has refused the read of the statusword of this axis.
   void take_refusal(std::size_t axis, std::uint32_t abort_code) noexcept {
     stops_[axis].refuse(abort_code);
   }
-  /// The device has no statusword of this axis, and is no drive.
+  /// Notes that the device has no statusword of this axis and is no drive.
   void take_absence(std::size_t axis) noexcept { stops_[axis].absent(); }
-  /// Once a cycle, before the outputs are packed.
+  /// Advances the stop. Call this once a cycle, before the outputs are packed.
   void step(Time now, const StopView& view) noexcept;
-  /// No stop any more.
+  /// Cancels the stop.
   void call_off() noexcept { stage_ = StopStage::running; }
 
   StopStage stage() const noexcept { return stage_; }
   StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
   const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
-  /// This axis is stopped; the others go on as they are commanded.
+  /// The stop covers this axis. All other axes follow their commands.
   bool reaches(std::size_t axis) const noexcept {
     return node_index_ == every_node || axes_[axis].node_index == node_index_;
   }
@@ -106,7 +111,7 @@ class OrderedStop {
   bool nothing_to_stop() const noexcept;
   /// The axes are at rest, or their time is over.
   bool axes_done() const noexcept { return stage_ > StopStage::disable; }
-  /// What the controlword of this axis has to be now; none: what is commanded.
+  /// The controlword that this axis has to receive now; std::nullopt leaves the commanded one.
   std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
   static constexpr bool disabled(std::int64_t statusword) noexcept {
@@ -125,11 +130,11 @@ class OrderedStop {
   std::vector<StopAxis> axes_;
   std::vector<AxisPlan> plans_;
   std::vector<AxisStop> stops_;
-  std::vector<AxisSample> answers_;  // by SDO, since the last step
+  std::vector<AxisSample> answers_;  // values that were read by SDO since the last step
   StopStage stage_ = StopStage::running;
   Time begun_{};
-  std::uint32_t steps_ = 0;               ///< in this stage
-  std::uint8_t node_index_ = every_node;  ///< whose axes are stopped
+  std::uint32_t steps_ = 0;               ///< steps in this stage
+  std::uint8_t node_index_ = every_node;  ///< node whose axes are stopped
 };
 
 }  // namespace takt

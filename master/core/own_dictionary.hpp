@@ -10,19 +10,21 @@
 
 namespace takt {
 
-/// The object dictionary of the master itself, so that tools can read it: made from the plan and
-/// the state of the nodes, nothing is stored. CiA 301, 7.5 and CiA 302-2, 4.5.
+/// The object dictionary of the master itself, for tools that read it. All values follow from the
+/// plan and the state of the nodes; nothing is stored. CiA 301, 7.5 and CiA 302-2, 4.5.
 ///
 /// Only 0x1F82 (request NMT) can be written.
 class OwnDictionary {
  public:
-  /// `statuses` in the order of plan.nodes; both outlive the dictionary.
+  /// `statuses` is in the order of plan.nodes. The plan and the statuses must outlive the
+  /// dictionary.
   OwnDictionary(const BusPlan& plan, std::span<const NodeStatus> statuses) noexcept;
 
-  /// Longest value, in bytes.
+  /// Size of the longest value in bytes.
   static constexpr std::size_t longest = 64;
+  /// Result of read().
   struct Value {
-    std::uint32_t abort_code = 0;  ///< 0: `size` bytes of `bytes` are the value
+    std::uint32_t abort_code = 0;  ///< 0 means that the first `size` bytes of `bytes` are the value
     std::uint8_t size = 0;
     std::array<std::byte, longest> bytes{};
 
@@ -30,9 +32,9 @@ class OwnDictionary {
   };
   Value read(ObjectKey key) const noexcept;
 
-  /// What writing an object asks for. Node 0: all.
+  /// The NMT command that a write requests. Node 0 means all nodes.
   struct Order {
-    std::uint32_t abort_code = 0;  ///< 0: `command` is to be sent
+    std::uint32_t abort_code = 0;  ///< 0 means that `command` is to be sent
     NmtCommand command = NmtCommand::start;
     std::uint8_t node = 0;
   };
@@ -48,7 +50,7 @@ class OwnDictionary {
 
   const BusPlan& plan_;
   std::span<const NodeStatus> statuses_;
-  std::array<std::uint8_t, 128> position_;  // node id -> plan.nodes
+  std::array<std::uint8_t, 128> position_;  // node-ID -> index into plan.nodes
 };
 
 }  // namespace takt

@@ -4,11 +4,11 @@
 
 namespace takt {
 
-/// The process data of a bus: TPDOs in, RPDOs out, one image between. Bus thread only; nothing
-/// allocates after construction.
+/// The process data of a bus: TPDOs are received into an image, and RPDOs are made from it. Bus
+/// thread only; nothing allocates after construction.
 class PdoExchange {
  public:
-  /// Keeps references to both.
+  /// Keeps references to both arguments.
   PdoExchange(const BusPlan& plan, EventQueue& events)
       : image_{plan.layout.signals.size()},
         inputs_{plan, image_, events},

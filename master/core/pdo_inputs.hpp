@@ -12,53 +12,55 @@
 
 namespace takt {
 
-/// How the TPDOs of a node are taken.
+/// How the master receives the TPDOs of a node.
 enum class Reception : std::uint8_t {
-  off,        ///< mapping not verified: frames are not ours to read
-  early,      ///< taken, but not missed: the node may not be OPERATIONAL so far
-  listening,  ///< taken, watched, but no cycle waits for them
-  full,       ///< taken, and cycles wait for those that are due
+  off,    ///< The mapping is not verified, so frames are ignored.
+  early,  ///< Frames are accepted but not supervised, because the node may not be OPERATIONAL yet.
+  listening,  ///< Frames are accepted and supervised, but no cycle waits for them.
+  full,       ///< Frames are accepted and supervised, and cycles wait for those that are due.
 };
 
-/// Received TPDOs -> working image, and the set that is expected in each cycle. A "beat" is one
-/// SYNC that was sent; missed periods are no beats. O(1) per frame. Bus thread only.
+/// Writes received TPDOs to the working image and knows which TPDOs are expected in each cycle. A
+/// "beat" is one SYNC that was sent; missed periods are no beats. O(1) per frame. Bus thread only.
 class PdoInputs {
  public:
-  /// Keeps references to the three.
+  /// Keeps references to the three arguments.
   PdoInputs(const BusPlan& plan, WorkingImage& image, EventQueue& events);
 
-  /// Values that were taken stay, unless it is `off` now or before.
+  /// Sets the reception of a node. Values that have arrived stay fresh, unless the reception is or
+  /// was `off`.
   void set_reception(std::size_t node_index, Reception reception) noexcept;
   Reception reception(std::size_t node_index) const noexcept { return receptions_[node_index]; }
 
-  /// A SYNC went out at `sync`: what is expected now? `heard` is false where it could not be sent.
+  /// Begins the beat of the SYNC that was sent at `sync`, and determines the expected TPDOs.
+  /// `heard` is false if the SYNC could not be sent.
   void begin(std::uint64_t cycle, Time sync, bool heard = true) noexcept;
 
-  /// False: no TPDO of this bus.
+  /// Takes a frame. Returns false if it is no TPDO of this bus.
   bool receive(const StampedFrame& stamped) noexcept;
 
-  /// Nothing that is worth waiting for is outstanding.
+  /// No TPDO that this beat waits for is outstanding.
   bool complete() const noexcept { return outstanding_ == 0; }
-  /// PDOs that this beat waits for, or waited for.
+  /// Number of TPDOs for which this beat waits or has waited.
   std::uint32_t expected() const noexcept { return expected_; }
-  /// Arrival of the newest PDO of this beat that was expected.
+  /// Arrival of the newest expected TPDO of this beat.
   Time last_arrival() const noexcept { return last_arrival_; }
 
-  /// The window of this beat is over: what has not come is missing. Returns how many.
+  /// Ends the window of this beat; TPDOs that have not come are missing. Returns their number.
   std::uint32_t close(Time now) noexcept;
-  /// Row by row: what happened since forget_marks(), after the image was published.
+  /// What each row has done since forget_marks(), which is called after the image was published.
   std::span<const PdoMark> marks() const noexcept { return marks_; }
   void forget_marks() noexcept {
     for (PdoMark& mark : marks_) mark.flags = 0;
   }
 
-  /// A PDO of this node has arrived since its reception began, and none is overdue.
+  /// The TPDO of this signal has arrived since its reception began, and is not overdue.
   bool fresh(SignalIndex signal) const noexcept { return !image_.is_stale(signal); }
 
   std::size_t size() const noexcept { return rows_.size(); }
   PdoStatus status(std::size_t row) const noexcept;
   static constexpr std::uint16_t no_row = PdoTable::no_row;
-  /// The row of a received frame, of an MPDO the one of its object; else no_row.
+  /// The row of a received frame; for an MPDO, the row of its object. no_row if there is none.
   std::uint16_t row_of(const Frame& frame) const noexcept;
 
   template <class Archive>
@@ -69,27 +71,27 @@ class PdoInputs {
 
  private:
   static constexpr std::uint64_t not_due = ~0ULL;
-  static constexpr std::uint8_t patience = 3;  ///< misses in a row after which nobody waits
+  static constexpr std::uint8_t patience = 3;  ///< misses in a row after which no cycle waits
 
   struct Row {
-    std::uint64_t due = not_due;  ///< beat in which it is expected next
+    std::uint64_t due = not_due;  ///< beat in which the TPDO is expected next
     std::uint64_t last_beat = 0;
-    Time expires = never;  ///< its deadline, armed by the first frame
-    Time window = never;   ///< counted from SYNC; later is late
+    Time expires = never;  ///< end of its deadline; the first frame starts it
+    Time window = never;   ///< time after SYNC; a later frame is late
     std::uint16_t first = 0;
     std::uint16_t count = 0;
     std::uint16_t number = 0;
     std::uint8_t length = 0;
     std::uint8_t node_index = 0;
-    std::uint8_t every = 0;  ///< beats between two frames; 0: not cyclic
+    std::uint8_t every = 0;  ///< beats between two frames; 0 means not cyclic
     std::uint8_t misses = 0;
-    Reception reception = Reception::off;  ///< of its node
-    bool known = false;                    ///< its phase has been seen
+    Reception reception = Reception::off;  ///< reception of its node
+    bool known = false;                    ///< its phase is known
     bool multiplexed = false;              ///< the first row of an MPDO
-    bool waited = false;                   ///< the running beat waits for it
+    bool waited = false;                   ///< the current beat waits for it
     bool stale = true;
-    bool odd_length = false;  ///< told once, until a frame of right length comes
-    bool was_late = false;    ///< told once, until a frame comes in time
+    bool odd_length = false;  ///< reported; reset by a frame of the right length
+    bool was_late = false;    ///< reported; reset by a frame in time
     std::uint32_t missing = 0;
     std::uint32_t late = 0;
     std::uint32_t length_errors = 0;
@@ -106,7 +108,7 @@ class PdoInputs {
   std::uint16_t find_extended(CobId id) const noexcept;
   std::uint16_t find_object(std::uint16_t first, const Frame& frame) const noexcept;
   void accept(Row& row, PdoMark& news, const StampedFrame& stamped) noexcept;
-  // Seldom needed: kept out of the path of a frame.
+  // These functions are rarely needed and are kept out of the path of a frame.
   [[gnu::cold]] bool use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept;
   [[gnu::cold]] bool use_late(std::size_t position, const StampedFrame& stamped) noexcept;
   [[gnu::cold]] void come_back(Row& row, Time when) noexcept;
@@ -121,9 +123,10 @@ class PdoInputs {
   std::vector<FieldProgram> fields_;
   std::vector<Row> rows_;
   std::vector<PdoMark> marks_;
-  std::vector<std::uint16_t> extended_;  ///< rows of 29-bit identifiers, ascending identifier
+  /// Rows with 29-bit identifiers, in ascending order of the identifier.
+  std::vector<std::uint16_t> extended_;
   std::vector<Reception> receptions_;
-  Time window_;  ///< of synchronous frames
+  Time window_;  ///< window of synchronous frames
   std::uint64_t beat_ = 0;
   std::uint64_t cycle_ = 0;
   Time sync_{};

@@ -16,65 +16,70 @@
 
 namespace takt {
 
-/// When a set of outputs is packed.
+/// The moment at which a set of outputs is packed.
 struct OutputMoment {
   std::uint64_t cycle = 0;
   Time now{};
 };
 
-/// Set-points -> RPDO frames. An RPDO goes out only when its node exchanges PDOs and each of its
-/// signals has been commanded, has a safe value or is seeded by its feedback. Types 1..240 go out
-/// each n-th cycle, the others when a value has changed; that event is kept until its frame went
-/// out. One set of commands that changes several synchronous RPDOs sends them in one cycle, those
-/// of type n out of turn: all act at the next SYNC. A command outside the limits of its output
-/// isn't sent; the outputs of its node take their fallback at once, and until a later command to
-/// that output is inside, or none has come for its time to live, all commands to the node are
-/// dropped. Bus thread only.
+/// Makes RPDO frames from set-points. An RPDO is sent only if its node exchanges PDOs and each of
+/// its signals was commanded, has a safe value or is seeded by its feedback. RPDOs of the
+/// transmission types 1..240 are sent in each n-th cycle, the others when a value has changed; such
+/// an event is kept until its frame was sent. If one set of commands changes several synchronous
+/// RPDOs, they are sent in one cycle, those of type n out of turn, so that all take effect at the
+/// next SYNC.
+///
+/// A command outside the limits of its output is not sent, and the outputs of its node take their
+/// fallback at once. All commands to the node are then dropped until a later command to that output
+/// is inside, or until no command has come for its time to live. Bus thread only.
 class PdoOutputs {
  public:
-  /// Keeps references to all four.
+  /// Keeps references to all four arguments.
   PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs, EventQueue& events);
 
-  /// From now on the node's RPDOs may go out; commands given before are forgotten.
+  /// Permits the RPDOs of the node from now on. Commands that were given before are forgotten.
   void open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept;
+  /// Ends the RPDOs of the node.
   void shut(std::size_t node_index) noexcept;
-  /// Limits that the node has told in its boot, after open(). Each is told, the implausible ones
-  /// are ignored.
+  /// Takes the limits that the boot has read from the node; call this after open(). Each limit is
+  /// reported, and implausible ones are ignored.
   void learn(std::size_t node_index, std::span<const LimitReading> readings,
              OutputMoment moment) noexcept;
 
-  /// The frames that are due, in the order of the table; valid until the next call. `set_points`
-  /// holds one per output signal.
+  /// Makes the frames that are due, in the order of the table. They are valid until the next call.
+  /// `set_points` holds one set-point for each output signal.
   std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
-  /// Not all that were packed fit: the synchronous ones, which belong together, and of the others
-  /// as many as have room in so many bits; those take turns. None where the synchronous ones alone
-  /// do not fit. Valid until the next pack().
+  /// Selects frames if not all packed ones fit into `bits`: all synchronous frames, because they
+  /// belong together, and as many of the others as fit; these take turns. Returns an empty span if
+  /// the synchronous frames alone do not fit. The span is valid until the next pack().
   std::span<const Frame> pack_less(std::int64_t bits,
                                    std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
-  /// The first `count` of the packed frames went out; the others are tried again.
+  /// Notes that the first `count` of the packed frames were sent; the others are tried again.
   void sent(std::size_t count, OutputMoment moment) noexcept;
 
-  /// A command from within the bus thread; `signal` counts in the whole layout.
+  /// Takes a command from within the bus thread. `signal` is the index in the whole layout;
+  /// `time_to_live` is in cycles, 0 means the configured one.
   void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
                OutputMoment moment) noexcept;
 
-  /// Ordered stop, or SYNC is lost: every commanded output takes its fallback. Commands are refused
-  /// from now on: none of them acts later.
+  /// Lets every commanded output take its fallback, for an ordered stop or the loss of SYNC.
+  /// Commands are refused from now on, and none of them takes effect later.
   void fall_back() noexcept;
-  /// The end of fall_back(): each output keeps its fallback until its next command.
+  /// Ends fall_back(). Each output keeps its fallback until its next command.
   void hear_again() noexcept { stopping_ = false; }
-  /// It has a value worth sending.
+  /// The output has a value that can be sent.
   bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
-  /// It was commanded, and its fallback is in force.
+  /// The output was commanded, and its fallback is in force.
   bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
-  /// Ordered stop, or the loss of a node: this value from now on; commands are refused.
+  /// Forces this value from now on and refuses commands to the output, for an ordered stop or the
+  /// loss of a node.
   void force(SignalIndex signal, std::int64_t value) noexcept;
-  /// The next command is heard again, none from before.
+  /// Ends force(). The output accepts its next command, but none that came before.
   void release(SignalIndex signal) noexcept;
 
-  /// Commands that the last pack() saw for the first time.
+  /// Number of commands that the last pack() has seen for the first time.
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
-  /// Every signal of this RPDO has a value worth sending.
+  /// Every signal of this RPDO has a value that can be sent.
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
   RpdoStatus status(std::size_t row) const noexcept {
     return {.sent = rows_[row].sent, .ready = rows_[row].ready};
@@ -90,17 +95,17 @@ class PdoOutputs {
   static constexpr std::uint64_t no_end = ~0ULL;
   std::uint32_t awaited_start(const PdoRow& pdo) const noexcept;
 
-  static constexpr std::uint8_t partial_limit = 10;  ///< cycles until `outputs_held` is told
+  static constexpr std::uint8_t partial_limit = 10;  ///< cycles until `outputs_held` is reported
 
   struct Output {
-    std::uint64_t expires = no_end;  ///< cycle in which the command is too old
+    std::uint64_t expires = no_end;  ///< cycle in which the command expires
     std::uint32_t generation = 0;
-    std::uint32_t limit = 0;  ///< configured time to live in cycles; 0: none
-    bool known = false;       ///< has a value worth sending
-    bool commanded = false;   ///< and that value was commanded
-    bool fallen = false;      ///< its fallback is in force
+    std::uint32_t limit = 0;  ///< configured time to live in cycles; 0 means no limit
+    bool known = false;       ///< the output has a value that can be sent
+    bool commanded = false;   ///< that value was commanded
+    bool fallen = false;      ///< the fallback is in force
     bool forced = false;
-    bool released = false;  ///< it fell because its sender gave it up
+    bool released = false;  ///< the fallback is in force because the sender has released the output
 
     template <class Archive>
     void keep(Archive& state) noexcept {
@@ -108,15 +113,15 @@ class PdoOutputs {
     }
   };
   struct Row {
-    std::uint64_t word = 0;  ///< as it was packed last
+    std::uint64_t word = 0;  ///< data of the last packed frame
     Time last_sent{};
     std::uint64_t last_cycle = 0;
     std::uint32_t sent = 0;
     bool open = false;
     bool ready = false;
-    bool ever_sent = false;  ///< since it was opened
-    bool pending = false;    ///< it has changed and was not sent since
-    bool due = false;        ///< its turn has come and it was not sent since
+    bool ever_sent = false;  ///< a frame was sent since open()
+    bool pending = false;    ///< a value has changed and is not sent yet
+    bool due = false;        ///< the frame is due and is not sent yet
     bool held_told = false;
     std::uint8_t partial = 0;
     SignalIndex first_fallen = 0;
@@ -133,7 +138,7 @@ class PdoOutputs {
   struct Built {
     std::uint64_t word = 0;
     bool lacking = false;
-    bool commanded = false;  ///< by a command that was not seen before
+    bool commanded = false;  ///< a signal of the row has a new command
   };
 
   Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
@@ -149,12 +154,13 @@ class PdoOutputs {
     output.released = false;
     image_.values[signal] = set_point.value;
   }
-  /// The shorter of the two times to live that are set; 0: none is.
+  /// The shorter of the two times to live; 0 means that neither is set.
   static std::uint32_t limit_of(const Output& output, const SetPoint& set_point) noexcept {
     const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
     return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
   }
-  /// The command has outlived its time before it was seen here. One without limit has a second.
+  /// The command has expired before the bus thread has seen it. A command without limit may wait
+  /// for one second.
   bool is_late(const Output& output, const SetPoint& set_point,
                OutputMoment moment) const noexcept {
     const std::uint32_t waited = age(set_point, moment);
@@ -165,10 +171,10 @@ class PdoOutputs {
     if (limit != 0) return waited >= limit;
     return waited >= std::chrono::seconds{1} / plan_.cycle.period;
   }
-  /// Its sender has given the output up.
+  /// Lets the output take its fallback, because its sender has released it.
   void let_go(Output& output, SignalIndex signal) noexcept;
-  /// Cycles since the front thread judged the command's age; 0 where that was since the outputs
-  /// before these, which may have been a quarter of a period early.
+  /// Cycles since the front thread has determined the age of the command. The result is 0 if that
+  /// was after the previous outputs, which may have been a quarter of a period early.
   std::uint32_t age(const SetPoint& set_point, OutputMoment moment) const noexcept {
     const Time period = plan_.cycle.period;
     const Time passed = moment.now - set_point.when - period / 4;
@@ -180,12 +186,12 @@ class PdoOutputs {
   }
   bool refuses(const Output& output) const noexcept { return stopping_ || output.forced; }
 
-  // Limits: pdo_outputs_limits.cpp.
-  /// Drops what is outside its limits from the commands that are new in this pack.
+  // These functions are in pdo_outputs_limits.cpp.
+  /// Drops those new commands of this pack that are outside their limits.
   void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
-  /// The same of one command from within the bus thread. False: it is dropped.
+  /// Checks one command from within the bus thread. Returns false if it is dropped.
   bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
-  /// This command is new, and is to be taken where it is inside.
+  /// This command is new, and is accepted if it is inside its limits.
   bool is_news(const Output& output, const SetPoint& set_point,
                OutputMoment moment) const noexcept {
     return set_point.generation != output.generation && set_point.time_to_live != output_released &&
@@ -195,16 +201,17 @@ class PdoOutputs {
   Obeying obeying(SignalIndex signal) const noexcept;
   void judge_news(std::size_t place, std::span<const SetPoint> set_points,
                   OutputMoment moment) noexcept;
-  /// False: outside, its node has taken its fallback.
+  /// Returns false if the command is outside its limits; the outputs of its node have then taken
+  /// their fallback.
   bool judge(std::size_t place, std::int64_t value, std::int64_t mode,
              OutputMoment moment) noexcept;
   void drop_node(std::size_t node_index) noexcept;
-  /// Ends the refusal of commands to an output, once the fallback of its node was sent.
+  /// Ends the refusal of commands to an output, after the fallback of its node was sent.
   void forgive(std::size_t place, OutputMoment moment) noexcept;
   void note_limited(std::size_t row, std::uint64_t cycle) noexcept;
   void fall(Output& output, SignalIndex signal) noexcept;
   void seed(Output& output, SignalIndex signal) noexcept;
-  /// Builds all rows. True: one set of commands has changed several synchronous ones.
+  /// Builds all rows. Returns true if one set of commands has changed several synchronous rows.
   bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
   bool due(std::size_t row, OutputMoment moment) const noexcept;
   const Frame& add_frame(std::size_t row) noexcept;
@@ -222,12 +229,14 @@ class PdoOutputs {
   OutputLimits limits_;
   std::vector<Output> outputs_;
   std::vector<Row> rows_;
-  std::vector<std::uint8_t> begun_;  ///< per node: an output is commanded, seeds no longer follow
+  /// By node: an output was commanded, so seeds no longer follow the feedback.
+  std::vector<std::uint8_t> begun_;
   std::vector<Frame> frames_;
   std::vector<std::uint16_t> packed_;
   std::size_t packed_count_ = 0;
-  std::size_t next_event_ = 0;  ///< row whose turn it is where not all fit
-  std::uint64_t turn_ = 0;      ///< packs so far: the raster of types 2..240, one for all rows
+  std::size_t next_event_ = 0;  ///< event-driven row that is first if not all frames fit
+  /// Number of packs so far; the common phase of types 2..240 for all rows.
+  std::uint64_t turn_ = 0;
   std::uint32_t fresh_commands_ = 0;
   bool stopping_ = false;
 };

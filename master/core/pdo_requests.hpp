@@ -12,37 +12,41 @@
 
 namespace takt {
 
-/// PDOs on request: remote requests for TPDOs, periodic or asked for, and pairs of an RPDO that is
-/// sent and the TPDO of the same number that answers it. Each accepted request is answered once;
-/// each wait has a deadline. Bus thread only; nothing allocates after construction.
+/// PDOs on request: remote frames for TPDOs, periodic or on request, and exchanges, in which an
+/// RPDO is sent and the TPDO of the same number answers it. Each accepted request is answered once,
+/// and each wait has a deadline. Bus thread only; nothing allocates after construction.
 class PdoRequests {
  public:
   static constexpr std::size_t capacity = waits::pdo_requests;
 
   explicit PdoRequests(const BusPlan& plan);
 
+  /// Returns true for the kinds of request that this class serves.
   static bool takes(RequestKind kind) noexcept {
     return kind == RequestKind::pdo_poll || kind == RequestKind::pdo_exchange;
   }
-  /// False: full, the caller answers.
+  /// Accepts a request. Returns false if there is no room; then the caller answers the request.
   bool submit(const Request& request, Time now) noexcept;
-  /// Once a cycle: time-outs, then what is to be sent, as far as `out` has room. `exchanging` says
-  /// by node index who is OPERATIONAL, `beat` counts SYNCs.
+  /// Handles time-outs and then sends frames as far as `out` has room. Call this once a cycle.
+  /// `exchanging` tells by node index which nodes are OPERATIONAL; `beat` counts SYNCs.
   void on_time(std::span<const bool> exchanging, std::uint64_t beat, Time now,
                Outbox& out) noexcept;
-  /// The master itself was away for so long: no answer is late by that.
+  /// Extends all time-outs by the time for which the master itself did not run.
   void excuse(Time away) noexcept;
-  /// Somebody waits for a TPDO: on_frame wants to see those that come.
+  /// A request waits for a TPDO, so on_frame() needs the TPDOs that come.
   bool waiting() const noexcept { return waiting_ != 0 || owed_ != 0; }
-  /// `row` of PdoTable::tpdos.
+  /// Takes a received TPDO; `row` is the index into PdoTable::tpdos.
   void on_frame(std::uint16_t row, const StampedFrame& stamped) noexcept;
+  /// Takes the next reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
-  /// No request is under way, and no answer is late.
+  /// No request is under way, and no late answer can still come.
   bool idle() const noexcept { return used_ == 0 && owed_ == 0; }
-  /// A request to this node is not answered yet. It may be an exchange that brings it an RPDO.
+  /// A request to this node is not answered yet. The request may be an exchange that sends an RPDO.
   bool reaches(std::uint8_t node) const noexcept;
+  /// Cancels and answers all requests.
   void cancel_all() noexcept;
-  /// Frames of this RPDO that requests have sent; `row` of PdoTable::rpdos.
+  /// Number of frames of this RPDO that requests have sent; `row` is the index into
+  /// PdoTable::rpdos.
   std::uint32_t sent(std::size_t row) const noexcept { return sent_[row]; }
 
   template <class Archive>
@@ -62,10 +66,10 @@ class PdoRequests {
     State state = State::free;
     SdoFault fault = SdoFault::none;
     std::uint16_t tpdo = 0;
-    std::uint16_t rpdo = 0;  ///< of an exchange
+    std::uint16_t rpdo = 0;  ///< only of an exchange
     std::uint64_t id = 0;
     std::uint64_t order = 0;
-    Frame frame{};  ///< to send, then the answer
+    Frame frame{};  ///< the frame to send, later the answer
     Time timeout{};
     Time deadline{};
     Time sent_at{};
@@ -82,9 +86,10 @@ class PdoRequests {
   const BusPlan& plan_;
   std::vector<Poll> polls_;
   std::array<Slot, capacity> slots_{};
-  std::vector<Time> owed_until_;  // by TPDO: the answer to a request that timed out may still come
-  std::size_t owed_ = 0;          // TPDOs with one
-  std::vector<std::uint32_t> sent_;  // by RPDO
+  // By TPDO: until when the answer to a request that has timed out may still come.
+  std::vector<Time> owed_until_;
+  std::size_t owed_ = 0;             // number of TPDOs with such an answer
+  std::vector<std::uint32_t> sent_;  // number of frames by RPDO
   std::size_t used_ = 0;
   std::size_t waiting_ = 0;
   std::uint64_t order_ = 0;

@@ -4,35 +4,38 @@
 
 namespace takt {
 
-/// What is known of one TPDO. Trivially copyable: it crosses threads.
+/// Status of one TPDO. It is trivially copyable because it is passed between threads.
 struct PdoStatus {
-  std::uint32_t received = 0;       ///< frames taken over
-  std::uint32_t missing = 0;        ///< times it was expected and stayed away
-  std::uint32_t late = 0;           ///< synchronous frames after their window
+  std::uint32_t received = 0;       ///< accepted frames
+  std::uint32_t missing = 0;        ///< how often the TPDO was expected and did not come
+  std::uint32_t late = 0;           ///< synchronous frames that came after their window
   std::uint32_t length_errors = 0;  ///< frames shorter (ignored) or longer than the mapping
-  std::uint32_t too_long = 0;       ///< of these the longer ones; their first bytes were used
-  std::uint32_t age = 0;            ///< SYNCs since the newest frame
-  bool stale = true;                ///< not arrived when expected, or not at all so far
+  std::uint32_t too_long = 0;  ///< length errors with a longer frame; its first bytes were used
+  std::uint32_t age = 0;       ///< SYNCs since the newest frame
+  bool stale = true;  ///< the TPDO did not arrive when expected, or has not arrived at all so far
 };
 static_assert(std::is_trivially_copyable_v<PdoStatus>);
 
-/// What is known of one RPDO. Trivially copyable: it crosses threads.
+/// Status of one RPDO. It is trivially copyable because it is passed between threads.
 struct RpdoStatus {
   std::uint32_t sent = 0;
-  bool ready = false;  ///< each of its signals has a value worth sending
+  bool ready = false;  ///< each of its signals has a value that can be sent
 };
 static_assert(std::is_trivially_copyable_v<RpdoStatus>);
 
-/// What one TPDO did since the image before.
+/// What one TPDO has done since the previous image.
 struct PdoMark {
   static constexpr std::uint8_t arrived = 1;
-  static constexpr std::uint8_t missing = 2;    ///< expected, or its deadline is over
-  static constexpr std::uint8_t late = 4;       ///< came after its window
-  static constexpr std::uint8_t too_short = 8;  ///< ignored whole; EMCY 8210 of a device
-  static constexpr std::uint8_t too_long = 16;  ///< first bytes used; EMCY 8220 of a device
+  /// The TPDO was expected and did not come, or its deadline is over.
+  static constexpr std::uint8_t missing = 2;
+  static constexpr std::uint8_t late = 4;  ///< the TPDO came after its window
+  /// The frame was ignored; a device would send EMCY 0x8210.
+  static constexpr std::uint8_t too_short = 8;
+  /// The first bytes were used; a device would send EMCY 0x8220.
+  static constexpr std::uint8_t too_long = 16;
 
-  std::uint32_t received = 0;  ///< frames taken over since the start
-  std::uint32_t cycle = 0;     ///< of the newest frame, lowest 32 bits
+  std::uint32_t received = 0;  ///< accepted frames since the start
+  std::uint32_t cycle = 0;     ///< cycle of the newest frame, lowest 32 bits
   std::uint8_t flags = 0;
 
   template <class Archive>
@@ -40,6 +43,7 @@ struct PdoMark {
     state(received, cycle, flags);
   }
 
+  /// Changes with each accepted frame.
   bool toggle() const noexcept { return (received & 1) != 0; }
   bool is(std::uint8_t flag) const noexcept { return (flags & flag) != 0; }
 };

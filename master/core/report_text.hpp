@@ -11,22 +11,22 @@
 
 namespace takt {
 
-// Small pieces of the reports' text.
+// Parts of the texts of reports.
 
-/// "605  40 18 10 01 00 00 00 00"
+/// A frame as text: "605  40 18 10 01 00 00 00 00".
 inline std::string frame_text(CobId id, std::span<const std::uint8_t> bytes) {
   std::string text = hex(id.id(), 3).substr(2) + " ";
   for (const std::uint8_t byte : bytes) text += " " + hex(byte, 2).substr(2);
   return text;
 }
 
-/// "0604 0041", as CiA 301 prints abort codes.
+/// An abort code as CiA 301 prints it: "0604 0041".
 inline std::string abort_digits(std::uint32_t code) {
   const std::string digits = hex(code, 8).substr(2);
   return digits.substr(0, 4) + " " + digits.substr(4);
 }
 
-/// "2.5 s", "300 ms", "40 us"
+/// A time as text: "2.5 s", "300 ms", "40 us".
 inline std::string time_text(Time time) {
   const auto count = [](std::int64_t whole, std::int64_t tenth, std::string_view unit) {
     std::string text = std::to_string(whole);
@@ -39,17 +39,18 @@ inline std::string time_text(Time time) {
   return count(us, 0, "us");
 }
 
-/// "can0": what to give to `--bus`.
+/// The argument of `--bus`: "can0".
 inline std::string interface_text(const BusPlan& plan) {
   return plan.interface.empty() ? "can0" : plan.interface;
 }
 
-/// "node 5 'shoulder'"
+/// A node as text: "node 5 'shoulder'".
 inline std::string node_text(const NodePlan& node) {
   return "node " + std::to_string(int{node.id.value()}) + " '" + node.name + "'";
 }
 
-/// "vendor id 0x0000015A, product code 0x00000700, serial number 77": what is known of it.
+/// The known parts of an LSS address as text: "vendor id 0x0000015A, product code 0x00000700,
+/// serial number 77".
 inline std::string identity_text(const LssPlan& lss) {
   std::string text =
       "vendor id " + hex(lss.address[0], 8) + ", product code " + hex(lss.address[1], 8);

@@ -16,40 +16,47 @@ namespace takt {
 /// Largest SDO value that a request or reply carries, in bytes.
 inline constexpr std::size_t request_bytes = 1024;
 
+/// The service that a request asks for.
 enum class RequestKind : std::uint8_t {
   sdo_upload,
   sdo_download,
   nmt,
-  pdo_poll,      ///< remote request for TPDO `object.index` (1..512); the reply has its bytes
-  pdo_exchange,  ///< RPDO `object.index` with `data`; the reply has the bytes of the TPDO that
-                 ///< answers
-  lss,           ///< LssCommands in `data`, packed; the reply has the LssResults
+  pdo_poll,  ///< remote frame for TPDO `object.index` (1..512); the reply carries the bytes of the
+             ///< TPDO
+  pdo_exchange,  ///< sends RPDO `object.index` with `data`; the reply carries the bytes of the TPDO
+                 ///< that answers
+  lss,           ///< packed LssCommands in `data`; the reply carries the LssResults
 };
 
-/// A value that is too long for a request. The front thread fills it or gives it its length, hands
-/// it over with a request and has it back with the reply; only `done` and `cancel` are shared.
+/// A buffer for a value that is too long for a request. The front thread fills it (download) or
+/// sets its length (upload), hands it over with a request and gets it back with the reply.
+/// Meanwhile, the threads share only the atomic members.
 struct SdoTransfer {
   std::vector<std::byte> data;
-  std::atomic<std::uint32_t> done{0};       ///< bytes that are through; at the end all of them
-  std::atomic<std::uint32_t> announced{0};  ///< of an upload, by the device; 0: it does not say
-  std::atomic<bool> cancel{false};          ///< asks for an early end; it is aborted on the bus
+  /// Transferred bytes; at the end all bytes.
+  std::atomic<std::uint32_t> done{0};
+  /// Size of an upload that the device has announced; 0 means none.
+  std::atomic<std::uint32_t> announced{0};
+  /// Requests an early end; the transfer is then aborted on the bus.
+  std::atomic<bool> cancel{false};
 };
 
-/// A service asked of the bus thread by the front thread. Trivially copyable.
+/// A service that the front thread requests from the bus thread. It is trivially copyable.
 struct Request {
-  std::uint64_t id = 0;  ///< repeated by the reply
+  std::uint64_t id = 0;  ///< the reply repeats it
   RequestKind kind = RequestKind::sdo_upload;
-  std::uint8_t node = 0;  ///< NMT: 0 = all nodes
+  std::uint8_t node = 0;  ///< node-ID; for NMT, 0 means all nodes
   ObjectKey object{};
   NmtCommand command = NmtCommand::start;
-  Time timeout{};                   ///< of the SDO transfer; 0 = the node's own
-  SdoTransfer* transfer = nullptr;  ///< instead of `data`; outlives the reply
+  Time timeout{};  ///< time-out of the SDO transfer; 0 means that of the node
+  /// Used instead of `data` if not nullptr; it must live until the reply was taken.
+  SdoTransfer* transfer = nullptr;
   std::uint16_t size = 0;
   std::array<std::byte, request_bytes> data{};
 };
 static_assert(std::is_trivially_copyable_v<Request>);
 
-/// Every request is answered exactly once.
+/// The answer to a request. Every request is answered exactly once.
 struct Reply {
   std::uint64_t id = 0;
   SdoFault fault = SdoFault::none;

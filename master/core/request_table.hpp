@@ -19,8 +19,9 @@ struct RequestSlot {
   std::uint32_t abort_code = 0;
 };
 
-/// The requests of applications: one lane a node for SDO, lane 0 for NMT, one for LSS, first come
-/// first served in each. Every accepted request is answered once.
+/// The requests of applications. There is one lane for the SDO of each node, lane 0 for NMT and one
+/// for LSS; each lane is served first come, first served. Every accepted request is answered once.
+/// Bus thread only.
 class RequestTable {
  public:
   static constexpr std::size_t capacity = 32;
@@ -35,21 +36,22 @@ class RequestTable {
   bool full() const noexcept {
     return std::ranges::find(slots_, RequestSlot::State::free, &RequestSlot::state) == slots_.end();
   }
-  /// Null: no room.
+  /// Accepts a request. Returns nullptr if there is no room.
   RequestSlot* accept(const Request& request) noexcept;
-  /// Makes the oldest waiting request of a lane the active one. Null: nobody waits.
+  /// Makes the oldest waiting request of a lane the active one. Returns nullptr if no request
+  /// waits.
   RequestSlot* next(std::uint8_t lane) noexcept;
   bool has_waiting(std::uint8_t lane) const noexcept;
   /// An SDO download to this object of the node is not answered yet.
   bool has_download(std::uint8_t node, ObjectKey object) const noexcept;
   void answer(RequestSlot& slot, SdoFault fault, std::uint32_t abort_code = 0,
               std::size_t size = 0) noexcept;
-  /// Answers all that wait or are active.
+  /// Cancels and answers all requests that wait or are active.
   void cancel_all() noexcept;
-  /// Answers those of this id that still wait.
+  /// Cancels and answers the requests with this id that still wait.
   void withdraw(std::uint64_t id) noexcept;
   bool take(Reply& reply) noexcept;
-  /// Nobody waits, for his turn or to be answered.
+  /// No request is under way, and no reply waits to be taken.
   bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }
 
   template <class Archive>

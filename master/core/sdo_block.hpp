@@ -8,14 +8,14 @@
 
 namespace takt {
 
-/// What follows for a block transfer from a frame of the server.
+/// The consequence of a server's frame for a block transfer.
 struct SdoBlockStep {
   enum class Kind : std::uint8_t {
-    stranger,  ///< of another, earlier transfer: nothing follows
+    stranger,  ///< The frame belongs to an earlier transfer and is ignored.
     goes_on,
     done,
-    plain,  ///< the server has switched to an ordinary upload
-    abort,  ///< it broke the protocol: `abort_code` is to be sent
+    plain,  ///< The server has switched to a segmented or expedited upload.
+    abort,  ///< The server has broken the protocol; `abort_code` is to be sent.
   };
   Kind kind = Kind::stranger;
   SdoFault fault = SdoFault::aborted_by_master;
@@ -26,13 +26,15 @@ constexpr SdoBlockStep block_abort(std::uint32_t code) noexcept {
   return {.kind = SdoBlockStep::Kind::abort, .abort_code = code};
 }
 
-/// Sub-blocks in a row that bring nothing before a transfer is given up: a noisy line gets through,
-/// a server that never moves does not hold the channel for good.
+/// The number of sub-blocks in a row without progress after which a transfer is given up. The limit
+/// lets transfers pass a noisy line, and prevents that a server without progress holds the channel
+/// forever.
 inline constexpr std::uint8_t most_fruitless_blocks = 16;
 
-/// Segments of a sub-block that a device may send in one go. Bit/s.
+/// The number of segments that a device may send in one sub-block, 1..127; `bitrate` is in bit/s.
 constexpr std::uint8_t sub_block_segments(std::uint32_t bitrate) noexcept {
-  constexpr std::int64_t worst_bits = 135;  // of a segment, stuff bits included
+  // Bits of a segment in the worst case, including stuff bits.
+  constexpr std::int64_t worst_bits = 135;
   const std::int64_t bits = waits::sub_block * bitrate / std::chrono::seconds{1};
   return static_cast<std::uint8_t>(
       std::clamp<std::int64_t>(bits / worst_bits, 1, most_block_segments));

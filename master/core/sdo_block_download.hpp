@@ -10,23 +10,24 @@
 
 namespace takt {
 
-/// The client's side of one block download: sends sub-blocks without waiting in between, goes back
-/// to the first segment that the server has missed, ends with the CRC. CiA 301, 7.2.4.3.9.
+/// The client side of one block download. It sends the segments of a sub-block without waiting in
+/// between, goes back to the first segment that the server has missed, and ends with the CRC. CiA
+/// 301, 7.2.4.3.9.
 class SdoBlockDownload {
  public:
-  /// `value` must live until the end.
+  /// Begins a download. `value` must live until its end.
   void begin(SdoChannel channel, ObjectKey object, std::span<const std::byte> value) noexcept;
 
-  /// The frame to send now; none: it is the server's turn.
+  /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
   void sent() noexcept;
-  /// The server will answer the frame that is to be sent.
+  /// The server will answer the frame that is to be sent next.
   bool answered() const noexcept;
 
-  /// Frames of the server, aborts excepted.
+  /// Takes a frame of the server, except for aborts.
   SdoBlockStep on_frame(const Frame& frame) noexcept;
 
-  /// The server has taken up the transfer.
+  /// The server has accepted the transfer.
   bool accepted() const noexcept { return state_ > State::initiate; }
   /// Bytes that the server has confirmed.
   std::size_t confirmed() const noexcept { return confirmed_; }
@@ -43,14 +44,14 @@ class SdoBlockDownload {
   ObjectKey object_;
   std::span<const std::byte> value_;
   State state_ = State::initiate;
-  bool waits_ = false;  ///< nothing to send until the server answers
+  bool waits_ = false;  ///< the client waits for the server
   bool crc_used_ = false;
   std::uint8_t block_segments_ = 0;
   std::uint8_t sent_in_block_ = 0;
   std::uint8_t fruitless_ = 0;
   std::optional<SdoBlockConfirm> newest_;
   std::uint16_t crc_ = 0;
-  std::size_t summed_ = 0;  ///< bytes in crc_
+  std::size_t summed_ = 0;  ///< number of bytes that crc_ covers
   std::size_t confirmed_ = 0;
 };
 

@@ -12,47 +12,53 @@
 
 namespace takt {
 
-/// The client's side of one block upload: takes the segments that come in sequence, confirms each
-/// sub-block with what it has, and checks the CRC at the end. CiA 301, 7.2.4.3.13.
+/// The client side of one block upload. It accepts the segments that come in sequence, confirms
+/// each sub-block with the number of these segments, and checks the CRC at the end. CiA
+/// 301, 7.2.4.3.13.
 class SdoBlockUpload {
  public:
   struct Begin {
     SdoChannel channel;
     ObjectKey object;
-    std::uint8_t segments = most_block_segments;  ///< of a sub-block, 1..127
-    /// Up to so many bytes the server may answer with an ordinary upload; 0: never.
+    std::uint8_t segments = most_block_segments;  ///< segments of a sub-block, 1..127
+    /// Protocol switch threshold: up to this number of bytes, the server may switch to an expedited
+    /// or segmented upload. 0 means never.
     std::uint8_t threshold = 0;
   };
-  /// `buffer` must live until the end.
+  /// Begins an upload. `buffer` must live until its end.
   void begin(const Begin& begin, std::span<std::byte> buffer) noexcept;
 
-  /// The frame to send now; none: it is the server's turn.
+  /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
   void sent() noexcept { to_send_ = Next::nothing; }
-  /// The server answers the frame that is to be sent with a sub-block.
+  /// The server will answer the frame that is to be sent next with a sub-block.
   bool asks_for_sub_block() const noexcept {
     return state_ == State::segments && to_send_ != Next::nothing;
   }
-  /// A sub-block was asked for and has not ended.
+  /// A sub-block was requested and has not ended.
   bool awaits_sub_block() const noexcept {
     return state_ == State::segments && to_send_ == Next::nothing;
   }
 
-  /// Frames of the server, aborts excepted. `done`: the end is to be confirmed by to_send().
+  /// Takes a frame of the server, except for aborts. After `done`, to_send() still gives the
+  /// confirmation of the end.
   SdoBlockStep on_frame(const Frame& frame) noexcept;
 
-  /// The server has fallen silent in a sub-block: what came is confirmed, so that it may repeat the
-  /// rest. False: there is nothing to confirm, or this has been tried.
+  /// Handles silence of the server in a sub-block: the segments that came are confirmed, so that
+  /// the server may repeat the rest. Returns false if there is nothing to confirm, or if this was
+  /// tried before.
   bool confirm_after_silence() noexcept;
-  /// Silence that calls for confirm_after_silence.
+  /// Silence now calls for confirm_after_silence().
   bool in_sub_block() const noexcept {
     return state_ == State::segments && holds_ && !asked_again_;
   }
 
-  /// The server has taken up the transfer.
+  /// The server has accepted the transfer.
   bool accepted() const noexcept { return state_ != State::initiate; }
-  /// Bytes received in sequence; at the end exact, before that without the newest segment.
+  /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
+  /// does not include the newest segment.
   std::size_t received() const noexcept { return done_; }
+  /// Size that the server has announced, or std::nullopt.
   std::optional<std::uint32_t> announced() const noexcept { return announced_; }
 
  private:
@@ -65,7 +71,7 @@ class SdoBlockUpload {
   bool repeats_last(const Frame& frame) const noexcept;
   std::uint16_t crc_with_held(const SdoBlockEnd& end) const noexcept;
   void confirm() noexcept;
-  // The newest segment, or what of it is data, into the buffer. False: no room.
+  // Moves the data of the newest segment to the buffer. Returns false if there is no room.
   bool commit(std::size_t bytes) noexcept;
 
   Begin setup_{};
@@ -73,11 +79,11 @@ class SdoBlockUpload {
   State state_ = State::initiate;
   Next to_send_ = Next::nothing;
   bool crc_used_ = false;
-  bool holds_ = false;  ///< a segment that is not committed: it may be the last
+  bool holds_ = false;  ///< a segment is held back, because it may be the last
   bool last_held_ = false;
   bool asked_again_ = false;
-  std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block
-  std::uint8_t confirmed_ = 0;    ///< what the confirmation says
+  std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block that came in sequence
+  std::uint8_t confirmed_ = 0;    ///< number of segments that the confirmation reports
   std::uint8_t fruitless_ = 0;
   std::uint16_t crc_ = 0;
   std::optional<std::uint32_t> announced_;

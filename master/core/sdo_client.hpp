@@ -20,84 +20,94 @@ namespace takt {
 struct SdoResult {
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
-  std::size_t size = 0;    ///< bytes received, or sent
-  bool shortened = false;  ///< fewer bytes came than the device had announced
+  std::size_t size = 0;    ///< number of bytes that were received or sent
+  bool shortened = false;  ///< fewer bytes came than the device has announced
 };
 
-/// How an upload is asked for. Block falls back to plain where the device refuses it, or does not
-/// answer.
+/// How an upload is requested. A block upload falls back to a plain one if the device refuses it or
+/// does not answer.
 enum class SdoMode : std::uint8_t { plain, block };
 
-/// SDO client of one node on one channel: one transfer at a time, expedited, segmented or block.
-/// Works on the caller's buffer, which must live until the result is taken. A transfer that falls
-/// silent is aborted on the bus, so that the server isn't left half-way. CiA 301, 7.2.4.
+/// SDO client of one node on one channel. It runs one transfer at a time: expedited, segmented or
+/// block. It works on the buffer of the caller, which must live until the result is taken. A
+/// transfer in which the server becomes silent is aborted on the bus, so that the server does not
+/// stay in the middle of it. Bus thread only. CiA 301, 7.2.4.
 class SdoClient {
  public:
-  /// Downloads of so many bytes go by block where the node allows it. One that finds no answer to
-  /// its first frame goes by segments: nothing was written yet.
+  /// Downloads of at least this number of bytes are block transfers if the settings of the node
+  /// allow it. If the first frame of a block download finds no answer, the transfer falls back to
+  /// segments, because nothing was written yet.
   static constexpr std::size_t block_from = 128;
 
   explicit SdoClient(NodeId server) noexcept : SdoClient{default_sdo_channel(server)} {}
-  /// `segments`: of a sub-block that the server sends, 1..127.
+  /// `segments` is the number of segments in a sub-block that the server sends, 1..127.
   explicit SdoClient(SdoChannel channel, SdoBlockUse block = SdoBlockUse::automatic,
                      std::uint8_t segments = most_block_segments) noexcept
       : channel_{channel}, block_use_{block}, segments_{segments} {}
 
-  /// Nothing is running, no result is waiting and no abort is still to be sent.
+  /// No transfer is running, no result waits to be taken and no abort waits to be sent.
   bool idle() const noexcept { return state_ == State::idle && !result_ && !to_send_; }
 
-  /// Both only when idle. `timeout` is the longest silence of the server, restarted by each frame.
+  /// Begins an upload; the client must be idle. `timeout` is the longest permitted silence of the
+  /// server; each frame restarts it.
   void upload(ObjectKey object, std::span<std::byte> buffer, Time timeout,
               SdoMode mode = SdoMode::plain) noexcept;
+  /// Begins a download; the client must be idle. `timeout` is as in upload().
   void download(ObjectKey object, std::span<const std::byte> value, Time timeout) noexcept;
 
   /// Ends a running transfer with an abort on the bus; its result is `cancelled`.
   void cancel() noexcept;
-  /// Forgets everything: the server has been reset and knows of no transfer.
+  /// Forgets the running transfer, because the server was reset and does not know it any more.
   void drop() noexcept;
 
+  /// Takes a frame of the server.
   void on_frame(const Frame& frame, Time now) noexcept;
-  /// Looks at the deadline and sends at most one frame.
+  /// Handles the time-out and sends at most one frame.
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
 
-  /// The result of the transfer, once.
+  /// Returns the result of the transfer once.
   std::optional<SdoResult> take_result() noexcept;
-  /// The device has shown that it knows no block transfer; told once. All further ones are plain.
+  /// The device does not support block transfer; all further transfers are plain.
   struct NoBlock {
     ObjectKey object;
-    std::uint32_t abort_code = 0;  ///< 0: it gave no answer
+    std::uint32_t abort_code = 0;  ///< 0 means that it gave no answer
   };
+  /// Reports once that the device does not support block transfer.
   std::optional<NoBlock> take_no_block() noexcept;
-  /// Bytes of the running transfer that are through.
+  /// Number of transferred bytes of the running transfer.
   std::size_t progress() const noexcept;
-  /// Bytes that the device said the running upload has; 0: it did not say.
+  /// Size of the running upload that the device has announced; 0 means none.
   std::size_t announced() const noexcept;
 
-  /// The master itself was away for so long: the server is not late by that.
+  /// Extends the time-out by the time for which the master itself did not run.
   void excuse(Time away) noexcept {
     if (deadline_ != never) deadline_ += away;
   }
 
-  /// In the middle of a block transfer: the next frame of the server comes soon.
+  /// A block transfer is under way, so the next frame of the server comes soon.
   bool streams() const noexcept {
     return state_ == State::block_upload || state_ == State::block_download;
   }
-  /// The server sends one segment after another, as fast as the wire takes them.
+  /// The server sends a sub-block, one segment after another, as fast as the wire permits.
   bool awaits_sub_block() const noexcept {
     return state_ == State::block_upload && !to_send_ && block_upload_.awaits_sub_block();
   }
   /// A frame was sent, and the server has not answered it.
   bool awaits_answer() const noexcept { return deadline_ != never && !next_frame(); }
   const SdoChannel& channel() const noexcept { return channel_; }
-  /// The newest frames of the newest transfer, for reports. Length 0: there is none.
+  /// The last frame of the client in the newest transfer, for reports. A length of 0 means that
+  /// there is none.
   const Frame& last_sent() const noexcept { return last_sent_; }
-  /// Some frame of the transfer was sent.
+  /// A frame of the newest transfer was sent.
   bool begun() const noexcept { return last_sent_.length != 0; }
+  /// The last frame of the server in the newest transfer, for reports. A length of 0 means that
+  /// there is none.
   const Frame& last_received() const noexcept { return last_received_; }
-  /// Object of an answer that came in place of the one that was asked for; none: none did.
+  /// The object of an answer that did not fit the request; std::nullopt if there was none.
   std::optional<ObjectKey> answered() const noexcept { return answered_; }
-  /// How late answers come of requests that have timed out; 0: none has come.
+  /// The longest time until the answer to a request that had timed out; 0 means that no such answer
+  /// came.
   Time lateness() const noexcept { return late_.longest(); }
   void forget_lateness() noexcept { late_.reset(); }
 
@@ -116,8 +126,10 @@ class SdoClient {
     download_segments,
     block_upload,
     block_download,
-    falling_back,  // the first frame of a block transfer found no answer; its abort is to be sent
-    settling,      // aborted while segments were under way: the server may refuse each of them
+    falling_back,  // The first frame of a block transfer found no answer, and its abort waits to be
+                   // sent.
+    settling,  // The transfer was aborted while segments were under way, and the server may refuse
+               // each of them.
   };
 
   bool blocks() const noexcept { return block_use_ != SdoBlockUse::off && !block_refused_; }
@@ -157,31 +169,33 @@ class SdoClient {
   bool uploads_ = false;
   bool toggle_ = false;
   bool last_segment_sent_ = false;
-  bool block_refused_ = false;  ///< the device knows no block transfer
-  bool block_unheard_ = false;  ///< this transfer was begun by block, and found no answer
-  bool block_ended_ = false;    ///< well, by the transfer before this one
-  bool left_stream_ = false;    ///< given up in the middle of a sub-block
-  bool late_segments_ = false;  ///< of a block upload that was given up may still come
+  bool block_refused_ = false;  ///< the device does not support block transfer
+  bool block_unheard_ = false;  ///< this transfer began as a block transfer and found no answer
+  bool block_ended_ = false;    ///< the previous transfer was a block transfer and succeeded
+  bool left_stream_ = false;    ///< the transfer was given up in the middle of a sub-block
+  bool late_segments_ = false;  ///< segments of a block upload that was given up may still come
   ObjectKey object_;
-  std::optional<ObjectKey> given_up_;  ///< object of a transfer whose answer may still come
+  /// Object of a transfer that was given up, whose answer may still come.
+  std::optional<ObjectKey> given_up_;
   Time timeout_{};
   Time deadline_ = never;
-  std::span<std::byte> buffer_;             ///< upload
-  std::span<const std::byte> value_;        ///< download
-  std::size_t done_ = 0;                    ///< bytes
+  std::span<std::byte> buffer_;             ///< destination of an upload
+  std::span<const std::byte> value_;        ///< source of a download
+  std::size_t done_ = 0;                    ///< transferred bytes
   std::optional<std::uint32_t> announced_;  ///< size that the server indicated
   SdoBlockUpload block_upload_;
   SdoBlockDownload block_download_;
   std::optional<Frame> to_send_;
   std::optional<SdoResult> result_;
   std::optional<NoBlock> no_block_;
-  SdoResult settled_;  ///< the result when it has settled
+  SdoResult settled_;  ///< the result after State::settling
   LateAnswers late_;
-  bool late_possible_ = false;         ///< the transfer before was given up in silence
+  /// The previous transfer was given up, but not because of a protocol error.
+  bool late_possible_ = false;
   bool late_now_ = false;              ///< the newest frame answers a request that has timed out
-  Time asked_at_{};                    ///< when the newest transfer was asked for
-  std::optional<ObjectKey> answered_;  ///< in place of what was asked for
-  Frame previous_answer_;              ///< the last one of the transfer before
+  Time asked_at_{};                    ///< when the newest transfer was requested
+  std::optional<ObjectKey> answered_;  ///< object of an answer that did not fit the request
+  Frame previous_answer_;              ///< the last answer of the previous transfer
   Frame last_sent_;
   Frame last_received_;
 };

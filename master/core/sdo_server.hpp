@@ -14,22 +14,23 @@
 
 namespace takt {
 
-/// SDO server over the master's own dictionary: expedited, segmented and block transfers, one at a
-/// time, all of them short. A client that falls silent is forgotten after a second. CiA 301, 7.2.4.
+/// SDO server of the object dictionary of the master: expedited, segmented and block transfers, one
+/// at a time. All values are short. After one second of silence of the client, the server aborts
+/// its transfer. Bus thread only. CiA 301, 7.2.4.
 class SdoServer {
  public:
   SdoServer(SdoChannel channel, const OwnDictionary& dictionary) noexcept
       : channel_{channel}, dictionary_{dictionary} {}
 
-  /// What becomes of NMT that a client asks for now.
+  /// Whether the server accepts a request for an NMT command now.
   enum class Orders : std::uint8_t { taken, refused };
 
   void on_frame(const Frame& frame, Time now, Orders orders) noexcept;
-  /// Looks at the deadline and sends at most one frame.
+  /// Handles the time-out and sends at most one frame.
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept { return to_send_ || sending_block() ? at_once : deadline_; }
 
-  /// NMT that a client has asked for by 0x1F82, once.
+  /// Returns once the NMT command that a client has requested by 0x1F82.
   std::optional<OwnDictionary::Order> take_order() noexcept;
 
   bool idle() const noexcept { return state_ == State::idle && !to_send_ && !order_; }
@@ -41,9 +42,9 @@ class SdoServer {
     download,
     block_download,
     block_download_end,
-    block_offered,  // an upload whose start is awaited
+    block_offered,  // The server waits for the start of a block upload.
     block_upload,
-    block_upload_wait,  // for the confirmation of a sub-block
+    block_upload_wait,  // The server waits for the confirmation of a sub-block.
     block_upload_end,
   };
 
@@ -72,8 +73,8 @@ class SdoServer {
   bool toggle_ = false;
   bool crc_used_ = false;
   std::uint8_t block_segments_ = 0;
-  std::uint8_t in_block_ = 0;  // segments of this sub-block, sent or received
-  std::size_t base_ = 0;       // first byte of this sub-block
+  std::uint8_t in_block_ = 0;  // segments of this sub-block that were sent or received
+  std::size_t base_ = 0;       // offset of the first byte of this sub-block
   OwnDictionary::Value value_;
   Time deadline_ = never;
   std::optional<Frame> to_send_;

@@ -11,48 +11,50 @@
 
 namespace takt {
 
-/// The requests that an ordered stop makes by itself: it reads of an axis what no PDO brings,
-/// writes a controlword that no PDO carries, and disarms what the devices watch of the master.
-/// Bus thread only.
+/// The requests that an ordered stop makes by itself: it reads the values of an axis that no PDO
+/// carries, writes a controlword that no PDO carries, and disarms the supervision of the master by
+/// the devices. Bus thread only.
 class StopRequests {
  public:
   explicit StopRequests(const BusPlan& plan);
 
-  /// A stop begins.
+  /// Begins the requests of a stop.
   void begin() noexcept;
-  /// Says whether the boot of this node has failed because the device refused its newest step.
+  /// Notes whether the boot of this node has failed because the device refused its newest step.
   void note_boot(std::size_t node_index, bool refused) noexcept {
     refused_boots_[node_index] = refused;
   }
-  /// The next request that is due; null: none. `exchanging` as in StopView.
+  /// Returns the next request that is due, or nullptr. `exchanging` is as in StopView.
   const Request* next(Time now, const OrderedStop& stop, std::span<const bool> exchanging,
                       std::span<const NodeStatus> nodes) noexcept;
-  /// The network has taken what next() gave.
+  /// Notes that the network has accepted the request from next().
   void submitted() noexcept;
 
-  /// The answer to one of these requests: nobody else asked.
+  /// Returns true if the reply belongs to a request of this class.
   static bool owns(const Reply& reply) noexcept { return (reply.id & mark) != 0; }
-  /// Hands what was read to `stop`. False: the device did not take a write that disarms it; see
-  /// refusing_node() and refused_object().
+  /// Passes the values that were read to `stop`. Returns false if the device did not accept a write
+  /// that disarms it; see refusing_node() and refused_object().
   bool take(const Reply& reply, Time now, OrderedStop& stop) noexcept;
-  /// Of the newest take() that gave false.
+  /// Node-ID of the newest take() that returned false.
   std::uint8_t refusing_node() const noexcept { return refused_.node; }
+  /// Object of the newest take() that returned false.
   ObjectKey refused_object() const noexcept { return refused_.object; }
-  /// Value of EventKind::still_armed.
+  /// Event::value for EventKind::still_armed.
   std::int64_t refusal() const noexcept { return refusal_; }
 
-  /// A statusword that such an answer brings.
+  /// A statusword that was read by SDO.
   struct AxisWord {
     std::size_t axis = 0;
     std::int64_t value = 0;
   };
+  /// Returns the statusword in a reply, or std::nullopt if the reply carries none.
   static std::optional<AxisWord> statusword_of(const Reply& reply) noexcept;
-  /// Index of 0x6040 of this axis.
+  /// Index of the controlword (0x6040 of the first axis) of this axis.
   static constexpr std::uint16_t controlword_of(const StopAxis& axis) noexcept {
     return static_cast<std::uint16_t>(0x6040 + axis.number * axis_step);
   }
 
-  /// Everything that can be disarmed by SDO is.
+  /// All writes that disarm devices are answered or were skipped.
   bool disarmed() const noexcept { return answered_ == jobs_.size(); }
 
  private:
@@ -60,27 +62,29 @@ class StopRequests {
   /// A device that has no statusword is asked for its device type once.
   enum class TypeQuery : std::uint8_t { not_needed, due, answered };
   struct Poll {
-    bool waiting = false;      // for an answer
+    bool waiting = false;      // the axis waits for an answer
     bool no_velocity = false;  // the device has no 0x606C
-    bool word_next = false;    // the statusword was read last
+    bool word_next = false;    // the newest read was that of the statusword
     TypeQuery type = TypeQuery::not_needed;
-    std::int64_t writing = -1;  // controlword that is under way by SDO
-    std::int64_t written = -1;  // controlword that the device has taken by SDO
+    std::int64_t writing = -1;  // controlword that is being written by SDO; -1 means none
+    std::int64_t written = -1;  // controlword that the device has accepted by SDO; -1 means none
     Time due{};
-    Time write_again{};  // not before, after the device has refused a controlword
+    Time write_again{};  // earliest next write, after the device has refused a controlword
   };
-  /// One write that disarms; without object: NMT enter pre-operational, before the writes.
+  /// One write that disarms a device. Without an object, the job is the NMT command enter
+  /// pre-operational, which comes before the writes.
   struct Job {
     std::uint8_t node = 0;
     std::uint8_t node_index = 0;
     ObjectKey object{};
     std::uint8_t bytes = 0;
-    std::uint16_t step = 0;  ///< of the boot, that arms it
+    std::uint16_t step = 0;  ///< step of the boot that arms the device
     Time timeout{};
   };
   static constexpr std::uint64_t mark = 1ULL << 60;
   static constexpr std::uint64_t of_job = 1ULL << 59;
-  static constexpr std::uint16_t axis_step = 0x800;  // between two axes of one device
+  // Index distance between two axes of one device.
+  static constexpr std::uint16_t axis_step = 0x800;
 
   void add_jobs(const BusPlan& plan, std::uint8_t node_index);
   bool due_of_axis(std::size_t axis, Time now, const OrderedStop& stop, bool exchanging) noexcept;
@@ -95,12 +99,12 @@ class StopRequests {
   std::vector<StopAxis> axes_;
   std::vector<Poll> polls_;
   std::vector<Job> jobs_;
-  std::vector<std::uint8_t> failed_;  // per node: it took no write, or is not there
-  std::vector<bool> refused_boots_;   // per node, see note_boot()
+  std::vector<std::uint8_t> failed_;  // by node: it accepted no write, or does not exist
+  std::vector<bool> refused_boots_;   // by node, see note_boot()
   std::size_t next_job_ = 0;
-  std::size_t answered_ = 0;  // jobs
-  std::size_t turn_ = 0;      // axis that is asked next
-  std::size_t asked_ = 0;     // axis, or job, that request_ is of
+  std::size_t answered_ = 0;  // answered jobs
+  std::size_t turn_ = 0;      // axis that is served next
+  std::size_t asked_ = 0;     // axis or job of request_
   Job refused_;
   std::int64_t refusal_ = 0;
   Request request_;

@@ -6,13 +6,14 @@
 
 namespace takt {
 
-/// EventKind::axis_not_stopped without the node: "was disabled at 75 mm/s". Front side.
+/// Text of EventKind::axis_not_stopped without the node: "was disabled at 75 mm/s". Front side
+/// only.
 std::string axis_stop_text(const BusPlan& plan, const Event& event);
-/// The same with the name of the node: "z was disabled at 75 mm/s", "x: no answer for 1.2 s".
+/// The same text with the name of the node: "z was disabled at 75 mm/s", "x: no answer for 1.2 s".
 std::string named_axis_stop_text(const BusPlan& plan, const Event& event);
-/// EventKind::loss_reaction without the node.
+/// Text of EventKind::loss_reaction without the node.
 std::string reaction_text(const Event& event);
-/// EventKind::still_armed without the node.
+/// Text of EventKind::still_armed without the node.
 std::string still_armed_text(const Event& event);
 
 }  // namespace takt

@@ -10,19 +10,19 @@
 
 namespace takt {
 
-/// Notices that two devices have one node id: twice the heartbeats, or two answers to each SDO
-/// request. Told at most once in ten seconds.
+/// Detects that two devices use one node-ID, by twice the heartbeats or by two answers to each SDO
+/// request. It reports this at most once in ten seconds. Bus thread only.
 class TwinWatch {
  public:
-  /// `heartbeat_period` of the device; 0 = not known, heartbeats tell nothing. `sdo_request` is
-  /// what its SDO server listens to.
+  /// `heartbeat_period` is that of the device; 0 means that it is not known and heartbeats are not
+  /// evaluated. `sdo_request` is the COB-ID on which the SDO server of the device listens.
   TwinWatch(Time heartbeat_period, CobId sdo_request) noexcept
       : period_{heartbeat_period}, sdo_request_{sdo_request} {}
 
   std::optional<DuplicateSign> on_heartbeat(Time now) noexcept;
   std::optional<DuplicateSign> on_sdo_answer(const Frame& frame, Time now) noexcept;
   void on_sdo_requests(std::span<const Frame> frames) noexcept;
-  /// The device was reset: what was counted before means nothing.
+  /// Clears all counters, because the device was reset.
   void restart() noexcept;
 
   template <class Archive>
@@ -40,12 +40,14 @@ class TwinWatch {
   CobId sdo_request_;
   Time window_begin_{};
   std::uint32_t heartbeats_ = 0;
-  std::uint32_t full_windows_ = 0;      // in a row, with too many heartbeats
-  std::uint32_t asked_ = 0;             // SDO transfers begun
-  std::uint32_t answered_ = 0;          // and answered
-  bool block_ = false;                  // the newest transfer: its answers are counted otherwise
-  std::array<ObjectKey, 2> objects_{};  // of the newest two requests: twins answer those
-  Time told_ = -tell_again;             // so long ago that it may be told at once
+  std::uint32_t full_windows_ = 0;  // windows in a row with too many heartbeats
+  std::uint32_t asked_ = 0;         // SDO transfers that were begun
+  std::uint32_t answered_ = 0;      // SDO transfers that were answered
+  // The newest transfer is a block transfer, whose answers are counted differently.
+  bool block_ = false;
+  // Objects of the newest two requests, which both devices answer.
+  std::array<ObjectKey, 2> objects_{};
+  Time told_ = -tell_again;  // initially long ago, so that the first report is possible at once
 };
 
 }  // namespace takt

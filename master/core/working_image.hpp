@@ -5,8 +5,7 @@
 
 namespace takt {
 
-/// The values of a bus as they are now: inputs as received, outputs as last packed. Bus thread
-/// only.
+/// The current values of a bus: inputs as received, outputs as last packed. Bus thread only.
 struct WorkingImage {
   explicit WorkingImage(std::size_t signals) : values(signals, 0), stale((signals + 63) / 64, 0) {}
 
@@ -24,7 +23,7 @@ struct WorkingImage {
   }
 
   std::vector<std::int64_t> values;
-  std::vector<std::uint64_t> stale;  ///< bit n % 64 of word n / 64: signal n
+  std::vector<std::uint64_t> stale;  ///< bit n % 64 of word n / 64 belongs to signal n
 };
 
 }  // namespace takt
