@@ -292,9 +292,8 @@ void Bridge::add_sender(const Event& event, Notice& notice) const {
 }
 
 void Bridge::tell(const Event& event) {
-  if (event.kind == EventKind::stopping)
-    // Removes the axes of an earlier NMT stop.
-    stop_text_.clear();
+  // A new stop removes the axes of an earlier NMT stop.
+  if (event.kind == EventKind::stopping) stop_text_.clear();
   if (event.kind == EventKind::axis_not_stopped) {
     if (std::exchange(stop_told_, event.when) != event.when) stop_text_.clear();
     stop_text_ += (stop_text_.empty() ? "" : "\n") + named_axis_stop_text(master_.plan(), event);
