@@ -58,7 +58,8 @@ ReadObject by_daemon(DaemonClient& daemon, int timeout_ms, std::optional<LiveErr
   };
 }
 
-/// Asks every device. Trouble: nobody could be asked.
+/// Asks every device. Returns an error if no device answered. `trouble` is an error that `read` may
+/// set; it ends the questions.
 std::optional<LiveError> ask(const LoadedNetwork& network, std::vector<DeviceValues>& values,
                              const ReadObject& read, const std::optional<LiveError>& trouble) {
   bool any = false;

@@ -28,7 +28,7 @@ struct Options {
   bool json = false;
 };
 
-/// The budget says it, too: BusBudget::refused.
+/// Returns true for the finding that the budget reports itself, as BusBudget::refused.
 bool is_too_full(const Finding& finding) { return finding.rule == "does-not-fit"; }
 
 bool write_svg(const std::string& path, const BusPlan& plan, const BusBudget& budget) {
@@ -64,7 +64,7 @@ int report(const Options& options, const LoadedNetwork& network, const WhatIf& c
   return fits ? 0 : 1;
 }
 
-/// What the key of a change takes; nothing: no key is as this one.
+/// Returns the values that the key of a change accepts. Empty if there is no such key.
 std::string values_of(std::string_view key) {
   if (key == "period") return "a whole number of us, ms or s, 200us to 60s";
   if (key == "bitrate") return "10, 20, 50, 100, 125, 250, 500, 800 or 1000 (kbit/s)";

@@ -25,7 +25,8 @@ void append(std::vector<Remark>& all, std::vector<Remark> more) {
   std::ranges::move(more, std::back_inserter(all));
 }
 
-/// Tried by a thread of its own: this process stays as it was but for its memory, which is locked.
+/// Tries real time with a separate thread, so that only one effect on this process remains: its
+/// memory is locked.
 std::vector<Remark> try_realtime(int priority) {
   RealtimeOptions options;
   options.mode = RtMode::attempt;
@@ -58,7 +59,7 @@ const char* word(Verdict verdict) {
 void print(const std::vector<Remark>& remarks) {
   static constexpr Paint paints[] = {Paint::good, Paint::warning, Paint::bad};
   const bool colour = ::isatty(STDOUT_FILENO) != 0;
-  constexpr std::size_t width = 400;  // commands are there to be copied: not cut
+  constexpr std::size_t width = 400;  // wide enough not to cut a command, which users copy
   for (const Remark& remark : remarks) {
     Line line;
     line.add(left(word(remark.verdict), 6), paints[static_cast<std::size_t>(remark.verdict)])

@@ -49,10 +49,10 @@ constexpr std::array<std::string_view, 15> services{
 struct Options {
   std::vector<std::string> files;
   std::string bus;
-  std::uint64_t count = 0;  // 0: no limit
+  std::uint64_t count = 0;  // 0 means no limit
   bool json = false;
-  std::vector<std::string> only;  // services; empty: all
-  std::string node;               // id or name; empty: all
+  std::vector<std::string> only;  // services; empty means all
+  std::string node;               // node-ID or name; empty means all
 };
 
 std::string in_capitals(std::string text) {
@@ -61,13 +61,14 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-/// Empty: there is such a service.
+/// Returns an error text, or an empty string if the service exists.
 std::string service_trouble(const std::string& text) {
   if (std::ranges::find(services, text) != services.end()) return {};
   return fmt::format("no service '{}'; there are {}", text, fmt::join(services, ", "));
 }
 
-/// Id of a node of the network, or of any; none: no such node.
+/// Returns the node-ID that `text` gives as a number, or as the name of a node of the network.
+/// Returns std::nullopt if there is no such node.
 std::optional<unsigned> node_of(const std::string& text, const LoadedNetwork* network) {
   if (const auto id = parse_node_id(text)) return id->value();
   if (network == nullptr) return std::nullopt;
@@ -83,17 +84,17 @@ bool is_network(const std::string& file) {
   return file.ends_with(".yaml") || file.ends_with(".yml");
 }
 
-/// Prints frames until enough are printed.
+/// Prints the frames that the options select, up to their number.
 class Printer {
  public:
-  /// `node`: 0 = all.
+  /// A `node` of 0 means all nodes.
   Printer(const Options& options, unsigned node, const LoadedNetwork* network)
       : options_{options},
         node_{node},
         reader_{network == nullptr ? std::make_unique<FrameText>()
                                    : std::make_unique<FrameText>(*network)} {}
 
-  /// False: that was the last one.
+  /// Returns false if this was the last frame to print.
   bool print(const CandumpLine& line) {
     const FrameMeaning meaning =
         line.error_frame
@@ -110,7 +111,7 @@ class Printer {
   }
 
  private:
-  /// Commands to all nodes are for each of them.
+  /// Returns true if the frame is selected. An NMT command to all nodes counts for each node.
   bool wanted(const FrameMeaning& meaning) const {
     const bool to_all = meaning.service == "NMT" && meaning.node == 0;
     if (node_ != 0 && meaning.node != node_ && !to_all) return false;
@@ -180,7 +181,7 @@ std::string stamp_text(Time monotonic) {
   return fmt::format("{}.{:06}", micros / 1'000'000, micros % 1'000'000);
 }
 
-/// What the interface itself has to tell, on stderr.
+/// Reports state changes and lost frames of the interface on stderr.
 class InterfaceNews {
  public:
   explicit InterfaceNews(const std::string& bus) : bus_{bus} {}

@@ -30,7 +30,7 @@ struct CheckOptions {
   bool rules = false;
 };
 
-/// Reads and judges one file: the reader's findings and those of the checks, by place.
+/// Reads and checks one file. The findings of the reader and of the checks are sorted by position.
 EdsFile read_and_check(const std::string& path, unsigned node) {
   auto file = read_eds_file(path, NodeId::from(node));
   if (!file.readable) return file;

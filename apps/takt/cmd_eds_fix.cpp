@@ -18,7 +18,8 @@ struct Options {
   bool quiet = false;
 };
 
-/// UTF-16 as UTF-8, for the eye; none for a file that is no UTF-16.
+/// Returns a UTF-16 file as UTF-8, so that people can read the difference. Returns std::nullopt if
+/// the file is not UTF-16.
 std::optional<std::string> recoded(const std::string& source) {
   Report ignored{""};
   const IniFile file = read_ini(source, ignored);
@@ -26,7 +27,7 @@ std::optional<std::string> recoded(const std::string& source) {
   return *file.recoded;
 }
 
-/// Says that the difference is not for `patch`.
+/// Prints that the shown difference cannot be applied with `patch`.
 void tell_unpatchable(const Options& options) {
   std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference is that of "
             << "the text and can't be applied with patch, "

@@ -37,7 +37,7 @@ struct Told {
 
 std::atomic<bool> interrupted = false;
 
-/// "14:03:07.123", local time.
+/// Returns the local time, for example "14:03:07.123".
 std::string clock_text(std::int64_t utime) {
   const auto seconds = static_cast<std::time_t>(utime / 1'000'000);
   return fmt::format("{:%H:%M:%S}.{:03}", fmt::localtime(seconds), utime / 1000 % 1000);
@@ -72,7 +72,7 @@ void print(const Told& told) {
                           .c_str());
 }
 
-/// History of all nodes, or of one, in the order of time.
+/// Returns the EMCY history of all nodes, or of node `only` if it is not 0, in the order of time.
 std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::int16_t only) {
   std::vector<Told> all;
   for (const node_status_t& node : daemon.status().nodes) {
@@ -96,7 +96,7 @@ std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::i
   return all;
 }
 
-/// What arrives from now on, as the daemon tells it.
+/// Prints the EMCYs that the daemon reports from now on.
 int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });

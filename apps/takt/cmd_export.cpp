@@ -22,7 +22,7 @@ struct Options {
   bool whole_words = false;
 };
 
-/// What one export writes: file name and content.
+/// The files that one export writes: name and content of each.
 using Exported = std::vector<std::pair<std::string, std::string>>;
 using Export = Exported (*)(const LoadedNetwork& network, const Options& options);
 

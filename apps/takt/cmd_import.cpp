@@ -25,7 +25,8 @@ struct Options {
   bool brief = false;
 };
 
-/// CiA 306-3 leaves the name free, the ending is what all have.
+/// Returns true if the file is a nodelist. CiA 306-3 leaves the name free, so only the extension
+/// identifies it.
 bool is_nodelist(const Options& options) {
   const auto ending = std::filesystem::path{options.file}.extension().string();
   return ending == ".cpj" || ending == ".CPJ";
@@ -60,10 +61,10 @@ void print_json(const Options& options, const ImportReport& report) {
 
 struct Imported {
   ImportReport report;
-  bool written = false;  ///< the network file of a nodelist
+  bool written = false;  ///< the network file of a nodelist was written
 };
 
-/// What has become of a nodelist.
+/// Returns the last line of the report: the result for a nodelist.
 std::string last_line(const Options& options, const Imported& imported) {
   if (!imported.report.usable) {
     return imported.written ? options.out +
@@ -100,7 +101,8 @@ void print_text(const Options& options, const Imported& imported) {
                                    : "taktd does not run it: mend what is wrong.");
 }
 
-/// With the network file, where one is wanted; what is wrong with that is told, too.
+/// Imports a nodelist and, if requested, writes the network file. The report then includes the
+/// findings about the network file.
 Imported import_project(const Options& options) {
   const std::filesystem::path out{options.out};
   auto imported = import_nodelist(
@@ -134,7 +136,7 @@ int run(const Options& options) {
     print_text(options, imported);
   }
   if (imported.report.usable) return 0;
-  return imported.report.keys.empty() ? 2 : 1;  // none: it could not be read
+  return imported.report.keys.empty() ? 2 : 1;  // no keys means that the file could not be read
 }
 
 }  // namespace

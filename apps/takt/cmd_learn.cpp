@@ -28,7 +28,7 @@ struct Options {
   bool quiet = false;
 };
 
-/// `FILE`, or `5=FILE`.
+/// Adds a device file that is given as `FILE`, or as `5=FILE` for one node-ID.
 bool add_file(const std::string& argument, DeviceFiles& files, Findings& findings) {
   unsigned id = 0;
   const char* const end = argument.data() + argument.size();
@@ -55,7 +55,7 @@ void print(const Findings& findings, bool quiet) {
   }
 }
 
-/// The proof of the pudding: what taktd would say to the file.
+/// Loads the written file as taktd would and prints its errors.
 int judge(const std::string& file) {
   const LoadedNetwork network = load_network(file);
   if (!has_error(network.findings)) return 0;

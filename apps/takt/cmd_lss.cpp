@@ -42,7 +42,7 @@ int print_devices(const LssOptions& options, const std::vector<LssAddress>& devi
   return devices.empty() ? 1 : 0;
 }
 
-/// Whether every question was answered with yes, so that each number is the lowest that it may be.
+/// Returns true if each number is the lowest possible one: every question of the scan was answered.
 bool all_answered(const LssOptions& options, const LssAddress& found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i] != lss_number(options.parts[i]).value_or(0)) return false;
@@ -50,14 +50,15 @@ bool all_answered(const LssOptions& options, const LssAddress& found) {
   return true;
 }
 
-/// Some devices answer a scan in configuration state too: whatever is asked.
+/// Some devices also answer a scan in configuration state, and they answer every question.
 constexpr const char* answers_everything =
     "a device that was found answers every further question (only devices in waiting state "
     "should): "
     "there may be more. Give it a node id (takt lss set-id), then look again";
 
-/// Those that were found stay in configuration state until the end: they answer no further scan.
-/// Those that somebody left there come back first.
+/// Finds devices without node-ID with Fastscan, one after the other. A found device stays in
+/// configuration state until the end, so that it does not answer the next scan. Devices that were
+/// left in configuration state before are first switched back to waiting state.
 int find(const LssOptions& options) {
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());
@@ -93,8 +94,8 @@ LssCommand slow_scan(std::uint32_t vendor, std::uint32_t product, LssRange revis
           .numbers = {vendor, product, revisions.from, revisions.to, serials.from, serials.to}};
 }
 
-/// All devices of a product: behind each that was found the rest of its revision, then the higher
-/// revisions.
+/// Finds all devices of a product. After each found device, it scans the higher serial numbers of
+/// the same revision, then the higher revisions.
 int scan(const LssOptions& options) {
   const auto revisions = lss_range(options.parts[2]);
   const auto serials = lss_range(options.parts[3]);
@@ -128,7 +129,8 @@ int scan(const LssOptions& options) {
                         1);
 }
 
-/// Selection, `commands`, back to waiting. Results: of the selection and of `commands`.
+/// Selects the devices, runs `commands` and switches back to waiting state. Returns the results of
+/// all these services.
 std::expected<std::vector<LssResult>, LiveError> configure(const LssOptions& options,
                                                            LssAccess& access,
                                                            std::vector<LssCommand> commands) {
@@ -168,8 +170,8 @@ int set_id(const LssOptions& options) {
   return 0;
 }
 
-/// The interface goes down only when the devices have got the command: that would throw away what
-/// waits in its queue.
+/// Activates the new bit rate in the devices and then on the interface. The interface goes down
+/// only after the command has been sent, because going down discards its transmit queue.
 int activate(const LssOptions& options, LssAccess& access) {
   using std::chrono::milliseconds;
   auto witness = FrameWitness::open(options.access.bus);
@@ -192,7 +194,7 @@ int activate(const LssOptions& options, LssAccess& access) {
   const std::string trouble = set_interface_bitrate(options.access.bus, options.kbit * 1000);
   std::this_thread::sleep_for(milliseconds{2 * options.delay_ms});
   if (!trouble.empty()) return complain(trouble, 3);
-  auto again = LssAccess::open(options.access);  // the interface was down
+  auto again = LssAccess::open(options.access);  // needed because the interface was down
   if (!again) return failed(again.error());
   const LssCommand leave{.op = LssOp::switch_global};
   if (const auto left = again->run({&leave, 1}); !left) return failed(left.error());
@@ -265,7 +267,7 @@ int inquire(const LssOptions& options) {
   return 0;
 }
 
-/// One service whose answer is yes or no.
+/// Runs one service that only succeeds or fails.
 int run_one(const LssOptions& options, const LssCommand& command) {
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());

@@ -39,7 +39,8 @@ int run_on_bus(const NmtOptions& options) {
   return 0;
 }
 
-/// A command that ends the PDO exchange leaves when the axes were stopped in order.
+/// Returns how long to wait for the answer. The daemon sends a command that ends the PDO exchange
+/// only after it has stopped the axes in order.
 std::chrono::seconds patience(const std::string& command) {
   const bool after_axes = command == "stop" || command == "preop";
   return std::chrono::seconds{after_axes ? 65 : 3};  // `stop_timeout` is at most 60 s
@@ -49,7 +50,7 @@ int run(const NmtOptions& options) {
   if (!options.bus.empty()) return run_on_bus(options);
   auto daemon = DaemonClient::find(options.live);
   if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
-  const auto id = parse_node_id(options.node);  // which may be the master's own
+  const auto id = parse_node_id(options.node);  // may be the node-ID of the master itself
   const auto node = daemon->node(options.node);
   if (!node && !id) return complain(node.error().sentence, node.error().code);
   request_t request{};

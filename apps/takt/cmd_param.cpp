@@ -37,7 +37,7 @@ std::optional<std::uint32_t> number(std::string_view text, std::uint32_t most) {
   return value;
 }
 
-/// `P15.13` (group and number, decimal) or an address, `0x0F0D`.
+/// Parses a parameter as `P15.13` (group and number, decimal) or as an address, `0x0F0D`.
 std::optional<std::uint16_t> address_of(std::string_view text) {
   if (!text.starts_with('P') && !text.starts_with('p')) {
     const auto raw = number(text, 0xFFFF);

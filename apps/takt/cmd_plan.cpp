@@ -23,7 +23,7 @@ struct PlanOptions {
   bool quiet = false;
 };
 
-/// By name, or by id.
+/// Finds a node of the plan by name or by node-ID.
 std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
   const auto by_name = std::ranges::find(plan.nodes, text, &NodePlan::name);
   if (by_name != plan.nodes.end()) return by_name->id;
@@ -32,7 +32,7 @@ std::optional<NodeId> find_node(const BusPlan& plan, const std::string& text) {
   return std::ranges::any_of(plan.nodes, is_it) ? id : std::nullopt;
 }
 
-/// Findings go to stderr. False: the file is invalid.
+/// Prints the findings on stderr. Returns false if the file is invalid.
 bool told_good(const LoadedNetwork& network, bool quiet) {
   const bool bad = has_error(network.findings);
   for (const Finding& finding : network.findings) {
@@ -42,7 +42,7 @@ bool told_good(const LoadedNetwork& network, bool quiet) {
   return !bad;
 }
 
-/// False: there is no such node; that is told.
+/// Sets `node` if the options name one. Prints an error and returns false if there is no such node.
 bool chosen_node(const PlanOptions& options, const BusPlan& plan, std::optional<NodeId>& node) {
   if (options.node.empty()) return true;
   node = find_node(plan, options.node);
@@ -55,7 +55,8 @@ bool chosen_node(const PlanOptions& options, const BusPlan& plan, std::optional<
   return false;
 }
 
-/// As diff does: 0 nothing differs, 1 something does, 2 trouble.
+/// Prints the differences of two plans. Returns the exit code of diff: 0 if nothing differs, 1 if
+/// something differs, 2 on errors.
 int diff(const PlanOptions& options) {
   const LoadedNetwork before = load_network(options.file);
   const LoadedNetwork after = load_network(options.other);
@@ -73,7 +74,7 @@ int diff(const PlanOptions& options) {
   return text.empty() ? 0 : 1;
 }
 
-/// The two plans that show what the device data change.
+/// Two plans of the same network, without and with the device data.
 struct DeviceDataPlans {
   const BusPlan& without;
   const BusPlan& with;
@@ -96,7 +97,7 @@ void print_device_diffs_json(const DeviceDataPlans& plans, const std::vector<Nod
   print_device_changes_json(std::cout, file, all);
 }
 
-/// What each entry of the device data does to its nodes.
+/// Prints what each entry of the device data changes in its nodes.
 int diff_devices(const PlanOptions& options) {
   const LoadedNetwork with = load_network(options.file);
   if (!told_good(with, true)) return invalid_file;

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Beyond the distance of two recordings and the writing of the files.
+/// Longer than the least interval between two recordings plus the time to write the files.
 constexpr std::chrono::seconds patience{30};
 
 int run(const LiveOptions& options) {

@@ -40,7 +40,8 @@ void print(const Decision& decision) {
   fmt::print("{:>14.6f}  {}\n", 1e-9 * static_cast<double>(decision.time), decision.text);
 }
 
-/// As it was named when it was recorded, from here or beside the recording.
+/// Returns the network file: the one of the options, otherwise the path in the recording, otherwise
+/// a file of that name beside the recording.
 std::string find_network(const Options& options, const RecordingHead& head) {
   if (!options.network.empty()) return options.network;
   std::error_code error;

@@ -34,7 +34,7 @@ struct Found {
   DeviceFiles::Match file;
 };
 
-constexpr Time longest_jam = std::chrono::seconds{2};  // nothing can be sent: nobody acknowledges
+constexpr Time longest_jam = std::chrono::seconds{2};  // without room to send: no node acknowledges
 
 void hear(BusScan& scan, FrameChannel& channel) {
   StampedFrame frame;
@@ -43,7 +43,8 @@ void hear(BusScan& scan, FrameChannel& channel) {
   }
 }
 
-/// Interfaces hold ten frames as a rule: a full queue is waited for.
+/// Sends all frames. Waits if the transmit queue is full, because most interfaces hold only ten
+/// frames. Returns false if no frame can be sent for longest_jam.
 bool send(std::span<const Frame> frames, BusScan& scan, FrameChannel& channel) {
   const Time limit = monotonic_now() + longest_jam;
   for (;;) {

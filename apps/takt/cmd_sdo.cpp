@@ -36,14 +36,14 @@ struct SdoOptions {
   std::size_t limit = most_file_bytes;
 };
 
-/// Where the transfers go: through the daemon, or directly onto the bus.
+/// Makes SDO transfers through the daemon or directly on the bus.
 class SdoAccess {
  public:
   static std::expected<SdoAccess, LiveError> open(const SdoOptions& options);
 
   std::expected<Value, LiveError> upload(ObjectKey object);
   std::expected<void, LiveError> download(ObjectKey object, const Value& value);
-  /// The same for files, which may be long: in parts, by block transfer, with progress.
+  /// The same for files, which may be long: in parts, by block transfer and with progress.
   std::expected<Value, LiveError> upload_file(ObjectKey object, std::size_t limit,
                                               const Progress& progress);
   std::expected<void, LiveError> download_file(ObjectKey object, const Value& value,
@@ -94,7 +94,7 @@ std::expected<reply_t, LiveError> SdoAccess::ask(const char* service, ObjectKey 
   request.timeout_ms = timeout_ms_;
   request.size = static_cast<std::int32_t>(value.size());
   for (const std::byte byte : value) request.data.push_back(std::to_integer<std::uint8_t>(byte));
-  // Other requests may be served before this one, and each of its segments may take the time-out.
+  // The daemon may serve other requests first, and each segment may take up to the time-out.
   auto reply = daemon_->ask(std::move(request),
                             std::chrono::milliseconds{timeout_ms_} * 10 + std::chrono::seconds{2});
   if (reply && reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};

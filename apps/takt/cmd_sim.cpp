@@ -28,7 +28,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 extern "C" void interrupt(int) { interrupted = 1; }
 
-/// All devices, or those that `--only` names. Empty: an unknown name has been told.
+/// Returns all devices, or those that `--only` names. If a name is unknown, prints an error and
+/// returns an empty list.
 std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& arguments) {
   if (arguments.only.empty()) return network.devices;
   std::vector<DeviceTable> devices;
@@ -47,7 +48,7 @@ std::vector<DeviceTable> chosen(const LoadedNetwork& network, const Arguments& a
   return devices;
 }
 
-/// Until SIGINT, SIGTERM, the given time or the end of the bus.
+/// Runs the devices until SIGINT, SIGTERM, the time limit or a failure of the bus.
 int run_world(sim::RealtimeWorld& world, std::optional<Time> limit) {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
@@ -68,7 +69,7 @@ int run(const Arguments& arguments) {
   if (has_error(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
   if (devices.empty()) return 2;
-  // What becomes of the bit rate of that interface isn't known here.
+  // Whether the interface follows a change of the bit rate is not known here.
   sim::WorldOptions options{
       .seed = arguments.seed, .bitrate = network.plan.bitrate, .one_bit_rate = false};
   if (!arguments.faults.empty()) {

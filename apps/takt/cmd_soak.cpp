@@ -35,7 +35,7 @@ struct Sum {
   SoakOutcome total;
 };
 
-/// `17` or `1..200`.
+/// Parses a seed or a range of seeds, `17` or `1..200`. Returns false if the text is neither.
 bool parse_seeds(const std::string& text, SoakPlan& plan) {
   const char* const end = text.data() + text.size();
   auto read = std::from_chars(text.data(), end, plan.first);

@@ -19,7 +19,8 @@ namespace {
 
 constexpr Time first_limit = std::chrono::milliseconds{2500};
 constexpr Time pdos_limit = std::chrono::milliseconds{1500};
-constexpr Time settle = std::chrono::milliseconds{250};  // other buses would be heard within this
+constexpr Time settle =
+    std::chrono::milliseconds{250};  // every bus sends a status within this time
 
 nlohmann::json to_json(const node_status_t& node) {
   return {{"node_id", node.node_id},

@@ -39,7 +39,7 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
   std::fflush(stdout);
 }
 
-/// The messages of one bus that tell of its timing.
+/// Receives the timing messages and the images of one bus.
 class TimingEar {
  public:
   TimingEar(LcmClient lcm, const std::string& bus)
@@ -47,7 +47,8 @@ class TimingEar {
         timing_channel_{channel_name(bus, "TIMING")},
         image_channel_{channel_name(bus, "IMAGE")} {}
 
-  /// The next timing_t, with the delays of the images that came here since the one before it.
+  /// Returns the next timing_t, with the delays of the images that arrived since the one before.
+  /// Returns std::nullopt if none comes in time, or after Ctrl-C.
   std::optional<timing_t> next() {
     newest_.reset();
     const Time until = monotonic_now() + silence_limit;
@@ -88,7 +89,7 @@ int run(const TimingOptions& options) {
   auto lcm = open_live(options.live, {any_bus("TIMING"), any_bus("IMAGE")});
   if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
   TimingEar ear{std::move(*lcm), bus};
-  ear.next();  // from here on all rows are of the same second
+  ear.next();  // discards the first message, so that all later rows cover the same second
   do {
     const auto timing = ear.next();
     if (interrupted) break;

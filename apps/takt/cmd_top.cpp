@@ -25,7 +25,7 @@ struct TopArguments {
 
 std::atomic<bool> interrupted{false};
 
-/// Of several the first.
+/// Returns the bus to show, the first if there are several. Returns null if there is none.
 const BusView* shown(const BusViews& views, const std::string& bus_name) {
   const auto buses = chosen(views, bus_name);
   return buses.empty() ? nullptr : buses.front();
@@ -54,7 +54,7 @@ int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
   return two ? complain(two->sentence, two->code) : 0;
 }
 
-/// False: quit.
+/// Returns false if the key ends the program.
 bool on_key(int key, TopOptions& options) {
   if (key == 'q' || key == 'Q') return false;
   if (key == Screen::key_down || key == 'j') ++options.first_signal;

@@ -3,8 +3,8 @@
 
 namespace takt {
 
-/// Each verb of the tool adds itself to the command line and, when chosen, runs and sets the exit
-/// code (share/doc/command_line.md).
+/// Adds one verb of the tool to the command line. If the user chooses the verb, it runs and sets
+/// the exit code (share/doc/command_line.md).
 using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
 void add_audit(CLI::App& app, int& exit_code);

@@ -16,10 +16,11 @@ namespace takt {
 namespace {
 
 constexpr Time find_limit = std::chrono::milliseconds{2500};
-constexpr Time settle = std::chrono::milliseconds{250};  // another bus would be heard within this
+constexpr Time settle =
+    std::chrono::milliseconds{250};  // every bus sends a status within this time
 
-/// A daemon speaks on the channels of its bus. Who names a bus on the channel of another one is
-/// none, and makes nobody choose.
+/// Returns true if the status names the bus of its own channel, as that of every daemon does. A
+/// message that names another bus does not count, so that the user need not choose between the two.
 bool has_status(std::string_view bus, const BusView& view) {
   return view.status() &&
          bus_of_channel(channel_name(view.status()->bus, "STATUS"), "STATUS") == bus;
@@ -46,7 +47,7 @@ std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient
   return *buses.front()->status();
 }
 
-/// Unique among all that may ask at the same time.
+/// Returns an id that is unique among all programs that send requests at the same time.
 std::int64_t new_request_id() { return realtime_now().count(); }
 
 }  // namespace

@@ -16,30 +16,31 @@
 
 namespace takt {
 
-/// Why there is no answer, and the exit code that says so.
+/// The reason why there is no answer, and the exit code for it.
 struct LiveError {
   std::string sentence;
   int code = 3;
-  std::uint32_t abort_code = 0;  ///< of an SDO transfer; 0: none
+  std::uint32_t abort_code = 0;  ///< SDO abort code; 0 means none
 };
 
 /// A running daemon, found by its status messages.
 class DaemonClient {
  public:
-  /// Waits until status of a bus has come (for the one that `options` name, if they name one);
-  /// several buses without a choice are an error.
+  /// Waits until a status of a bus has come, or of the bus that `options` name. Several buses
+  /// without a choice are an error.
   static std::expected<DaemonClient, LiveError> find(const LiveOptions& options);
 
   const status_t& status() const noexcept { return status_; }
-  /// Id of a node given as number or name; 0 for "all".
+  /// Returns the node-ID of a node that is given as number or name; 0 for "all".
   std::expected<std::int16_t, LiveError> node(const std::string& text) const;
 
-  /// Sends a request and waits for its answer. `limit` is beyond what the daemon itself waits.
+  /// Sends a request and waits for its answer for at most `limit`, which must be longer than the
+  /// daemon itself waits for the service.
   std::expected<reply_t, LiveError> ask(request_t request, Time limit);
 
-  /// Sends a message on the channel BUS_WHAT, in an envelope where there is a key.
+  /// Sends a message on the channel BUS_WHAT, in an envelope if there is a key.
   void send(std::string_view what, Bytes message);
-  /// For dialogues of more than one message: what arrives.
+  /// Gives access to arriving messages, for dialogues of more than one message.
   LcmClient& lcm() noexcept { return lcm_; }
 
  private:
@@ -48,23 +49,25 @@ class DaemonClient {
 
   LcmClient lcm_;
   status_t status_;
-  std::optional<EnvelopeSeal> seal_;  // none: no keys
+  std::optional<EnvelopeSeal> seal_;  // empty without keys
 };
 
-/// LCM as these options say. The error has an exit code.
+/// Opens LCM with these options and subscribes to the channels that match `patterns`.
 std::expected<LcmClient, LiveError> open_live(const LiveOptions& options,
                                               const std::vector<std::string>& patterns);
 
-/// The buses of which status has come: the one that is called so, also in capitals, or all.
+/// Returns the buses whose status has come: the one with this name (the name in capitals also
+/// matches), or all if `bus_name` is empty.
 std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name);
 
-/// Why there is none of them: what others there are, or where no daemon answers and what to try.
+/// Explains why chosen() found no bus: lists the other buses, or says where no daemon answers and
+/// what to try.
 LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name);
 
-/// None: each bus has one.
+/// Returns an error if one of the buses has two daemons, std::nullopt otherwise.
 std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses);
 
-/// Feeds `views` until `enough` says so, at the latest until `until` (monotonic).
+/// Passes messages to `views` until `enough` returns true, at the latest until `until` (monotonic).
 void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough);
 
 }  // namespace takt

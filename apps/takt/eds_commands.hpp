@@ -3,7 +3,7 @@
 
 namespace takt {
 
-/// Verbs of `takt eds` with a file of their own.
+/// The verbs of `takt eds` that have separate source files.
 void add_eds_dcf(CLI::App& eds, int& exit_code);
 void add_eds_cdcf(CLI::App& eds, int& exit_code);
 void add_eds_fix(CLI::App& eds, int& exit_code);

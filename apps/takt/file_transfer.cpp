@@ -15,9 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time repeat_after = 300ms;  // a message was lost
-constexpr Time ask_every = 1s;        // while the bus works
-constexpr Time most_silence = 5s;     // of the daemon
+constexpr Time repeat_after = 300ms;  // without a state, a message was probably lost
+constexpr Time ask_every = 1s;        // interval of status messages while the transfer runs
+constexpr Time most_silence = 5s;     // longest time without a message from the daemon
 
 }  // namespace
 
@@ -89,7 +89,8 @@ std::expected<void, LiveError> FileTransfer::begin(const char* action, std::size
   return silent();
 }
 
-/// Parts follow each other without waiting, a window at a time; the daemon says where it is.
+/// Sends the value in parts. The parts of one window follow each other without waiting; the daemon
+/// reports how much it has received.
 std::expected<void, LiveError> FileTransfer::fill(std::span<const std::byte> value) {
   Time limit = monotonic_now() + most_silence;
   std::size_t sent = 0;
@@ -111,14 +112,15 @@ std::expected<void, LiveError> FileTransfer::fill(std::span<const std::byte> val
     if (hear(monotonic_now() + repeat_after)) {
       limit = monotonic_now() + most_silence;
     } else {
-      sent = static_cast<std::size_t>(state_.received);  // something was lost
+      sent = static_cast<std::size_t>(state_.received);  // a part was lost; repeat from there
     }
     if (monotonic_now() > limit) return silent();
   }
   return failure();
 }
 
-/// Asking now and then also tells the daemon that somebody still waits.
+/// Waits for the end of the transfer on the bus. The status messages also tell the daemon that this
+/// program still waits.
 std::expected<void, LiveError> FileTransfer::await_end() {
   Time limit = monotonic_now() + most_silence;
   Time ask_at = monotonic_now() + ask_every;

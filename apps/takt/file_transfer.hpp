@@ -10,11 +10,11 @@
 
 namespace takt {
 
-/// Bytes that are through, and all of them (0: not known).
+/// Called with the number of bytes transferred so far and the total; a total of 0 means unknown.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// A file to or from a domain through the running daemon, in parts. Ctrl-C (Interrupt) aborts it on
-/// the bus.
+/// Transfers a file to or from a DOMAIN object through the running daemon, in parts. Ctrl-C
+/// (Interrupt) aborts the transfer on the bus.
 class FileTransfer {
  public:
   struct Target {
@@ -25,13 +25,13 @@ class FileTransfer {
   FileTransfer(DaemonClient& daemon, Target target, Progress progress);
 
   std::expected<void, LiveError> download(std::span<const std::byte> value);
-  /// At most `limit` bytes; a device that sends more is ended by an abort.
+  /// Reads at most `limit` bytes. If the device sends more, the transfer is aborted.
   std::expected<std::vector<std::byte>, LiveError> upload(std::size_t limit);
 
  private:
   transfer_t message(const char* action) const;
   void send(transfer_t message);
-  // The newest state that comes within a moment; none: silence.
+  // Waits for the daemon's next transfer state. Returns false if none comes before `until`.
   bool hear(Time until);
   std::expected<void, LiveError> begin(const char* action, std::size_t total);
   std::expected<void, LiveError> fill(std::span<const std::byte> value);

@@ -9,8 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Both clocks of one machine differ by the same amount for everybody there, but for what NTP
-/// corrects between two readings.
+/// Tolerance of the difference between both clocks of a machine. All programs on one machine see
+/// the same difference, except for what NTP corrects between two readings.
 constexpr Time same_clock = 5ms;
 
 bool is_of_this_machine(const image_t& image, Time offset) noexcept {

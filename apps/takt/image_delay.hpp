@@ -9,15 +9,15 @@
 
 namespace takt {
 
-/// How long after SYNC this program, a subscriber as any other, has each image in its hands. Images
-/// of a daemon on another machine are left out, since its monotonic clock is not ours.
+/// Measures how long after SYNC this program receives each image, as an ordinary subscriber. Images
+/// of a daemon on another machine are left out, because its monotonic clock differs from ours.
 class ImageDelay {
  public:
-  /// An image that arrived at `now` (monotonic); `offset` is CLOCK_REALTIME minus CLOCK_MONOTONIC
-  /// here. An image in several parts counts when its last part is there.
+  /// Notes an image that arrived at `now` (monotonic). `offset` is CLOCK_REALTIME minus
+  /// CLOCK_MONOTONIC on this machine. An image in several parts counts when its last part arrives.
   void take(const image_t& image, Time now, Time offset);
-  /// The times since the last call: `sync_to_callback`, without any where no image came from this
-  /// machine.
+  /// Returns the histogram `sync_to_callback` of the times since the last call. It is empty if no
+  /// image came from this machine.
   histogram_t finish();
 
  private:

@@ -2,7 +2,8 @@
 
 namespace takt {
 
-/// Ctrl-C asks for an end in order while one of these lives; a second one ends the program.
+/// While an Interrupt exists, the first SIGINT (Ctrl-C) or SIGTERM only sets asked(), so that the
+/// program can end in order. A second one ends the program.
 class Interrupt {
  public:
   Interrupt();

@@ -9,24 +9,26 @@
 
 namespace takt {
 
-/// Options that all verbs have which talk to a running daemon.
+/// Options of all verbs that talk to a running daemon.
 struct LiveOptions {
   std::string lcm_url;
-  std::string bus_name;  ///< empty: the only one there is
+  std::string bus_name;  ///< empty means the only bus
   bool json = false;
-  std::string keys;           ///< key file; empty: messages are sent without an envelope
-  bool check_images = false;  ///< only what the daemon has signed is believed
+  std::string keys;           ///< key file; if empty, messages are sent without an envelope
+  bool check_images = false;  ///< accept only messages that the daemon has signed
 };
 
 void add_live_options(CLI::App& verb, LiveOptions& options);
 
-/// `6041`, `6041:00`, `0x1018:1`; index and sub-index in hex.
+/// Parses index and sub-index in hex, for example `6041`, `6041:00` or `0x1018:1`. Returns
+/// std::nullopt if the text is no object.
 std::optional<ObjectKey> parse_object(std::string_view text);
 
-/// `5`, `0x05`; none: not a node id (a name, perhaps).
+/// Parses a node-ID, for example `5` or `0x05`. Returns std::nullopt if the text is no node-ID; it
+/// may be a name.
 std::optional<NodeId> parse_node_id(std::string_view text);
 
-/// Prints "takt: ..." on stderr, as far as it is printable, and gives `code`.
+/// Prints "takt: ..." on stderr, with '?' for unprintable characters, and returns `code`.
 int complain(const std::string& sentence, int code);
 
 }  // namespace takt

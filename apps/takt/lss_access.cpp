@@ -10,9 +10,9 @@
 namespace takt {
 namespace {
 
-/// The longest that these services may take.
+/// Returns the longest time that these services may take.
 Time longest(std::span<const LssCommand> commands, Time timeout) {
-  constexpr int questions = 300;  // of a scan with repetitions
+  constexpr int questions = 300;  // questions of a scan, with repetitions
   Time sum = std::chrono::seconds{2};
   for (const LssCommand& command : commands) {
     const Time wait = timeout > Time{} ? timeout : default_timeout(command.op);

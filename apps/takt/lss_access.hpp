@@ -13,17 +13,17 @@ namespace takt {
 
 struct LssAccessOptions {
   LiveOptions live;
-  std::string bus;     ///< empty: through the daemon
-  int timeout_ms = 0;  ///< of each answer; 0: the defaults
+  std::string bus;     ///< bus to use directly; empty means through the daemon
+  int timeout_ms = 0;  ///< time-out of each answer; 0 means the defaults
 };
 
-/// Where LSS services go: through the daemon, or directly onto a bus of this machine.
+/// Runs LSS services through the daemon, or directly on a bus of this machine. CiA 305.
 class LssAccess {
  public:
   static std::expected<LssAccess, LiveError> open(const LssAccessOptions& options);
 
-  /// Runs the services until one is not done; results of those that were run, the last says why
-  /// where not all of them are done.
+  /// Runs the services one after the other and stops at the first that fails. Returns the results
+  /// of the services that ran; the last result gives the reason of a failure.
   std::expected<std::vector<LssResult>, LiveError> run(std::span<const LssCommand> commands);
 
  private:

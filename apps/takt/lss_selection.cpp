@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<const char*, 4> part_names{"vendor_id", "product_code", "revision_number",
                                                 "serial_number"};
 
-/// The whole address, where the command line gives it.
+/// Returns the LSS address if the command line gives all four numbers.
 std::optional<LssAddress> whole_address(const LssOptions& options) {
   LssAddress address{};
   for (std::size_t i = 0; i < 4; ++i) {

@@ -24,22 +24,23 @@ struct LssOptions {
   std::string state;
 };
 
-/// Both ends belong to it.
+/// A range of numbers that includes both ends.
 struct LssRange {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
 };
 
-/// Decimal, or 0x hex.
+/// Parses a number, decimal or hex with 0x. Returns std::nullopt if the text is none.
 std::optional<std::uint32_t> lss_number(std::string_view text);
-/// A number, `A-B`, or nothing: all.
+/// Parses a number or a range `A-B`. An empty text means all numbers. Returns std::nullopt if the
+/// text is no range.
 std::optional<LssRange> lss_range(const std::string& text);
 
-/// Fastscan for a device without node id, with the numbers that are given.
+/// Returns a Fastscan for a device without node-ID that matches the given numbers.
 LssCommand fast_scan(const LssOptions& options);
-/// Brings the device that is meant into configuration state.
+/// Returns the command that switches the chosen device to configuration state.
 LssCommand selection(const LssOptions& options);
-/// Who was meant, as far as that is known.
+/// Returns the address of the chosen device. Returns std::nullopt if it is not known.
 std::optional<LssAddress> device_of(const LssOptions& options, const LssResult& selected);
 
 std::string device_text(const LssAddress& address);

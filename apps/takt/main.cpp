@@ -13,8 +13,8 @@
 
 namespace {
 
-/// Why not all of stdout has been written; empty: it has. The reason of a write that failed long
-/// ago is that of one more.
+/// Returns the reason why stdout could not be written completely, or an empty string. If a write
+/// failed earlier, its errno is lost, so one more write finds the reason.
 std::string output_trouble() {
   const bool before = std::cout.good() && std::ferror(stdout) == 0;
   errno = 0;

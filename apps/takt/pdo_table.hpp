@@ -7,7 +7,7 @@
 
 namespace takt {
 
-/// A line for each PDO: what it is, its age in cycles, what has gone wrong with it.
+/// Returns a header and a line for each PDO with its parameters, its age in cycles and its errors.
 std::vector<std::string> pdo_lines(const pdo_status_t& pdos, const status_t& status);
 nlohmann::json pdos_json(const pdo_status_t& pdos);
 

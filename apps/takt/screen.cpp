@@ -34,7 +34,7 @@ std::string_view escape(Paint paint) noexcept {
   return "";
 }
 
-/// The first `width` characters; `width` is lessened by what was taken.
+/// Returns the first `width` characters of `text` and subtracts their number from `width`.
 std::string_view cut(std::string_view text, std::size_t& width) noexcept {
   std::size_t at = 0;
   while (at < text.size()) {

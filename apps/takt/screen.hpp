@@ -6,15 +6,15 @@
 
 namespace takt {
 
-/// How text is painted in a terminal.
+/// Style of a text in a terminal.
 enum class Paint : unsigned char { plain, title, dim, good, warning, bad };
 
-/// One line of a terminal view, cut to the width of the terminal by whole characters. What is in
-/// it comes from outside, so control characters are not let through.
+/// One line of a terminal view, cut to the width of the terminal at a character boundary. The text
+/// may come from other programs, so the line lets no control characters through.
 class Line {
  public:
   Line& add(std::string_view text, Paint paint = Paint::plain);
-  /// As text for a terminal of `width` columns, with or without colours.
+  /// Returns the text for a terminal of `width` columns, with or without colours.
   std::string render(std::size_t width, bool colour) const;
 
  private:
@@ -25,15 +25,17 @@ class Line {
   std::vector<Piece> pieces_;
 };
 
-/// `text` with spaces up to `width` columns (UTF-8 counts by character), cut where longer.
+/// Returns `text` padded with spaces to `width` columns, or cut if longer. UTF-8 counts by
+/// character. left() aligns to the left, right() to the right.
 std::string left(std::string_view text, std::size_t width);
 std::string right(std::string_view text, std::size_t width);
 
-/// `#######---` of `width` columns for a share of 0..1.
+/// Returns a bar of `width` columns, filled up to a share of 0..1.
 std::string bar(double share, std::size_t width);
 
-/// The terminal as a screen of its own while this lives: no echo, no line buffer, cursor hidden.
-/// Put back whatever ends the program, except SIGKILL.
+/// Switches the terminal to its alternate screen, without echo and line buffer and with the cursor
+/// hidden. The destructor restores the terminal. The class handles no signals: a caller that
+/// catches none leaves the terminal changed when a signal ends the program.
 class Screen {
  public:
   Screen();
@@ -47,7 +49,8 @@ class Screen {
   };
   static Size size();
   void show(const std::vector<Line>& lines) const;
-  /// Next key without waiting; 0: none. Arrows are 'A' up and 'B' down with bit 7.
+  /// Returns the next key without waiting; 0 if there is none. Arrows are 'A' (up) and 'B' (down)
+  /// with bit 7 set.
   static int key();
   static constexpr int key_up = 'A' | 0x80;
   static constexpr int key_down = 'B' | 0x80;

@@ -12,13 +12,13 @@
 namespace takt {
 namespace {
 
-constexpr Time longest_jam = std::chrono::seconds{2};  // nothing can be sent: nobody acknowledges
+constexpr Time longest_jam = std::chrono::seconds{2};  // without room to send: no node acknowledges
 
-/// Drives a client to its result. Everything on the bus arrives here; only the answers of the node
-/// are for the client.
+/// Runs an SDO client until it has a result. The channel receives every frame on the bus; only the
+/// responses of the node go to the client.
 class Drive {
  public:
-  /// `limit`: most bytes of an uploaded file; 0: no file.
+  /// `limit` is the greatest number of bytes of an uploaded file; 0 means that no file is uploaded.
   Drive(SdoClient& client, FrameChannel& channel, const std::string& bus, std::size_t limit = 0)
       : client_{client}, channel_{channel}, bus_{bus}, limit_{limit} {}
 
@@ -34,7 +34,7 @@ class Drive {
 
  private:
   std::expected<std::size_t, LiveError> told(const SdoResult& result) {
-    send();  // the abort, or the last confirmation
+    send();  // sends the abort or the last confirmation
     if (result.fault == SdoFault::none) return result.size;
     if (Interrupt::asked()) {
       return std::unexpected{LiveError{"interrupted; the transfer was aborted", 1}};
@@ -47,7 +47,8 @@ class Drive {
     return std::unexpected{LiveError{std::move(why), 1, result.abort_code}};
   }
 
-  /// A full transmit queue is waited for: a block is longer than what an interface holds.
+  /// Sends the client's frames. Waits if the transmit queue is full, because a block is longer than
+  /// the queue of an interface. Returns false if there is no room for longest_jam.
   bool send() {
     client_.on_time(monotonic_now(), out_);
     for (const Time limit = monotonic_now() + longest_jam; !out_.empty();) {
@@ -94,7 +95,8 @@ std::expected<std::vector<std::byte>, LiveError> SdoDirect::upload(ObjectKey obj
   return buffer;
 }
 
-/// A device that never stops sending segments is stopped at the end of the buffer.
+/// If a device does not stop sending segments, the transfer ends with an abort when the buffer is
+/// full.
 std::expected<std::vector<std::byte>, LiveError> SdoDirect::upload(ObjectKey object,
                                                                    std::size_t limit,
                                                                    const Progress& progress) {

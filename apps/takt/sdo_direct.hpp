@@ -11,16 +11,18 @@
 
 namespace takt {
 
-/// SDO transfers on a bus of this machine, without a daemon. Not beside a daemon on the same bus:
-/// two SDO clients of one node confuse each other. Ctrl-C (Interrupt) aborts a transfer on the bus.
+/// Makes SDO transfers on a bus of this machine without a daemon. Must not be used while a daemon
+/// runs on the same bus: two SDO clients of one node disturb each other. Ctrl-C (Interrupt) aborts
+/// a transfer on the bus.
 class SdoDirect {
  public:
   SdoDirect(std::string bus, NodeId node, Time timeout)
       : bus_{std::move(bus)}, node_{node}, timeout_{timeout} {}
 
-  /// One value of a request's size.
+  /// Reads one value of at most `request_bytes` bytes.
   std::expected<std::vector<std::byte>, LiveError> upload(ObjectKey object);
-  /// A file, by block transfer. A device that sends more than `limit` bytes is ended by an abort.
+  /// Reads a file by block transfer. If the device sends more than `limit` bytes, the transfer is
+  /// aborted.
   std::expected<std::vector<std::byte>, LiveError> upload(ObjectKey object, std::size_t limit,
                                                           const Progress& progress);
   std::expected<void, LiveError> download(ObjectKey object, std::span<const std::byte> value,

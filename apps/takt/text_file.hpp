@@ -6,11 +6,11 @@
 
 namespace takt {
 
-/// The whole file; an error is a sentence with the file's name.
+/// Returns the content of the file. The error is a sentence with the file's name.
 std::expected<std::string, std::string> read_whole_file(const std::filesystem::path& path);
 
-/// Writes beside the file and renames, so that there is never half a file; `-` is stdout.
-/// An error is a sentence with the file's name.
+/// Writes a second file and renames it, so that the target is never incomplete. `-` means stdout.
+/// The error is a sentence with the file's name.
 std::expected<void, std::string> write_whole_file(const std::filesystem::path& path,
                                                   std::string_view content);
 

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Octaves of times: [2^i, 2^(i+1)) / 8 us.
+/// A range of octaves of times. Octave i covers [2^i, 2^(i+1)) / 8 us.
 struct Octaves {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -27,7 +27,8 @@ Octaves filled(const timing_t& timing) {
   return range.end == 0 ? Octaves{} : range;
 }
 
-/// The rarest time is seen too: whatever is there has at least the lowest bar.
+/// Returns the distribution as a row of bars. Every octave that is not empty has at least the
+/// lowest bar, so that rare times stay visible.
 std::string picture(const histogram_t& times, Octaves range) {
   static constexpr std::array bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   const std::int64_t most = times.bins.empty() ? 0 : *std::ranges::max_element(times.bins);

@@ -8,13 +8,15 @@
 
 namespace takt {
 
-/// What a histogram of timing_t is of: "SYNC late by"; else its name.
+/// Returns the label of a histogram of timing_t, for example "SYNC late by". An unknown histogram
+/// keeps its name.
 std::string_view timing_label(std::string_view histogram);
 
-/// A row for each histogram with its distribution as a picture; nothing was timed: says so.
+/// Returns a row for each histogram with its distribution as a bar chart, or a line that says that
+/// nothing was measured.
 std::vector<std::string> timing_lines(const timing_t& timing);
 
-/// All that the message holds, times in microseconds.
+/// Returns the whole message, with times in microseconds.
 nlohmann::json timing_json(const timing_t& timing);
 
 }  // namespace takt

@@ -14,7 +14,7 @@
 namespace takt {
 namespace {
 
-/// Lines of a terminal that are kept for messages.
+/// Returns how many lines of the terminal are reserved for messages.
 std::size_t message_lines(std::size_t rows) {
   return rows == 0 ? 6 : std::clamp<std::size_t>(rows / 5, 2, 6);
 }
@@ -91,7 +91,7 @@ Line diagnosis_line(const diagnosis_t& diagnosis) {
   return line;
 }
 
-/// Of a SYNC that another device makes.
+/// Returns the line about the SYNC of a foreign producer.
 Line sync_line(const sync_status_t& sync) {
   const bool locked = sync.state == static_cast<int>(SyncState::locked);
   const bool lost = sync.state == static_cast<int>(SyncState::lost);
@@ -169,7 +169,7 @@ Line signal_line(const BusView& bus, std::size_t at, double si) {
   return line;
 }
 
-/// By node, then as the layout has them: what people look for.
+/// Sorts the signals by node and then in the order of the layout, because people look for a node.
 std::vector<std::size_t> by_node(const std::vector<signal_t>& signals) {
   std::vector<std::size_t> order(signals.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -177,7 +177,8 @@ std::vector<std::size_t> by_node(const std::vector<signal_t>& signals) {
   return order;
 }
 
-/// And a line that tells which of them these are. Returns the first that is shown.
+/// Adds the signals that fit into `room` lines, from `wanted` on, and a line that says which of all
+/// signals they are. Returns the first signal that is shown.
 std::size_t add_signals(std::vector<Line>& lines, const BusView& bus, std::size_t wanted,
                         std::size_t room) {
   if (bus.values().empty()) {
@@ -260,7 +261,7 @@ std::string boot_name(const node_status_t& node) {
 
 namespace {
 
-/// Nothing as long as no stop was asked for.
+/// Adds the state of the ordered stop, or nothing while no stop is requested.
 void add_stop(std::vector<Line>& lines, const status_t& status) {
   if (status.stop == 0) return;
   const bool bad = status.stop == static_cast<int>(StopResult::unconfirmed);

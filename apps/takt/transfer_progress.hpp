@@ -5,13 +5,13 @@
 
 namespace takt {
 
-/// How far a file is, on stderr: one line that is written over on a terminal, a line now and then
-/// elsewhere.
+/// Shows the progress of a file transfer on stderr: as one line that is overwritten on a terminal,
+/// otherwise as a new line every two seconds.
 class TransferProgress {
  public:
   TransferProgress();
 
-  /// `total` 0: not known.
+  /// A `total` of 0 means unknown.
   void show(std::size_t done, std::size_t total);
   void finish(std::size_t bytes);
 

@@ -4,10 +4,11 @@
 
 namespace takt {
 
-/// Empty, or why `text` is no number to CLI11 as it is to people: it reads 010 as 8, as C does.
+/// Refuses decimal numbers with a leading zero, because CLI11 reads 010 as octal 8, as C does.
+/// Returns the reason, or an empty string if `text` is good.
 std::string octal_trouble(const std::string& text);
 
-/// An option that takes a whole number: decimal, or hex with 0x.
+/// Adds an option that takes a whole number, decimal or hex with 0x.
 template <class T>
 CLI::Option* add_number(CLI::App& app, const std::string& name, T& number,
                         const std::string& what) {
