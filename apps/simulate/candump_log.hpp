@@ -7,8 +7,7 @@
 
 namespace takt {
 
-/// Counts the frames on the wire and, if a file is named, writes them in the format of `candump
-/// -L`.
+/// Counts the frames on the wire and, if a file is named, writes them as `candump -L` does.
 class CandumpLog final : public sim::BusObserver {
  public:
   /// An empty `path` means no file. Throws std::runtime_error if the file cannot be written.

@@ -18,7 +18,7 @@ constexpr std::int64_t nobody = 6;     // value of these bits that no program us
 constexpr std::int64_t fewest_away =
     50'000;                       // least cycles between a forged cycle and the true one
 constexpr Time least_away = 10s;  // the same distance as a time; no lease lasts longer than 1 s
-constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycles
+constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycle number
 
 }  // namespace
 

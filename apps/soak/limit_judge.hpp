@@ -60,7 +60,7 @@ class LimitJudge {
     bool enables = false;           ///< the last controlword sent enables operation
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
-    std::deque<Seen> actual{};      ///< positions since cycles_[0], newest last
+    std::deque<Seen> actual{};      ///< actual positions since cycles_[0], newest last
   };
 
   void note_order(SignalIndex signal, std::uint64_t bits);

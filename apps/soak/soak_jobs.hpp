@@ -24,7 +24,9 @@ struct SoakPlan {
 /// The end of one run as its process reports it.
 struct SoakReport {
   SoakOutcome outcome{};
-  int signal = 0;  ///< signal that ended the process within the run; 0: it completed; -1: no signal
+  /// The signal that ended the process in the middle of the run; -1 if it ended without a signal.
+  /// 0 means that the run was completed.
+  int signal = 0;
 };
 
 /// Runs the seeds in separate worker processes, so that a crash can be assigned to its seed. Calls

@@ -58,8 +58,8 @@ ReadObject by_daemon(DaemonClient& daemon, int timeout_ms, std::optional<LiveErr
   };
 }
 
-/// Asks every device. Returns an error if no device answered. `trouble` is an error that `read` may
-/// set; it ends the questions.
+/// Asks every device. Returns an error if no device answered. `trouble` is set by `read` if the bus
+/// cannot be used; this ends the questions.
 std::optional<LiveError> ask(const LoadedNetwork& network, std::vector<DeviceValues>& values,
                              const ReadObject& read, const std::optional<LiveError>& trouble) {
   bool any = false;

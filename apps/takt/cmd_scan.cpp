@@ -34,7 +34,8 @@ struct Found {
   DeviceFiles::Match file;
 };
 
-constexpr Time longest_jam = std::chrono::seconds{2};  // without room to send: no node acknowledges
+// After this time with a full transmit queue, no node acknowledges the frames.
+constexpr Time longest_jam = std::chrono::seconds{2};
 
 void hear(BusScan& scan, FrameChannel& channel) {
   StampedFrame frame;

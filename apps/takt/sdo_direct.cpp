@@ -12,7 +12,8 @@
 namespace takt {
 namespace {
 
-constexpr Time longest_jam = std::chrono::seconds{2};  // without room to send: no node acknowledges
+// After this time with a full transmit queue, no node acknowledges the frames.
+constexpr Time longest_jam = std::chrono::seconds{2};
 
 /// Runs an SDO client until it has a result. The channel receives every frame on the bus; only the
 /// responses of the node go to the client.

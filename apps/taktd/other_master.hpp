@@ -17,8 +17,8 @@ namespace takt {
 class OtherMaster {
  public:
   /// How a BUS_STATUS of another session counts. The message does not prove who sent it. On a bus
-  /// with keys it only causes a warning; otherwise everybody on LCM could keep this master from
-  /// starting.
+  /// with keys it therefore only causes a warning: a refusal would let everybody on LCM keep this
+  /// master from starting.
   enum class StatusCounts : std::uint8_t { as_refusal, as_warning };
 
   /// `bus` is the name of the bus in sentences; `session` is the session of this daemon.
