@@ -2,7 +2,8 @@
 
 #include "test/boot/plant.hpp"
 
-// Every step of a boot goes wrong in every way: what is told names the object, the cause, a remedy.
+// Every step of a boot fails in every way. Each report must name the object, the cause and a
+// remedy.
 
 namespace takt {
 namespace {
@@ -38,7 +39,7 @@ bool talks_by_sdo(BootAction action) {
   }
 }
 
-/// Of the steps that must succeed.
+/// Returns the objects of the SDO steps that must succeed.
 std::set<ObjectKey> objects_of(const LoadedNetwork& network) {
   std::set<ObjectKey> objects;
   for (const BootStep& step : network.plan.nodes[0].boot_plan.steps) {
@@ -53,7 +54,7 @@ std::string report(sim::FaultKind kind, ObjectKey object, std::uint32_t abort_co
   fault.object = object;
   fault.abort_code = abort_code;
   Plant plant{valve(keys), {fault}};
-  plant.run(object.index == 0x1F51 ? 300s : 15s);  // three times a minute for flash memory
+  plant.run(object.index == 0x1F51 ? 300s : 15s);  // the flash memory gets three times one minute
   return plant.text_of(EventKind::boot_failed);
 }
 
@@ -80,7 +81,7 @@ TEST(BootSweep, SilenceAtAnyStepIsToldWithObjectAndRemedy) {
   }
 }
 
-/// What to try, of a report.
+/// Returns the advice in a report, which starts at "try".
 std::string advice(const std::string& text) {
   const auto at = text.find("\n  try       ");
   return at == std::string::npos ? "" : text.substr(at);
@@ -113,7 +114,7 @@ TEST(BootSweep, ARefusedWriteAtAnyStepIsToldUnlessNothingHasToBeWritten) {
   int told = 0;
   for (const ObjectKey object : objects_of(valve(everything))) {
     const std::string text = report(refuse_write, object, 0x0800'0021);
-    if (text.empty()) continue;  // only read
+    if (text.empty()) continue;  // the boot only reads this object
     ++told;
     EXPECT_NE(text.find(to_string(object)), std::string::npos) << to_string(object) << "\n" << text;
     EXPECT_NE(text.find("abort 0800 0021"), std::string::npos) << text;

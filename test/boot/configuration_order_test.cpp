@@ -1,7 +1,7 @@
 #include "test/boot/plant.hpp"
 #include "test/support/folder.hpp"
 
-// The frames of a boot in their order: restore, configuration, read-back, store, start. CiA 302-2.
+// The order of the frames of a boot: restore, configuration, read-back, store, start. CiA 302-2.
 
 namespace takt {
 namespace {
@@ -9,8 +9,8 @@ namespace {
 using namespace test;
 using Lines = std::vector<std::string>;
 
-/// What the master does to node 5, as candump writes it: NMT commands and SDO downloads, with
-/// `reads` uploads too; and the node's boot-up messages.
+/// Records the actions of the master on node 5 in the format of candump: NMT commands, SDO
+/// downloads and, with `reads_too`, SDO uploads. Also records the boot-up messages of the node.
 class Story final : public sim::BusObserver {
  public:
   enum class Of : std::uint8_t { writes, reads_too };
@@ -44,13 +44,13 @@ class Story final : public sim::BusObserver {
   Of what_;
 };
 
-/// Kept over every reset, as if it had been stored there long ago.
+/// Sets a value that survives every reset, as if it had been stored long ago.
 void stored_before(Plant& plant, ObjectKey key, std::uint64_t value) {
   sim::Object& object = *plant.device(5).objects().find(key);
   object.value = object.power_on = value;
 }
 
-/// The lines from `first` on, which is there.
+/// Returns the lines from `first` on. The test fails if `first` is missing.
 Lines from(const Lines& lines, const std::string& first) {
   const auto found = std::ranges::find(lines, first);
   EXPECT_NE(found, lines.end()) << first;
@@ -63,8 +63,8 @@ const std::string bootup = "705#00";
 const std::string start = "000#0105";
 const std::string preop = "000#8005";                  // before the first write
 const std::string heartbeat = "605#2B17100064000000";  // every 100 ms
-const std::string consumer = "605#231610012C017F00";   // of the master's, 300 ms
-const std::string period = "605#2306100010270000";     // of SYNC, 10000 us
+const std::string consumer = "605#231610012C017F00";   // consumer of the master's heartbeat, 300 ms
+const std::string period = "605#2306100010270000";     // SYNC period, 10000 us
 
 // restore, 0x1011
 
@@ -119,7 +119,7 @@ TEST(RestoreOrder, ThatIsRefusedChangesNothingAndStartsNothing) {
   EXPECT_EQ(plant.node().boot, BootState::failed);
 }
 
-/// A write whose answer stays away is not repeated: it might act twice.
+/// A write without an answer is not repeated, because it might act twice.
 TEST(RestoreOrder, ThatIsNotAnsweredIsNotWrittenAgainByTheSameBoot) {
   sim::Fault mute{.kind = sim::FaultKind::mute_sdo, .node = 5_node};
   mute.object = ObjectKey{0x1011, 1};
@@ -169,7 +169,8 @@ TEST(StoreOrder, KeepsAConfigurationThatTheNextBootRestoresNothingOf) {
   EXPECT_EQ(plant.device(5).objects().number({0x2000, 0}), 7);
 }
 
-/// The date of another configuration is there: it goes, with all that belongs to it.
+/// The device has the date of another configuration. The master replaces that configuration
+/// completely.
 TEST(StoreOrder, ReplacesTheConfigurationOfAnotherDay) {
   Plant plant{
       valve("restore_configuration: 1, store_configuration: 1, configuration_date: 15000, "
@@ -186,7 +187,7 @@ TEST(StoreOrder, ReplacesTheConfigurationOfAnotherDay) {
   EXPECT_EQ(plant.device(5).objects().number({0x2001, 0}), 100);
 }
 
-/// An ordered stop disarms the device and leaves the date of its configuration as it is.
+/// An ordered stop disarms the device but does not change the date of its configuration.
 TEST(StoreOrder, ArmsTheDeviceAgainThoughItsConfigurationIsThere) {
   Plant plant{
       valve("store_configuration: 1, configuration_date: 15000, configuration_time: 1234, "
@@ -236,7 +237,7 @@ TEST(PdoOrder, IsOffWhileItChangesAndReadBackWhenItIsOn) {
                    "605#40001A0100000000", "605#40001A0200000000", start}));
 }
 
-/// The device confirms the mapping and keeps the old one.
+/// The device confirms the write of the mapping but keeps the old mapping.
 TEST(PdoOrder, EndsWithTheReadBackWhereAWriteWasOnlyConfirmed) {
   sim::Fault deaf{.kind = sim::FaultKind::ignore_write, .node = 5_node};
   deaf.object = ObjectKey{0x1A00, 1};
@@ -253,7 +254,7 @@ TEST(PdoOrder, EndsWithTheReadBackWhereAWriteWasOnlyConfirmed) {
 
 // concise DCF, 0x1F22
 
-/// A concise DCF that the network files name.
+/// A file with a concise DCF for the network files of the tests.
 class ConciseFile {
  public:
   explicit ConciseFile(const std::vector<std::uint8_t>& bytes)
@@ -265,7 +266,7 @@ class ConciseFile {
   std::filesystem::path path_;
 };
 
-/// 2001 first, a text of ten bytes, 2000, 2001 again; between them TPDO1 gets type 5.
+/// The entries are 2001, a text of ten bytes in 2002, type 5 for TPDO1, 2000, and 2001 again.
 const std::vector<std::uint8_t> five{5,    0,    0,    0,                               //
                                      0x01, 0x20, 0x00, 2,   0,   0,   0,   0x05, 0x00,  //
                                      0x02, 0x20, 0x00, 10,  0,   0,   0,   'l',  'o',
@@ -286,8 +287,8 @@ TEST(ConciseOrder, IsThatOfTheFileWithEveryValueOnceMoreWhereTheFileHasItAgain) 
                                 "605#006C6F776572206C", "605#1965667400000000",
                                 "605#2B0020002C010000",  // 2000 = 300
                                 "605#2B01200058020000",  // 2001 = 600
-                                "605#2B00200007000000",  // sdo: comes last
-                                "605#23001801850100C0",  // a PDO has an order of its own
+                                "605#2B00200007000000",  // the key `sdo` comes last
+                                "605#23001801850100C0",  // PDOs are written in their own order
                                 "605#2F00180205000000", "605#2300180185010040", start}));
 }
 

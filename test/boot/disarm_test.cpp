@@ -1,6 +1,7 @@
 #include "test/boot/plant.hpp"
 
-// What devices watch of the master is disarmed once every axis is confirmed.
+// The master disarms the supervision of its heartbeat in the devices once the stop of every axis is
+// confirmed.
 
 namespace takt {
 namespace {
@@ -66,7 +67,7 @@ TEST(Disarming, LeavesANodeAloneThatHasRefusedItsArming) {
   }));
 }
 
-/// Only the answer to the write is missing: the device may be armed.
+/// Only the answer to the write is missing, so the device may be armed.
 TEST(Disarming, IsTriedWhereTheArmingWasNotAnswered) {
   sim::Fault mute = of_drive(mute_sdo);
   mute.object = ObjectKey{0x1016, 1};

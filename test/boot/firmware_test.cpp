@@ -1,6 +1,6 @@
 #include "test/boot/plant.hpp"
 
-// Device data that depend on the firmware, and a device that has another one.
+// Device data that depends on the firmware, and a device with another firmware.
 
 namespace takt {
 namespace {

@@ -1,6 +1,7 @@
 #include "test/boot/plant.hpp"
 
-// The ordered stop of a drive that was enabled before this master came, and that it can't boot.
+// The ordered stop of a drive that was already enabled before this master started and that this
+// master can't boot.
 
 namespace takt {
 namespace {
@@ -17,7 +18,8 @@ sim::Fault override_of(ObjectKey object, std::vector<std::byte> value) {
   return fault;
 }
 
-/// A drive that starts itself, has a heartbeat of 50 ms, and another mapping than the network file.
+/// A drive that starts itself and has a heartbeat of 50 ms and a mapping that differs from the
+/// network file.
 class FoundEnabled : public testing::Test {
  protected:
   explicit FoundEnabled(const std::string& keys = "reset: keep_alive", sim::Faults more = {})
@@ -45,7 +47,7 @@ class FoundEnabled : public testing::Test {
         plant.world.now());
     plant.run_without_master(50ms);
   }
-  /// Profile velocity, at which the drive moves.
+  /// Moves the drive in profile velocity mode.
   void move() {
     write(0x2F, 0x6060, 3);
     write(0x23, 0x60FF, 20'000);
@@ -135,7 +137,7 @@ TEST_F(FoundEnabled, IsConfirmedWhereItIsDisabledAlready) {
   })) << "it is only asked";
 }
 
-/// It answers the read of its statusword with an abort code, and has this device type.
+/// The drive has this device type and aborts the read of its statusword.
 class FoundWithoutStatusword : public FoundEnabled {
  protected:
   explicit FoundWithoutStatusword(std::uint8_t profile_low = 0x92, std::uint8_t profile_high = 0x01)
@@ -169,7 +171,7 @@ TEST_F(FoundWithoutStatusword, IsNotConfirmedWhereItRefusesForAnotherReason) {
       << text();
 }
 
-/// A device of profile 401.
+/// A device with the device profile 401.
 class FoundAsAnotherDevice : public FoundWithoutStatusword {
  protected:
   FoundAsAnotherDevice() : FoundWithoutStatusword{0x91} {}
@@ -183,7 +185,7 @@ TEST_F(FoundAsAnotherDevice, IsNotConfirmedWhereItRefusesForAnotherReason) {
   EXPECT_EQ(stop_refused_with(0x0800'0022), StopResult::unconfirmed);
 }
 
-/// A device without a standard profile may be a drive: its EDS says so.
+/// A device without a standard profile may still be a drive, as its EDS says.
 class FoundWithoutProfile : public FoundWithoutStatusword {
  protected:
   FoundWithoutProfile() : FoundWithoutStatusword{0x00, 0x00} {}
@@ -193,7 +195,7 @@ TEST_F(FoundWithoutProfile, IsNotConfirmedWithoutAStatusword) {
   EXPECT_EQ(stop_refused_with(0x0602'0000), StopResult::unconfirmed);
 }
 
-/// A drive that isn't there does not become OPERATIONAL by a broadcast.
+/// A broadcast cannot start an absent drive.
 TEST(AbsentDrive, NeedsNoConfirmationAfterABroadcastStart) {
   Plant plant{network_of("bus: {name: plant}\nmaster: {sync_period: 10000}\nnodes:\n"
                          "  lift: {node_id: 6, dcf: ../../../share/eds/takt_drive402.eds, "
@@ -212,7 +214,7 @@ TEST(AbsentDrive, NeedsNoConfirmationAfterABroadcastStart) {
   EXPECT_EQ(plant.count(EventKind::axis_not_stopped), 0);
 }
 
-/// It is told PRE-OPERATIONAL first; its boot fails because it has another vendor id.
+/// The master first commands PRE-OPERATIONAL. The boot of the drive fails because of its vendor-ID.
 class FoundEnabledAndTakenOut : public FoundEnabled {
  protected:
   FoundEnabledAndTakenOut() : FoundEnabled{"reset: none, vendor_id: 0x1234"} {}

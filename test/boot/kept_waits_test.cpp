@@ -2,8 +2,8 @@
 #include "master/core/lss_command.hpp"
 #include "test/boot/plant.hpp"
 
-// The master gives up after the time that the plan prints, not before and not a cycle later than
-// it can see it.
+// The master gives up after the time that the plan prints: not earlier, and not later than the
+// first cycle in which it can detect this.
 
 namespace takt {
 namespace {
@@ -12,7 +12,7 @@ using namespace test;
 
 constexpr Time cycle = 10ms;
 
-/// Frames of one identifier and when they were on the wire.
+/// Records the frames of one identifier and their times on the wire.
 class Ear final : public sim::BusObserver {
  public:
   Ear(Plant& plant, std::uint32_t id) : id_{id} { plant.world.observe(this); }
@@ -37,7 +37,7 @@ void expect_kept(Time took, Time printed) {
   EXPECT_LE(took, printed + 2 * cycle);
 }
 
-/// Until the reply is there, at most a minute.
+/// Sends a request and returns the time until the reply, at most one minute.
 Time reply_after(Plant& plant, const Request& request) {
   const Time asked = plant.world.now();
   plant.ask(request);
@@ -138,14 +138,14 @@ TEST(KeptWaits, OfLssServices) {
 
 TEST(KeptWaits, BetweenLooksForANodeWithoutId) {
   Plant plant{valve("lss: true"), {{.kind = sim::FaultKind::power_off, .node = 5_node}}};
-  plant.world.attach();  // somebody who acknowledges
+  plant.world.attach();  // a node that acknowledges frames
   Ear ear{plant, 0x7E5};
   plant.run(6s);
 
   ASSERT_GE(ear.heard.size(), 6U);
   const Time waits_for_all = limit(plant, "lss_all");
   for (std::size_t i = 1; i < ear.heard.size(); ++i) {
-    const bool second = i % 2 == 1;  // each look asks twice whether anybody is there
+    const bool second = i % 2 == 1;  // each scan asks twice for a device
     expect_kept(ear.heard[i].end - ear.heard[i - 1].end,
                 waits_for_all + (second ? Time{} : limit(plant, "lss_look_again")));
   }

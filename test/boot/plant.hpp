@@ -21,7 +21,7 @@ namespace takt::test {
 
 using namespace std::chrono_literals;
 
-/// Compiles a network file given as text; device files are those of test/boot/data.
+/// Compiles a network file given as text. The device files come from test/boot/data.
 inline LoadedNetwork network_of(const std::string& yaml) {
   const Folder folder;
   LoadedNetwork network = load_network(folder.write(
@@ -32,7 +32,8 @@ inline LoadedNetwork network_of(const std::string& yaml) {
   return network;
 }
 
-/// One valve at node 5 with more keys of the node and of the master.
+/// A network with one valve, node 5. The arguments add keys to the node and to the master, and
+/// other nodes.
 inline LoadedNetwork valve(const std::string& keys = "", const std::string& master = "",
                            const std::string& others = "") {
   const auto more = [](const std::string& text) { return text.empty() ? "" : ", " + text; };
@@ -41,7 +42,7 @@ inline LoadedNetwork valve(const std::string& keys = "", const std::string& mast
                     "}\n" + others);
 }
 
-/// The whole master and its simulated devices in virtual time.
+/// A complete master and its simulated devices in virtual time.
 class Plant {
  public:
   explicit Plant(LoadedNetwork network, sim::Faults faults = {})
@@ -53,7 +54,7 @@ class Plant {
     world.observe(&wire);
   }
 
-  /// The devices run by themselves; the master is not there yet and hears nothing of it.
+  /// Runs only the devices. The master is not there yet and receives none of their frames.
   void run_without_master(Time span) {
     world.advance_to(world.now() + span);
     std::array<StampedFrame, 64> unheard;
@@ -73,7 +74,7 @@ class Plant {
     }
   }
 
-  /// Asks for the ordered stop and runs to its end.
+  /// Requests the ordered stop and runs to its end.
   StopResult stop() {
     loop_->request_stop();
     for (int i = 0; i < 10'000 && !loop_->done(); ++i) run(plan().cycle.period);
@@ -83,7 +84,7 @@ class Plant {
     return snapshot.bus.stop_result;
   }
 
-  /// An NMT command of an application.
+  /// Requests an NMT command as an application does.
   void nmt(NmtCommand command, std::uint8_t node) {
     Request request;
     request.kind = RequestKind::nmt;
@@ -92,7 +93,7 @@ class Plant {
     exchange_->requests.push(request);
   }
   void ask(const Request& request) { exchange_->requests.push(request); }
-  /// A set-point of an application, from now on.
+  /// Commands a set-point as an application does, from now on.
   void command(std::uint8_t node, std::uint16_t index, std::int64_t value) {
     const ImageLayout& layout = network_.plan.layout;
     for (std::size_t i = layout.inputs; i < layout.signals.size(); ++i) {
@@ -111,12 +112,12 @@ class Plant {
   sim::Device& device(std::uint8_t id) { return *world.device(*NodeId::from(id)); }
 
   long count(EventKind kind) const { return std::ranges::count(events, kind, &Event::kind); }
-  /// The first event of a kind in words; empty where there was none.
+  /// Returns the text of the first event of a kind; empty if there was none.
   std::string text_of(EventKind kind) const {
     const auto found = std::ranges::find(events, kind, &Event::kind);
     return found == events.end() ? std::string{} : describe(network_.plan, *found);
   }
-  /// Frames on the wire with this identifier, remote frames or others.
+  /// Number of frames on the wire with this identifier: remote frames if `rtr`, else data frames.
   long frames(std::uint32_t id, bool rtr = false) const {
     return std::ranges::count_if(
         wire.frames, [=](const Frame& frame) { return frame.id.id() == id && frame.rtr == rtr; });

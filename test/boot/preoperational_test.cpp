@@ -1,6 +1,6 @@
 #include "test/boot/plant.hpp"
 
-// Parameters are written in PRE-OPERATIONAL, whatever the device does by itself.
+// The master writes parameters in PRE-OPERATIONAL even if the device changes its state by itself.
 
 namespace takt {
 namespace {
@@ -14,7 +14,7 @@ sim::Fault always(sim::FaultKind kind) { return {.kind = kind, .node = 5_node}; 
 
 Frame nmt(std::uint8_t command) { return make_frame(CobId::base(0), {command, 0x05}); }
 
-/// NMT commands to the node, in their order.
+/// Returns the NMT commands in order.
 std::vector<std::uint8_t> commands(const Plant& plant) {
   std::vector<std::uint8_t> out;
   for (const Frame& frame : plant.wire.frames) {
@@ -61,7 +61,7 @@ TEST(Preoperational, NodeThatIsRightAlreadyIsNotTouched) {
   Plant first{valve(keys)};
   first.run(3s);
   std::vector<sim::Fault> right{always(self_start), always(preop_only)};
-  for (const Frame& frame : first.wire.frames) {  // what the first master has written
+  for (const Frame& frame : first.wire.frames) {  // repeat the writes of the first master
     if (!is_write(frame)) continue;
     const ObjectKey key{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8),
                         frame.data[3]};

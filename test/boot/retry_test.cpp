@@ -1,6 +1,6 @@
 #include "test/boot/plant.hpp"
 
-// When a boot that has failed is tried again.
+// The times at which the master repeats a failed boot.
 
 namespace takt {
 namespace {
@@ -12,7 +12,7 @@ sim::Fault of_valve(sim::FaultKind kind, Time at = {}, Time until = never) {
   return {.kind = kind, .node = 5_node, .at = at, .until = until};
 }
 
-/// The vendor id of somebody else.
+/// A fault that makes the device show another vendor-ID.
 sim::Fault another_vendor(Time until = never) {
   sim::Fault out = of_valve(override_value, {}, until);
   out.object = ObjectKey{0x1018, 1};
@@ -20,7 +20,7 @@ sim::Fault another_vendor(Time until = never) {
   return out;
 }
 
-/// When frames of one kind left.
+/// Records the times of the frames with this identifier and first byte.
 struct Times final : sim::BusObserver {
   explicit Times(std::uint32_t cob_id, std::uint8_t first) : id{cob_id}, byte{first} {}
   void on_wire(const sim::WireFrame& seen) noexcept override {
@@ -58,7 +58,7 @@ TEST(Retry, BothPausesCanBeSet) {
 }
 
 TEST(Retry, BootUpMessageTriesAtOnce) {
-  // It is dead for 100 s, long enough for pauses of 30 s.
+  // The device is off for 100 s, long enough for pauses of 30 s.
   Plant plant{valve("boot_timeout_ms: 100, heartbeat_producer: 100"),
               {of_valve(power_off, {}, 100s)}};
   plant.run(100s);
@@ -68,7 +68,7 @@ TEST(Retry, BootUpMessageTriesAtOnce) {
 }
 
 TEST(Retry, FirstHeartbeatOfANodeThatWasNotThereTriesAtOnce) {
-  // Its cable is put in: it has power and a heartbeat, and says no boot-up.
+  // The cable is plugged in: the device has power and a heartbeat, but sends no boot-up message.
   sim::Fault beats = of_valve(override_value);
   beats.object = ObjectKey{0x1017, 0};
   beats.value = {std::byte{100}, std::byte{0}};
@@ -106,7 +106,7 @@ TEST(Retry, AnotherDeviceIsResetWhenSomebodyAsks) {
 }
 
 TEST(Retry, TheRightDeviceIsBootedWithoutItsBootUpMessage) {
-  // Somebody puts the right device in while the master does not hear it start.
+  // The right device replaces the wrong one, but the master does not receive its boot-up message.
   sim::Fault quiet = of_valve(no_bootup, 10s);
   Plant plant{valve("heartbeat_producer: 100"), {another_vendor(40s), quiet}};
   plant.run(39s);

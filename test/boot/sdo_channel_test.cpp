@@ -1,4 +1,4 @@
-// Boots over an SDO server besides the first: `sdo_channel`, 0x1201.
+// Boots over a second SDO server: `sdo_channel`, 0x1201.
 #include <gmock/gmock.h>
 
 #include "test/boot/plant.hpp"
@@ -66,7 +66,7 @@ TEST(SdoChannelBoot, DoesNotBlameAChannelThatHasAnswered) {
   EXPECT_THAT(report, Not(HasSubstr("sdo_channel")));
 }
 
-/// Until the boot of node 1 has switched its second channel off, both answer what node 65 is asked.
+/// Until the boot of node 1 has disabled its second channel, both nodes answer requests to node 65.
 TEST(SdoChannelBoot, OfTwoLenzes64IdsApartGoesWellWhereTheNetworkFileSwitchesTheChannelOff) {
   const std::string lenze = "dcf: " TAKT_SOURCE_DIR "/share/eds/lenze8400.eds";
   const std::string off = ", sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]";

@@ -23,7 +23,7 @@ sim::Fault beating(NodeId node) {
   return out;
 }
 
-/// Three valves; the first two in the group `north`.
+/// A network with three valves; the first two are in the group `north`.
 LoadedNetwork three(const std::string& master, const std::string& first = "",
                     const std::string& second = "") {
   const auto more = [](const std::string& text) { return text.empty() ? "" : ", " + text; };
@@ -193,7 +193,7 @@ TEST(LossReaction, QuickStopStopsTheDrivesOfItsGroup) {
     EXPECT_EQ(plant.device(drive).objects().number({0x6041, 0}) & 0x6F, 0x27) << int{drive};
   }
 
-  plant.run(4s);  // the brake is lost and back
+  plant.run(4s);  // the brake is lost and comes back
 
   EXPECT_EQ(plant.count(EventKind::loss_reaction), 1);
   const std::int64_t status = plant.device(6).objects().number({0x6041, 0});
@@ -328,7 +328,7 @@ TEST(Program, IsLoadedWhereTheVersionDiffersAndTellsItsProgress) {
   EXPECT_EQ(plant.node().boot, BootState::ready);
   EXPECT_EQ(plant.device(5).objects().number({0x1F56, 1}), 0x0001'0001);
   EXPECT_EQ(plant.device(5).objects().find({0x1F50, 1})->bytes.size(), 1000u);
-  EXPECT_EQ(plant.count(EventKind::program_progress), 2);  // one each block of 889 bytes
+  EXPECT_EQ(plant.count(EventKind::program_progress), 2);  // one event for each block of 889 bytes
   EXPECT_NE(plant.text_of(EventKind::program_progress).find(" of 1000 bytes"), std::string::npos);
 }
 
@@ -346,7 +346,7 @@ TEST(Program, IsNotTouchedWhereTheVersionIsRight) {
   EXPECT_EQ(plant.count(EventKind::program_progress), 0);
 }
 
-// who is there
+// identity of the devices
 
 TEST(Stranger, IsToldOnce) {
   LoadedNetwork network = valve();

@@ -24,7 +24,7 @@ class WatchedAxis {
  public:
   WatchedAxis(FrameChannel& channel, CobId rpdo) : channel_{channel}, rpdo_{rpdo} {}
 
-  /// Takes frames until `done`, at most for a generous time.
+  /// Takes frames until `done` returns true, at most for `patience`.
   template <class Done>
   bool watch(Done done) {
     const Time until = monotonic_now() + patience;
@@ -35,17 +35,17 @@ class WatchedAxis {
     }
     return true;
   }
-  /// Takes what has arrived.
+  /// Takes the frames that have arrived.
   void drain() {
     StampedFrame got;
     while (channel_.receive(got, milliseconds{0})) take(got.frame);
   }
   bool moving() const noexcept { return changes_ > 50 && (controlword_ & 0x0F) == 0x0F; }
-  /// CiA 402: bit 2 of the controlword at 0 demands the quick stop.
+  /// True if the controlword demands a quick stop: bit 2 is 0. CiA 402.
   bool quick_stop() const noexcept { return (controlword_ & 0x06) == 0x02; }
   std::int32_t farthest() const noexcept { return farthest_; }
   void forget_farthest() noexcept { farthest_ = 0; }
-  /// SYNCs since the target changed for the last time.
+  /// Number of SYNCs since the last change of the target.
   int syncs_at_rest() const noexcept { return syncs_; }
 
  private:
@@ -71,7 +71,7 @@ class WatchedAxis {
   int syncs_ = 0;
 };
 
-/// Cycle of the newest event of this kind.
+/// Returns the cycle in which the newest fallback began.
 std::int64_t fallback_cycle(DaemonProcess& daemon) {
   std::int64_t cycle = 0;
   for (const event_t& event : daemon.bus().events()) {
@@ -107,20 +107,21 @@ TEST(StoppedApplication, ItsAxesQuickStopAfterTheTimeToLive) {
   EXPECT_TRUE(daemon.hear([&] {
     return daemon.events("fallback_begun", "200 ms (on_timeout: after)") > 0;
   })) << daemon.log();
-  // A cycle that a busy machine has left out has no image, and the newest command is one cycle old.
+  // The limit allows for two effects: a cycle that a busy machine has skipped has no image, and the
+  // newest command is one cycle old.
   EXPECT_LE(daemon.images_between(stopped, fallback_cycle(daemon)), 22U);
 }
 
-/// The application goes on for seconds and dies before taktd runs again: nothing of that moves an
-/// axis any more.
+/// The application continues for seconds and dies before taktd runs again. None of its commands may
+/// move an axis afterwards.
 TEST(KilledApplication, ItsCommandsThatWaitedInAStoppedDaemonMoveNothing) {
   constexpr std::int64_t standing = 1000;
   const Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
   const auto network = slow_network(folder.path(), [](std::string& text) {
-    text = std::regex_replace(text, std::regex{"  limits: [^\\n]*"}, "");  // age alone decides
+    text = std::regex_replace(text, std::regex{"  limits: [^\\n]*"}, "");  // only age decides
     text = std::regex_replace(text, std::regex{"after_cycles: \\d+"}, "after_cycles: 50");
-    // Devices that watched the master would stop their axes by themselves.
+    // Devices that monitor the master would stop their axes themselves.
     text = std::regex_replace(text, std::regex{"heartbeat_producer: 100 +# ms"},
                               "heartbeat_producer: 0");
   });
@@ -154,7 +155,7 @@ TEST(KilledApplication, ItsCommandsThatWaitedInAStoppedDaemonMoveNothing) {
   daemon.signal(SIGSTOP);
   for (int i = 0; i < 150; ++i) {
     target += 20;
-    command(i % 3 == 0 ? 0 : i);  // as an application that counts cycles by itself, or does not
+    command(i % 3 == 0 ? 0 : i);  // some applications count cycles, others send 0
     axis.drain();
     std::this_thread::sleep_for(milliseconds{20});
   }
@@ -168,7 +169,8 @@ TEST(KilledApplication, ItsCommandsThatWaitedInAStoppedDaemonMoveNothing) {
   EXPECT_LE(axis.farthest(), standing);
 }
 
-/// Set-points that were computed meanwhile collapse into one: no drive could follow it.
+/// Set-points computed while the daemon is stopped would become one large step that no drive could
+/// follow.
 TEST(MovingApplication, DoesNotRunAwayFromADaemonThatStandsStill) {
   const Folder folder;
   DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};

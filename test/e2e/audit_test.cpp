@@ -18,7 +18,7 @@ TEST(AuditOnTheBus, TellsOfDevicesThatNobodyHasConfigured) {
 
   Ended ended;
   const Time until = monotonic_now() + patience;
-  do {  // they take their time to boot
+  do {  // the devices need time to boot
     ended = run({TAKT, "audit", network, "--bus", bus}, folder.path());
   } while (ended.output.find("answer") != std::string::npos && monotonic_now() < until);
 

@@ -10,8 +10,8 @@
 namespace takt::test {
 namespace {
 
-/// The demo, with another vendor than expected, a read-only mapping and a mute device. No node is
-/// mandatory: the daemon stays, and tries again.
+/// The demo with an unexpected vendor-ID, a read-only mapping and a mute device. No node is
+/// mandatory, so the daemon keeps running and tries again.
 std::filesystem::path three_troubles(const std::filesystem::path& folder) {
   return slow_network(folder, [](std::string& text) {
     const auto replace = [&](const std::string& what, const std::string& with) {
@@ -28,7 +28,7 @@ std::filesystem::path three_troubles(const std::filesystem::path& folder) {
 
 class BootRecords : public testing::Test {
  protected:
-  /// The newest record of a node on LCM; empty: none yet.
+  /// Returns the newest record of a node on LCM; empty if there is none yet.
   std::string heard(int node) {
     std::string text;
     for (const event_t& event : daemon_.bus().events()) {
@@ -36,12 +36,12 @@ class BootRecords : public testing::Test {
     }
     return text;
   }
-  /// The first record of a node in the --events file.
+  /// Returns the first record of a node in the --events file.
   std::string written(int node) const {
     std::ifstream file{daemon_.event_file()};
     for (std::string line; std::getline(file, line);) {
       const auto event = nlohmann::json::parse(line, nullptr, false);
-      if (!event.is_object()) break;  // still being written
+      if (!event.is_object()) break;  // the daemon is still writing this line
       if (event["kind"] == "boot_failed" && event["node"] == node) return event["text"];
     }
     return {};

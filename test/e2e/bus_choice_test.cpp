@@ -40,7 +40,7 @@ TEST_F(BusChoice, ANameInCapitalsIsThatOfTheChannels) {
   EXPECT_EQ(takt({"sdo", "read", "1", "1000", "--bus-name", "DEMO"}).exit_code, 0);
 }
 
-/// A second master would be refused.
+/// The second daemon is an observer, because a second master would be refused.
 TEST_F(BusChoice, TwoDaemonsOfOneBusAreTrouble) {
   const Process second{{TAKTD, slow_network(folder_.path()).string(), "--bus", "sim", "--observe",
                         "--lcm-url", daemon_.lcm_url()},

@@ -7,7 +7,7 @@
 namespace takt::test {
 namespace {
 
-/// A bus of its own that no device is on.
+/// A private bus without any device.
 std::string empty_bus(const Folder& folder) { return "unix:" + (folder / "bus").string(); }
 
 TEST(EndOfTaktd, WithoutAMandatoryNodeIs4AfterTheTimeOfFor) {
@@ -20,7 +20,7 @@ TEST(EndOfTaktd, WithoutAMandatoryNodeIs4AfterTheTimeOfFor) {
             std::string::npos);
 }
 
-/// A node that is kept alive may run without a heartbeat: its silence alone says nothing.
+/// A node with keep_alive may run without a heartbeat, so its silence alone proves nothing.
 TEST(EndOfTaktd, WithoutAMandatoryNodeThatIsKeptAliveComesWhenItWasAskedBySdo) {
   const Folder folder;
   const auto network = slow_network(folder.path(), [](std::string& text) {
@@ -59,7 +59,7 @@ TEST(EndOfTaktd, IsInOrderWhenItsTerminalCloses) {
   EXPECT_NE(daemon.log().find("told to stop; stopping in order"), std::string::npos);
 }
 
-/// A program inherits what its parent ignores.
+/// A program inherits the ignored signals of its parent.
 TEST(EndOfTaktd, IsNotBroughtByASighupUnderNohup) {
   const Folder folder;
   const auto before = std::signal(SIGHUP, SIG_IGN);

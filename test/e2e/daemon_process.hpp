@@ -14,8 +14,8 @@
 
 namespace takt::test {
 
-/// A taktd of its own on a tcpq:// port of its own, with a folder for its files, and an ear on its
-/// messages. Killed when the test ends.
+/// A taktd on its own tcpq:// port, with a folder for its files and a receiver for its messages.
+/// The destructor kills it.
 class DaemonProcess {
  public:
   explicit DaemonProcess(const std::filesystem::path& network,
@@ -25,42 +25,46 @@ class DaemonProcess {
   DaemonProcess& operator=(const DaemonProcess&) = delete;
 
   void signal(int number) const { process_->signal(number); }
-  /// Lets none of its threads run for so long.
+  /// Stops all threads of the daemon for this time.
   void stop_for(std::chrono::milliseconds time) const;
-  /// Exit code within a generous time; none: it still runs, or a signal ended it.
+  /// Waits at most `patience` for the exit code. Returns std::nullopt if the daemon still runs or
+  /// if a signal ended it.
   std::optional<int> wait();
 
-  /// Takes messages until `done`, at most for a generous time. False: it never was.
+  /// Receives messages until `done` returns true, at most for `patience`. Returns false if `done`
+  /// never returned true.
   bool hear(const std::function<bool()>& done);
-  /// The same, with `work` after each round of messages.
+  /// Like hear(), but calls `work` after each round of messages.
   bool work(const std::function<void()>& work, const std::function<bool()>& done);
 
   const BusView& bus();
-  /// Sends bytes as they are.
+  /// Sends raw bytes.
   void publish(const std::string& channel, Bytes data) { lcm_->publish(channel, data); }
   void command(const command_t& command);
-  /// A command for these signals, computed from the newest image.
+  /// Makes a command for these signals that refers to the newest image.
   command_t command_for(const std::string& sender,
                         const std::vector<std::pair<std::string, std::int64_t>>& values);
-  /// Position of `node.signal`; fails the test where there is none.
+  /// Returns the position of the signal `name` of `node`; the test fails if there is none.
   std::size_t signal_at(const std::string& node, const std::string& name, bool output);
   std::int64_t value(const std::string& node, const std::string& name);
 
-  /// Images heard so far that are younger than `since` and older than this cycle.
+  /// Number of images received so far whose SYNC was not before `since` and whose cycle is before
+  /// `cycle`.
   std::size_t images_between(Time since, std::int64_t cycle) const;
-  /// Events heard so far of a kind whose text holds `part`.
+  /// Number of events of a kind received so far whose text contains `part`.
   std::size_t events(const std::string& kind, const std::string& part = {});
-  /// Events of a kind that its --events file holds: those before the first message was heard too.
+  /// Number of events of a kind in the --events file, which also has the events before the first
+  /// received message.
   std::size_t events_in_file(const std::string& kind) const;
   bool all_ready();
   std::string event_file() const;
   std::string log() const { return process_->output(); }
-  /// Waits for this text in the log. False: it never came.
+  /// Waits for this text in the log. Returns false if it does not come within `patience`.
   bool says(const std::string& text) const { return process_->says(text); }
   const std::string& lcm_url() const noexcept { return url_; }
 
  private:
-  /// SYNC of an image.
+  /// The time of SYNC of an image.
   struct ImageTime {
     std::int64_t cycle;
     Time sync;
@@ -75,7 +79,8 @@ class DaemonProcess {
   std::vector<ImageTime> images_;
 };
 
-/// The demo network with a slower SYNC, for machines under load. `edit` may change its text.
+/// Writes the demo network with a slower SYNC, for machines under load, and returns its path.
+/// `edit` may change the text.
 std::filesystem::path slow_network(const std::filesystem::path& folder,
                                    const std::function<void(std::string&)>& edit = {});
 

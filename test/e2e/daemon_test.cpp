@@ -51,7 +51,8 @@ TEST_F(Taktd, HoldsItsSimulatedDevicesWhileItIsHeldItself) {
   DaemonProcess daemon{slow_network(folder_.path())};
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
-  // Where a busy machine stalls it once more, SYNC is late in the devices' time too: three tries.
+  // If a busy machine stalls the daemon once more, SYNC is late for the devices too, so the test
+  // has three tries.
   bool unnoticed = false;
   for (int tries = 0; tries < 3 && !unnoticed; ++tries) {
     const std::size_t emcys = daemon.events("emcy");
@@ -106,7 +107,8 @@ TEST_F(Taktd, RefusesSecondSendersAndOldSessions) {
   }));
 }
 
-/// A session that follows from the clock could be guessed: two starts would be close together.
+/// A session number derived from the clock could be guessed: the numbers of two starts would be
+/// close together.
 TEST_F(Taktd, HasASessionThatNobodyCanGuess) {
   std::array<std::int64_t, 2> sessions{};
   for (std::int64_t& session : sessions) {

@@ -1,4 +1,4 @@
-// The tools that go through a running daemon, and those beside it.
+// Tools that work through a running daemon, and tools that work beside it.
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -91,7 +91,7 @@ TEST_F(ToolsAndDaemon, StatusTellsBusAndNodes) {
   EXPECT_EQ(bus["nodes"][2]["boot"], "ready");
 }
 
-/// A bus of others: what they send fills the image, and nothing is sent.
+/// On a bus of other nodes, their frames fill the image, and the observing daemon sends nothing.
 TEST(ObservingDaemon, FillsItsImageAndSendsNothing) {
   const Folder folder;
   const std::string bus = "unix:" + (folder / "bus").string();
@@ -141,7 +141,7 @@ TEST(EdsCheck, ExitsWith1WhereAFileHasAnError) {
   std::string text = read_file(TAKT_SOURCE_DIR "/share/eds/takt_io401.eds");
   std::ofstream{folder / "good.eds"} << text;
   const std::string rpdo1 = "DefaultValue=$NODEID+0x00000200";
-  text.replace(text.find(rpdo1), rpdo1.size(), "DefaultValue=0x585");  // an answer of SDO
+  text.replace(text.find(rpdo1), rpdo1.size(), "DefaultValue=0x585");  // an SDO answer
   std::ofstream{folder / "bad.eds"} << text;
 
   const Ended good = run({TAKT, "eds", "check", (folder / "good.eds").string()}, folder.path());

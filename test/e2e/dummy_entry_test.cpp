@@ -7,7 +7,7 @@
 namespace takt::test {
 namespace {
 
-/// RPDO1 of the io device has five bytes: 0x6200:1, a byte for nobody, 0x6200:2.
+/// RPDO1 of the io device has five bytes: 0x6200:1, a dummy byte, 0x6200:2.
 TEST(DummyEntry, LeavesTheValuesAroundItInTheirPlaces) {
   const Folder folder;
   std::ofstream{folder / "network.yaml"}

@@ -1,5 +1,5 @@
-// `takt eds dcf` writes a DCF, `takt eds cdcf` makes the bytes of 0x1F22 of it and reads them
-// again.
+// `takt eds dcf` writes a DCF. `takt eds cdcf` converts it to the bytes of 0x1F22 and reads such
+// bytes.
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class EdsCdcf : public testing::Test {
     arguments.insert(arguments.begin(), {TAKT, "eds"});
     return run(std::move(arguments), folder_.path());
   }
-  /// The drive of share/eds as node 5, with these values.
+  /// Writes a DCF for the drive of share/eds as node 5, with these values.
   Ended write_dcf(const std::vector<std::string>& values) {
     std::vector<std::string> arguments{
         "dcf", TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds", "--node", "5", "-o", dcf_};

@@ -1,4 +1,4 @@
-// `takt emcy`: what a simulated device has reported.
+// `takt emcy` reads the EMCY history of a simulated device.
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 namespace takt::test {
 namespace {
 
-/// A SYNC with a counter, which a device without 0x1019 does not expect: EMCY 8240.
+/// A device without 0x1019 does not expect a SYNC with a counter and reports EMCY 8240.
 TEST(EmcyHistory, IsReadFromTheDaemon) {
   const Folder folder;
   std::ofstream{folder / "network.yaml"}

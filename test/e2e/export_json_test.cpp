@@ -1,5 +1,5 @@
-// `takt export json`: the keys that other programs rely on, and values as the compiled plan has
-// them.
+// `takt export json` writes the keys that other programs rely on, with the values of the compiled
+// plan.
 #include <algorithm>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -22,25 +22,26 @@ std::string demo(const std::string& name) {
   return std::string{TAKT_SOURCE_DIR} + "/share/demo/" + name + ".yaml";
 }
 
-/// `us`, as the document writes times.
+/// Converts a time to microseconds, the unit of the document.
 double us(Time time) { return static_cast<double>(time.count()) / 1000.0; }
 
-/// The file that `takt export json` wrote: named behind the warnings, one JSON document.
+/// Runs `takt export json` and returns the JSON document from the file that the output names after
+/// the warnings.
 json exported(const std::string& network) {
   const Folder folder;
   const auto target = folder / "out";
   const Ended ended = run({TAKT, "export", "json", network, "-o", target.string()}, folder.path());
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
   const auto end = ended.output.rfind('\n');
-  const auto begin = ended.output.rfind('\n', end - 1);  // npos + 1: the only line
+  const auto begin = ended.output.rfind('\n', end - 1);  // npos + 1 if there is only one line
   const auto written = ended.output.substr(begin + 1, end - begin - 1);
   auto document = json::parse(read_file(written));
   EXPECT_EQ(written, target / (document.value("bus", "") + ".json"));
   return document;
 }
 
-/// `name` or `name?` (not always there) and its kind: n number, b true or false, s text, l list, o
-/// object; small letters only, in capitals: or null.
+/// `name`, or `name?` if the key is optional, and its kind: n number, b boolean, s text, l list, o
+/// object. A capital letter also allows null.
 using Shape = std::vector<std::pair<std::string_view, char>>;
 
 bool is_kind(const json& value, char kind) {
@@ -145,7 +146,7 @@ const Shape signal_shape = {{"signal", 'n'},      {"node", 's'},
                             {"safe_value?", 'N'}, {"fallback_value?", 'n'},
                             {"seeded_from?", 'N'}};
 
-/// Axes by SYNC, terminals, event-driven PDOs, remote requests, many nodes.
+/// Demos with synchronous axes, terminals, event-driven PDOs, remote requests, and many nodes.
 const std::vector<std::string> demos = {"two_axes",       "beckhoff", "lenze8400_sync",
                                         "astraada_drv28", "plain301", "sixteen_nodes"};
 
@@ -311,7 +312,7 @@ TEST(ExportJson, SaysWhatThePlanSays) {
   }
 }
 
-/// The demo's elbow, node 2, by the numbers of its network file.
+/// Compares the elbow of the demo, node 2, with the numbers in its network file.
 TEST(ExportJson, HasTheNumbersOfTheNetworkFile) {
   const auto document = exported(demo("two_axes"));
 

@@ -1,4 +1,4 @@
-// `takt sdo download` and `upload` of a file through a daemon.
+// `takt sdo download` and `takt sdo upload` transfer a file through a daemon.
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace takt::test {
 namespace {
 
-/// On 125 kbit/s a file of this size takes seconds: there is something to tell in between.
+/// At 125 kbit/s a file of this size takes seconds, so there is progress to report.
 TEST(FileProgress, IsToldOnTheWayAndAtTheEnd) {
   const Folder folder;
   std::ofstream{folder / "network.yaml"}
@@ -20,7 +20,7 @@ TEST(FileProgress, IsToldOnTheWayAndAtTheEnd) {
          "/test/vcan/domain_device.eds,\n"
          "                mandatory: true, heartbeat_producer: 200}}\n";
   DaemonProcess daemon{folder / "network.yaml"};
-  const auto ready = [&] {  // it has no PDO, so no image comes
+  const auto ready = [&] {  // the device has no PDO, so no image comes
     const auto& status = daemon.bus().status();
     return status && !status->nodes.empty() &&
            status->nodes[0].boot_state == static_cast<int>(BootState::ready);

@@ -24,7 +24,7 @@ class Client {
     good_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&*address),
                       sizeof *address) == 0;
   }
-  /// On loopback.
+  /// Connects to a TCP port on loopback.
   explicit Client(std::uint16_t port) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -39,7 +39,7 @@ class Client {
     ASSERT_EQ(::send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  /// The next line that begins so, without its end; others are passed over.
+  /// Returns the next line that starts with `begin`, without the line end, and skips other lines.
   std::string line(const std::string& begin) {
     for (;;) {
       const std::size_t end = unread_.find("\r\n");
@@ -57,7 +57,7 @@ class Client {
       unread_.append(text, static_cast<std::size_t>(size));
     }
   }
-  /// Says no more, but reads on.
+  /// Closes the sending direction; the client still receives.
   void end() { ::shutdown(socket_.get(), SHUT_WR); }
   std::string ask(const std::string& command) {
     const std::string number = "[" + std::to_string(++sequence_) + "]";

@@ -21,7 +21,7 @@ class Drv28Daemon : public testing::Test {
     return run(std::move(arguments), folder_.path());
   }
 
-  /// What `takt status --pdos` shows of RPDO1.
+  /// Returns the part about RPDO1 from `takt status --pdos`.
   nlohmann::json rpdo1() {
     using namespace nlohmann::literals;
     const auto document =

@@ -9,7 +9,7 @@
 
 namespace takt::test {
 
-/// A program of the project with its output in a file. Killed when the test ends.
+/// A program of the project whose output goes to a file. The destructor kills it.
 class Process {
  public:
   /// `arguments` begin with the program; stdout and stderr go to `output`.
@@ -19,13 +19,14 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
-  /// Stops it, and returns when none of its threads runs any more. False: it has ended.
+  /// Stops the process and returns when none of its threads runs any more. Returns false if the
+  /// process has ended.
   bool stop() const;
-  /// Exit code within a generous time, `meanwhile` again and again; none: it still runs, or a
-  /// signal ended it.
+  /// Waits at most `patience` for the exit code and calls `meanwhile` repeatedly. Returns
+  /// std::nullopt if the process still runs or if a signal ended it.
   std::optional<int> wait(const std::function<void()>& meanwhile = {});
-  std::string output() const;  ///< so far
-  /// Waits for this text in the output. False: it never came.
+  std::string output() const;  ///< output so far
+  /// Waits for this text in the output. Returns false if it does not come within `patience`.
   bool says(const std::string& text) const;
 
  private:
@@ -33,7 +34,7 @@ class Process {
   pid_t pid_ = -1;
 };
 
-/// Runs a program to its end.
+/// Exit code and output of a program that has ended.
 struct Ended {
   std::optional<int> exit_code;
   std::string output;

@@ -14,8 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-/// A bus that no other test has. What a daemon listens for before its start comes in time almost
-/// always; where the machine was too busy for that, the daemon is started once more.
+/// A private bus for each test. The messages that a daemon listens for before its start almost
+/// always come in time. If the machine was too busy for that, the test starts the daemon once more.
 class SecondDaemon : public testing::Test {
  protected:
   std::string bus() const { return "unix:" + (folder_ / "bus").string(); }
@@ -53,7 +53,7 @@ TEST_F(SecondDaemon, MayObserve) {
   EXPECT_EQ(second.exit_code, 0) << second.output;
 }
 
-/// Another bus, but the same name, and thus the same channels.
+/// The second daemon uses another bus with the same name, and thus the same channels.
 TEST_F(SecondDaemon, OfTheSameBusNameOnLcmIsRefused) {
   DaemonProcess first{slow_network(folder_.path())};
   ASSERT_TRUE(first.hear([&] { return first.all_ready(); }));
@@ -71,7 +71,7 @@ TEST_F(SecondDaemon, OfTheSameBusNameOnLcmIsRefused) {
       << second.output;
 }
 
-/// Everybody on LCM can write a BUS_STATUS.
+/// Anyone on LCM can send a BUS_STATUS.
 TEST_F(SecondDaemon, WithKeysIsOnlyWarnedByAStatusOfTheSameBusName) {
   DaemonProcess first{slow_network(folder_.path())};
   ASSERT_TRUE(first.hear([&] { return first.all_ready(); }));
@@ -80,7 +80,7 @@ TEST_F(SecondDaemon, WithKeysIsOnlyWarnedByAStatusOfTheSameBusName) {
   const fs::path keyed = slow_network(
       folder_.path(), [&](std::string& text) { text += "\nlcm: {keys: " + keys + "}\n"; });
 
-  Ended second;  // 4: its time is over before its nodes are ready
+  Ended second;  // exit code 4: the time is over before the nodes are ready
   const auto is_warned = [&] { return second.output.contains("says a message without proof"); };
   while (second.exit_code != 3 && !is_warned() && before(patience_)) {
     second =

@@ -19,7 +19,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// An ear where systemd would have one, and the environment that tells a service of it.
+/// A socket that receives notifications in place of systemd, and the environment variables that
+/// name it to a service.
 class FakeSystemd {
  public:
   FakeSystemd(const std::filesystem::path& path, std::chrono::microseconds watchdog)
@@ -38,7 +39,7 @@ class FakeSystemd {
   FakeSystemd(const FakeSystemd&) = delete;
   FakeSystemd& operator=(const FakeSystemd&) = delete;
 
-  /// The next message within `limit`, else empty.
+  /// Returns the next message within `limit`; empty if none comes.
   std::string next(Time limit) const {
     pollfd input{.fd = fd_.get(), .events = POLLIN, .revents = 0};
     const timespec pause = to_timespec(limit);
@@ -64,11 +65,11 @@ TEST(Service, TellsSystemdThatItIsReadyAliveInTimeAndStopping) {
   daemon.signal(SIGTERM);
   std::string last = systemd.next(watchdog);
   while (last == "WATCHDOG=1") last = systemd.next(watchdog);
-  EXPECT_EQ(last, "STOPPING=1\nEXTEND_TIMEOUT_USEC=10000000");  // 5 s and what follows it
+  EXPECT_EQ(last, "STOPPING=1\nEXTEND_TIMEOUT_USEC=10000000");  // 5 s, plus later steps
   EXPECT_EQ(daemon.wait(), 0);
 }
 
-/// So slow a SYNC that an ordered stop, of some cycles, takes half a second.
+/// A network with such a slow SYNC that an ordered stop of a few cycles takes half a second.
 std::filesystem::path sleepy_network(const Folder& folder) {
   return slow_network(folder.path(), [](std::string& text) {
     const std::string period = "sync_period: 10000 ";
@@ -94,7 +95,7 @@ TEST_P(StopSignals, ASecondOneStopsAtOnceAndSaysWhatWasNotDone) {
 
 INSTANTIATE_TEST_SUITE_P(Each, StopSignals, testing::Values(SIGTERM, SIGINT));
 
-/// This machine lets the test have SCHED_FIFO, so it lets taktd.
+/// True if this machine allows SCHED_FIFO for the test, and therefore for taktd.
 bool grants_real_time() {
   const sched_param wanted{.sched_priority = 80};
   if (::sched_setscheduler(0, SCHED_FIFO, &wanted) != 0) return false;

@@ -9,7 +9,7 @@
 namespace takt::test {
 namespace {
 
-/// --events on a pipe that is full at once and that nobody reads.
+/// The --events file is a pipe that fills up at once and that nobody reads.
 TEST(SlowDisk, KeepsTheDaemonFromNothing) {
   const Folder folder;
   const std::string events = folder / "stalled";

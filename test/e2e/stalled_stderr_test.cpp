@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A stderr that is full from the start and that nobody reads, as that of a pager that is paused.
+/// A stderr that is full from the start and that nobody reads, as with a paused pager.
 class StalledStderr : public testing::Test {
  protected:
   StalledStderr() {

@@ -1,4 +1,4 @@
-// Files from somebody else may hold anything: no control character of theirs reaches a terminal.
+// Foreign files may contain anything. None of their control characters may reach a terminal.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <string>

@@ -7,7 +7,7 @@
 
 namespace takt::test {
 
-/// A program in a terminal of its own, 140 columns by 20 rows. Killed when the test ends.
+/// A program in its own terminal of 140 columns by 20 rows. The destructor kills it.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> arguments);
@@ -16,13 +16,14 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   void press(const std::string& keys) const;
-  /// Reads until `text` was shown since the last call; `meanwhile` again and again. False: never.
+  /// Reads until the program has shown `text` since the last call, and calls `meanwhile`
+  /// repeatedly. Returns false if the text does not come within `patience`.
   bool shows(const std::string& text, const std::function<void()>& meanwhile = {});
-  /// What was read in the last call of shows().
+  /// The text that the last call of shows() has read.
   const std::string& shown() const noexcept { return shown_; }
-  /// Exit code when the program ends by itself within a generous time.
+  /// Returns the exit code if the program ends by itself within `patience`.
   std::optional<int> wait();
-  /// The terminal takes whole lines and echoes them, as before the program.
+  /// True if the terminal takes whole lines and echoes them, as before the start of the program.
   bool is_as_before() const;
 
  private:

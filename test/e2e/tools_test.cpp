@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 class ToolsAlone : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(devices_.says("3 devices on"));  // from here on they hold the bus
+    ASSERT_TRUE(devices_.says("3 devices on"));  // from here on the devices own the bus
     const Time until = monotonic_now() + patience;
     while (takt({"sdo", "read", "1", "1000", "--timeout", "100"}).exit_code != 0) {
       ASSERT_LT(monotonic_now(), until) << devices_.output();
@@ -141,8 +141,8 @@ TEST(TwoDevicesOfOneId, AreToldByTheDaemon) {
   devices.insert(devices.end(), {"--only", "elbow"});
   const Process twin{devices, folder / "twin"};
 
-  // By their answers, their heartbeats or their TPDOs; perhaps before anybody hears its messages,
-  // as such a boot may fail at once.
+  // The daemon detects the duplicates by their answers, heartbeats or TPDOs. This may happen before
+  // the test receives messages, because such a boot may fail at once.
   const auto told = [&] {
     return daemon.events_in_file("duplicate_node") + daemon.events_in_file("duplicate_cob_id") > 0;
   };

@@ -20,8 +20,8 @@ void put(std::vector<std::byte>& out, T value) {
   }
 }
 
-/// An application that knows the types of `takt export lcm` for the demo's shoulder and nothing
-/// else of takt.
+/// An application that knows only the types that `takt export lcm` writes for the shoulder of the
+/// demo.
 class TypedApplication {
  public:
   TypedApplication(const std::filesystem::path& network, const std::string& url)
@@ -55,7 +55,7 @@ class TypedApplication {
     put(bytes, std::bit_cast<std::uint64_t>(target));
     lcm_.publish("DEMO_SHOULDER_COMMAND", bytes);
   }
-  /// CiA 402: the next controlword on the way to "operation enabled".
+  /// Commands the next controlword on the way to Operation enabled. CiA 402.
   void enable(double target) {
     const std::uint64_t state = statusword() & 0x6F;
     command(state == 0x21 ? 7 : state == 0x23 || state == 0x27 ? 15 : 6, target);
@@ -91,7 +91,7 @@ TEST(TypedChannels, MoveAnAxisInSi) {
         if (enabled) target = std::min(target + 0.002, 0.1);
         application.enable(enabled ? target : unchanged);
       },
-      [&] {  // 0.1 rad of 10,000 counts a turn; the typed message and the image come one by one
+      [&] {  // 0.1 rad at 10,000 counts per turn; the typed message and the image come separately
         return std::abs(application.position() - 0.1) < 0.001 &&
                std::abs(daemon.value("shoulder", "position_actual_value") - 159) <= 2;
       });

@@ -1,4 +1,4 @@
-// Exit code 6: the ordered stop was not confirmed.
+// Exit code 6 means that the ordered stop was not confirmed.
 #include <csignal>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -23,12 +23,12 @@ class UnconfirmedStop : public testing::Test {
   void SetUp() override {
     ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
   }
-  /// Nothing is known any more of whether the drives move.
+  /// Kills the drives, so that the daemon does not know whether they move.
   void lose_drives() {
     devices.signal(SIGKILL);
     ASSERT_TRUE(daemon.hear([&] { return daemon.events("heartbeat_lost") >= 2; }));
   }
-  /// An application enables the drives, and they are lost while it moves them.
+  /// Loses the drives while an application has enabled and moves them.
   void lose_enabled_drives() {
     const Process move{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
                        folder / "move"};
@@ -64,7 +64,7 @@ TEST_F(UnconfirmedStop, IsNoneOfDrivesThatWereNeverEnabled) {
   EXPECT_EQ(daemon.events_in_file("axis_not_stopped"), 0U);
 }
 
-/// The answer to an NMT stop of the daemon itself comes when the axes were stopped.
+/// The answer to an NMT stop of the master itself comes after the stop of the axes.
 TEST_F(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
   ASSERT_NO_FATAL_FAILURE(lose_enabled_drives());
 
@@ -76,7 +76,7 @@ TEST_F(UnconfirmedStop, IsSaidByNmtStopOfTheMaster) {
       << stop.output;
 }
 
-/// The ramp takes minutes, and the stop has a second.
+/// The ramp takes minutes, but the stop may take only one second.
 TEST(UnconfirmedStopOfASimulation, HasExitCode6) {
   const Folder folder;
   const auto network = slow_network(folder.path(), [](std::string& text) {

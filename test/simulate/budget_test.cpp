@@ -15,13 +15,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// TAKT_BUDGET_NETWORKS=5000: so many random networks instead of a few.
+/// Number of random networks; TAKT_BUDGET_NETWORKS=5000 replaces the default.
 unsigned networks() {
   const char* text = std::getenv("TAKT_BUDGET_NETWORKS");
   return text == nullptr ? 60 : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 
-/// Of the TPDOs of a node that follow SYNC.
+/// Returns the bound of the TPDOs of a node that follow SYNC.
 Time bound_of(const BusBudget& budget, const std::string& node, bool emcys) {
   Time last{};
   for (const auto& row : budget.rows) {
@@ -38,7 +38,7 @@ TEST(Budget, NoTpdoOfTheWholeMasterArrivesLaterThanItsBound) {
   for (unsigned round = 0; round < networks(); ++round) {
     sim::Random random{round};
     const auto network = random_network(random);
-    if (has_error(network.findings)) continue;  // does not fit at all
+    if (has_error(network.findings)) continue;  // the traffic does not fit the bus
     const auto budget = bus_budget(network.plan);
 
     const auto seen = simulate(network, {.duration = 1500ms, .seed = random.next(), .move = true});

@@ -38,7 +38,7 @@ TEST_P(Families, BootAndRunWithoutATrouble) {
 INSTANTIATE_TEST_SUITE_P(Demos, Families,
                          testing::Values("lenze8400", "beckhoff", "plain301", "astraada_drv28"));
 
-/// TPDO frames of the only node while `span` more passes.
+/// Returns the number of TPDO frames of the only node within `span` after the first 5 s.
 std::uint64_t frames_within(const std::string& family, Time span) {
   return run(family, 5s + span).nodes.at(0).tpdo_frames - run(family, 5s).nodes.at(0).tpdo_frames;
 }
@@ -56,10 +56,11 @@ TEST(FamilyTraffic, OfAPlainDeviceIsByItsEventTimerAndEachSecondSync) {
 }
 
 TEST(FamilyTraffic, OfADrv28WithoutAChangeIsThatOfItsSynchronousPdo) {
-  EXPECT_EQ(frames_within("astraada_drv28", 1s), 100u);  // PDO3 and PDO4 wait for something
+  EXPECT_EQ(frames_within("astraada_drv28", 1s), 100u);  // PDO3 and PDO4 wait for an event
 }
 
-/// TPDO frames in the sixth second of a Lenze that makes the SYNC itself, every 20 ms.
+/// Returns the number of TPDO frames in the sixth second of a Lenze that produces SYNC itself every
+/// 20 ms.
 std::uint64_t frames_of_a_producer(const std::string& firmware) {
   const test::Folder folder;
   const auto file =
@@ -69,7 +70,7 @@ std::uint64_t frames_of_a_producer(const std::string& firmware) {
                    "  node_id: 3\n"
                    "  dcf: " TAKT_SOURCE_DIR
                    "/share/eds/lenze8400.eds\n"
-                   "  device: none\n"  // whose data would refuse it
+                   "  device: none\n"  // the device data would refuse this configuration
                    "  sim: {model: lenze8400, firmware: \"" +
                        firmware +
                        "\"}\n"

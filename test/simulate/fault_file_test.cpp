@@ -107,7 +107,7 @@ TEST_F(FaultFileTest, RefusesWhatCanNotHappenToPrograms) {
   EXPECT_TRUE(alone.findings[0].message.contains("--applications")) << alone.findings[0].message;
 }
 
-/// The YAML block of a text file.
+/// Returns the YAML block of a text file.
 std::string yaml_block(const std::string& path) {
   std::ifstream in{path};
   std::string block;

@@ -11,7 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A bus of 2 ms whose programs have said one image and one command, both of cycle 500.
+/// A bus with a cycle of 2 ms whose programs have sent one image and one command, both of cycle
+/// 500.
 class ForgedMessages : public testing::Test {
  protected:
   ForgedMessages() {
@@ -61,7 +62,7 @@ class ForgedMessages : public testing::Test {
   std::vector<std::byte> buffer;
 };
 
-/// 200 s are 100,000 cycles: a cycle that was far ahead of the command is the true one now.
+/// 200 s are 100,000 cycles, so a cycle that was far ahead of the command becomes the true cycle.
 TEST_F(ForgedMessages, HaveACycleThatIsFarFromTheTrueOneHoweverOldTheCommandIs) {
   std::size_t seen = 0;
   for (unsigned second = 0; second < 200; ++second) {
@@ -71,7 +72,7 @@ TEST_F(ForgedMessages, HaveACycleThatIsFarFromTheTrueOneHoweverOldTheCommandIs) 
     }
     pass(1s);
     for (const std::int64_t cycle : forged_cycles()) {
-      if (cycle <= 0) continue;  // it is refused whatever the true cycle is
+      if (cycle <= 0) continue;  // refused with any true cycle
       ++seen;
       EXPECT_GT(std::abs(cycle - world.now() / 2ms), 2000) << cycle;
     }

@@ -15,8 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 using enum ProgramFaultKind;
 
-/// The longest time to live that an application gives its commands is 27 cycles of 2 ms. Four more
-/// cycles are for the way to the wire.
+/// The longest time to live that an application gives its commands is 27 cycles of 2 ms. The way to
+/// the wire takes up to four more cycles.
 constexpr Time longest_lease = 62ms;
 
 /// RPDO 1 of an axis: controlword and target position.
@@ -28,7 +28,7 @@ struct SetPoint {
   bool enables() const { return (controlword & 0x0F) == 0x0F; }
 };
 
-/// The demo, `shoulder` being moved by application 0 and `elbow` by application 1.
+/// The demo; application 0 moves `shoulder` and application 1 moves `elbow`.
 class FrontSimulation : public testing::Test {
  protected:
   void run(ProgramFaults programs, Time duration = 8s, sim::Faults bus = {}) {
@@ -42,7 +42,7 @@ class FrontSimulation : public testing::Test {
     for (std::string line; std::getline(in, line);) take(line);
   }
 
-  /// True: a set-point of the axis differed from the one before within this time.
+  /// Returns true if a set-point of the axis differed from the previous one within this time.
   static bool moves(const std::vector<SetPoint>& axis, Time from, Time until) {
     for (std::size_t i = 1; i < axis.size(); ++i) {
       if (axis[i].when < from || axis[i].when >= until) continue;
@@ -50,7 +50,7 @@ class FrontSimulation : public testing::Test {
     }
     return false;
   }
-  /// As it was sent last before this time.
+  /// Returns the last set-point that was sent before this time.
   static const SetPoint& before(const std::vector<SetPoint>& axis, Time when) {
     std::size_t i = 0;
     while (i + 1 < axis.size() && axis[i + 1].when < when) ++i;
@@ -156,7 +156,7 @@ TEST_F(FrontSimulation, AnApplicationThatEndsInOrderLeavesNoFallbackToWarnOf) {
   EXPECT_EQ(outcome.front->fallbacks, 0U);
 }
 
-/// The whole of taktd is stopped for 8 s, and its application dies meanwhile.
+/// The whole taktd is stopped for 8 s, and its application dies during this time.
 TEST_F(FrontSimulation, CommandsThatWaitedWhileTaktdWasStoppedMoveNothing) {
   run({{.kind = kill_application, .application = 0, .at = 3500ms}}, 14s,
       {{.kind = sim::FaultKind::stall_master, .at = 3s, .until = 11s}});

@@ -61,7 +61,7 @@ class Loaded final : sim::BusObserver {
     }
   }
 
-  /// SYNC is queued at multiples of the period; an output no sooner than at its deadline.
+  /// SYNC is queued at multiples of the period, and an output not before its deadline.
   void on_wire(const sim::WireFrame& wire) noexcept override {
     const auto found = rows_.find(wire.frame.id);
     if (found == rows_.end() || wire.frame.rtr) return;

@@ -6,15 +6,16 @@
 
 namespace takt {
 
-/// What was seen of the cycle while applications ask every node for objects all the time, and
+/// Observations of the cycle while applications permanently read objects of every node and the SDO
 /// servers answer late.
 struct LoadedRun {
-  std::vector<Time> worst;  ///< as BudgetRow::worst of SYNC and the PDOs that follow it; else 0
+  std::vector<Time> worst;  ///< as BudgetRow::worst, for SYNC and the PDOs that follow SYNC; else 0
   std::uint64_t sdo_answers = 0;
-  std::uint64_t late_syncs = 0;  ///< by a tenth of the period
+  std::uint64_t late_syncs = 0;  ///< SYNCs that were late by a tenth of the period
 };
 
-/// The whole master and its devices in virtual time. `slowest`: of the SDO servers, each answer.
+/// Runs the complete master and its devices in virtual time. `slowest` is the longest delay of an
+/// answer of the SDO servers.
 LoadedRun run_loaded(const LoadedNetwork& network, const BusBudget& budget, Time duration,
                      Time slowest, std::uint64_t seed);
 

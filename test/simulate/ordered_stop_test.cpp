@@ -16,7 +16,8 @@ struct Machine {
   std::string sdo{};
 };
 
-/// Two drives that count um; `master` has more keys of it, `sdo` objects of drive z.
+/// A network with two drives that count in um. `master` adds keys to the master, and `sdo` adds
+/// objects to drive z.
 LoadedNetwork machine(const test::Folder& folder, const Machine& machine = {}) {
   const std::string axis =
       "dcf: " TAKT_SOURCE_DIR
@@ -75,7 +76,7 @@ TEST(OrderedStopOfABus, TellsAtWhichVelocityADriveWasDisabled) {
   EXPECT_NE(outcome.unconfirmed[0].find("mm/s"), std::string::npos) << outcome.unconfirmed[0];
 }
 
-// A ramp of 6 s, a quarter more for its detection, and the other stages.
+// The time covers a ramp of 6 s, a quarter more for its detection, and the other stages.
 TEST(OrderedStopOfABus, HasTheTimeThatTheSlowestRampNeeds) {
   const test::Folder folder;
   const auto network =
@@ -120,7 +121,7 @@ TEST(OrderedStopOfABus, DisablesADriveThatStaysInQuickStop) {
   EXPECT_EQ(outcome.stop, StopResult::confirmed);
 }
 
-/// The devices watch the master for 300 ms (0x1016).
+/// The devices report a lost master after 300 ms (0x1016), so 3 s of silence are long enough.
 constexpr Time silence = 3s;
 
 TEST(OrderedStopOfABus, LeavesNoDeviceThatMissesItsMaster) {
@@ -133,7 +134,8 @@ TEST(OrderedStopOfABus, LeavesNoDeviceThatMissesItsMaster) {
   }
 }
 
-/// What the master wrote by SDO to node 1 after the stop began, as the candump log has it.
+/// Returns the SDO writes of the master to node 1 after the start of the stop, as in the candump
+/// log.
 std::vector<std::string> written_in_the_stop(const LoadedNetwork& network,
                                              const test::Folder& folder) {
   const std::string log = folder.path() / "log";
@@ -154,7 +156,8 @@ std::vector<std::string> written_in_the_stop(const LoadedNetwork& network,
 constexpr const char* with_sync = "sync_period: 4000";
 constexpr const char* without_sync = "cycle: 4000";
 
-/// One drive that has life guarding, below a master without a heartbeat; `node` has more keys.
+/// A network with one drive that has life guarding and a master without a heartbeat; `node` adds
+/// keys to the drive.
 LoadedNetwork guarded(const test::Folder& folder, const std::string& node,
                       const std::string& period = with_sync) {
   return load_network(folder.write("net.yaml",

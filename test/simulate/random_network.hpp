@@ -4,7 +4,8 @@
 
 namespace takt {
 
-/// Drives and inputs and outputs, on a bus between half full and full. It may not fit at all.
+/// Makes a network with drives, inputs and outputs on a bus that is between half full and full. The
+/// traffic may even not fit the bus.
 LoadedNetwork random_network(sim::Random& random);
 
 }  // namespace takt

@@ -72,13 +72,13 @@ TEST(Simulation, CountsPdosWith29BitIdentifiers) {
       load_network(TAKT_SOURCE_DIR "/test/simulate/data/extended_ids.yaml"), {.duration = 2s});
 
   ASSERT_EQ(outcome.nodes.size(), 1u);
-  EXPECT_GT(outcome.nodes[0].tpdo_frames, 180u + 30u);  // each 10 ms and each 50 ms
+  EXPECT_GT(outcome.nodes[0].tpdo_frames, 180u + 30u);  // one frame every 10 ms and one every 50 ms
   EXPECT_GT(outcome.nodes[0].rpdo_frames, 170u);
   EXPECT_EQ(outcome.nodes[0].tpdo_missing, 0u);
   EXPECT_EQ(outcome.nodes[0].tpdo_late, 0u);
 }
 
-/// The payload of the last frame of an identifier in a candump log.
+/// Returns the payload of the last frame with an identifier in a candump log.
 std::string last_payload(const std::filesystem::path& log, const std::string& id) {
   std::ifstream in{log};
   std::string found;
@@ -109,7 +109,7 @@ TEST(Simulation, CountsTheTimeBeforeTheFirstSyncAsNoCycle) {
 
   const auto outcome = simulate(network, {.duration = 3s});
 
-  // 20 ms have 20,000 bits; the boot before SYNC has more.
+  // A cycle of 20 ms has 20,000 bits; the boot before SYNC would have more.
   EXPECT_GT(outcome.worst_cycle_bits, 500u);
   EXPECT_LT(outcome.worst_cycle_bits, 20'000u);
 }

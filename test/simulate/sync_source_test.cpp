@@ -9,7 +9,7 @@
 #include "apps/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
 
-// A device makes the SYNC, and the master's cycle keeps to it.
+// A device produces SYNC, and the master's cycle follows this SYNC.
 
 namespace takt {
 namespace {
@@ -40,8 +40,8 @@ std::string text_of(const SimulationOutcome& outcome, EventKind kind) {
   return found == outcome.events.end() ? "" : found->text;
 }
 
-/// Time from SYNC (0x080) to the axis' RPDO1 (0x205), of all frames after the first two seconds of
-/// a candump log, in microseconds.
+/// Times in microseconds from SYNC (0x080) to RPDO1 of the axis (0x205), for all frames after the
+/// first two seconds of a candump log.
 struct Offsets {
   long least = 1'000'000;
   long most = 0;
@@ -91,7 +91,8 @@ TEST_P(Drift, OfTheProducersClockMovesNoOutputAgainstItsSync) {
     EXPECT_EQ(node.boot_failures, 0u) << node.name;
     EXPECT_EQ(node.tpdo_missing, 0u) << node.name;
   }
-  // 200 ppm of 98 s are 19.6 ms, two periods: a cycle of our own would have wandered through all.
+  // 200 ppm of 98 s are 19.6 ms or two periods, so a free-running cycle would have drifted through
+  // all offsets.
   EXPECT_GT(offsets.syncs, 9700);
   EXPECT_GT(offsets.frames, 9700);
   EXPECT_LT(offsets.most - offsets.least, 300) << "one frame of 0.27 ms may be before it";
@@ -112,7 +113,8 @@ TEST(SyncSource, TellsALostSyncAndFallsBack) {
   EXPECT_TRUE(outcome.stopped);
 }
 
-/// The first frame that begins so, from this time of a candump log on; 0: none.
+/// Returns the time of the first frame that starts with `frame`, from the time `from` of a candump
+/// log on; 0 if there is none.
 double first_frame(const std::filesystem::path& log, const std::string& frame, double from) {
   std::ifstream in{log};
   for (std::string line; std::getline(in, line);) {

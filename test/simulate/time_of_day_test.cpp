@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 struct TimeFrame {
-  double when = 0;   // seconds, of the log
+  double when = 0;   // time in the log, in seconds
   std::string data;  // hex
 };
 
@@ -37,7 +37,7 @@ std::vector<TimeFrame> time_frames(const SimulationOptions& options) {
   return frames;
 }
 
-/// Milliseconds since midnight: the first four bytes, least significant first.
+/// Returns the milliseconds since midnight from the first four bytes, least significant byte first.
 long milliseconds_of(const std::string& hex) {
   long value = 0;
   for (int byte = 3; byte >= 0; --byte) {

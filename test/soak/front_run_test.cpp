@@ -29,12 +29,12 @@ TEST(FrontSoak, GivesTheSameRunForTheSameSeed) {
   EXPECT_NE(first.commands, other.commands);
 }
 
-/// Runs in which what keeps takt safe is taken away: the judges tell.
+/// Each run disables one safety function of takt, and a judge must report this.
 class FrontMeddled : public testing::Test {
  protected:
   std::uint64_t seeds = 12;
 
-  /// The first invariant that one of the seeds breaks; empty: none does.
+  /// Returns the first invariant that one of the seeds breaks; empty if none does.
   std::string broken(const FrontMeddle& meddle) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       const SoakOutcome outcome =
@@ -54,7 +54,7 @@ class FrontMeddled : public testing::Test {
 
 TEST_F(FrontMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), ""); }
 
-/// The second program of a name is taken for the first one.
+/// A second program with the same name counts as the first one.
 TEST_F(FrontMeddled, ASenderIsAName) {
   const auto same = [](unsigned program, std::int64_t own) {
     return program == 7 ? 1 : program == 0 ? 1 : own;
@@ -67,7 +67,7 @@ TEST_F(FrontMeddled, OutputsHaveNoLimits) {
             "no output leaves its limits");
 }
 
-/// Each axis of the network has one kind of limit; the master does not check it.
+/// Each axis of the network has one kind of limit, which the master does not check.
 class LimitMeddled : public FrontMeddled {
  protected:
   LimitMeddled() {
@@ -75,7 +75,8 @@ class LimitMeddled : public FrontMeddled {
     seeds = 60;  // an application seldom jumps
   }
 
-  /// What the judge says where the bus thread lacks one number of the limits of this object.
+  /// Returns the report of the judge if the bus thread lacks one number of the limits of this
+  /// object.
   std::string unchecked(std::uint16_t object, double OutputLimit::* number) {
     const auto forget = [=](BusPlan& plan) {
       for (OutputLimit& limit : plan.limits.outputs) {
@@ -103,7 +104,7 @@ TEST_F(LimitMeddled, StepsHaveNoLimit) {
   expect(unchecked(0x607A, &OutputLimit::step), "stepped.", "step");
 }
 TEST_F(LimitMeddled, PositionsHaveNoLimitOfVelocity) {
-  // Two axes have it; `spun` limits its target velocities with the same number.
+  // Two axes have this number; `spun` uses it to limit target velocities.
   const std::string told = unchecked(0x607A, &OutputLimit::rate);
   const bool spun = told.starts_with("spun.");
   expect(told, spun ? "spun.target_position" : "paced.target_position", "velocity");
@@ -118,7 +119,7 @@ TEST_F(LimitMeddled, TorquesHaveNoLimit) {
   expect(unchecked(0x6071, &OutputLimit::low), "pushed.", "torque");
 }
 
-/// The prediction is read after images were looked for.
+/// The front thread predicts the next image only after it has looked for images.
 TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
   const auto late = [](FrontRound& round) {
     round.wait = [predict = round.next_image, wait = round.wait](Time, Time latest) {
@@ -129,7 +130,7 @@ TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
   EXPECT_EQ(broken({.round = late}), "each wait of the front thread ends in time");
 }
 
-/// A program believes that no image comes before the newest cycle that it has read of.
+/// A program ignores images that are older than the newest cycle that it has received.
 TEST_F(FrontMeddled, OneForgedImageDeafensAProgram) {
   std::array<std::int64_t, 8> newest{};
   const auto hears = [&newest](unsigned program, const image_t& image) {
@@ -140,7 +141,8 @@ TEST_F(FrontMeddled, OneForgedImageDeafensAProgram) {
   EXPECT_EQ(broken({.hears = hears}), "no message deafens an application");
 }
 
-/// Any velocity counts as standstill: axes are disabled while they brake, and confirmed.
+/// Any velocity counts as standstill, so axes are disabled while they brake, and the stop is
+/// confirmed.
 TEST_F(FrontMeddled, NothingIsSeenOfTheStop) {
   network = load_network(TAKT_SOURCE_DIR "/test/soak/data/slow_stop.yaml");
   EXPECT_EQ(broken({}), "");

@@ -12,7 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Two axes at 2 ms: 6041 and 6064 of both are signals 0 to 3, 6040 and 607A are 4 to 7.
+/// Two axes with a cycle of 2 ms. Signals 0 to 3 are 6041 and 6064 of both axes, signals 4 to 7 are
+/// 6040 and 607A.
 class Judges : public testing::Test {
  protected:
   void hear(std::initializer_list<std::uint8_t> bytes) {
@@ -95,7 +96,7 @@ TEST_F(SyncJudge, TakesACounterThatStartsAnewWithTheNetwork) {
   nmt(NmtCommand::stop);
   syncs({3, 4});
   nmt(NmtCommand::start);
-  syncs({1, 2, 1, 2});  // before the command finds room
+  syncs({1, 2, 1, 2});  // before there is room for the command
   nmt(NmtCommand::reset_communication);
   syncs({3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 3, 4});
   EXPECT_TRUE(verdict.good());
@@ -267,7 +268,7 @@ TEST_F(NodeJudges, BlameANodeThatIsNotReadyInTheEnd) {
   EXPECT_EQ(verdict.violation()->invariant, "every node comes back");
 }
 
-/// A user whose one request has gone out at 1 s.
+/// A user whose only request was sent at 1 s.
 class Asked : public testing::Test {
  protected:
   Asked() {

@@ -11,14 +11,14 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr SignalIndex controlword = 4;
-constexpr SignalIndex target = 6;  // 607A of the first axis, or what a test makes of it
+constexpr SignalIndex target = 6;  // 607A of the first axis, unless a test changes the object
 
 /// One limited output of an axis at 2 ms. The axis follows, unless a test says otherwise.
 class LimitJudges : public testing::Test {
  protected:
   LimitJudges() { limit.signal = target; }
 
-  /// The axis stands at 1000, and the first set-point is there.
+  /// Starts with the axis at 1000 and sends the first set-point.
   void begin() {
     plan.limits.outputs = {limit};
     judge = std::make_unique<LimitJudge>(plan, world, verdict);
@@ -35,7 +35,7 @@ class LimitJudges : public testing::Test {
                              static_cast<std::uint8_t>(position >> 8), 0x00, 0x00}));
   }
   void cycle() { judge->begin_cycle(now += 2ms); }
-  /// The frame goes out in each cycle, with the value that it had.
+  /// Sends the frame with the last value in each cycle.
   void pass(unsigned cycles) {
     for (; cycles != 0; --cycles) send({last});
   }
@@ -140,7 +140,7 @@ TEST_F(LimitJudges, BlameAnAccelerationOfPositions) {
   send({1001, 1007, 1018, 1034});
   EXPECT_TRUE(verdict.good());
 
-  send({1042});  // 8 counts after 16
+  send({1042});  // a step of 8 counts after one of 16
 
   EXPECT_TRUE(blames("acceleration"));
 }

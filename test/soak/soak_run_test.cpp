@@ -32,7 +32,7 @@ TEST(Soak, GivesTheSameRunForTheSameSeed) {
   EXPECT_NE(first.frames, other.frames);
 }
 
-/// After a stall without SYNC a cycle was stamped with a beat that was still to come.
+/// Regression: after a stall without SYNC, the time stamp of a cycle was a SYNC in the future.
 TEST(Soak, HoldsWhereAnotherDeviceMakesTheSync) {
   const LoadedNetwork network = load_network(TAKT_SOURCE_DIR "/share/demo/lenze8400_sync.yaml");
 
@@ -42,18 +42,19 @@ TEST(Soak, HoldsWhereAnotherDeviceMakesTheSync) {
   }
 }
 
-/// A whole run in which something is broken: the judges are connected, and each of them tells.
+/// Complete runs in which one part is broken. They show that each judge is connected and reports
+/// its invariant.
 class Meddled : public testing::Test {
  protected:
   using Meddle = std::function<void(Exchange&, sim::World&)>;
 
-  /// The invariant that the run breaks; empty: none.
+  /// Returns the invariant that the run breaks; empty if it breaks none.
   std::string broken(Meddle meddle, Time duration = 2s) {
     const SoakOutcome outcome =
         soak(network, {.seed = 5, .duration = duration, .meddle = std::move(meddle)});
     return outcome.violation ? outcome.violation->invariant : "";
   }
-  /// Once, as soon as images come.
+  /// Publishes one more image, once, as soon as images come.
   void publish(Exchange& exchange, ImageStamp stamp) {
     if (done_) return;
     done_ = true;
@@ -96,7 +97,7 @@ TEST_F(Meddled, CycleNumberComesAgain) {
   EXPECT_EQ(broken(meddle), "cycle numbers rise");
 }
 
-/// Somebody keeps the axes enabled while their application is silent.
+/// Another writer keeps the axes enabled while their application is silent.
 TEST_F(Meddled, OutputOutlivesItsCommand) {
   const auto meddle = [this](Exchange& exchange, sim::World& world) {
     const ImageLayout& layout = network.plan.layout;

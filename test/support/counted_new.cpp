@@ -8,7 +8,8 @@ namespace {
 std::atomic<std::uint64_t> count{0};
 }  // namespace
 
-// Each kind of its own, so that a sanitizer's never meets our delete.
+// Every kind of operator new is replaced, so that memory from a sanitizer's new never reaches our
+// delete.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   count.fetch_add(1, std::memory_order_relaxed);
   return std::malloc(size == 0 ? 1 : size);

@@ -3,7 +3,7 @@
 
 namespace takt {
 
-/// Calls of operator new in this test program so far.
+/// Returns the number of calls of operator new in this test program so far.
 std::uint64_t allocations() noexcept;
 
 }  // namespace takt

@@ -7,7 +7,8 @@
 
 namespace takt::test {
 
-/// A folder of its own, gone with its owner: tests of one program run side by side.
+/// A temporary folder for one test, removed by the destructor. Each test needs its own folder
+/// because tests of one program run in parallel.
 class Folder {
  public:
   Folder() {
@@ -25,7 +26,7 @@ class Folder {
   const std::filesystem::path& path() const noexcept { return path_; }
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
-  /// The path of the file written; folders on its way are made.
+  /// Writes a file, creates its parent folders, and returns its path.
   std::filesystem::path write(const std::filesystem::path& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream{path_ / name, std::ios::binary} << text;

@@ -3,8 +3,8 @@
 
 namespace takt::test {
 
-/// How long a test waits for what has to happen. It ends a test that would hang; on a machine that
-/// is very busy what is waited for comes late, but long before this.
+/// Longest time that a test waits for an expected event. The limit ends a test that would hang. On
+/// a very busy machine the event comes late, but long before this limit.
 inline constexpr std::chrono::seconds patience{180};
 
 }  // namespace takt::test

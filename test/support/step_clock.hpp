@@ -5,7 +5,7 @@
 
 namespace takt::test {
 
-/// A clock that goes on by `step` each time that somebody reads it, and by hand. Copies share it.
+/// A clock that advances by `step` at each reading, and by pass(). Copies share the same time.
 class StepClock {
  public:
   explicit StepClock(Time step) : state_{std::make_shared<State>(State{Time{1}, step})} {}

@@ -1,5 +1,5 @@
-// A boot of two nodes, ten cycles and what an application commands, to the microsecond and the
-// byte. The recording was read by a person: see the words in it.
+// A boot of two nodes and ten cycles with the commands of an application, exact to the microsecond
+// and the byte. A person has reviewed the recording; see the remarks in it.
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
@@ -11,7 +11,8 @@
 namespace takt::test {
 namespace {
 
-/// `(seconds) id#data` at the end of each frame, as a listener stamps it.
+/// Writes `(seconds) id#data` for each frame, with the time of the end of the frame, as a receiver
+/// stamps it.
 std::string text_of(const std::vector<sim::WireFrame>& frames, Time begin) {
   std::string text;
   for (const sim::WireFrame& wire : frames) {
@@ -29,7 +30,7 @@ std::string text_of(const std::vector<sim::WireFrame>& frames, Time begin) {
   return text;
 }
 
-/// Without blank lines and words behind `;`.
+/// Reads the recording without blank lines and without remarks after `;`.
 std::string golden() {
   std::ifstream in{TAKT_SOURCE_DIR "/test/virtual/data/boot_and_ten_cycles.log"};
   std::string text;

@@ -1,4 +1,4 @@
-// Limits of set-points with the whole master: nothing outside gets onto the wire.
+// Limits of set-points with the complete master: no set-point outside the limits reaches the wire.
 #include <cstring>
 #include <gtest/gtest.h>
 #include <random>
@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::Rig;
 
-/// Axes with positions in millimetres, range +-2 m, 20 mm a cycle.
+/// Axes with positions in millimetres, a range of +-2 m, and at most 20 mm per cycle.
 BusPlan limited_axes(unsigned nodes = 1) {
   BusPlan plan = test::axes({.nodes = nodes, .fallback_cycles = 50});
   for (unsigned i = 0; i < nodes; ++i) {
@@ -69,7 +69,7 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
             "fallback until a command is inside again");
 }
 
-/// The limits of one axis are known from its device only: 607D says 0 .. 300.
+/// A plan with one axis whose limits come only from its device, where the boot reads 607D.
 BusPlan told_in_the_boot() {
   BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 50});
   const SignalIndex target = 3;

@@ -10,7 +10,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Node `id` of serial number `serial`, without node id or with it.
+/// An LSS device in `row` of the plan with serial number `serial`; `quirk` decides whether the
+/// device has a node-ID.
 DeviceTable lss_device(const BusPlan& plan, std::size_t row, std::uint32_t serial,
                        const std::string& quirk = "no_node_id") {
   DeviceTable table =
@@ -43,7 +44,7 @@ struct Answer {
   std::vector<LssResult> results;
 };
 
-/// The answer to a request; fault `timeout`: none came within `limit`.
+/// Sends a request and returns the answer. The fault is `timeout` if no answer came within `limit`.
 Answer ask(Rig& rig, std::span<const LssCommand> commands, Time limit = 30s) {
   EXPECT_TRUE(rig.master->submit(lss_request(1, commands)));
   const Time until = rig.world->now() + limit;
@@ -179,7 +180,7 @@ TEST(Lss, BootsNodesThatGetTheirIdByLss) {
 
   EXPECT_TRUE(rig.all_ready());
   EXPECT_EQ(rig.count(EventKind::lss_assigned), 2);
-  // Nothing more is asked once all have booted.
+  // No LSS request is sent once all nodes have booted.
   const std::size_t asked = rig.recorder.with(0x7E5).size();
   rig.run(5000);
   EXPECT_EQ(rig.recorder.with(0x7E5).size(), asked);
@@ -260,7 +261,7 @@ TEST(Lss, LooksForNobodyWhereNoNodeWantsIt) {
   EXPECT_TRUE(rig.recorder.with(0x7E5).empty());
 }
 
-/// Runs the ordered stop to its end. False: it took longer than its limit.
+/// Runs the ordered stop to its end. Returns false if it took longer than its limit.
 bool stop(Rig& rig) {
   rig.master->request_stop();
   const Time limit = rig.world->now() + rig.master->plan().stop_timeout;

@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::Rig;
 
-/// A fault from now on.
+/// A fault that starts now and lasts for `lasts`.
 sim::Fault fault_now(Rig& rig, sim::FaultKind kind, std::optional<NodeId> node, Time lasts) {
   sim::Fault fault;
   fault.kind = kind;
@@ -58,7 +58,7 @@ TEST(Master, SyncIsOnTheWireExactlyEachPeriodUnlessADeviceIsSending) {
       ++on_time;
       continue;
     }
-    // Somebody else's frame has just left the wire.
+    // A late SYNC may only come after a frame of another node.
     ASSERT_GT(i, 0U);
     EXPECT_NE(rig.world->node_of(frames[i - 1].sender), 0) << "own frame before SYNC";
     EXPECT_LT(late, 135us);
@@ -100,7 +100,8 @@ TEST(Master, CommandFromImageKActsAtSyncKPlus1) {
   rig.run(20);
   const std::int64_t sent = static_cast<std::int64_t>(rig.last.cycle);
   rig.run(1);
-  // Computed from image k, in force since SYNC k + 1, which sampled the inputs just before.
+  // The set-point was computed from image k and acts since SYNC k + 1, which sampled the inputs
+  // just before.
   EXPECT_EQ(rig.world->device(1_node)->objects().find({0x607A, 0})->value,
             static_cast<std::uint64_t>(sent));
   EXPECT_EQ(rig.last_image[2], sent - 1);
@@ -134,7 +135,7 @@ TEST(Master, BootsANodeAgainThatWasOffWhileTheOthersKeepCycling) {
   EXPECT_FALSE(others_stale);
   EXPECT_EQ(rig.count(EventKind::boot_done), 1);
   EXPECT_FALSE(rig.stale(1));
-  EXPECT_TRUE(rig.recorder.with(0x202).empty());  // its old command is forgotten
+  EXPECT_TRUE(rig.recorder.with(0x202).empty());  // the master has forgotten the old command
   rig.command(1, 0x000F, 6);
   rig.run(3);
   EXPECT_FALSE(rig.recorder.with(0x202).empty());
@@ -226,7 +227,7 @@ TEST(Master, ExchangesPdosOfEveryRateInBothDirections) {
     Rig rig{test::axes({.tpdo_type = n, .rpdo_type = n, .fallback_cycles = 0})};
     ASSERT_TRUE(rig.boot());
     rig.command_all(0x000F, n);
-    rig.run(n + 1);  // the phase is learned
+    rig.run(n + 1);  // the master learns the phase
     rig.recorder.frames.clear();
     rig.run(4 * n);
     EXPECT_EQ(rig.recorder.with(0x181).size(), 4U) << int{n};
@@ -265,7 +266,7 @@ TEST(Master, StopsInOrder) {
   EXPECT_EQ(commands[0].frame.data[0], 128);  // pre-operational
   EXPECT_LT(words.back().start, commands[0].start);
   EXPECT_GT(syncs.back().start, words.back().start);
-  EXPECT_EQ(words.back().frame.data[0] & 0x0F, 0x00);  // loop-back: never says "disabled"
+  EXPECT_EQ(words.back().frame.data[0] & 0x0F, 0x00);  // a loopback device never shows "disabled"
   EXPECT_EQ(rig.count(EventKind::stopped), 1);
 }
 

@@ -1,4 +1,4 @@
-// NMT commands that end the PDO exchange of axes: the axes are stopped first.
+// The master stops the axes before an NMT command that ends their PDO exchange.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <optional>
@@ -14,7 +14,7 @@ using test::Rig;
 constexpr std::uint32_t first_words = 0x201;
 constexpr std::uint32_t second_words = 0x202;
 
-/// Two loop-back drives: the statusword of each is the controlword that it has got.
+/// Two loopback drives; the statusword of each is its last controlword.
 class TwoAxes : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(rig.boot()); }
@@ -22,7 +22,7 @@ class TwoAxes : public testing::Test {
     ASSERT_TRUE(
         rig.master->submit({.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
   }
-  /// When a controlword with these lowest bits was sent for the first time.
+  /// Returns the time at which a controlword with these lowest four bits was first sent.
   std::optional<Time> word_at(std::uint32_t id, unsigned low_bits) const {
     for (const sim::WireFrame& wire : rig.recorder.with(id)) {
       if ((wire.frame.data[0] & 0x0FU) == low_bits) {
@@ -37,19 +37,19 @@ class TwoAxes : public testing::Test {
     }
     return std::nullopt;
   }
-  /// An application that commands both axes in each cycle.
+  /// Commands both axes in each cycle, as an application does.
   void command_for(int cycles, std::int64_t controlword) {
     for (int i = 0; i < cycles; ++i) {
       rig.command_all(controlword, 1);
       rig.run(1);
     }
   }
-  /// The fault with which a request is answered; nothing before that.
+  /// Returns the fault in the answer to a request; empty before the answer.
   std::optional<SdoFault> answer() {
     Reply reply;
     return rig.master->take(reply) ? std::optional{reply.fault} : std::nullopt;
   }
-  /// It needs the axes to be stopped first, so that its answer takes some time.
+  /// Expects that the answer takes some time because the axes have to stop first.
   void expect_answer_after_the_stop(NmtCommand command, std::uint8_t node) {
     order(command, node);
     rig.run(5);
@@ -66,7 +66,7 @@ class TwoAxes : public testing::Test {
   Rig rig{test::axes()};
 };
 
-/// They are enabled.
+/// The axes are enabled.
 class NmtStopOfAxes : public TwoAxes {
  protected:
   void SetUp() override {
@@ -194,7 +194,7 @@ TEST_F(NmtStopOfAxes, ResetsAreNotHeldUp) {
   EXPECT_TRUE(nmt_at(0x81, 1));
 }
 
-/// Nobody has enabled them.
+/// No application has enabled the axes.
 class OrderedStopOfDisabledAxes : public TwoAxes {
  protected:
   void SetUp() override {
@@ -224,8 +224,8 @@ TEST_F(OrderedStopOfDisabledAxes, IsNotConfirmedWhereANodeWasCommandedAndIsSilen
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 1);
 }
 
-/// The first enabling word of an application, in the cycle before NMT stop is asked for, in the
-/// same cycle, and in those after it.
+/// The first enabling controlword of an application comes in the cycle before the request for NMT
+/// stop, in the same cycle, or in the cycles after it.
 TEST_F(OrderedStopOfDisabledAxes, AreNotEnabledWhileNmtStopOfTheirNodeIsUnderWay) {
   for (const int cycle : {-1, 0, 1, 2, 3}) {
     command_for(10, 0x0000);
@@ -272,8 +272,8 @@ TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereTheyWereDisabledLongAfterAnEna
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
 }
 
-/// The drive is enabled by SDO, then by PDO, and is not seen for long between the NMT stop and the
-/// ordered stop: what the first has seen has to count.
+/// The drive is enabled by SDO, then by PDO. Between the NMT stop and the ordered stop the drive is
+/// seen only briefly, so the ordered stop has to use what the NMT stop has seen.
 TEST_F(OrderedStopOfDisabledAxes, IsConfirmedWhereAnNmtStopHasSeenThemDisabled) {
   rig.command_all(0x000F, 1);
   rig.run(5);

@@ -7,7 +7,8 @@ namespace takt::test {
 // clang-format off
 
 inline const std::vector<TpdoRow> rows_301{
-    // An event, then the next SYNC. The state on entering OPERATIONAL is an event.
+    // The PDO is sent at the next SYNC after an event. The state on entering OPERATIONAL is an
+    // event.
     {0, "E: without SYNC nothing", {.changes = {12, 33}}, {}},
     {0, "T: without SYNC nothing", {.timer = 25}, {}},
     {0, "S: without an event nothing more", {.syncs = each_10}, {10}},
@@ -21,7 +22,7 @@ inline const std::vector<TpdoRow> rows_301{
       {.inhibit = 500, .timer = 25, .changes = {12}, .syncs = each_10}, {10, 20}},
     {0, "R+S: no answer", {.syncs = each_10, .remote = {5, 15}}, {10}},
 
-    // After each n-th SYNC, changed or not.
+    // The PDO is sent after each n-th SYNC, changed or not.
     {1, "E: without SYNC nothing", {.changes = {12}}, {}},
     {1, "T: without SYNC nothing", {.timer = 25}, {}},
     {1, "R: without SYNC nothing", {.remote = {5, 15}}, {}},
@@ -42,7 +43,8 @@ inline const std::vector<TpdoRow> rows_301{
     {5, "S: the fifth", {.syncs = each_10}, {50}},
     {5, "R+S: no answer", {.syncs = each_10, .remote = {5, 15, 45}}, {50}},
 
-    // Sampled at SYNC, sent on request; before the first SYNC there is nothing valid.
+    // The PDO is sampled at SYNC and sent on request. Before the first SYNC there is no valid
+    // sample.
     {252, "E: on request only", {.changes = {12}}, {}},
     {252, "T: on request only", {.timer = 20}, {}},
     {252, "S: on request only", {.syncs = each_10}, {}},
@@ -53,7 +55,7 @@ inline const std::vector<TpdoRow> rows_301{
     {252, "I+R+S: no inhibit time",
       {.inhibit = 500, .syncs = {10}, .remote = {15, 17}}, {15, 17}},
 
-    // Sampled and sent on request.
+    // The PDO is sampled and sent on request.
     {253, "E: on request only", {.changes = {12}}, {}},
     {253, "T: on request only", {.timer = 20}, {}},
     {253, "S: on request only", {.syncs = each_10}, {}},
@@ -62,8 +64,8 @@ inline const std::vector<TpdoRow> rows_301{
     {253, "T+E+R+S: on request only",
       {.timer = 20, .changes = {12}, .syncs = each_10, .remote = {5, 15}}, {5, 15}},
 
-    // By event, by timer, by request where bit 30 lets it; SYNC means nothing. The state is told at
-    // the start.
+    // The PDO is sent by event, by timer, and by request if bit 30 allows it. SYNC has no effect.
+    // The state is sent at the start.
     {254, "E: each change", {.changes = {12, 14, 33}}, {0, 12, 14, 33}},
     {254, "S: means nothing", {.syncs = each_10}, {0}},
     {254, "E+S: SYNC means nothing", {.changes = {12, 14, 33}, .syncs = each_10}, {0, 12, 14, 33}},

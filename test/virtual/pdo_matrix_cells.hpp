@@ -1,24 +1,26 @@
 #pragma once
-// Every cell of device x type x event, timer, inhibit time, RTR, SYNC, RPDO, by one course of
-// events. Where a manual is silent the words say "CiA 301" or whose reading it is.
+// Every cell of device x type x event, timer, inhibit time, RTR, SYNC, RPDO, for one course of
+// events. If a manual is silent, the reason names "CiA 301" or the source of the interpretation.
 #include <vector>
 
 namespace takt::test {
 
 // clang-format off
 
-/// E: its value changes at 12 ms, changes back at 14, and changes again at 33. T: event timer of
-/// 24 ms. I: inhibit time, 90 is written to sub 3. R: remote requests at 5, 15, 17 and 37. S: SYNC
-/// at 10, 20, 30, 40 and 50. P: the RPDO of its number at 11 and 26. Frames of the first 103 ms.
+/// One combination of events and the expected frames of the first 103 ms. E: the value changes at
+/// 12 ms, changes back at 14, and changes again at 33. T: event timer of 24 ms. I: inhibit time,
+/// sub-index 3 is 90. R: remote requests at 5, 15, 17 and 37. S: SYNC at 10, 20, 30, 40 and 50. P:
+/// the RPDO with the same number comes at 11 and 26.
 struct Cell {
-  const char* pattern;  ///< "ETIRSP": a letter: so; -: not so; a point: either
+  const char* pattern;  ///< "ETIRSP": a letter means present, "-" absent, "." either
   std::vector<int> frames;
   const char* why;
 };
 
-/// Together the patterns match each of the 64 combinations once.
+/// The cells of a device for some types. Their patterns together match each of the 64 combinations
+/// once.
 struct CellBlock {
-  const char* reading;  ///< of `readings`
+  const char* reading;  ///< name of an entry of `readings`
   std::vector<int> types;
   std::vector<Cell> cells;
 };
@@ -46,7 +48,7 @@ inline const std::vector<CellBlock> cell_blocks{
       {"...-..", {}, "on request only"},
       {"...R..", {5, 15, 17, 37}, "at once; the inhibit time is of 254, 255"},
     }},
-    // The timer begins anew with each frame. The inhibit time is the least time between any two
+    // Each frame restarts the timer. The inhibit time is the least time between any two
     // transmissions of the PDO, so an answer to a request waits for its end as an event does.
     {"301", {254, 255}, {
       {"----..", {0}, "the state"},
@@ -68,7 +70,7 @@ inline const std::vector<CellBlock> cell_blocks{
     }},
 
     // "The PDO is transmitted on an event-controlled basis with every sync"; events are changes "or
-    // when a transmission cycle time has elapsed": 24, 48.
+    // when a transmission cycle time has elapsed", here at 24 and 48.
     {"Lenze", {0}, {
       {"....-.", {}, "SYNC AND event"},
       {"--..S.", {10}, "SYNC AND event"},
@@ -76,8 +78,9 @@ inline const std::vector<CellBlock> cell_blocks{
       {"-T..S.", {10, 30, 50}, "24 is sent at 30, 48 at 50"},
       {"ET..S.", {10, 20, 30, 40, 50}, "14, 24, 33, 48"},
     }},
-    // "Polled via RTR" has no column in its table of types and "RTR only" is said of 252 and 253:
-    // below 252 CiA 301, no answer. Nothing is said of an inhibit time: CiA 301.
+    // The table of types in the manual has no column for "Polled via RTR" and says "RTR only" for
+    // 252 and 253. So types below 252 follow CiA 301: no answer. The manual does not mention the
+    // inhibit time here, so CiA 301 applies.
     {"Lenze", {1}, {
       {"....-.", {}, "sync-controlled"},
       {"....S.", {10, 20, 30, 40, 50}, "with every sync"},
@@ -95,8 +98,8 @@ inline const std::vector<CellBlock> cell_blocks{
       {"...-..", {}, "RTR only"},
       {"...R..", {5, 15, 17, 37}, "asynchronous - RTR only"},
     }},
-    // "254 and 255 have the same meaning"; "cyclic transmission takes place in addition": 24, 48, 72,
-    // 96 stay. An answer inside the inhibit time: CiA 301, put off.
+    // "254 and 255 have the same meaning"; "cyclic transmission takes place in addition", so 24,
+    // 48, 72 and 96 stay. An answer inside the inhibit time is delayed as in CiA 301.
     {"Lenze", {254, 255}, {
       {"----..", {0}, "the state, as CiA 301"},
       {"E---..", {0, 12, 14, 33}, "event-controlled"},
@@ -116,8 +119,9 @@ inline const std::vector<CellBlock> cell_blocks{
       {"ETIR..", {0, 9, 18, 27, 36, 45, 54, 72, 96}, "24 to 27, 33 to 36, 37 to 45, 48 to 54"},
     }},
 
-    // "Acquires its input data when it receives the SYNC and then transmits it if the data correspond
-    // to an event". No word of its event timer: CiA 301, that is of 254 and 255.
+    // "Acquires its input data when it receives the SYNC and then transmits it if the data
+    // correspond to an event". The manual does not mention an event timer for type 0. In CiA 301 it
+    // belongs to types 254 and 255.
     {"Beckhoff", {0}, {
       {"....-.", {}, "acquired at SYNC"},
       {"-...S.", {10}, "the first sample, as CiA 301; then no event"},
@@ -140,8 +144,8 @@ inline const std::vector<CellBlock> cell_blocks{
       {"...-..", {}, "only RTR"},
       {"...R..", {5, 15, 17, 37}, "asynchronous, only RTR"},
     }},
-    // "Asynchronous"; the timer adds an event, events reset it. Of requests and the inhibit time
-    // nothing is said: CiA 301.
+    // "Asynchronous"; the timer adds an event, and events reset it. The manual does not mention
+    // requests and the inhibit time, so CiA 301 applies.
     {"Beckhoff", {254, 255}, {
       {"----..", {0}, "the state, as CiA 301"},
       {"E---..", {0, 12, 14, 33}, "each change"},
@@ -161,7 +165,7 @@ inline const std::vector<CellBlock> cell_blocks{
       {"ETIR..", {0, 9, 18, 33, 42, 66, 90}, "CiA 301"},
     }},
 
-    // "Which SYNC is given in the device profile": that after the event, as CiA 301.
+    // "Which SYNC is given in the device profile": here the SYNC after the event, as in CiA 301.
     {"ars", {0}, {
       {"....-.", {}, "synchronous"},
       {"-...S.", {10}, "the state, as CiA 301"},
@@ -175,8 +179,8 @@ inline const std::vector<CellBlock> cell_blocks{
       {"....-.", {}, "after SYNC"},
       {"....S.", {20, 40}, "after every 2nd SYNC"},
     }},
-    // "The data is updated on reception of a SYNC": before the first one there is none. The page does
-    // not say of which types the inhibit time is: CiA 301, of 254 and 255.
+    // "The data is updated on reception of a SYNC", so there is no data before the first one. The
+    // page does not say which types have an inhibit time; in CiA 301 these are 254 and 255.
     {"ars", {252}, {
       {"...-..", {}, "only on reception of a request"},
       {"...R-.", {}, "never updated: CiA 301, no answer"},
@@ -187,8 +191,8 @@ inline const std::vector<CellBlock> cell_blocks{
       {"...R..", {5, 15, 17, 37}, "updated and transmitted"},
     }},
     // "Each time the PDO is transmitted as a result of the event timer expiring, the event timer is
-    // reset": 24, 48, 72, 96 stay. "Any additional transmissions of the PDO will not take place
-    // during the inhibit time", answers neither; that they are put off is CiA 301.
+    // reset", so 24, 48, 72 and 96 stay. "Any additional transmissions of the PDO will not take
+    // place during the inhibit time"; this includes answers, which are delayed as in CiA 301.
     {"ars", {254, 255}, {
       {"----..", {0}, "the state, as CiA 301"},
       {"E---..", {0, 12, 14, 33}, "each change"},
@@ -208,8 +212,8 @@ inline const std::vector<CellBlock> cell_blocks{
       {"ETIR..", {0, 9, 18, 27, 36, 45, 54, 72, 96}, "24 to 27, 33 to 36, 37 to 45, 48 to 54"},
     }},
 
-    // Its table 3-11 has no 0, 252, 253, and no word is of requests. The disabled time: 90 ms, and 50
-    // where it is 0.
+    // Table 3-11 of the manual has no types 0, 252 and 253, and the manual does not mention
+    // requests. The disabled time is 90 ms, or 50 ms if the entry is 0.
     {"DRV-28", {1}, {
       {"....-.", {}, "synchronous"},
       {"....S.", {10, 20, 30, 40, 50}, "synchronous; timer, disabled time, RPDO are of 254, 255"},

@@ -1,4 +1,5 @@
-// Each cell of device x type x event, timer, inhibit time, RTR, SYNC, RPDO against the devices.
+// Compares each cell of device x type x event, timer, inhibit time, RTR, SYNC, RPDO with the
+// devices.
 #include "test/virtual/pdo_matrix_cells.hpp"
 
 #include <algorithm>

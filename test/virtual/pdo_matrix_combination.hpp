@@ -1,5 +1,5 @@
 #pragma once
-// The combinations of events of the cells of the PDO matrix, and the row that each gives.
+// The combinations of events in the cells of the PDO matrix, and the row for each combination.
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace takt::test {
 
-/// "------" to "ETIRSP".
+/// Returns the 64 names from "------" to "ETIRSP".
 inline std::vector<std::string> combinations() {
   std::vector<std::string> names;
   for (unsigned bits = 0; bits < 64; ++bits) {

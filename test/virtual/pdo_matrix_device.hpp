@@ -1,5 +1,5 @@
 #pragma once
-// A simulated device of the PDO matrix, stepped through the events of a row.
+// A simulated device of the PDO matrix that is stepped through the events of a row.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -15,14 +15,15 @@ using namespace std::chrono_literals;
 
 constexpr Time started = 200ms;  ///< NMT start of the device
 
-/// The second pair of PDOs: the first of a DRV-28 is its parameter channel.
+/// Adds the second pair of PDOs. The first pair cannot be used because it is the parameter channel
+/// of a DRV-28.
 inline sim::SampleDevice with_pdos(std::uint8_t type, std::uint32_t cob = 0x285) {
   return sim::communicating(5_node)
       .pdo(0x1401, 0x305, 255, {0x2010'0020})
       .pdo(0x1801, cob, type, {0x2011'0020});
 }
 
-/// Expedited download to node 5.
+/// Makes the request of an expedited download to node 5.
 inline Frame download(ObjectKey key, std::uint32_t value, unsigned bytes) {
   const auto byte = [](std::uint32_t bits) { return static_cast<std::uint8_t>(bits & 0xFF); };
   return make_frame(CobId::base(0x605), {byte(0x23u | (4 - bytes) << 2), byte(key.index),
@@ -32,7 +33,7 @@ inline Frame download(ObjectKey key, std::uint32_t value, unsigned bytes) {
 
 inline int ms_after_start(Time when) { return static_cast<int>((when - started + 500us) / 1ms); }
 
-/// A device that is stepped through the events of a row, and when it has sent what.
+/// Steps a device through the events of a row and records its frames with their times.
 class Stepper {
  public:
   explicit Stepper(DeviceTable table)
@@ -57,10 +58,10 @@ class Stepper {
     device_.on_frame(frame, now_);
     collect();
   }
-  /// By SDO, so that the device notices at once.
+  /// Changes the value by SDO, so that the device notices the change at once.
   void change(std::uint8_t value) { receive(download({0x2011, 0}, value, 4)); }
   std::uint64_t value(ObjectKey key) { return device_.objects().find(key)->value; }
-  /// In ms after the start.
+  /// Returns the times of frames with this identifier in ms after the start.
   std::vector<int> frames(std::uint32_t id = 0x285) const {
     std::vector<int> times;
     for (const sim::Transmission& item : sent_) {
@@ -82,7 +83,7 @@ class Stepper {
   Time now_{};
 };
 
-/// What happens at one moment, in this order.
+/// The events at one moment, in this order.
 struct Moment {
   bool change = false, back = false, sync = false, remote = false, rpdo = false;
 };
@@ -107,7 +108,7 @@ inline DeviceTable device_of(const Reading& reading, const TpdoRow& row) {
   return table;
 }
 
-/// What a course has for it, until so many ms after the start.
+/// Steps the device through a course until `until` ms after the start.
 inline void follow(Stepper& device, const Course& course, int until) {
   std::uint8_t value = 0;
   for (const auto& [ms, moment] : moments_of(course)) {
@@ -121,7 +122,7 @@ inline void follow(Stepper& device, const Course& course, int until) {
   device.run_to(started + 1ms * until);
 }
 
-/// When the TPDO of a row is sent, in ms after the start.
+/// Returns the times at which the TPDO of a row is sent, in ms after the start.
 inline std::vector<int> frames_of(const Reading& reading, const TpdoRow& row, int until) {
   Stepper device{device_of(reading, row)};
   device.start();

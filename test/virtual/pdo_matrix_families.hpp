@@ -1,5 +1,5 @@
 #pragma once
-// Four manuals; each row or group of rows has the words that it follows from.
+// Rows from four manuals. Each row or group of rows quotes the words that it follows from.
 //   Lenze     8400 HighLine reference manual, DMS 12.0, p. 731
 //   Beckhoff  FC5101 manual, p. 45
 //   ars       ars-informatica, TPDO Communication Parameters
@@ -81,7 +81,7 @@ inline const std::vector<TpdoRow> rows_lenze{
 
 inline const std::vector<TpdoRow> rows_beckhoff{
     // "Acquires its input data when it receives the SYNC and then transmits it if the data
-    // correspond to an event": the sample has changed.
+    // correspond to an event": the event is a change of the sample.
     {0, "E: acquired at SYNC only", {.changes = {12, 33}}, {}},
     {0, "T: acquired at SYNC only", {.timer = 25}, {}},
     {0, "S: no event", {.syncs = each_10}, {10}},
@@ -123,7 +123,7 @@ inline const std::vector<TpdoRow> rows_beckhoff{
     {253, "R: asynchronous", {.remote = {5, 15}}, {5, 15}},
     {253, "E+R+S: only RTR", {.changes = {3}, .syncs = each_10, .remote = {5}}, {5}},
 
-    // "Asynchronous"; an event timer adds an event, application events reset it.
+    // "Asynchronous"; an event timer adds an event, and application events reset the timer.
     {254, "E: each change", {.changes = {12, 14, 33}}, {0, 12, 14, 33}},
     {254, "S: asynchronous", {.syncs = each_10}, {0}},
     {254, "T: an event of its own", {.timer = 50}, {0, 50, 100, 150, 200}},
@@ -145,7 +145,7 @@ inline const std::vector<TpdoRow> rows_beckhoff{
 };
 
 inline const std::vector<TpdoRow> rows_ars{
-    // "Synchronous; which SYNC is given in the device profile": that after the event.
+    // "Synchronous; which SYNC is given in the device profile": here the SYNC after the event.
     {0, "E: synchronous", {.changes = {12, 33}}, {}},
     {0, "T: synchronous", {.timer = 25}, {}},
     {0, "S: no event", {.syncs = each_10}, {10}},
@@ -176,7 +176,7 @@ inline const std::vector<TpdoRow> rows_ars{
       175, 180, 185, 190, 195, 200}}, {170}},
 
     // "Updated on reception of a SYNC, only transmitted on reception of a Remote Transmission
-    // Request"; 253: updated and transmitted by that.
+    // Request"; for 253 the request both updates and transmits the data.
     {252, "E: only on request", {.changes = {12}}, {}},
     {252, "T: only on request", {.timer = 20}, {}},
     {252, "S: only on request", {.syncs = each_10}, {}},
@@ -222,8 +222,8 @@ inline const std::vector<TpdoRow> rows_ars{
     {255, "R: not with bit 30", {.remote = {5, 9}, .no_rtr = true}, {0}},
 };
 
-/// Its table 3-11 has neither 0 nor 252 and 253: they are refused. Its state is not told at the
-/// start, and no word is of remote requests.
+/// Table 3-11 of the manual has no types 0, 252 and 253, so the device refuses them. The device
+/// does not send its state at the start, and the manual does not mention remote requests.
 inline const std::vector<TpdoRow> rows_drv28{
     {1, "E: synchronous", {.changes = {12}}, {}},
     {1, "T: the event timer is of 254 and 255", {.timer = 60}, {}},

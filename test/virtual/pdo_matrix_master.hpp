@@ -1,5 +1,6 @@
 #pragma once
-// The master's own part of the PDO matrix, worked out by hand like that of the devices.
+// The master's part of the PDO matrix. As for the devices, the expected values were derived by
+// hand.
 #include <cstdint>
 #include <vector>
 
@@ -7,32 +8,33 @@ namespace takt::test {
 
 // clang-format off
 
-/// How a pair of PDOs is set up, times in ms.
+/// Configuration of a pair of PDOs; times are in ms.
 struct Pair {
-  int inhibit = 0;     ///< of the RPDO
+  int inhibit = 0;     ///< inhibit time of the RPDO
   int repeat = 0;      ///< event timer of the RPDO
-  int poll = 0;        ///< remote requests for the TPDO
-  int poll_syncs = 0;  ///< the same, each so many SYNCs
-  int deadline = 0;    ///< of the TPDO
+  int poll = 0;        ///< period of remote requests for the TPDO
+  int poll_syncs = 0;  ///< period of remote requests in SYNCs
+  int deadline = 0;    ///< deadline of the TPDO
   int timer = 0;       ///< event timer of the TPDO, in the device
   int silence = 0;     ///< inhibit time of the TPDO, in the device
-  /// Cycles count from one after an arrival: for TPDOs with a phase of their own.
+  /// Cycles are counted from the cycle after an arrival, for TPDOs with their own phase.
   bool after_arrival = false;
-  const char* model = "";  ///< of the device
+  const char* model = "";  ///< model of the device
   const char* quirk = "";
 };
 
-/// Whole master and one device that gives back in TPDO1 what RPDO1 brings. Cycles of 10 ms, counted
-/// from the first command; the value is new in cycles 0, 3 and 4, in cycle 6 the same is commanded
-/// again. Outputs of cycle k are sent at its end, 8 ms after SYNC k and before SYNC k + 1.
+/// A complete master and one device that returns in TPDO1 the data of RPDO1. Cycles take 10 ms and
+/// are counted from the first command. The value is new in cycles 0, 3 and 4; cycle 6 repeats the
+/// same command. The outputs of cycle k are sent at its end, 8 ms after SYNC k and before SYNC k +
+/// 1.
 struct LoopRow {
   const char* name;
   std::uint8_t rpdo;
   std::uint8_t tpdo;
   Pair pair;
-  std::vector<int> rpdos;      ///< cycles in which RPDO1 goes out, of 0..9
-  std::vector<int> arrivals;   ///< cycles in whose image TPDO1 has arrived, of 1..10
-  std::vector<int> missing{};  ///< cycles in whose image it is missing, of 1..10
+  std::vector<int> rpdos;      ///< cycles out of 0..9 in which RPDO1 is sent
+  std::vector<int> arrivals;   ///< cycles out of 1..10 whose image has a new TPDO1
+  std::vector<int> missing{};  ///< cycles out of 1..10 whose image marks TPDO1 as missing
 };
 
 inline const std::vector<int> all_sent{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -42,7 +44,8 @@ inline const std::vector<LoopRow> loop_rows{
     {"at once", 255, 255, {}, {0, 3, 4}, {1, 4, 5}},
     {"at once", 254, 254, {}, {0, 3, 4}, {1, 4, 5}},
     {"event, then SYNC", 255, 0, {}, {0, 3, 4}, {1, 4, 5}},
-    // Acts at SYNC k + 1, after the inputs were sampled; TPDO1 of type 0 follows at SYNC k + 2.
+    // RPDO1 acts at SYNC k + 1, after the inputs were sampled; TPDO1 of type 0 follows at SYNC k +
+    // 2.
     {"each waits for a SYNC", 0, 0, {}, {0, 3, 4}, {2, 5, 6}},
     {"sent when it acts", 0, 255, {}, {0, 3, 4}, {1, 4, 5}},
     {"each SYNC", 1, 1, {}, all_sent, all_there},
@@ -52,13 +55,15 @@ inline const std::vector<LoopRow> loop_rows{
     {"each third SYNC", 0, 3, {.after_arrival = true}, {0, 3, 4}, {2, 5, 8}},
     {"each third SYNC", 1, 3, {.after_arrival = true}, all_sent, {2, 5, 8}},
 
-    // Inhibit 30 ms: 0, the change of cycle 3, that of cycle 4 put off to cycle 6.
+    // Inhibit time 30 ms: RPDO1 is sent in cycle 0 and in cycle 3 (change); the change of cycle 4
+    // is delayed to cycle 6.
     {"inhibit time: put off, not lost", 255, 255, {.inhibit = 30}, {0, 3, 6}, {1, 4, 7}},
     {"inhibit time: put off, not lost", 254, 255, {.inhibit = 30}, {0, 3, 6}, {1, 4, 7}},
-    // 20 ms after the last frame: 2 by the timer, 3 and 4 by change, 6 and 8 by the timer.
+    // The timer sends 20 ms after the last frame: cycle 2 by the timer, 3 and 4 by change, 6 and 8
+    // by the timer.
     {"event timer", 255, 255, {.repeat = 20}, {0, 2, 3, 4, 6, 8}, {1, 4, 5}},
     {"event timer", 254, 255, {.repeat = 20}, {0, 2, 3, 4, 6, 8}, {1, 4, 5}},
-    // 3 by change and timer, 4 put off to 5, 8 by the timer.
+    // Cycle 3 is by change and timer, 4 is delayed to 5, and 8 is by the timer.
     {"inhibit time and event timer", 255, 255, {.inhibit = 20, .repeat = 30}, {0, 3, 5, 8},
       {1, 4, 6}},
     {"an event timer shorter than the inhibit time", 255, 255, {.inhibit = 30, .repeat = 20},
@@ -66,7 +71,7 @@ inline const std::vector<LoopRow> loop_rows{
     {"neither is of type 0", 0, 255, {.inhibit = 30, .repeat = 20}, {0, 3, 4}, {1, 4, 5}},
     {"neither is of type 1", 1, 1, {.inhibit = 30, .repeat = 20}, all_sent, all_there},
 
-    // Asked for in the slack of cycle k, there in image k + 1.
+    // The TPDO is requested in the slack of cycle k and arrives for image k + 1.
     {"polled each 10 ms", 255, 252, {.poll = 10}, {0, 3, 4}, all_there},
     {"polled each 10 ms", 255, 253, {.poll = 10}, {0, 3, 4}, all_there},
     {"polled each 10 ms, events besides", 255, 254, {.poll = 10}, {0, 3, 4}, all_there},
@@ -90,13 +95,14 @@ inline const std::vector<LoopRow> loop_rows{
     {"polled, the inhibit time is of 254 and 255", 255, 253, {.poll = 10, .silence = 30}, {0, 3, 4},
       all_there},
 
-    // Sent at 8, 38 and 48 ms; 20 ms later, at 28 and 68, it is missing, and told once.
+    // TPDO1 is sent at 8, 38 and 48 ms. It is missing 20 ms later, at 28 and 68 ms, and this is
+    // reported once.
     {"deadline", 255, 255, {.deadline = 20}, {0, 3, 4}, {1, 4, 5}, {3, 7}},
     {"deadline", 255, 254, {.deadline = 20}, {0, 3, 4}, {1, 4, 5}, {3, 7}},
     {"deadline, kept by the device's timer", 255, 255, {.deadline = 50, .timer = 40,
       .after_arrival = true}, {0, 3, 4}, {1, 4, 5, 9}},
 
-    // A device with an event timer of 40 ms, that ran out in the cycle before 0.
+    // The device has an event timer of 40 ms that expired in the cycle before 0.
     {"301: begins anew with each frame", 255, 255, {.timer = 40, .after_arrival = true}, {0, 3, 4},
       {1, 4, 5, 9}},
     {"Lenze: cyclic in addition", 255, 254, {.timer = 40, .after_arrival = true,
@@ -112,10 +118,10 @@ inline const std::vector<LoopRow> loop_rows{
     {"DRV-28: periodic, the RPDO sends nothing", 255, 255, {.timer = 40, .after_arrival = true,
       .model = "astraada_drv28"}, {0, 3, 4}, {3, 7}},
 
-    // What else the families do their own way.
+    // Other peculiarities of the families.
     {"DRV-28: each RPDO is answered, changed or not", 255, 255, {.repeat = 20,
       .model = "astraada_drv28"}, {0, 2, 3, 4, 6, 8}, {1, 3, 4, 5, 7, 9}},
-    // Changes at 8, 38 and 48 ms: the second and the third at 58 together.
+    // The changes come at 8, 38 and 48 ms; the second and the third are sent together at 58 ms.
     {"DRV-28: once in the disabled time of 50 ms", 255, 254, {.model = "astraada_drv28"}, {0, 3, 4},
       {1, 6}},
     {"DRV-28: no answer to remote requests", 255, 254, {.poll = 10, .model = "astraada_drv28"},
@@ -156,8 +162,8 @@ inline const std::vector<LoopRow> loop_rows{
       {0, 3, 4}, all_there},
 };
 
-/// What the master sends of an RPDO in the same cycles. "ETI": the value is new in cycles 3 and 4
-/// as well, event timer of 20 ms, inhibit time of 30 ms; -: not so; a point: either.
+/// The cycles in which the master sends an RPDO. "ETI": the value is new in cycles 3 and 4 as well,
+/// event timer of 20 ms, inhibit time of 30 ms. A letter means present, "-" absent, "." either.
 struct RpdoCell {
   std::vector<std::uint8_t> types;
   const char* pattern;
@@ -173,12 +179,12 @@ inline const std::vector<RpdoCell> rpdo_cells{
     {{254, 255}, "-T-", {0, 2, 4, 6, 8}},
     {{254, 255}, "--I", {0}},
     {{254, 255}, "ET-", {0, 2, 3, 4, 6, 8}},
-    {{254, 255}, "E-I", {0, 3, 6}},        // 4 is put off
+    {{254, 255}, "E-I", {0, 3, 6}},        // 4 is delayed
     {{254, 255}, "-TI", {0, 3, 6, 9}},     // the inhibit time is the longer one
     {{254, 255}, "ETI", {0, 3, 6, 9}},
 };
 
-/// A pair of PDOs of types n > 1: the distances of their frames, in SYNCs.
+/// A pair of PDOs of types n > 1. The types are the distances of their frames in SYNCs.
 struct RasterRow {
   const char* name;
   const char* model;
@@ -201,7 +207,7 @@ struct MasterStartRow {
   std::uint8_t type;
   std::uint8_t start;
   std::uint8_t overflow;
-  std::vector<int> counters;  ///< of the first SYNCs that a frame follows
+  std::vector<int> counters;  ///< counters of the first SYNCs that a frame follows
 };
 
 inline const std::vector<MasterStartRow> master_start_rows{

@@ -1,4 +1,4 @@
-// The master's part of the PDO matrix: a whole master and a device in virtual time.
+// The master's part of the PDO matrix: a complete master and a device in virtual time.
 #include "test/virtual/pdo_matrix_master.hpp"
 
 #include <algorithm>
@@ -14,13 +14,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The whole master and one device that gives back what it gets.
+/// A complete master and one device that returns the data that it receives.
 class Loop {
  public:
   explicit Loop(const test::LoopRow& row) : Loop{row, plan_of(row)} {}
 
   bool boot() { return rig_.boot(); }
-  /// One cycle, before whose end the value is commanded.
+  /// Runs one cycle and commands the value before its end.
   void cycle(std::int64_t value) {
     rig_.command(0, 0x000F, value, 1000);
     rig_.recorder.frames.clear();
@@ -30,7 +30,7 @@ class Loop {
     rig_.recorder.frames.clear();
     rig_.cycle();
   }
-  /// By the outputs of the cycle before: they are on the wire when this one begins.
+  /// True if the cycle before has sent RPDO1: those outputs are on the wire when this cycle begins.
   bool rpdo_sent() const { return !data_frames(0x201).empty(); }
   bool tpdo_arrived() const { return arrived_; }
   bool tpdo_missing() const { return missing_; }
@@ -87,7 +87,7 @@ TEST(PdoMatrix, MasterSendsAndTakesEachType) {
     Loop loop{row};
     ASSERT_TRUE(loop.boot()) << name;
     loop.watch();
-    for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start are over
+    for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start have passed
     for (int i = 0; i < 8 && row.pair.after_arrival && !loop.tpdo_arrived(); ++i) loop.cycle();
     std::vector<int> rpdos;
     std::vector<int> arrivals;
@@ -109,7 +109,7 @@ TEST(PdoMatrix, MasterSendsAndTakesEachType) {
 std::vector<int> sent_by_master(std::uint8_t type, bool event, bool timer, bool inhibit) {
   Loop loop{{"", type, 255, {.inhibit = inhibit ? 30 : 0, .repeat = timer ? 20 : 0}, {}, {}}};
   EXPECT_TRUE(loop.boot());
-  for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start are over
+  for (int i = 0; i < 8; ++i) loop.cycle();  // the frames of the start have passed
   std::vector<int> sent;
   std::int64_t value = 0;
   for (int k = 0; k <= 10; ++k) {
@@ -157,7 +157,7 @@ TEST(PdoMatrix, MasterAndDeviceKeepTheirRasters) {
     }
     ASSERT_GE(sent.size(), 4U) << row.name;
     ASSERT_GE(arrivals.size(), 4U) << row.name;
-    // The first at once, then by the raster.
+    // The first frame comes at once, the others in the raster.
     for (std::size_t i = 2; i < sent.size(); ++i) {
       EXPECT_EQ(sent[i] - sent[i - 1], row.rpdo) << row.name;
     }
@@ -167,7 +167,7 @@ TEST(PdoMatrix, MasterAndDeviceKeepTheirRasters) {
   }
 }
 
-/// Counters of the SYNCs that a TPDO1 followed.
+/// Returns the counters of the SYNCs that a TPDO1 followed.
 std::vector<int> counters_before(const std::vector<sim::WireFrame>& frames) {
   std::vector<int> counters;
   int counter = 0;
@@ -199,7 +199,7 @@ TEST(PdoMatrix, TheSyncStartValueCountsInTheSyncOfTheMaster) {
 TEST(PdoMatrix, MasterSendsEachNthCycleForEveryN) {
   for (int every = 1; every <= 240; ++every) {
     const auto n = static_cast<std::uint8_t>(every);
-    // Neither inhibit time nor event timer is of type n.
+    // Type n uses neither the inhibit time nor the event timer.
     Loop loop{{"", n, 1, {.inhibit = n % 2 * 30, .repeat = n % 2 * 20}, {}, {}}};
     ASSERT_TRUE(loop.boot());
     loop.cycle();  // PDOs are exchanged from here on
@@ -209,13 +209,14 @@ TEST(PdoMatrix, MasterSendsEachNthCycleForEveryN) {
       if (loop.rpdo_sent()) sent.push_back(k - 1);
     }
     ASSERT_GE(sent.size(), 3U) << int{n};
-    // The first at once, then by the raster.
+    // The first frame comes at once, the others in the raster.
     EXPECT_EQ(sent[0], 0) << int{n};
     for (std::size_t i = 2; i < sent.size(); ++i) EXPECT_EQ(sent[i] - sent[i - 1], n) << int{n};
   }
 }
 
-/// Three axes of different types; now and then a stall leaves no room for the frames of all three.
+/// Three axes have different types. From time to time a stall leaves no room for the frames of all
+/// three.
 TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
   BusPlan plan = test::axes({.nodes = 3, .rpdo_type = 0, .period = 4ms});
   plan.pdos.rpdos[1].transmission = 5;

@@ -7,7 +7,7 @@
 
 namespace takt::test {
 
-/// Sets what an object holds at power-on.
+/// Sets the power-on value of an object.
 inline void preset(DeviceTable& table, ObjectKey key, std::uint64_t value) {
   const auto object = std::ranges::find(table.objects, key, &DeviceObject::key);
   object->value = sim::little_endian(value, static_cast<unsigned>(object->value.size()));

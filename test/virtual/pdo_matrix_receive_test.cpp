@@ -1,4 +1,5 @@
-// Each cell of the PDO matrix with SYNC once more: a whole master makes the SYNC and receives.
+// Repeats each cell of the PDO matrix with SYNC: a complete master produces the SYNC and receives
+// the PDOs.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <string>
@@ -23,8 +24,8 @@ BusPlan plan_of(std::uint8_t type) {
   return plan;
 }
 
-/// As the loopback device, with the second pair of PDOs: the first of a DRV-28 is its parameter
-/// channel. Until the course begins its TPDO has type 253 and is silent.
+/// A device like the loopback device but with the second pair of PDOs, because the first pair of a
+/// DRV-28 is its parameter channel. Until the course begins, the TPDO has type 253 and is silent.
 DeviceTable echo_device(const test::Reading& reading, const test::TpdoRow& row) {
   sim::SampleDevice device = sim::communicating(1_node);
   device.model(reading.model);
@@ -39,9 +40,9 @@ DeviceTable echo_device(const test::Reading& reading, const test::TpdoRow& row) 
   return table;
 }
 
-/// What the images of six cycles have of a TPDO; SYNC k is at 10 k ms.
+/// The data of a TPDO in the images of six cycles; SYNC k comes at 10 k ms.
 struct Received {
-  std::vector<std::uint32_t> frames;  ///< since the course began
+  std::vector<std::uint32_t> frames;  ///< number of frames since the start of the course
   std::vector<int> missing;
 };
 
@@ -69,7 +70,7 @@ class Course {
   }
 
  private:
-  /// Shortly after the moment, so that a SYNC of the same moment is first.
+  /// Sends a frame shortly after the moment, so that a SYNC at the same moment comes first.
   void at(int ms, const Frame& frame) {
     guest_.send(std::span{&frame, 1}, begin_ + 1ms * ms + 200us);
   }
@@ -94,8 +95,8 @@ class Course {
   Time begin_{};
 };
 
-/// Image k has the frames of the course until half of its window is over, 3 ms after SYNC k: of
-/// those that do not follow SYNC none is waited for.
+/// Returns the expected frame counts. Image k has the frames of the course up to half of its
+/// window, 3 ms after SYNC k. The master does not wait for frames that do not follow SYNC.
 std::vector<std::uint32_t> expected_of(const std::vector<int>& frames) {
   std::vector<std::uint32_t> counts;
   for (int k = 0; k < 6; ++k) {
@@ -114,7 +115,7 @@ void judge(const test::Reading& reading, const test::TpdoRow& row, const std::st
     EXPECT_EQ(std::ranges::count(received.missing, 1), 0) << name;
     return;
   }
-  // Of types 1 and 2 none stays away, once the first has come.
+  // No TPDO of type 1 or 2 is missing after the first one has come.
   EXPECT_EQ(std::count(received.missing.begin() + row.type, received.missing.end(), 1), 0) << name;
 }
 

@@ -4,23 +4,23 @@
 
 namespace takt::test {
 
-/// What happens to a TPDO, in ms after NMT start. E: changes, T: its event timer, I: its inhibit
-/// time, R: remote requests, S: SYNC, P: the RPDO of its number.
+/// The events for a TPDO; times are in ms after NMT start. E: changes, T: event timer, I: inhibit
+/// time, R: remote requests, S: SYNC, P: the RPDO with the same number.
 struct Course {
-  std::uint16_t inhibit = 0;   ///< sub 3 as it is written: 100 us, of the DRV-28 ms
+  std::uint16_t inhibit = 0;   ///< raw value of sub-index 3: 100 us, or ms for the DRV-28
   std::uint16_t timer = 0;     ///< ms
-  std::vector<int> changes{};  ///< another value each time
-  std::vector<int> back{};     ///< the first value again
+  std::vector<int> changes{};  ///< the value becomes a new one
+  std::vector<int> back{};     ///< the first value returns
   std::vector<int> syncs{};
   std::vector<int> remote{};
   std::vector<int> rpdos{};
-  bool no_rtr = false;  ///< bit 30 of its COB-ID
+  bool no_rtr = false;  ///< bit 30 of the COB-ID
 };
 
-/// A TPDO of a device, and the frames that must come within 200 ms.
+/// A TPDO of a device, and the times of the frames that must come within 200 ms.
 struct TpdoRow {
   std::uint8_t type;
-  const char* name;  ///< what happens, and why that follows
+  const char* name;  ///< the events, and the reason for the frames
   Course course;
   std::vector<int> frames;
 };

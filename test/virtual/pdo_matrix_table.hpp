@@ -1,5 +1,6 @@
 #pragma once
-// When simulated devices send PDOs, worked out by hand from CiA 301 and from four manuals.
+// The times at which simulated devices send PDOs, derived by hand from CiA 301 and from four
+// manuals.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,10 +12,10 @@ namespace takt::test {
 
 // clang-format off
 
-/// How a device reads its transmission types.
+/// An interpretation of the transmission types by a device.
 struct Reading {
   const char* name;
-  const char* model;  ///< of the simulated device; "": CiA 301
+  const char* model;  ///< model of the simulated device; "" means CiA 301
   const char* quirk;
   std::span<const TpdoRow> rows;
 };
@@ -28,7 +29,7 @@ inline const std::vector<Reading> readings{
     {"DRV-28", "astraada_drv28", "", rows_drv28},
 };
 
-/// Of the types 0..255 of a TPDO, those that a device refuses besides 241..251.
+/// The TPDO types out of 0..255 that a device refuses besides 241..251.
 struct TypesRow {
   const char* name;
   const char* model;
@@ -43,7 +44,8 @@ inline const std::vector<TypesRow> types_rows{
     {"DRV-28: its table 3-11 has 1 to 240, 254 and 255", "astraada_drv28", {0, 252, 253}},
 };
 
-/// A TPDO of this type is switched on, and its COB-ID has bit 30: no remote requests.
+/// Whether a device refuses to enable a TPDO of this type whose COB-ID has bit 30 set (no remote
+/// requests).
 struct Bit30Row {
   const char* name;
   std::uint8_t type;
@@ -64,7 +66,7 @@ struct StartRow {
   std::uint8_t type;
   std::uint8_t start;
   std::uint8_t overflow;
-  std::vector<int> syncs;  ///< of the first 21, those that a frame follows
+  std::vector<int> syncs;  ///< SYNCs out of the first 21 that a frame follows
 };
 
 inline const std::vector<StartRow> start_rows{
@@ -76,19 +78,19 @@ inline const std::vector<StartRow> start_rows{
     {"start 0: any", 3, 0, 10, {3, 6, 9, 12, 15, 18, 21}},
 };
 
-/// The device is told to make SYNC itself, each 20 ms. Lenze: "from version 16.00.00 onwards, the
-/// transmit PDOs are also sent when the sync telegram is generated. Precondition: the sync Tx
-/// identifier and sync Rx identifier have the same value". That stands at types 1 to 240; the
-/// condition makes the own SYNC one that is received, so for 0 and 252, of which nothing is said, it
-/// is a SYNC as CiA 301 knows it.
+/// The device is configured to produce SYNC itself every 20 ms. Lenze: "from version 16.00.00
+/// onwards, the transmit PDOs are also sent when the sync telegram is generated. Precondition: the
+/// sync Tx identifier and sync Rx identifier have the same value". The manual says this for types 1
+/// to 240. The precondition makes the device's own SYNC a received one, so for types 0 and 252,
+/// which the manual does not mention, it counts as a SYNC of CiA 301.
 struct OwnSyncRow {
   const char* name;
   const char* model;
   const char* firmware;
   std::uint16_t transmit_id;
   std::uint8_t type;
-  std::vector<int> syncs;   ///< sent within 100 ms
-  std::vector<int> frames;  ///< likewise
+  std::vector<int> syncs;   ///< times of SYNCs within 100 ms
+  std::vector<int> frames;  ///< times of frames within 100 ms
   Course course{};          ///< changes and remote requests
 };
 
@@ -117,17 +119,17 @@ inline const std::vector<OwnSyncRow> own_sync_rows{
     {"301: who makes no SYNC refuses bit 30 of 0x1005", "", "", 0x080, 1, {}, {}},
 };
 
-/// A frame of higher priority is on the wire all the time from `from` to `until`, in ms; the bus is
-/// free where both are 0. ars: "the inhibit time is measured from the time when the node first
-/// attempts to send", "after every nth SYNC Object within the Synchronous Window Length".
+/// Frames of higher priority occupy the wire from `from` to `until`, in ms; if both are 0, the bus
+/// is free. ars: "the inhibit time is measured from the time when the node first attempts to send",
+/// "after every nth SYNC Object within the Synchronous Window Length".
 struct BlockedRow {
   std::uint8_t type;
   const char* name;
   int from;
   int until;
   Course course;
-  std::vector<int> frames;  ///< begin on the wire
-  int window = 0;           ///< ms, 0x1007; 0: none
+  std::vector<int> frames;  ///< start times on the wire
+  int window = 0;           ///< SYNC window 0x1007 in ms; 0 means none
 };
 
 inline const std::vector<BlockedRow> blocked_rows{
@@ -146,9 +148,9 @@ inline const std::vector<BlockedRow> blocked_rows{
     {1, "S: after the window not at all", 19, 28, {.syncs = {20, 40}}, {40}, 5},
 };
 
-/// RPDO2 and SYNCs come, in ms after NMT start, and then its value acts. Beckhoff: "RxPDOs do not
-/// generally distinguish between transmission types 0...240: a PDO that has been received is set to
-/// valid when the next SYNC is received".
+/// The times of RPDO2, of SYNCs, and of the moments at which the value acts, in ms after NMT start.
+/// Beckhoff: "RxPDOs do not generally distinguish between transmission types 0...240: a PDO that
+/// has been received is set to valid when the next SYNC is received".
 struct RpdoRow {
   std::uint8_t type;
   const char* name;

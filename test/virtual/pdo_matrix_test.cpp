@@ -1,4 +1,4 @@
-// Every row of the tables of CiA 301 and of four manuals against the simulated devices.
+// Compares every row of the tables of CiA 301 and of four manuals with the simulated devices.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <utility>
@@ -90,7 +90,7 @@ TEST(PdoMatrix, TheirOwnSyncTriggersThemWhereTheManualSaysSo) {
   }
 }
 
-/// SYNC and RPDO2 win against the frame that blocks the bus, TPDO2 does not.
+/// SYNC and RPDO2 win arbitration against the frame that blocks the bus, TPDO2 does not.
 std::vector<int> run(const test::BlockedRow& row) {
   DeviceTable table = communicating(5_node)
                           .model("plain301")
@@ -137,8 +137,8 @@ TEST(PdoMatrix, OnABlockedBusTheFirstAttemptCounts) {
 }
 
 struct Acts {
-  std::vector<int> when;   ///< the object of RPDO2 has another value than a millisecond before
-  std::uint64_t last = 0;  ///< its value at the end: the how manieth RPDO2
+  std::vector<int> when;   ///< times in ms at which the object of RPDO2 changes
+  std::uint64_t last = 0;  ///< final value, which is the number of the RPDO2
 };
 
 Acts run(const char* model, const test::RpdoRow& row) {
@@ -178,7 +178,8 @@ TEST(PdoMatrix, RpdosActAtTheNextSyncOrAtOnce) {
   }
 }
 
-/// The answer of a device to a write to this object, 0: it is taken.
+/// Returns the abort code of a device for a write to this object; 0 means that the device accepts
+/// the write, 1 that it does not answer.
 std::uint32_t abort_of(const DeviceTable& table, ObjectKey key, std::uint32_t value) {
   Device device{table, sim::Random{1}};
   device.power_on(0ns);
@@ -205,7 +206,7 @@ TEST(PdoMatrix, TypesThatAManualLacksAreRefused) {
       const auto value = static_cast<std::uint32_t>(type);
       EXPECT_EQ(abort_of(table, {0x1801, 2}, value), lacking ? refused : 0U)
           << row.name << ", type " << type;
-      // 252 and 253 are of TPDOs.
+      // Types 252 and 253 are valid for TPDOs only.
       EXPECT_EQ(abort_of(table, {0x1401, 2}, value), type >= 241 && type <= 253 ? refused : 0U)
           << row.name << ", RPDO, type " << type;
     }

@@ -1,4 +1,4 @@
-// The whole master: PDOs on request, multiplexed PDOs, 512 PDOs, late frames.
+// The complete master with PDOs on request, multiplexed PDOs, 512 PDOs and late frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <optional>
@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::Rig;
 
-/// Runs until the reply is there; none: not within two seconds.
+/// Runs until the reply is there. Returns std::nullopt if none comes within 1000 cycles.
 std::optional<Reply> ask(Rig& rig, Request request) {
   EXPECT_TRUE(rig.master->submit(request));
   for (int i = 0; i < 1000; ++i) {
@@ -29,7 +29,7 @@ Request pdo_request(RequestKind kind, std::initializer_list<std::uint8_t> bytes 
   return request;
 }
 
-/// RPDO1 is sent on request only; TPDO1 gives back what it brought.
+/// RPDO1 is sent on request only; TPDO1 returns its data.
 BusPlan pair_plan(std::uint8_t tpdo_type) {
   BusPlan plan = test::axes({.nodes = 1, .tpdo_type = tpdo_type, .rpdo_type = 255});
   plan.pdos.rpdos[0].on_request = true;
@@ -124,8 +124,9 @@ class SyncCounterRestarts : public testing::Test {
     plan.cycle.sync_overflow = 240;
     rig.emplace(plan);
   }
-  /// The counters that follow on this command, without those of the cycle in which it was sent.
-  /// Before it is sent, axes may have to stop. A command to the master alone is never sent.
+  /// Returns the SYNC counters that follow this command, without those of the cycle in which the
+  /// command was sent. Axes may have to stop before the command is sent. A command to the master
+  /// alone is never sent.
   std::vector<int> counters_after(NmtCommand command, std::uint8_t node) {
     rig->recorder.frames.clear();
     EXPECT_TRUE(ask(*rig, {.id = 1, .kind = RequestKind::nmt, .node = node, .command = command}));
@@ -170,8 +171,8 @@ TEST_F(SyncCounterRestarts, WithEachResetOfTheNetwork) {
 }
 
 /// Node 1: TPDO1 sends 6040 and 607A by source address, RPDO1 takes objects by destination address
-/// (0xFF), or those of its dispatching list by source address (0xFE): the master's 6040:00 as its
-/// own, 2100:03 as 607A:00.
+/// (0xFF), or objects of its dispatcher list by source address (0xFE), which maps the master's
+/// 6040:00 to the device's own 6040:00 and 2100:03 to 607A:00.
 test::RigOptions multiplexed_device(std::uint32_t rpdo = 0xFF) {
   using enum DataType;
   sim::SampleDevice device = sim::communicating(1_node);
@@ -193,7 +194,7 @@ test::RigOptions multiplexed_device(std::uint32_t rpdo = 0xFF) {
   return {.devices = {table}};
 }
 
-/// A row of its own for each object behind `headers`, fields as in the plan.
+/// Makes a separate row for each object in `headers`, with fields as in the plan.
 void multiplex(std::vector<PdoRow>& rows, BusPlan& plan, std::array<std::uint32_t, 2> headers) {
   PdoRow row = rows[0];
   row.length = 8;
@@ -362,7 +363,7 @@ TEST(SynchronousWindow, FramesOfASlowDeviceAreToldAndUsedOrDropped) {
     slow.node = 1_node;
     slow.at = rig.world->now();
     slow.until = slow.at + 10s;
-    slow.time = 2ms;  // at most, at random
+    slow.time = 2ms;  // random delay, at most this
     rig.world->add(slow);
     rig.run(3);
     int late = 0;

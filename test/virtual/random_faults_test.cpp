@@ -14,7 +14,7 @@ using test::Rig;
 constexpr unsigned nodes = 4;
 constexpr std::uint32_t time_to_live = 5;
 
-/// Some seconds of troubles of every kind; the last one is over before 4 s.
+/// Makes random faults of every kind for some seconds; the last one ends before 4 s.
 sim::Faults random_faults(sim::Random& random) {
   using enum sim::FaultKind;
   constexpr std::array kinds{loss,           duplicate, delay,        error_frames,
@@ -37,7 +37,7 @@ sim::Faults random_faults(sim::Random& random) {
   return faults;
 }
 
-/// The application: commands each axis with the number of the period, except while it "hangs".
+/// An application that commands each axis with the number of the period, except while it "hangs".
 class Application {
  public:
   explicit Application(std::uint64_t seed) : random_{seed} {}
@@ -53,7 +53,7 @@ class Application {
     if (!random_.chance(0.2)) return;
     Request request;
     request.id = ++asked;
-    request.node = static_cast<std::uint8_t>(random_.below(nodes + 1) + 1);  // one is nobody
+    request.node = static_cast<std::uint8_t>(random_.below(nodes + 1) + 1);  // one is unused
     request.kind = random_.chance(0.1) ? RequestKind::nmt : RequestKind::sdo_upload;
     request.command = NmtCommand::start;
     request.object = {random_.chance(0.5) ? std::uint16_t{0x1018} : std::uint16_t{0x5FFF}, 1};
@@ -75,14 +75,14 @@ class Application {
   std::set<std::uint64_t> answered_;
 };
 
-/// What every image has to keep to.
+/// Checks the rules that every image must obey.
 class ImageJudge {
  public:
   void operator()(const ImageView& image) {
     EXPECT_GT(image.cycle, cycle_);
     EXPECT_GT(image.publish_time, published_);
     EXPECT_GE(image.publish_time, image.sync_time);
-    // Both words of a device come in one frame: 000F or 0002 with a target of that moment.
+    // Both values of a device come in one frame: 000F or 0002 with a target of the same moment.
     for (std::size_t axis = 0; axis < nodes; ++axis) {
       const std::int64_t word = image.values[axis];
       EXPECT_TRUE(word == 0x0F || word == 0x02 || word == 0) << word;
@@ -101,8 +101,9 @@ bool cuts_the_bus(const sim::Fault& fault) {
   return fault.kind == sim::FaultKind::bus_off || fault.kind == sim::FaultKind::interface_down;
 }
 
-/// No RPDO on the wire is enabled by a command that has outlived its time to live; but what the
-/// interface had queued when its bus was cut off it sends afterwards: one cycle's frames at most.
+/// No command may enable an RPDO on the wire after its time to live. The only exception are frames
+/// that the interface had queued when the bus was cut off: it sends them afterwards, at most those
+/// of one cycle.
 void judge_outputs(const Rig& rig, Time start, long interruptions) {
   for (std::uint32_t node = 1; node <= nodes; ++node) {
     long stale = 0;

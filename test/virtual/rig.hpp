@@ -11,8 +11,8 @@
 
 namespace takt::test {
 
-/// A device whose TPDO1 gives back what its RPDO1 brought: 6040 and 607A. Its PDOs are valid from
-/// the start.
+/// A device whose TPDO1 returns the data of its RPDO1: 6040 and 607A. The PDOs are valid from the
+/// start.
 inline DeviceTable loopback_device(NodeId node, const PdoRow& tpdo, const PdoRow& rpdo) {
   using enum DataType;
   sim::SampleDevice device = sim::communicating(node);
@@ -34,7 +34,7 @@ inline BootStep boot_step(BootAction action, Time timeout = std::chrono::millise
           .eds_note = {}};
 }
 
-/// Reset, boot-up, device type, heartbeat of 20 ms, start.
+/// A short boot: reset, boot-up, device type, heartbeat of 20 ms, start.
 inline BootPlan short_boot() {
   BootPlan plan;
   plan.steps.push_back(boot_step(BootAction::nmt));
@@ -52,7 +52,7 @@ inline BootPlan short_boot() {
   return plan;
 }
 
-/// Writes down everything that was on the wire.
+/// Records everything on the wire.
 class Recorder final : public sim::BusObserver {
  public:
   void on_wire(const sim::WireFrame& frame) noexcept override {
@@ -71,14 +71,14 @@ class Recorder final : public sim::BusObserver {
 };
 
 struct RigOptions {
-  std::vector<DeviceTable> devices{};  ///< empty: loopback devices
+  std::vector<DeviceTable> devices{};  ///< empty means loopback devices
   Time heartbeat_timeout = std::chrono::milliseconds{60};
   sim::WorldOptions world{};
   sim::RemotePortOptions port{};
   MasterOptions master{};
 };
 
-/// A whole master on the simulated bus, in virtual time.
+/// A complete master on the simulated bus, in virtual time.
 class Rig {
  public:
   explicit Rig(BusPlan plan, RigOptions options = {}) {
@@ -101,14 +101,14 @@ class Rig {
     master->attach(*port);
     master->begin();
   }
-  /// The same with another port between: `other` forwards to `*port`.
+  /// Attaches the master to another port; `other` forwards to `*port`.
   template <class P>
   void use(P& other) {
     master->attach(other);
     master->begin();
   }
 
-  /// One cycle, and what the front thread does after it.
+  /// Runs one cycle, and then does the work of the front thread.
   void cycle() {
     master->cycle();
     for (Event event; master->take(event);) events.push_back(event);
@@ -123,7 +123,7 @@ class Rig {
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) cycle();
   }
-  /// Until all nodes exchange PDOs; false: not within two seconds.
+  /// Runs until all nodes exchange PDOs. Returns false if this takes more than 2000 cycles.
   bool boot() {
     for (int i = 0; i < 2000; ++i) {
       cycle();
@@ -174,7 +174,7 @@ class Rig {
   ImageView last;
 
  private:
-  /// Before the start, as the compiler of boots does it.
+  /// Adds the steps that read the limits before the start, as the compiler of boots does.
   static void read_limits(BusPlan& plan, std::size_t node_index) {
     auto& steps = plan.nodes[node_index].boot_plan.steps;
     const auto read = [&](ObjectKey object) {

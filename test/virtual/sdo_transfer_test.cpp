@@ -24,7 +24,7 @@ std::vector<std::byte> some_bytes(std::size_t size) {
   return bytes;
 }
 
-/// One axis and a generous budget; SYNC may be off: then the bus is quiet.
+/// A plan with one axis, a large budget, and no SYNC, so that the bus is quiet.
 BusPlan quiet_plan() {
   BusPlan plan = test::axes({.nodes = 1, .period = 20ms});
   plan.cycle.sync = false;
@@ -81,7 +81,8 @@ class SdoTransfers : public testing::Test {
     buffer().data.resize(size);
     EXPECT_EQ(buffer().data, some_bytes(size));
   }
-  /// Share of the time from the first to the last SDO frame in which SDO frames fill the wire.
+  /// Returns the share of the time from the first to the last SDO frame in which SDO frames occupy
+  /// the wire.
   double wire_share() const {
     Time first = never;
     Time last{};
@@ -145,8 +146,8 @@ TEST_F(SdoTransfers, SyncStaysOnTheBeatBesideABlockDownload) {
 constexpr CobId sync_id = CobId::base(0x080);
 constexpr CobId heartbeat_id = CobId::base(0x77F);
 
-/// The segments of the device have priority over the heartbeat of the master, which stands before
-/// SYNC in the queue of its controller.
+/// The segments of the device have priority over the heartbeat of the master, which waits before
+/// SYNC in the queue of the master's controller.
 class SlowBus : public SdoTransfers {
  protected:
   SlowBus() {
@@ -221,7 +222,7 @@ TEST_F(SdoTransfers, GoWithEveryBlockSize) {
 
 TEST_F(SdoTransfers, RepeatALostSegmentWhereverItIs) {
   start();
-  timeout = 1s;  // the device confirms after 0.7 s where the last segment of a block is missing
+  timeout = 1s;  // the device confirms after 0.7 s if the last segment of a block is missing
   for (const unsigned lost : {1U, 2U, 126U, 127U, 128U, 142U, 143U}) {
     SCOPED_TRACE(lost);
     faults() = {.lose_segment = lost};

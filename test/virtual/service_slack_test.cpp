@@ -1,4 +1,5 @@
-// Service frames leave the same queue as the outputs, in order: one that waits would delay them.
+// Service frames leave the same queue as the outputs in order, so a waiting service frame would
+// delay the outputs.
 #include <gtest/gtest.h>
 
 #include "master/sim/device.hpp"
@@ -46,7 +47,7 @@ TEST(ServiceSlack, RequestsAreThroughWhenTheOutputsGoOut) {
     ++requests;
     too_late += wire.end - sync > 1600us;
   }
-  EXPECT_GT(requests, 2857U);      // of seven bytes each
+  EXPECT_GT(requests, 2857U);      // segments of seven bytes each
   EXPECT_GT(requests, 2 * syncs);  // the slack was full of them
   EXPECT_EQ(too_late, 0U);
 }

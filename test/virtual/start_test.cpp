@@ -1,5 +1,4 @@
-// Event-driven PDOs that a device sends because it is started: nothing sends them again until they
-// change.
+// A device sends its event-driven PDOs when it is started, and not again until they change.
 #include <gtest/gtest.h>
 
 #include "test/virtual/rig.hpp"
@@ -9,7 +8,7 @@ namespace {
 
 using test::Rig;
 
-/// Each input of two axes has a value.
+/// True if each input of the two axes has a value.
 bool all_fresh(const Rig& rig) { return !rig.last_stale.empty() && (rig.last_stale[0] & 0xF) == 0; }
 
 Request order(NmtCommand command) {

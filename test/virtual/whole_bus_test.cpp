@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A device that speaks LSS and has its node id and serial number from `id`.
+/// A device with LSS whose node-ID and serial number come from `id`.
 DeviceTable lss_device(NodeId id) {
   const BusPlan plan = axes({.nodes = 1});
   DeviceTable table = loopback_device(id, plan.pdos.tpdos[0], plan.pdos.rpdos[0]);
@@ -31,7 +31,7 @@ class LssTool {
  public:
   explicit LssTool(sim::World& world) : world_{world}, port_{world} {}
 
-  /// The services that were run.
+  /// Runs the commands and returns their results.
   std::vector<LssResult> run(std::initializer_list<LssCommand> commands) {
     const std::vector<LssCommand> list{commands};
     LssRunner runner;
@@ -56,7 +56,7 @@ class LssTool {
   sim::SimPort port_;
 };
 
-/// What `takt lss set-bitrate 250 --all --activate 100` does, step by step.
+/// Does the steps of `takt lss set-bitrate 250 --all --activate 100` one by one.
 TEST(BitRateOfTheWholeBus, IsChangedInTwoDelaysOfSilence) {
   const std::array<DeviceTable, 3> devices{lss_device(1_node), lss_device(2_node),
                                            lss_device(3_node)};
