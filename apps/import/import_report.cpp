@@ -25,7 +25,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// On one line, cut where it is long.
+/// Returns a value on one line, cut to 60 characters.
 std::string value_text(const YamlNode& node) {
   std::string text;
   switch (node.kind) {
@@ -52,18 +52,19 @@ std::string value_text(const YamlNode& node) {
   return text.size() > longest_value ? text.substr(0, longest_value - 3) + "..." : text;
 }
 
-/// A row of the report with the places that findings may name for it.
+/// A row of the report with the places in the file at which findings on this row may be.
 struct Row {
   ImportedKey key;
-  std::string_view word;  ///< the key itself, or that of its map, for the table of meanings
+  std::string_view word;  ///< word for the table of meanings: the key, or the key of its map
   std::set<SourcePos> places;
   bool leaf = true;
   bool wrong_type = false;
-  bool unknown = false;        ///< what stands in it is read by nobody here
-  std::size_t left_alone = 0;  ///< by so many nodes that are not guarded
+  bool unknown = false;        ///< true if takt reads nothing in this map
+  std::size_t left_alone = 0;  ///< number of unguarded nodes that do not use the key
 };
 
-/// The rows of a file: one a key that has a value, one an entry of a list.
+/// Collects the rows of a file: one for each key that has a value, and one for each entry of a list
+/// of maps.
 class RowCollector {
  public:
   std::vector<Row> collect(const YamlNode& root) {
@@ -74,15 +75,15 @@ class RowCollector {
  private:
   void map(const YamlNode& node, const std::string& path, std::string_view word) {
     for (const YamlPair& pair : node.pairs) {
-      if (path.empty() && pair.key.starts_with('.')) continue;  // for anchors only
+      if (path.empty() && pair.key.starts_with('.')) continue;  // only for anchors
       value(*pair.value, pair, path.empty() ? pair.key : path + '.' + pair.key, word);
     }
   }
 
-  /// `word`: the key of the map around it.
+  /// Collects the rows of a value. `word` is the key of the map around the value.
   void value(const YamlNode& node, const YamlPair& pair, const std::string& path,
              std::string_view word) {
-    if (!seen_.emplace(pair.key_pos, pair.key).second) return;  // by alias once more
+    if (!seen_.emplace(pair.key_pos, pair.key).second) return;  // repeated by an alias
     if (node.kind == YamlNode::Kind::map) {
       add(path, pair.key, "", pair.key_pos, {node.pos}, false);
       map(node, path, pair.key);
@@ -115,7 +116,7 @@ class RowCollector {
   void places_of(const YamlNode& node, std::set<SourcePos>& places) {
     if (places_left_ == 0) return;
     --places_left_;
-    if (!places.insert(node.pos).second) return;  // by alias once more
+    if (!places.insert(node.pos).second) return;  // repeated by an alias
     for (const YamlPair& pair : node.pairs) {
       places.insert(pair.key_pos);
       places_of(*pair.value, places);
@@ -136,21 +137,22 @@ class RowCollector {
   }
 
   std::vector<Row> rows_;
-  std::size_t places_left_ = 2 * YamlTree::max_nodes;  ///< aliases may name a long list often
+  std::size_t places_left_ = 2 * YamlTree::max_nodes;  // many aliases may name one long list
   std::set<std::pair<SourcePos, std::string>> seen_;
 };
 
 KeyFate fate_of(const Finding& finding) {
   if (finding.severity == Severity::error) return KeyFate::wrong;
   if (finding.severity == Severity::warning) return KeyFate::suspicious;
-  if (finding.rule == "cob-id") return KeyFate::suspicious;  // bit 30 stays as the device has it
+  if (finding.rule == "cob-id") return KeyFate::suspicious;  // the device's bit 30 stays
   const bool ignored =
       finding.rule == "unused-key" || finding.rule == "placeholder" || finding.rule == "guarding";
   return ignored ? KeyFate::ignored : KeyFate::used;
 }
 
-/// The innermost row that a finding is about; nullptr: none. A map begins where its first key does:
-/// that a map stands there at all is said of the map.
+/// Returns the innermost row to which a finding refers, or null if there is none. A map begins at
+/// the same place as its first key, so a finding on the type of a value at this place refers to the
+/// map.
 Row* row_of(std::vector<Row>& rows, const Finding& finding) {
   const auto here = [&](const Row& row) { return row.places.contains(finding.pos); };
   const auto map_here = [&](const Row& row) { return !row.leaf && here(row); };
@@ -188,7 +190,7 @@ void ignore(Row& row, const std::string& why) {
   row.key.why = why;
 }
 
-/// A key whose parent is ignored is ignored with it, and so is what stands in a wrong place.
+/// Marks keys as ignored if their parent is ignored, unknown or of a wrong type.
 void ignore_children(std::vector<Row>& rows) {
   for (const Row& parent : rows) {
     if (parent.leaf) continue;
@@ -221,7 +223,8 @@ std::string why_used(const Row& row) {
   return row.key.why.empty() ? std::string{key_meaning(row.word)} : row.key.why;
 }
 
-/// A node takes a key of `defaults` as a whole or, where it has that key itself, not at all.
+/// Judges the keys of `defaults`. A node takes such a key as a whole, or not at all if the node has
+/// the same key itself.
 void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   const YamlNode* defaults = root.find("defaults");
   const std::vector<const YamlPair*> nodes = nodes_of(root);
@@ -251,7 +254,7 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
   }
 }
 
-/// Compares values. Two that aliases name again and again are compared once.
+/// Compares values. Each pair of values is compared only once, even if many aliases name it.
 class Comparison {
  public:
   bool same(const YamlNode& a, const YamlNode& b) {
@@ -283,8 +286,9 @@ class Comparison {
   std::map<std::pair<const YamlNode*, const YamlNode*>, bool> known_;
 };
 
-/// The generator of ros2_canopen copies `defaults` over the keys of each node under `nodes`: there
-/// the node's own value has never been in effect.
+/// Marks keys of nodes that differ from the same key of `defaults`. The generator of ros2_canopen
+/// copies `defaults` over the keys of each node under `nodes`, so the node's own value was never in
+/// effect there.
 void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
   const YamlNode* defaults = root.find("defaults");
   const YamlNode* nodes = root.find("nodes");

@@ -9,11 +9,12 @@
 
 namespace takt {
 
+/// Result of the import for one key.
 enum class KeyFate : std::uint8_t {
-  used,
-  ignored,     ///< other readers use it
-  suspicious,  ///< used, but hardly what was meant
-  wrong,       ///< the file can't run with it
+  used,        ///< takt uses the key.
+  ignored,     ///< Only other readers use the key.
+  suspicious,  ///< takt uses the key, but the result is hardly what the author meant.
+  wrong,       ///< taktd can't run the file with this key.
 };
 
 std::string_view name(KeyFate fate) noexcept;
@@ -24,19 +25,21 @@ struct ImportedKey {
   std::string value;  ///< as written
   SourcePos pos;
   KeyFate fate = KeyFate::used;
-  std::string why;  ///< what it becomes, or why it does not
+  std::string why;  ///< meaning of the key in takt, or the reason why takt does not use it
 };
 
+/// Report on the import of a file.
 struct ImportReport {
-  std::vector<ImportedKey> keys;     ///< in the order of the file
-  Findings others;                   ///< of no key: device files, what is missing
-  bool usable = false;               ///< taktd would run it
-  std::vector<std::string> unasked;  ///< what taktd does besides that other readers do not
+  std::vector<ImportedKey> keys;     ///< keys in the order of the file
+  Findings others;                   ///< findings on no key: device files, missing entries
+  bool usable = false;               ///< true if taktd can run the file
+  std::vector<std::string> unasked;  ///< actions of taktd that other readers do not take
 
+  /// Returns the number of keys with this result.
   std::size_t count(KeyFate fate) const noexcept;
 };
 
-/// What takt makes of each key of a bus.yml.
+/// Reports how takt uses each key of a bus.yml.
 ImportReport import_report(const std::filesystem::path& path);
 
 }  // namespace takt

@@ -3,10 +3,11 @@
 
 namespace takt {
 
-/// What a key of a bus.yml becomes here, or why it becomes nothing; empty: the key says it itself.
+/// Returns the meaning of a key of a bus.yml in takt. Empty if the key explains itself.
 std::string_view key_meaning(std::string_view key) noexcept;
 
-/// Why a key of other readers is not used; empty: no more than the finding says.
+/// Returns the reason why takt does not use a key of other readers. Empty if the finding says
+/// enough.
 std::string_view why_ignored(std::string_view key) noexcept;
 
 }  // namespace takt

@@ -36,7 +36,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// A value of YAML that is nothing else than this text.
+/// Returns a value that YAML reads as exactly this text. Control characters become blanks.
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -46,7 +46,7 @@ std::string in_quotes(std::string_view text) {
   return out + '"';
 }
 
-/// `Axis 1 (left)` is `axis_1_left`: names are parts of LCM channels.
+/// Returns a name that can be part of an LCM channel: `Axis 1 (left)` becomes `axis_1_left`.
 std::string plain_name(std::string_view text, const std::string& otherwise) {
   std::string out;
   for (const char c : lower(text)) {
@@ -63,7 +63,7 @@ std::string plain_name(std::string_view text, const std::string& otherwise) {
   return out.front() >= '0' && out.front() <= '9' ? otherwise + '_' + out : out;
 }
 
-/// `node12dcfname` is 12 and `dcfname`.
+/// Splits a key like `node12dcfname` into 12 and `dcfname`. Returns std::nullopt for other keys.
 std::optional<std::pair<unsigned, std::string>> node_key(std::string_view key) {
   constexpr std::string_view prefix = "node";
   const std::string word = lower(key);
@@ -76,13 +76,13 @@ std::optional<std::pair<unsigned, std::string>> node_key(std::string_view key) {
 }
 
 struct ListedNode {
-  std::optional<std::size_t> present{};  ///< row of the report
-  std::optional<std::size_t> name{};
-  std::optional<std::size_t> dcf{};
+  std::optional<std::size_t> present{};  ///< row of the key in the report
+  std::optional<std::size_t> name{};     ///< row of the key in the report
+  std::optional<std::size_t> dcf{};      ///< row of the key in the report
   bool is_present = false;
-  std::string file{};   ///< as the network file names it
-  std::string label{};  ///< of the network file
-  SourcePos pos{};      ///< of its first key
+  std::string file{};   ///< path of the device file in the network file
+  std::string label{};  ///< name of the node in the network file
+  SourcePos pos{};      ///< place of its first key
 };
 
 class Importer {
@@ -208,7 +208,7 @@ class Importer {
     }
   }
 
-  /// Tools for Windows write `\`.
+  /// Replaces each `\`, which tools for Windows write, with `/`.
   static std::string slashes(std::string text) {
     std::ranges::replace(text, '\\', '/');
     return text;
@@ -261,7 +261,7 @@ class Importer {
     wrong(row.pos, "no-file", '`' + row.value + "` " + row.why);
   }
 
-  /// The bit rate, and which node is the master, are said in the DCFs.
+  /// Takes the bit rate and the choice of the master from a DCF.
   void take_from(const fs::path& path, unsigned id, ListedNode& node, ImportedKey& row) {
     const EdsFile file = read_eds_file(path, NodeId::from(id));
     const auto& said = file.dictionary.commissioning;
@@ -280,7 +280,8 @@ class Importer {
     if (said.baudrate_kbit != 0) bitrates_.insert(said.baudrate_kbit);
   }
 
-  /// The manager of the project, else the highest id that no node has.
+  /// Returns the node-ID of the manager of the project, or else the highest node-ID that no node
+  /// has.
   std::optional<unsigned> master_id() const {
     if (master_) return master_;
     for (unsigned id = 127; id > 0; --id) {

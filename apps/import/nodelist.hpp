@@ -6,14 +6,14 @@
 
 namespace takt {
 
-/// What becomes of a project file of CiA 306-3, and the network file for it.
+/// Result of the import of a project file of CiA 306-3.
 struct ImportedNodelist {
-  ImportReport report;  ///< `usable`: there is a network file
-  std::string yaml;
+  ImportReport report;  ///< `usable` is true if there is a network file
+  std::string yaml;     ///< text of the network file
 };
 
-/// Network `number` of a nodelist.cpj ([Topology], [Topology2] ...). Paths in the result are
-/// relative to `folder`, where it is going to be.
+/// Imports network `number` of a nodelist.cpj ([Topology], [Topology2] ...). Paths in the network
+/// file are relative to `folder`, in which the user will store it.
 ImportedNodelist import_nodelist(const std::filesystem::path& cpj, unsigned number,
                                  const std::filesystem::path& folder);
 

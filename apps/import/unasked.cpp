@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-/// The key that would have said it; empty: nothing to tell of this object.
+/// Returns the key that controls a write of this object. Empty if the object is of no interest.
 std::string_view key_of(ObjectKey object) {
   if (object == ObjectKey{0x1017, 0}) return "heartbeat_producer";
   if (object.index == 0x1016) return "heartbeat_consumer";
@@ -80,7 +80,7 @@ class Unasked {
 
   const YamlNode& root_;
   const BusPlan& plan_;
-  std::vector<std::pair<What, std::string>> groups_;  ///< names of nodes
+  std::vector<std::pair<What, std::string>> groups_;  // actions with the names of their nodes
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// What the plan of a bus.yml does of which no key of it says a word, and other readers do not:
-/// a line each, with the key that says otherwise.
+/// Returns the actions in the plan of a bus.yml that no key of the file requests and that other
+/// readers do not take. Each action is one line, with the key that changes it.
 std::vector<std::string> unasked(const YamlNode& root, const BusPlan& plan);
 
 }  // namespace takt

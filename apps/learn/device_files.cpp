@@ -24,7 +24,8 @@ bool is_device_file(const fs::path& path) {
   return extension == ".eds" || extension == ".dcf";
 }
 
-/// [DeviceInfo] counts only where the dictionary itself does not say.
+/// Returns the identity in a file. The values of [DeviceInfo] count only if the dictionary itself
+/// has none.
 SeenIdentity identity_of(const ObjectDictionary& dictionary) {
   SeenIdentity identity{.device_type = number_at(dictionary, {0x1000, 0}),
                         .vendor_id = number_at(dictionary, {0x1018, 1}),
@@ -54,7 +55,8 @@ SeenIdentity identity_of(const LearnedValues& values) {
 void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
   std::error_code error;
   std::vector<fs::path> paths;
-  constexpr auto what_is_shut = fs::directory_options::skip_permission_denied;  // below `folder`
+  // Subfolders that can't be opened are skipped.
+  constexpr auto what_is_shut = fs::directory_options::skip_permission_denied;
   fs::recursive_directory_iterator at;
   if (fs::directory_iterator{folder, error}; !error) {
     at = fs::recursive_directory_iterator{folder, what_is_shut, error};
@@ -69,7 +71,7 @@ void DeviceFiles::add_folder(const fs::path& folder, Findings& findings) {
     findings.push_back({folder.string(), {}, Severity::error, "no-file", error.message()});
   }
   std::ranges::sort(paths);
-  Findings of_strangers;  // a folder may hold what is no device file
+  Findings of_strangers;  // ignored: a folder may hold files that are no device files
   for (const fs::path& path : paths) add_file(path, of_strangers);
 }
 

@@ -8,7 +8,8 @@
 namespace takt {
 namespace {
 
-/// The boot that configured most; of equals the newest. nullptr: there is none.
+/// Returns the boot with the most writes, the newest of equal ones. Returns null if there is no
+/// boot.
 const LearnedBoot* fullest(const std::vector<LearnedBoot>& boots) {
   const LearnedBoot* best = nullptr;
   for (const LearnedBoot& boot : boots) {
@@ -58,7 +59,7 @@ bool LearnedNode::is_there() const noexcept {
 
 std::optional<std::uint8_t> LearnedBus::master() const {
   constexpr std::uint8_t usual = 127;
-  std::vector<std::uint8_t> silent;  // it lives, but nobody tells or asks it anything
+  std::vector<std::uint8_t> silent;  // nodes that live, but that nobody addresses
   for (const auto& [id, node] : nodes) {
     const bool told = node.requests != 0 || node.answers != 0 || node.addressed || node.guarded();
     if (told) continue;

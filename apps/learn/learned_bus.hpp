@@ -13,98 +13,105 @@
 
 namespace takt {
 
-/// A write of the master, in the order of the recording.
+/// An SDO write of the master.
 struct LearnedWrite {
   SdoTransfer transfer;
-  std::uint32_t line = 0;  ///< of its last frame
+  std::uint32_t line = 0;  ///< line of its last frame in the recording
 };
 
-/// What an object held.
+/// Values of an object in the recording.
 struct LearnedValue {
-  std::vector<std::uint8_t> first;  ///< as it was first seen
-  std::vector<std::uint8_t> last;
+  std::vector<std::uint8_t> first;  ///< first value that was seen
+  std::vector<std::uint8_t> last;   ///< last value that was seen
   bool read = false;
-  bool written = false;  ///< and the device took it
+  bool written = false;  ///< true if the device has accepted a write
 
+  /// Returns the last value as a number, or std::nullopt if it does not have 1 to 8 bytes.
   std::optional<std::uint64_t> number() const noexcept;
 };
 
 using LearnedValues = std::map<ObjectKey, LearnedValue>;
 
-/// From one reset or boot-up message to the next.
+/// Transfers from one reset or boot-up message to the next.
 struct LearnedBoot {
-  std::vector<LearnedWrite> writes;  ///< that the device took, before it was started
+  std::vector<LearnedWrite> writes;  ///< writes that the device accepted before its NMT start
   LearnedValues values;
   bool started = false;
 };
 
+/// One node of the recording.
 struct LearnedNode {
-  std::uint8_t id = 0;  ///< 1..127
+  std::uint8_t id = 0;  ///< node-ID, 1..127
   std::uint32_t first_line = 0;
   bool booted_up = false;
   bool deaf_to_reset = false;  ///< no boot-up message since the newest reset of all nodes
-  bool reset_node = false;     ///< newest reset was by NMT reset node, else communication
-  bool started = false;        ///< by an NMT command of its own
-  bool addressed = false;      ///< any NMT command of its own
-  std::uint64_t answers = 0;   ///< SDO frames of the device
-  std::uint64_t requests = 0;  ///< SDO frames to it
+  bool reset_node = false;     ///< true: newest reset by NMT reset node; false: reset communication
+  bool started = false;        ///< true after an NMT start for this node alone
+  bool addressed = false;      ///< true after any NMT command for this node alone
+  std::uint64_t answers = 0;   ///< number of SDO frames from the device
+  std::uint64_t requests = 0;  ///< number of SDO frames to the device
   PeriodMeter heartbeats;
   PeriodMeter guard_requests;
   std::vector<LearnedBoot> boots;
   std::vector<LearnedWrite> refused;
-  std::vector<LearnedWrite> later;  ///< writes while OPERATIONAL: of an application
+  std::vector<LearnedWrite> later;  ///< writes while OPERATIONAL, which come from an application
   SdoObserver sdo;
 
   bool guarded() const noexcept { return guard_requests.count() > 2; }
-  /// It has SDO answers, boot-up messages or heartbeats, or the master counts on it: more than
-  /// reads that nobody answered.
+  /// Returns true if the node exists: it sends SDO answers, boot-up messages or heartbeats, or the
+  /// master sends it NMT commands or guarding requests. SDO requests without an answer do not
+  /// suffice.
   bool is_there() const noexcept;
-  /// The writes of the fullest boot, with those that only other boots have.
+  /// Returns the writes of the boot with the most writes, and then those that only other boots
+  /// have.
   std::vector<LearnedWrite> configuration() const;
-  /// What objects held at the end of it.
+  /// Returns the values of the objects at the end of that boot, and then those of objects that only
+  /// other boots have.
   LearnedValues values() const;
 };
 
-/// Frames of one identifier that no service claims.
+/// Frames with one identifier that belongs to no known service.
 struct LearnedTraffic {
   PeriodMeter frames;
-  PeriodMeter requests;  ///< remote ones
-  std::uint8_t shortest = 8;
-  std::uint8_t longest = 0;
+  PeriodMeter requests;       ///< remote frames
+  std::uint8_t shortest = 8;  ///< bytes
+  std::uint8_t longest = 0;   ///< bytes
   std::uint32_t first_line = 0;
 };
 
+/// Frames with one identifier that may be SYNC.
 struct LearnedSync {
   PeriodMeter frames;
-  std::uint8_t highest_counter = 0;  ///< 0: frames without counter
+  std::uint8_t highest_counter = 0;  ///< 0 means frames without a counter
 };
 
-/// All that a recording says of a bus, before any device file is known.
+/// Everything that a recording shows of a bus, before any device file is known.
 struct LearnedBus {
   std::string file;
   std::string interface;
   std::uint64_t frames = 0;
   std::uint64_t error_frames = 0;
   std::optional<double> seconds;
-  std::map<CobId, LearnedTraffic> traffic;  ///< SYNC, PDOs and what is unknown
-  std::uint64_t more_traffic = 0;           ///< frames of still more identifiers
-  PeriodMeter time;                         ///< 0x100
-  std::uint64_t lss = 0;                    ///< frames of 0x7E4 and 0x7E5
-  bool started_all = false;                 ///< NMT start by broadcast
+  std::map<CobId, LearnedTraffic> traffic;  ///< SYNC, EMCY, PDOs and unknown frames
+  std::uint64_t more_traffic = 0;           ///< frames with identifiers beyond the limit
+  PeriodMeter time;                         ///< TIME, 0x100
+  std::uint64_t lss = 0;                    ///< frames with the identifiers 0x7E4 and 0x7E5
+  bool started_all = false;                 ///< true after an NMT start by broadcast
   std::map<std::uint8_t, LearnedNode> nodes;
-  std::map<std::uint32_t, LearnedSync> sync;  ///< by identifier; only those that may be SYNC
+  std::map<std::uint32_t, LearnedSync> sync;  ///< by identifier; only frames that may be SYNC
   Findings findings;
 
-  /// The node id of the master that made the recording; none: nothing says so.
+  /// Returns the node-ID of the master in the recording, or std::nullopt if nothing shows it.
   std::optional<std::uint8_t> master() const;
-  /// Nodes but for the master and those that `strangers` has.
+  /// Returns all nodes except the master and those in strangers().
   std::vector<const LearnedNode*> devices() const;
-  /// Ids that were asked by SDO and never heard, as by a scan.
+  /// Returns the node-IDs that were asked by SDO but never heard, for example in a scan.
   std::vector<std::uint8_t> strangers() const;
 
  private:
   bool is_there(const LearnedNode& node) const;
-  /// It sends an EMCY, or a TPDO by the predefined set that is no other node's.
+  /// Returns true if the node sends an EMCY, or a TPDO of the predefined connection set that is not
+  /// the TPDO of another node.
   bool sends_as_device(std::uint8_t node_id) const;
 };
 

@@ -12,7 +12,8 @@ std::optional<T> at(const LearnedValues& values, ObjectKey key) {
   return number ? std::optional{static_cast<T>(*number)} : std::nullopt;
 }
 
-/// All entries, or none: half a mapping says nothing.
+/// Returns all entries of a mapping, or std::nullopt if one is missing. An incomplete mapping has
+/// no use.
 std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, std::uint16_t index,
                                                   std::uint8_t count) {
   std::vector<std::uint32_t> list;

@@ -19,7 +19,7 @@ struct DriveObject {
   bool is_signed;
 };
 
-/// Objects of CiA 402-2 that are mapped as a rule, of the first axis.
+/// Objects of CiA 402-2 that are usually mapped, for the first axis.
 constexpr std::array<DriveObject, 24> drive_objects{{
     {0x6040, "Controlword", false},          {0x6041, "Statusword", false},
     {0x6060, "Modes of operation", true},    {0x6061, "Modes of operation display", true},
@@ -35,7 +35,8 @@ constexpr std::array<DriveObject, 24> drive_objects{{
     {0x60FD, "Digital inputs", false},       {0x60FF, "Target velocity", true},
 }};
 
-/// nullptr: none of them. Axes follow each other at 0x800.
+/// Returns the object of the first axis that corresponds to an index, or null if the table does not
+/// have it. The objects of the next axis are 0x800 higher.
 const DriveObject* drive_object(std::uint16_t index) {
   if (index < 0x6000 || index >= 0xA000) return nullptr;
   const auto first_axis = static_cast<std::uint16_t>(0x6000 + (index - 0x6000) % 0x800);
@@ -105,7 +106,7 @@ class EdsMaker {
     for (Object& object : list) complete(object);
     return list;
   }
-  /// Data types that are mapped as gaps.
+  /// Returns the data types that are mapped as dummies.
   const std::set<std::uint16_t>& dummies() const noexcept { return dummies_; }
 
  private:
@@ -129,7 +130,8 @@ class EdsMaker {
     return axis == 0 ? std::string{object->name} : fmt::format("{} {}", object->name, axis + 1);
   }
 
-  /// Bit 30 of 0x1005. Such a device has a period that can be set, whoever set it.
+  /// Returns true if bit 30 of 0x1005 is set. Such a device has a SYNC period (0x1006) that can be
+  /// written, even if the recording does not show a write.
   bool makes_sync() const {
     const auto found = values_.find({0x1005, 0});
     return found != values_.end() && (found->second.number().value_or(0) >> 30U & 1U) != 0;
@@ -204,7 +206,7 @@ class EdsMaker {
     if (!is_tpdo) mapped.access = Access::rw;
   }
 
-  /// A record has sub 0, the highest of the others.
+  /// Sets the type of an object. A record needs sub-index 0, which holds its highest sub-index.
   static void complete(Object& object) {
     const bool single = object.subs.size() == 1 && object.subs.front().sub == 0 &&
                         standard_type({object.index, 1}) == DataType::unknown;

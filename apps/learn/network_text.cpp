@@ -24,13 +24,13 @@ constexpr std::uint64_t shortest_sync_us = 200;
 constexpr std::uint64_t longest_sync_us = 60'000'000;
 constexpr std::int64_t shortest_time_ms = 100;
 constexpr std::int64_t longest_time_ms = 86'400'000;
-constexpr std::uint8_t least_overflow = 2;  // 1 is reserved. CiA 301, 7.5.2.22
+constexpr std::uint8_t least_overflow = 2;  // the value 1 is reserved; CiA 301, 7.5.2.22
 constexpr std::uint8_t most_overflow = 240;
 
-/// What the SDO writes and the frames say of SYNC.
+/// Properties of SYNC by the SDO writes and the frames.
 struct SyncFacts {
   std::uint32_t cob_id = 0x80;
-  std::int64_t period_us = 0;  ///< 0: there is none
+  std::int64_t period_us = 0;  ///< 0 means no SYNC
   std::uint8_t overflow = 0;
   std::optional<std::uint64_t> window_us;
   std::optional<std::uint8_t> producer;
@@ -78,7 +78,8 @@ class NetworkText {
     return id;
   }
 
-  /// `--eds 5=FILE` where there is no node 5.
+  /// Warns of files that the user gave for nodes that do not exist, like `--eds 5=FILE` without a
+  /// node 5.
   void tell_files_of_nobody() {
     for (const std::uint8_t id : files_.assigned()) {
       if (std::ranges::find(devices_, id, &LearnedNode::id) != devices_.end()) continue;
@@ -87,8 +88,9 @@ class NetworkText {
     }
   }
 
-  /// As measured. Else a third of what those wait who watch it, the time between two of a few, or
-  /// the default if there is any heartbeat.
+  /// Returns the heartbeat period of the master in ms. It is the measured period; or else a third
+  /// of the shortest time in a heartbeat consumer of a device; or else the shortest time between
+  /// two heartbeats; or else the default, 100 ms. 0 means that there is no heartbeat.
   std::int64_t heartbeat_of_master(const LearnedNode& master) const {
     const PeriodMeter& heartbeats = master.heartbeats;
     if (const auto ms = as_configured_ms(heartbeats.median())) return *ms;
@@ -130,7 +132,7 @@ class NetworkText {
     }
   }
 
-  /// A file of the user's, else one that is made here.
+  /// Finds the device file of a node: a file of the user, or else one that is made here.
   void find_file(const LearnedNode& node) {
     const LearnedValues values = node.values();
     const SeenIdentity identity = identity_of(values);
@@ -155,7 +157,7 @@ class NetworkText {
                      node.id, identity.vendor_id, identity.product_code, name, node.id));
   }
 
-  /// Of the device data that taktd will apply.
+  /// Returns the unit of the inhibit time in us, by the device data that taktd will apply.
   std::uint32_t inhibit_unit(const LearnedNode& node) const {
     const SeenIdentity identity = identity_of(node.values());
     NodeSpec spec;
@@ -206,7 +208,7 @@ class NetworkText {
     if (seen->second.highest_counter != 0) learn_counter(seen->second.highest_counter, overflows);
   }
 
-  /// `told`: 0x1006.
+  /// Determines the SYNC period. `told` is the value of 0x1006 in us.
   void learn_period(const LearnedSync& seen, std::optional<std::uint64_t> told) {
     const bool usable = told && *told >= shortest_sync_us && *told <= longest_sync_us;
     const auto written = usable ? static_cast<std::int64_t>(*told) : 0;
@@ -228,7 +230,8 @@ class NetworkText {
     }
   }
 
-  /// `overflows`: how many devices got which 0x1019.
+  /// Determines the counter overflow. `overflows` holds the number of devices for each value of
+  /// 0x1019.
   void learn_counter(std::uint8_t highest, const std::map<std::uint64_t, std::size_t>& overflows) {
     const std::uint8_t seen = std::clamp(highest, least_overflow, most_overflow);
     sync_.overflow = seen;
@@ -343,7 +346,8 @@ class NetworkText {
     }
   }
 
-  /// Where it would belong by the predefined set helps to find what it is. CiA 301, 7.3.5.
+  /// Returns the PDO that has this identifier in the predefined connection set. This helps the user
+  /// to find the purpose of the frame. CiA 301, 7.3.5.
   static std::string guess(CobId id) {
     if (id.is_extended() || id.id() < 0x181 || id.id() > 0x57F) return {};
     const unsigned function = (id.id() >> 7U) - 3;
@@ -379,7 +383,7 @@ class NetworkText {
   std::uint8_t master_id_ = 127;
   std::int64_t heartbeat_ms_ = 0;
   SyncFacts sync_;
-  std::int64_t time_ms_ = 0;  ///< 0: there is none
+  std::int64_t time_ms_ = 0;  // period of TIME; 0 means no TIME
   std::map<std::uint8_t, DeviceFiles::Match> matches_;
   std::map<std::uint8_t, std::string> names_;
   LearnedNetwork out_;

@@ -11,22 +11,23 @@
 
 namespace takt {
 
+/// Options of learned_network().
 struct LearnOptions {
-  std::uint32_t bitrate_kbit = 1000;  ///< a recording does not say it
-  std::filesystem::path folder{};     ///< of the network file; device files are named from there
-  std::string stem = "learned";       ///< of the network file
+  std::uint32_t bitrate_kbit = 1000;  ///< bit rate, kbit/s; a recording does not show it
+  std::filesystem::path folder{};     ///< folder of the network file; paths are relative to it
+  std::string stem = "learned";       ///< name of the network file without its ending
   std::vector<DeviceData> device_data{};
 };
 
-/// A network file, and the device files that had to be made for it.
+/// A network file and the device files that were made for it.
 struct LearnedNetwork {
   std::string text;
-  std::map<std::string, std::string> made_files{};  ///< name -> content, beside the network file
+  std::map<std::string, std::string> made_files{};  ///< content by name, beside the network file
   Findings findings{};
 };
 
-/// The network file of a recorded bus. Devices without a file among `files` get one that is made
-/// of what the recording shows.
+/// Writes the network file of a recorded bus. A device without a file in `files` gets a file that
+/// is made from the recording.
 LearnedNetwork learned_network(const LearnedBus& bus, const DeviceFiles& files,
                                const LearnOptions& options);
 

@@ -68,7 +68,7 @@ class NodeText {
     const auto found = values_.find(key);
     return found == values_.end() ? std::nullopt : found->second.number();
   }
-  /// What the master wrote; none: it did not.
+  /// Returns the number that the master wrote, or std::nullopt if it did not write the object.
   std::optional<std::uint64_t> written(ObjectKey key) const {
     const auto found = values_.find(key);
     return found != values_.end() && found->second.written ? found->second.number() : std::nullopt;
@@ -137,7 +137,8 @@ class NodeText {
     }
   }
 
-  /// 0x1016 with the master's id is `heartbeat_consumer`, another node's is said in words.
+  /// Writes the heartbeat consumer. An entry of 0x1016 with the node-ID of the master becomes
+  /// `heartbeat_consumer`; an entry with another node-ID becomes a comment.
   void watch_master() {
     bool watches = false;
     for (const auto& [key, value] : values_) {
@@ -222,7 +223,7 @@ class NodeText {
                          unknown ? "  its mapping is not in the recording" : "");
   }
 
-  /// An RPDO by event that comes as by a timer of the master.
+  /// Adds `event_timer` to an event-driven RPDO that the master sends at a steady period.
   template <class Add>
   void add_repetition(CobId id, const Add& add) {
     const auto traffic = bus_.traffic.find(id);
@@ -285,7 +286,7 @@ class NodeText {
     }
   }
 
-  /// Why a write can't stand in the list; empty: it can.
+  /// Returns the reason why a write can't be in the list `sdo`. Empty if it can.
   std::string why_not(const LearnedWrite& write) const {
     if (!write.transfer.whole) return "parts of the value are not in the recording";
     const SubObject* sub = described(write.transfer.object);
@@ -297,7 +298,8 @@ class NodeText {
     return {};
   }
 
-  /// 0x60C2 of a drive that fits the SYNC period is what takt sets by itself.
+  /// Returns true for the interpolation time period (0x60C2) of a drive if it equals the SYNC
+  /// period, because takt sets this value by itself.
   bool is_own_cycle(ObjectKey key) const {
     if ((identity_of(values_).device_type & 0xFFFFU) != 402 || what_.sync_us == 0) return false;
     if (described({0x6040, 0}) == nullptr || described({0x6041, 0}) == nullptr) return false;
@@ -310,7 +312,8 @@ class NodeText {
     return std::abs(us - static_cast<double>(what_.sync_us)) < 0.5;
   }
 
-  /// What was refused or came later: seen, but no part of a boot.
+  /// Writes comments on SDO writes that are no part of a boot: the device refused them, or they
+  /// came later.
   void remarks() {
     comment_writes(node_.refused, "refused by the device", [](const LearnedWrite& write) {
       return fmt::format("{:08X} {}", *write.transfer.abort_code,

@@ -5,17 +5,21 @@
 
 namespace takt {
 
-/// The usual time between frames of one kind: the median of the newest intervals. Memory is fixed.
+/// Measures the usual time between frames of one kind: the median of the newest 255 intervals. Its
+/// memory is fixed.
 class PeriodMeter {
  public:
-  /// `us`: when it came; none where the recording has no times.
+  /// Adds a frame. `us` is its time in microseconds, or std::nullopt if the recording has no times.
   void add(std::optional<std::int64_t> us) noexcept;
-  /// Microseconds; none: fewer than three intervals.
+  /// Returns the median interval in microseconds, or std::nullopt if there are fewer than three
+  /// intervals.
   std::optional<std::int64_t> median() const;
-  /// Of however few; none: there is no interval.
+  /// Returns the shortest interval in microseconds, or std::nullopt if there is no interval.
   std::optional<std::int64_t> shortest() const;
-  /// The median where three of four intervals are within 2 % of it: somebody's timer.
+  /// Returns the median if at least three quarters of the intervals are within 2 % of it, as the
+  /// frames of a timer are. Returns std::nullopt otherwise.
   std::optional<std::int64_t> steady() const;
+  /// Returns the number of frames.
   std::uint64_t count() const noexcept { return count_; }
 
  private:
@@ -26,11 +30,13 @@ class PeriodMeter {
   std::array<std::int64_t, 255> intervals_{};
 };
 
-/// A measured time as somebody would have written it: 1999.6 ms is 2000 ms. At most 0.25 % off, 1 %
-/// where it becomes 1, 2, 2.5, 4, 5 or 8 times a power of ten: masters in software are that slow.
+/// Rounds a measured time to the value that a person has probably configured: 1999.6 ms becomes
+/// 2000 ms. The result differs by at most 0.25 %, or by 1 % if it is 1, 2, 2.5, 4, 5 or 8 times a
+/// power of ten, because masters in software are that inaccurate. Microseconds.
 std::int64_t as_configured(std::int64_t measured) noexcept;
 
-/// That of microseconds, in milliseconds; none: it is no time of an UNSIGNED16 but 0.
+/// Returns as_configured() in milliseconds. Returns std::nullopt if there is no measured time, or
+/// if the result is not in the range 1..65535 of an UNSIGNED16 time.
 std::optional<std::int64_t> as_configured_ms(std::optional<std::int64_t> measured_us) noexcept;
 
 }  // namespace takt

@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::size_t most_identifiers = 4096;
 constexpr std::size_t most_boots = 16;
-constexpr std::size_t most_writes = 4096;   // of one boot
-constexpr std::size_t most_objects = 8192;  // of one boot
+constexpr std::size_t most_writes = 4096;   // limit for one boot
+constexpr std::size_t most_objects = 8192;  // limit for one boot
 constexpr std::size_t most_line = 512;
 constexpr std::size_t most_early = 16;  // interfaces of error frames before the first data frame
 
-/// `1436509052.249713` in microseconds.
+/// Converts a time stamp like `1436509052.249713` to microseconds.
 std::optional<std::int64_t> seconds_in_us(std::string_view stamp) {
   const std::size_t dot = std::min(stamp.find('.'), stamp.size());
   const auto seconds = number_in<std::int64_t>(stamp.substr(0, dot), 10);
@@ -33,7 +33,7 @@ std::optional<std::int64_t> seconds_in_us(std::string_view stamp) {
   return *seconds * 1'000'000 + micros;
 }
 
-/// That, or `2015-07-10 08:17:32.249713`.
+/// Converts a time stamp in seconds, or like `2015-07-10 08:17:32.249713`, to microseconds.
 std::optional<std::int64_t> microseconds(std::string_view stamp) {
   if (stamp.size() < 19 || stamp[10] != ' ') return seconds_in_us(stamp);
   const auto part = [&](std::size_t at, std::size_t size) {
@@ -94,7 +94,8 @@ void Recording::add(std::string_view text, std::uint32_t line) {
   }
 }
 
-/// It is counted where a frame that says more has chosen the interface.
+/// Keeps an error frame until the first other frame has chosen the interface; only then it is
+/// counted.
 void Recording::early_error(const std::string& interface) {
   const auto known = std::ranges::find(early_, interface, &EarlyErrors::interface);
   if (known != early_.end()) {
@@ -204,7 +205,7 @@ void Recording::nmt(const Frame& frame) {
   }
 }
 
-/// Boot-up messages, heartbeats, guarding. CiA 301, 7.2.8.3.2.
+/// Takes boot-up messages, heartbeats and guarding frames. CiA 301, 7.2.8.3.2.
 void Recording::error_control(std::uint8_t id, const Frame& frame) {
   LearnedNode& sender = node(id);
   if (frame.rtr) return sender.guard_requests.add(us_);
@@ -232,7 +233,7 @@ void Recording::transfer(LearnedNode& node, const std::optional<SdoTransfer>& tr
   LearnedBoot& now = boot(node);
   if (!transfer->whole || now.values.size() >= most_objects) return;
   const bool written = transfer->kind == SdoTransfer::Kind::write;
-  if (written && now.started) return;  // no part of the configuration
+  if (written && now.started) return;  // the configuration has ended
   LearnedValue& value = now.values[transfer->object];
   if (!value.read && !value.written) value.first = transfer->value;
   value.last = transfer->value;

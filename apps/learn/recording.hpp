@@ -12,14 +12,16 @@
 
 namespace takt {
 
-/// Listens to a recorded bus frame by frame. Memory is bounded whatever the recording says.
+/// Learns a bus from a recording, frame by frame. Its memory is bounded for any recording.
 class Recording {
  public:
-  /// `interface`: frames of others are left out; empty: that of the first frame which is no error
-  /// frame.
+  /// Frames of interfaces other than `interface` are left out. Empty selects the interface of the
+  /// first frame that is no error frame.
   Recording(std::string file, std::string interface);
 
+  /// Adds one line of the recording. `line` is its number, from 1 on.
   void add(std::string_view text, std::uint32_t line);
+  /// Ends the recording and returns the result.
   LearnedBus take();
 
  private:
@@ -46,17 +48,18 @@ class Recording {
   LearnedBus bus_;
   std::uint32_t line_ = 0;
   RecordedLines lines_;
-  bool all_reset_ = false;  // newest reset of all was by NMT reset node
+  bool all_reset_ = false;  // true if the newest reset of all nodes was NMT reset node
   std::uint64_t strange_ = 0;
   std::uint64_t foreign_ = 0;   // frames of other interfaces
-  std::uint64_t backward_ = 0;  // frames with an earlier time than the one before
+  std::uint64_t backward_ = 0;  // frames with an earlier time than the frame before
   std::string foreign_name_;
-  std::vector<EarlyErrors> early_;  // before an interface is chosen
+  std::vector<EarlyErrors> early_;  // error frames before an interface is chosen
   std::optional<std::int64_t> us_;
   std::optional<std::int64_t> first_us_;
 };
 
-/// Reads a recording line by line; of longer lines than candump writes only the beginning.
+/// Reads a recording line by line. Only the first 512 characters of a line count, which is more
+/// than candump writes.
 LearnedBus read_recording(std::istream& in, const std::string& name, const std::string& interface);
 
 }  // namespace takt

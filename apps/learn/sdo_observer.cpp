@@ -62,7 +62,8 @@ void SdoObserver::sent_segment(const Frame& frame) {
   if (part.last) state_ = State::last_sent;
 }
 
-/// The frame begins a block transfer, or belongs to the one that runs.
+/// Takes a frame that begins a block transfer or belongs to the running one. Returns false for all
+/// other frames.
 bool SdoObserver::block_request(const Frame& frame) {
   const SdoRequest command = sdo_request(frame);
   if (block_.running()) {
@@ -84,7 +85,7 @@ bool SdoObserver::block_request(const Frame& frame) {
   return true;
 }
 
-/// A block transfer is over when its end was confirmed.
+/// Ends a block transfer after its end was confirmed.
 std::optional<SdoTransfer> SdoObserver::block_end() {
   if (block_.running()) return {};
   transfer_.whole = block_.has_value();
@@ -121,7 +122,7 @@ std::optional<SdoTransfer> SdoObserver::upload(const Frame& frame) {
     ++strays_;
     return {};
   }
-  block_.stop();  // the server may answer a block upload in segments
+  block_.stop();  // a server may answer a block upload request with a segmented upload
   if (!initiate.expedited) {
     state_ = State::segments;
     return {};

@@ -9,28 +9,32 @@
 
 namespace takt {
 
-/// One SDO transfer of a recording that came to its end, good or bad.
+/// One SDO transfer of a recording that has ended, successfully or with an abort.
 struct SdoTransfer {
   enum class Kind : std::uint8_t { read, write };
   Kind kind = Kind::read;
   ObjectKey object;
   std::vector<std::uint8_t> value{};
-  bool whole = true;  ///< false: longer than what is kept, or parts are not in the recording
+  bool whole = true;  ///< false if the value is too long to be kept or parts were not recorded
   std::optional<std::uint32_t> abort_code{};
 };
 
-/// Listens to the SDO frames between one server and its client. CiA 301, 7.2.4.3. Memory is
-/// bounded whatever the frames say.
+/// Follows the SDO frames between one server and its client. CiA 301, 7.2.4.3. Its memory is
+/// bounded for any frames.
 class SdoObserver {
  public:
+  /// Longest value that is kept, bytes.
   static constexpr std::size_t most_kept = std::size_t{1} << 16U;
 
+  /// Takes a frame of the client. Returns the transfer if this frame ends it.
   std::optional<SdoTransfer> request(const Frame& frame);
+  /// Takes a frame of the server. Returns the transfer if this frame ends it.
   std::optional<SdoTransfer> answer(const Frame& frame);
 
-  /// Frames whose beginning is not in the recording.
+  /// Returns the number of frames of transfers whose beginning is not in the recording.
   std::uint64_t strays() const noexcept { return strays_; }
-  /// Transfers that another request cut off: two clients, or lost frames.
+  /// Returns the number of transfers that another request cut off, because of two clients or lost
+  /// frames.
   std::uint64_t cut_off() const noexcept { return cut_off_; }
 
  private:

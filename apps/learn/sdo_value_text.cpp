@@ -17,7 +17,8 @@ std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
-/// YAML has an escape for every character; bytes above 0x7F would become two of UTF-8.
+/// Returns the bytes in quotes. YAML has an escape for every character, but a byte above 0x7F would
+/// become two bytes in UTF-8; returns std::nullopt for these.
 std::optional<std::string> quoted(std::span<const std::uint8_t> bytes) {
   const auto ascii = [](std::uint8_t c) { return c < 0x80; };
   if (bytes.empty() || bytes.size() > longest_text || !std::ranges::all_of(bytes, ascii)) return {};

@@ -4,10 +4,10 @@
 
 namespace takt {
 
-/// `"text"`; control characters become `?`.
+/// Returns the text in quotes, `"text"`. Control characters become `?`.
 std::string yaml_quoted(std::string_view text);
 
-/// A word as it is where YAML can't take it for anything else, otherwise quoted.
+/// Returns the text without quotes if YAML can only read it as a string, and in quotes otherwise.
 std::string yaml_word(std::string_view text);
 
 }  // namespace takt
