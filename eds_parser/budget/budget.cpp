@@ -158,8 +158,8 @@ void set_limits(BudgetRow& row, const BusPlan& plan, Time next) {
     return;
   }
   row.cycle = next;
-  // Outputs leave the same queue as SYNC and may delay it, up to the delay that the master reports
-  // as late.
+  // Outputs leave the same queue as SYNC and may delay it, up to the delay from which the master
+  // reports SYNC as late.
   if (row.frame.kind == Traffic::rpdo) row.tolerance = plan.cycle.period / 10;
   if (row.frame.kind == Traffic::tpdo) limit_input(row, plan.cycle);
   const Time window = plan.cycle.sync_window;

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// Puts the values of `changes` in place of those of the file.
+/// Replaces values of the network file by those of `changes`.
 void apply_changes(const WhatIf& changes, NetworkSpec& spec, Findings& findings);
 
 }  // namespace takt

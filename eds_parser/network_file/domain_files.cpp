@@ -58,7 +58,7 @@ class Reader {
     return true;
   }
 
-  /// Tools for Windows write `\`.
+  /// Replaces `\`, which tools for Windows write, by `/`.
   static fs::path relative(std::string name) {
     std::ranges::replace(name, '\\', '/');
     return name;

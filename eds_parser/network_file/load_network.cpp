@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_program = std::size_t{16} << 20U;
 constexpr std::size_t max_configuration = std::size_t{1} << 20U;
 
-/// The text; at most one byte more than a network file may have.
+/// Reads the text of a file, up to one byte more than a network file may have.
 std::optional<std::string> read_text(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return {};
@@ -42,7 +42,7 @@ std::optional<std::string> read_text(const fs::path& path) {
   return text;
 }
 
-/// Why a path is no network file, and what would be.
+/// Says why a path cannot be read as a network file, and what to name instead.
 std::string why_unreadable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -52,12 +52,13 @@ std::string why_unreadable(const fs::path& path) {
   return "can't be read: no permission";
 }
 
-/// `1 error`, `2 errors`.
+/// Returns for example `1 error` or `2 errors`.
 std::string counted(std::ptrdiff_t count, const std::string& what) {
   return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
 }
 
-/// So many listed objects without a section are no slip of an editor any more.
+/// From this number of listed objects without a section the file is probably cut off, and not just
+/// carelessly edited.
 constexpr std::ptrdiff_t torn_from = 8;
 
 class Loader {
@@ -103,7 +104,8 @@ class Loader {
     return path.find('@') != std::string::npos;
   }
 
-  /// `@BUS_CONFIG_PATH@` is filled in by the build of ros2_canopen; here files are found beside.
+  /// The build of ros2_canopen fills in `@BUS_CONFIG_PATH@`. takt looks for the files beside the
+  /// network file instead.
   void note_placeholder(const NetworkSpec& spec) {
     if (!spec.dcf_path.given || !is_placeholder(*spec.dcf_path)) return;
     out_.findings.push_back({path_.string(), spec.dcf_path.pos, Severity::note, "placeholder",
@@ -112,14 +114,14 @@ class Loader {
                                  "this one"});
   }
 
-  /// `@BUS_CONFIG_PATH@/x.eds` is `x.eds`.
+  /// Turns `@BUS_CONFIG_PATH@/x.eds` into `x.eds`.
   static std::string without_placeholder(const std::string& name) {
     const auto end = name.starts_with('@') ? name.find("@/", 1) : std::string::npos;
     return end == std::string::npos ? name : name.substr(end + 2);
   }
 
-  /// Where a file of a node may be: beside the network file, then in dcf_path of the node, of
-  /// options.
+  /// The paths at which a file of a node may be: beside the network file, then in `dcf_path` of the
+  /// node, then in that of `options`.
   std::vector<fs::path> candidates(const NetworkSpec& spec, const NodeSpec& node,
                                    const std::string& written) const {
     const fs::path folder = path_.parent_path();
@@ -131,7 +133,8 @@ class Loader {
     return paths;
   }
 
-  /// Without `x/..`, where that is the same file: a folder may be a link.
+  /// Removes `x/..` from a path if the result is the same file. It may not be, because a folder may
+  /// be a link.
   static fs::path tidy(const fs::path& path) {
     std::error_code error;
     fs::path plain = path.lexically_normal();
@@ -163,7 +166,8 @@ class Loader {
     node.sdo.insert(node.sdo.begin(), values.begin(), values.end());
   }
 
-  /// PDO parameters are taken into the PDOs' configuration, as numbers.
+  /// Values of PDO parameters become numbers, because they are merged into the configuration of the
+  /// PDOs.
   static SdoSpec sdo_of(const ConciseEntry& entry, const NodeSpec& node) {
     SdoSpec sdo{.object = entry.object,
                 .value = entry.value,
@@ -232,7 +236,8 @@ class Loader {
     if (!file.readable) {
       const std::size_t before = out_.findings.size();
       std::ranges::copy_if(file.findings, std::back_inserter(out_.findings), [](const Finding& f) {
-        return f.severity == Severity::error;  // the rest follows from it: any binary has hundreds
+        // The other findings follow from the errors. Any binary file has hundreds of them.
+        return f.severity == Severity::error;
       });
       const bool told = out_.findings.size() != before;
       out_.findings.push_back(
@@ -245,8 +250,9 @@ class Loader {
     return &file.dictionary;
   }
 
-  /// What is wrong in a device file does not make the network file wrong; `takt eds check` judges
-  /// it. It is told once, however many nodes share the file, as it is for the first of them.
+  /// Errors in a device file do not make the network file wrong; `takt eds check` judges the device
+  /// file. If several nodes share the file, it is reported once, with the findings of the first
+  /// node.
   void add_device_finding(const fs::path& path, const EdsFile& file, std::optional<NodeId> id) {
     if (!told_.insert(path).second) return;
     const Findings judged = check(file.dictionary);
@@ -274,7 +280,8 @@ class Loader {
              path.string() + "` lists them"});
   }
 
-  /// Device files first, then the network file by position; what many nodes share is told once.
+  /// Sorts findings: device files first, then the network file by position. A finding that nodes
+  /// share is reported once.
   void sort_findings(const NetworkSpec& spec) {
     const std::string own = path_.string();
     std::ranges::stable_sort(out_.findings, {}, [&](const Finding& finding) {
@@ -290,7 +297,7 @@ class Loader {
     join_shared_lines(out_.findings, own, names);
   }
 
-  /// Where `sync_period` itself is wrong, what follows from its value says nothing.
+  /// Drops findings that only follow from the value of `sync_period` if that value itself is wrong.
   void drop_consequences() {
     const bool wrong_period = std::ranges::any_of(out_.findings, [](const Finding& finding) {
       return finding.severity == Severity::error && finding.rule != "does-not-fit" &&

@@ -10,10 +10,10 @@
 
 namespace takt {
 
-/// A network file and its EDS files, compiled. Usable only where `findings` holds no error.
+/// A compiled network file with its EDS files. It is usable only if `findings` holds no error.
 struct LoadedNetwork {
   BusPlan plan;
-  std::vector<DeviceTable> devices;  ///< one a node, for the simulation; same order as plan.nodes
+  std::vector<DeviceTable> devices;  ///< for the simulation; in the order of plan.nodes
   RealtimeOptions realtime;
   LcmOptions lcm;
   RecordingOptions recording;
@@ -21,10 +21,10 @@ struct LoadedNetwork {
   Findings findings;       ///< of the network file and of the device files it names
 };
 
-/// Whether devices get what the device data say of them; `ignored` only to show the difference.
+/// Whether the device data apply to the nodes. `ignored` serves only to show the difference.
 enum class DeviceDataUse : std::uint8_t { applied, ignored };
 
-/// Reads, checks and compiles a network file. All errors are listed at once.
+/// Reads, checks and compiles a network file. The result lists all errors at once.
 LoadedNetwork load_network(const std::filesystem::path& path,
                            DeviceDataUse device_data = DeviceDataUse::applied);
 

@@ -40,7 +40,7 @@ bool looks_octal(std::string_view text) {
          std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// Decimal or 0x with sign; nothing else.
+/// Reads a decimal number or one with 0x, with an optional sign, and nothing else.
 std::optional<std::int64_t> parse_integer(std::string_view text) {
   bool negative = false;
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) {

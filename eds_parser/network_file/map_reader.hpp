@@ -14,34 +14,35 @@
 
 namespace takt {
 
-/// Limits of an integer of the file, and how to speak of it.
+/// Limits of an integer of the file, and its unit in messages.
 struct IntegerRange {
   std::int64_t low = 0;
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
-  std::string_view unit = {};  ///< " ms": follows the limits in messages
+  std::string_view unit = {};  ///< for example " ms"; follows the limits in messages
 };
 
-/// The integer that a scalar says. Octal-looking (`010`), out of range or other text: reported.
+/// Reads the integer in a scalar. Reports a value that looks octal (`010`), is out of range or is
+/// other text.
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view key,
                                          IntegerRange range, NetworkReport& report);
 std::optional<double> read_number(const YamlNode& node, std::string_view key,
                                   NetworkReport& report);
-/// true/false, yes/no, on/off, also quoted (a false with a warning); 0 and 1.
+/// Reads true/false, yes/no, on/off, also quoted (a quoted false gives a warning), 0 or 1.
 std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report);
 std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
                                      NetworkReport& report);
 
-/// Takes the known keys of one map, then reports what is left over.
+/// Reads the known keys of one map, then reports the unknown ones.
 class MapReader {
  public:
-  /// Where `node` is no map, that is reported and the reader is empty.
+  /// If `node` is not a map, the constructor reports that and the reader is empty.
   MapReader(const YamlNode& node, std::string what, NetworkReport& report);
 
   const YamlNode* take(std::string_view key);
   SourcePos key_pos(std::string_view key) const noexcept;
   bool is_map() const noexcept { return node_.kind == YamlNode::Kind::map; }
-  /// `key` is not there, but an unknown key that is most likely a slip of it, which finish() tells.
-  /// After all keys are taken.
+  /// Whether `key` is missing but an unknown key, which finish() reports, is most likely a
+  /// misspelling of it. Call this after all keys are taken.
   bool has_slip_of(std::string_view key) const;
 
   template <class T>
@@ -59,15 +60,16 @@ class MapReader {
   void number(std::string_view key, Sourced<double>& out);
   void boolean(std::string_view key, Sourced<bool>& out);
   void text(std::string_view key, Sourced<std::string>& out);
-  /// As text(); an empty name is none, as to the generators of other masters.
+  /// Same as text(), but an empty name counts as not given, as in the generators of other masters.
   void file(std::string_view key, Sourced<std::string>& out);
 
-  /// Keys of other readers: a note each where present. `why` ends the sentence.
+  /// Reports a note for each key that is present and belongs to another program. `why` ends the
+  /// sentence.
   void ignore(std::span<const std::string_view> keys, std::string_view why);
-  /// Every key that nobody took is an error with a suggestion.
+  /// Reports every key that was not taken as an error with a suggestion.
   void finish();
-  /// As finish(), for a map that another program reads as well: an error only where the key is
-  /// near one that takt reads, else a warning. `why` ends the sentence.
+  /// Same as finish(), for a map that another program also reads. A key is an error only if it is
+  /// similar to one that takt reads, otherwise a warning. `why` ends the sentence.
   void finish_shared(std::string_view why);
 
   NetworkReport& report() noexcept { return report_; }
@@ -80,7 +82,8 @@ class MapReader {
   std::vector<std::string_view> known_;
 };
 
-/// Index of `text` in `names`; anything else is an error that lists them.
+/// Returns the index of the node's text in `names`. Any other text is an error whose message lists
+/// them.
 std::optional<std::size_t> read_choice(const YamlNode& node, std::string_view key,
                                        std::span<const std::string_view> names,
                                        NetworkReport& report);

@@ -76,7 +76,7 @@ class DeviceReader {
 
   DeviceFact fact(MapReader& reader, SourcePos pos) { return {pos, text(reader, "reason")}; }
 
-  /// A number, or `[low, high]`.
+  /// Reads a number, or a range `[low, high]`.
   std::optional<NumberRange> range(const YamlNode& node, std::string_view key,
                                    IntegerRange limits) {
     if (node.kind != YamlNode::Kind::sequence) {

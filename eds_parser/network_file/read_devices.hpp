@@ -9,16 +9,17 @@
 
 namespace takt {
 
-/// One file of the device data. Errors are appended to `findings`; none: it can't be used.
+/// Reads one file of the device data. Appends errors to `findings`; returns std::nullopt if the
+/// file cannot be used.
 std::optional<DeviceData> read_device_data(std::string_view text, const std::string& file,
                                            Findings& findings);
 
-/// Where the device data lies: the folders of TAKT_DEVICES (`:` between them), then those that came
-/// with takt: beside the program, where it was installed, in its source tree.
+/// Returns the folders of the device data: first those of TAKT_DEVICES (separated by `:`), then
+/// those that came with takt: beside the program, in the place of installation, in its source tree.
 std::vector<std::filesystem::path> device_folders();
 
-/// All entries of these folders, in their order, by name within one; of two with one name the
-/// first counts.
+/// Loads all entries of the folders in their order, sorted by name within a folder. If two entries
+/// have the same name, the first one counts.
 std::vector<DeviceData> load_device_data(const std::vector<std::filesystem::path>& folders,
                                          Findings& findings);
 

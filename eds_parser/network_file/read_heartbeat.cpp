@@ -13,7 +13,7 @@ bool says_no(const YamlNode& node) {
   return is_scalar(node) && std::ranges::find(words, node.text) != words.end();
 }
 
-/// Other readers take each number but 0 for true; a time in ms stands there now and then.
+/// Other programs take each number except 0 as true, and some files have a time in ms here.
 void read_consumer(MapReader& reader, Sourced<bool>& consumer) {
   constexpr std::string_view key = "heartbeat_consumer";
   const YamlNode* node = reader.take(key);

@@ -8,14 +8,14 @@ namespace {
 
 constexpr std::int64_t most_axes = 8;  // CiA 402: objects of axis n at 0x6000 + 0x800 (n - 1)
 
-/// False: it is reported.
+/// Reports a value that is not finite, and returns false for it.
 bool check_finite(double value, SourcePos pos, const std::string& what, NetworkReport& report) {
   if (std::isfinite(value)) return true;
   report.error(pos, "out-of-range", what + " is a finite number");
   return false;
 }
 
-/// A magnitude above zero.
+/// Reads a magnitude, which must be above zero.
 void read_magnitude(MapReader& reader, std::string_view key, Sourced<double>& out) {
   reader.number(key, out);
   if (!out.given) return;
@@ -31,7 +31,7 @@ void read_magnitude(MapReader& reader, std::string_view key, Sourced<double>& ou
   }
 }
 
-/// `[lo, hi]`, in this order.
+/// Reads `[lo, hi]`, in this order.
 void read_range(MapReader& reader, std::string_view key, Sourced<RangeSpec>& out) {
   const YamlNode* list = reader.take(key);
   if (list == nullptr) return;

@@ -21,7 +21,7 @@ bool is_section(std::string_view key) {
   return std::ranges::find(section_names, key) != section_names.end();
 }
 
-/// The node with the keys of `defaults` that it does not state itself.
+/// Returns the node, completed by the keys of `defaults` that it does not have itself.
 YamlNode with_defaults(const YamlNode& node, const YamlNode* defaults) {
   YamlNode merged = node;
   if (defaults == nullptr || defaults->kind != YamlNode::Kind::map) return merged;
@@ -77,8 +77,8 @@ class NetworkReader {
                       did_you_mean(pair.key, section_names));
   }
 
-  /// The master has a `node_id` too: what is called almost as it, and has no device file, is no
-  /// node.
+  /// Whether a section is a node. The master also has a `node_id`, so a section whose name is
+  /// almost `master` and that has no device file is not a node.
   bool is_node(const YamlPair& pair) const {
     if (pair.value->kind != YamlNode::Kind::map) return false;
     if (pair.value->find("dcf") != nullptr) return true;
@@ -92,7 +92,7 @@ class NetworkReader {
       report_.error(nodes.pos, "wrong-type",
                     "`nodes` is a map of `NAME: {node_id: ..., dcf: ...}`, this is " +
                         std::string{name(nodes.kind)});
-      found_node_ = true;  // said already
+      found_node_ = true;  // this is already reported
       return;
     }
     for (const YamlPair& pair : nodes.pairs) {
@@ -112,7 +112,8 @@ class NetworkReader {
     drop_repeated(first);
   }
 
-  /// What stands in `defaults` is read once a node; it is told once.
+  /// Drops repeated findings. The keys of `defaults` are read once for each node but reported only
+  /// once.
   void drop_repeated(std::size_t first) {
     const auto begin = findings_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto repeated = [&](const Finding& finding) {
@@ -131,7 +132,7 @@ class NetworkReader {
   NetworkReport report_;
   std::set<std::pair<SourcePos, std::string_view>> told_;
   bool found_node_ = false;
-  bool slipped_ = false;  ///< `nodes` is misspelled, and that is told
+  bool slipped_ = false;  ///< `nodes` is misspelled, and that is already reported
 };
 
 }  // namespace

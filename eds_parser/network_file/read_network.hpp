@@ -7,8 +7,8 @@
 
 namespace takt {
 
-/// Text of a network file (or of a bus.yml of Lely's dcfgen / ros2_canopen) -> NetworkSpec. All
-/// errors are appended to `findings`; what could be read is in the result. Never throws on content.
+/// Reads the text of a network file (or of a bus.yml of Lely's dcfgen / ros2_canopen). Appends all
+/// errors to `findings`. The result holds all parts that could be read. No content makes it throw.
 NetworkSpec read_network(std::string_view text, const std::string& file, Findings& findings);
 
 }  // namespace takt

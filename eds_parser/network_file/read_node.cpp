@@ -51,7 +51,7 @@ constexpr std::array<std::string_view, 2> acceleration_scales{"scale_acc_to_dev"
                                                               "scale_acc_from_dev"};
 constexpr std::array<std::string_view, 1> not_supported{"time_cobid"};
 
-/// Of ros2_canopen.
+/// Ignores the scales of ros2_canopen.
 void ignore_scales(MapReader& reader) {
   const auto ignore = [&reader](std::span<const std::string_view> keys, const std::string& unit) {
     reader.ignore(keys,
@@ -81,7 +81,7 @@ void read_identity(MapReader& reader, NodeSpec& node) {
   read_firmware(reader, node.firmware);
 }
 
-/// `true`, or a map: `{store: false}`.
+/// Reads `lss:`, which is `true` or a map such as `{store: false}`.
 void read_lss(MapReader& outer, NodeSpec& node) {
   const YamlNode* value = outer.take("lss");
   if (value == nullptr) return;
@@ -114,7 +114,7 @@ void read_reset(MapReader& reader, NodeSpec& node) {
   }
 }
 
-/// `auto`: made from what is configured.
+/// Reads the configuration date. `auto` derives it from the configured values.
 void read_configuration_date(MapReader& reader, NodeSpec& node) {
   reader.integer("configuration_time", node.configuration_time, {0, 86'399'999, " ms"});
   const YamlNode* date = reader.take("configuration_date");
@@ -227,7 +227,7 @@ void read_timeout(MapReader& outer, NodeSpec& node) {
   reader.finish();
 }
 
-/// One word, or a list of them.
+/// Reads one word, or a list of words.
 void read_quirks(const YamlNode& quirks, NodeSpec& node, NetworkReport& report) {
   if (quirks.kind == YamlNode::Kind::null) return;
   const auto add = [&](const YamlNode& word) {

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t max_list = 1024;
 
-/// Whole number, real number or text, as the value looks. False: reported.
+/// Reads an integer, a real number or a text, depending on how the value looks. Returns false after
+/// an error, which it reports.
 bool read_plain(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
   const std::string& text = node.text;
   const std::size_t digits = text.find_first_not_of("+-");
@@ -34,7 +35,8 @@ bool read_plain(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
   return number.has_value();
 }
 
-/// In quotes it is text for a string object, whatever it looks like; others take the number in it.
+/// A quoted value is a text for a string object, whatever it looks like. Other objects take the
+/// number in the quotes.
 bool read_value(const YamlNode& node, SdoSpec& sdo, NetworkReport& report) {
   if (!node.quoted) return read_plain(node, sdo, report);
   sdo.quoted = node.text;
@@ -67,7 +69,8 @@ std::optional<SdoSpec> read_object(const YamlNode& item, std::string_view key,
   return sdo;
 }
 
-/// In a list that is written in order it does what it says; elsewhere one of the two has no effect.
+/// Reports a repeated object. In a list that is written in order both entries take effect;
+/// elsewhere one of them has no effect.
 void tell_repeated(const SdoSpec& sdo, const std::string& owner, SourcePos first, bool in_order,
                    NetworkReport& report) {
   const std::string text = to_string(sdo.object) + " of " + owner +

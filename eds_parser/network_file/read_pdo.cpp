@@ -32,7 +32,7 @@ bool is_hex(std::string_view text) {
          std::ranges::all_of(text, [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
-/// An index as a whole; one that is written without 0x is told how it would be right.
+/// Reads an index. For hex digits without 0x the error says how to write them.
 std::optional<std::uint16_t> read_index(const YamlNode& node, NetworkReport& report) {
   const bool has_letter =
       std::ranges::any_of(node.text, [](unsigned char c) { return std::isalpha(c) != 0; });
@@ -46,7 +46,7 @@ std::optional<std::uint16_t> read_index(const YamlNode& node, NetworkReport& rep
   return static_cast<std::uint16_t>(*value);
 }
 
-/// `0x6064` or `0x6064:0`, index and sub-index in hex.
+/// Reads `0x6064` or `0x6064:0`, with index and sub-index in hex.
 std::optional<ObjectKey> read_short_key(const YamlNode& node, std::string_view key,
                                         NetworkReport& report) {
   const std::size_t colon = node.text.find(':');
@@ -105,7 +105,7 @@ void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
     if (bits.given) mapping.bits = *bits;
     pdo.mapping.value.push_back(mapping);
   }
-  if (!complete) pdo.enabled.value = false;  // what is left of it says nothing
+  if (!complete) pdo.enabled.value = false;  // avoids findings on an incomplete PDO
 }
 
 void check_types(const PdoSpec& pdo, std::string_view key, const std::string& what,
@@ -123,7 +123,7 @@ void check_types(const PdoSpec& pdo, std::string_view key, const std::string& wh
   }
 }
 
-/// Keys of received PDOs only.
+/// Reports keys that only PDOs received by the master may have.
 void check_direction(const PdoSpec& pdo, std::string_view key, const std::string& what,
                      NetworkReport& report) {
   if (pdo.poll_ms.given && pdo.poll_syncs.given) {

@@ -18,7 +18,8 @@ bool is_standard_rate(std::uint32_t kbit) {
   return std::ranges::find(standard_rates, kbit) != standard_rates.end();
 }
 
-/// kbit/s. What can only be bit/s is taken for that in `baudrate`, which does not say its unit.
+/// Reads a bit rate in kbit/s. `baudrate` does not name its unit, so a value that can only be in
+/// bit/s counts as that.
 void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_t>& out) {
   Sourced<std::uint32_t> rate;
   reader.integer(key, rate, {1, 100'000'000, " kbit/s"});
@@ -46,7 +47,7 @@ void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_
   out = rate;
 }
 
-/// Keys of a SYNC that another device makes.
+/// Reads the keys of a SYNC that another device sends.
 void read_sync_source(MapReader& reader, MasterSpec& master) {
   NetworkReport& report = reader.report();
   reader.text("sync_source", master.sync_source);
@@ -115,7 +116,8 @@ void read_sync(MapReader& reader, MasterSpec& master) {
   read_sync_source(reader, master);
 }
 
-/// TIME of the master. `time_cob_id` of other readers has the flags of 0x1012: bit 30 produces.
+/// Reads the keys of the master's TIME. `time_cob_id` of other programs has the flags of 0x1012:
+/// bit 30 means producer.
 void read_time(MapReader& reader, MasterSpec& master) {
   constexpr std::uint32_t produces = 0x4000'0000;
   constexpr std::uint32_t flags = 0xC000'0000;
@@ -137,7 +139,7 @@ void read_time(MapReader& reader, MasterSpec& master) {
   }
 }
 
-/// Linux takes 15 bytes for an interface, and 107 for the path of a socket.
+/// Linux allows 15 bytes for the name of an interface and 107 bytes for the path of a socket.
 void check_interface(const Sourced<std::string>& interface, NetworkReport& report) {
   constexpr std::string_view unix_bus = "unix:";
   if (!interface.given) return;
@@ -227,7 +229,7 @@ void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& repor
   RealtimeOptions& options = spec.realtime;
   if (const YamlNode* mode = reader.take("mode")) {
     constexpr std::array<std::string_view, 3> names{"enforce", "try", "off"};
-    // YAML 1.1 readers take a bare `off` for false; here it is the word.
+    // YAML 1.1 readers take a bare `off` as false; here it is a word.
     if (const auto choice = read_choice(*mode, "mode", names, report)) {
       options.mode = static_cast<RtMode>(*choice);
     }

@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-constexpr std::size_t most_named = 8;  // at most so many nodes are named in one message
+constexpr std::size_t most_named = 8;  // greatest number of nodes named in one message
 
 /// A message from which the name and the number of its node have been removed.
 struct Outline {

@@ -7,10 +7,10 @@
 
 namespace takt {
 
-/// Lines of a network file may belong to several nodes: a YAML anchor that is merged into them, or
-/// defaults. A mistake there is one cause and gives one finding, which names the other nodes.
-/// Findings of one place, severity and rule are joined where they differ only in the name of the
-/// node (between backticks), or in "node N".
+/// Joins findings that have the same cause. Lines of a network file may belong to several nodes,
+/// because they are in `defaults` or in a YAML anchor that is merged into the nodes. A mistake
+/// there gives one finding, which names the other nodes. Findings of the same place, severity and
+/// rule are joined if they differ only in the name of the node (between backticks) or in "node N".
 void join_shared_lines(Findings& findings, std::string_view file,
                        std::span<const std::string> nodes);
 

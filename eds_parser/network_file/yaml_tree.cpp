@@ -17,7 +17,7 @@ SourcePos position(const YAML::Mark& mark) {
   return {static_cast<std::uint32_t>(mark.line + 1), static_cast<std::uint32_t>(mark.column + 1)};
 }
 
-/// Leaves yaml-cpp's parser; what was wrong is already in the findings.
+/// Thrown to leave yaml-cpp's parser. The cause is already in the findings.
 struct Stop {};
 
 }  // namespace
@@ -65,7 +65,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
   struct Open {
     YamlNode* node;
     YAML::anchor_t anchor;
-    const YamlNode* key = nullptr;  ///< of a map: the key that waits for its value
+    const YamlNode* key = nullptr;  ///< in a map: the key that waits for its value
     SourcePos key_pos;
     std::vector<std::pair<const YamlNode*, SourcePos>> merges;
     std::map<std::string, SourcePos, std::less<>> seen;
@@ -140,7 +140,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
     parent.node->pairs.push_back({parent.key->text, parent.key_pos, &value});
   }
 
-  /// YAML 1.1 merge keys: own keys win, then earlier maps of the list.
+  /// Applies YAML 1.1 merge keys: own keys have priority, then earlier maps of the list.
   void merge(YamlNode& map, const std::vector<std::pair<const YamlNode*, SourcePos>>& merges) {
     if (merges.empty()) return;
     std::set<std::string, std::less<>> keys;
@@ -173,7 +173,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
   const std::string& file_;
   Findings& findings_;
   std::vector<Open> stack_;
-  std::map<YAML::anchor_t, std::pair<YamlNode*, bool>> anchors_;  ///< second: still open
+  std::map<YAML::anchor_t, std::pair<YamlNode*, bool>> anchors_;  ///< node, whether it is open
   YAML::anchor_t anchor_of_ = 0;
   std::size_t merged_ = 0;
 };
@@ -187,7 +187,7 @@ const YamlNode* YamlNode::find(std::string_view key) const noexcept {
 
 namespace {
 
-/// The line begins with blanks, and one of them is a tab.
+/// Whether the white space at the beginning of the line contains a tab.
 bool indented_by_tab(std::string_view text, std::uint32_t line) {
   for (; line > 1 && !text.empty(); --line) {
     const std::size_t end = text.find('\n');

@@ -17,8 +17,8 @@ struct YamlPair {
   const YamlNode* value = nullptr;
 };
 
-/// A YAML value with its place in the file. Aliases point to the anchored node, merge keys are
-/// already merged, keys are unique.
+/// A YAML value with its position in the file. Aliases point to the anchored node, merge keys are
+/// already merged, and keys are unique.
 struct YamlNode {
   enum class Kind : std::uint8_t { null, scalar, sequence, map };
   Kind kind = Kind::null;
@@ -32,7 +32,7 @@ struct YamlNode {
 };
 
 /// One YAML document as a tree without cycles. Depth, number of nodes and merged pairs are bounded
-/// whatever the text says.
+/// for every text.
 class YamlTree {
  public:
   static constexpr std::size_t max_text = 1 << 20;
@@ -40,10 +40,10 @@ class YamlTree {
   static constexpr std::size_t max_nodes = 100'000;
   static constexpr std::size_t max_merged = 100'000;
 
-  /// Errors (syntax, bounds, duplicate keys) are appended to `findings`.
+  /// Parses a text. Appends errors (syntax, bounds, duplicate keys) to `findings`.
   static YamlTree parse(std::string_view text, const std::string& file, Findings& findings);
 
-  /// nullptr where the text could not be read.
+  /// Returns null if the text could not be read.
   const YamlNode* root() const noexcept { return root_; }
 
  private:

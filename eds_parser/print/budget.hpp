@@ -9,23 +9,24 @@
 
 namespace takt {
 
-/// For people: load, the frames of a cycle and the others with their margins, the verdict.
+/// Prints the budget for people: load, the frames of a cycle and the others with their margins, the
+/// verdict.
 void print_budget_text(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
-/// One cycle as a picture: the frames as late as they can be.
+/// Prints one cycle as a picture in text. Each frame is as late as it can be.
 void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
-/// The same as an SVG file.
+/// Prints the same picture as an SVG file.
 void print_budget_svg(std::ostream& out, const BusPlan& plan, const BusBudget& budget);
 
-/// What would make it fit, a line each.
+/// Prints the changes that would make the network fit, one line each.
 void print_suggestions(std::ostream& out, std::span<const Suggestion> suggestions);
 
-/// One JSON document.
+/// Prints the budget as one JSON document.
 void print_budget_json(std::ostream& out, const BusPlan& plan, const BusBudget& budget,
                        std::span<const Suggestion> suggestions);
 
-/// "receive window"; empty: there is no limit.
+/// Returns for example "receive window"; empty if there is no limit.
 std::string_view name_of(BudgetLimit limit) noexcept;
 
 }  // namespace takt

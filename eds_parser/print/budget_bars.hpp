@@ -8,31 +8,31 @@
 
 namespace takt {
 
-/// A frame of the cycle in a picture, times after SYNC.
+/// A frame of the cycle in a picture. Times count from SYNC.
 struct CycleBar {
   const BudgetRow* row = nullptr;
-  Time ready{};  ///< from here on it may be on the wire
-  Time begin{};  ///< of the frame, if it comes as late as it can
+  Time ready{};  ///< earliest time at which it may be on the wire
+  Time begin{};  ///< begin of the frame if it is as late as possible
   Time end{};
 
-  /// What is left of its limit, or until the next SYNC; none: it has neither.
+  /// Time left until its limit or until the next SYNC. Returns std::nullopt if it has neither.
   std::optional<Time> margin() const noexcept;
 };
 
-/// A moment of the cycle.
+/// A marked point in time of the cycle.
 struct CycleMark {
   std::string_view text;
   Time at{};
 };
 
-/// What a picture of one cycle shows, in the order of its latest ends.
+/// The content of a picture of one cycle, sorted by the latest ends of the frames.
 struct CyclePicture {
   std::vector<CycleBar> bars;
   std::vector<CycleMark> marks;
-  Time end{};  ///< of the picture: the next SYNC, or the latest frame behind it
+  Time end{};  ///< end of the picture: the next SYNC, or the end of the latest frame behind it
 };
 
-/// No bars: there is no SYNC. Frames without a bound have none.
+/// Returns no bars if there is no SYNC. Frames without a bound have no bar.
 CyclePicture cycle_picture(const BusPlan& plan, const BusBudget& budget);
 
 }  // namespace takt

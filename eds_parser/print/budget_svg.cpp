@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-constexpr double letter = 6.6;  // of the font's 11 pixels, in the mean
+constexpr double letter = 6.6;  // mean width of a character at a font size of 11 pixels
 constexpr double width = 760;
 constexpr double edge = 16;
 constexpr double top = 112;
@@ -19,7 +19,7 @@ constexpr double most_ticks = 10;
 
 double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
 
-/// Names are of the network file: they may hold anything.
+/// Escapes a text. Names come from the network file and may contain any character.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -52,7 +52,7 @@ std::string_view colour(const BudgetRow& row) {
   return row.frame.kind == Traffic::tpdo ? tpdo_colour : rpdo_colour;
 }
 
-/// 1, 2 or 5 times a power of ten, so that there are not too many.
+/// Returns 1, 2 or 5 times a power of ten, so that there are not too many ticks.
 double tick_step(double end) {
   double step = 1;
   for (unsigned i = 0; end / step > most_ticks; ++i) step *= i % 3 == 1 ? 2.5 : 2;
@@ -141,7 +141,7 @@ class Svg {
     entry(fmt::format("fill=\"{}\"", late_colour), "can be too late");
   }
 
-  /// What the master does, behind the bars.
+  /// Draws the phases of the master in the background.
   void phases() {
     const auto& cycle = plan_.cycle;
     const Time inputs = std::min(cycle.receive_window, cycle.output_deadline);
@@ -190,7 +190,8 @@ class Svg {
          *left < Time{0} ? fmt::format("fill=\"{}\"", late_colour) : "");
   }
 
-  /// A label below the other, since they may be near each other, on white where a line crosses it.
+  /// Draws the marks. Each label is below the one before, because they may be near each other, and
+  /// has a white background where a line crosses it.
   void marks() {
     double y = bottom_ + 18;
     for (const auto& mark : picture_.marks) {

@@ -12,7 +12,7 @@ namespace {
 
 double us(Time time) { return std::chrono::duration<double, std::micro>(time).count(); }
 
-/// "2000 us", "100 ms", "1 s".
+/// Formats a time, for example "2000 us", "100 ms" or "1 s".
 std::string span_text(Time time) {
   using namespace std::chrono_literals;
   if (time >= 1s && time % 1s == Time{0}) return fmt::format("{} s", time / 1s);
@@ -56,7 +56,7 @@ class BudgetText {
   BudgetText(std::ostream& out, const BusPlan& plan, const BusBudget& budget)
       : out_{out}, plan_{plan}, budget_{budget} {
     for (const auto& row : budget.rows) width_ = std::max(width_, row.frame.name.size());
-    width_ += 10;  // " (16 such)"
+    width_ += 10;  // room for " (16 such)"
   }
 
   void run() {
@@ -80,7 +80,7 @@ class BudgetText {
     for (const auto& sentence : budget_.assumptions) out_ << "assumed: " << sentence << '\n';
   }
 
-  /// In the order in which they are through.
+  /// Prints the frames of the cycle in the order of their latest ends.
   void cycle_frames() {
     const auto& cycle = plan_.cycle;
     out_ << fmt::format(
@@ -105,7 +105,7 @@ class BudgetText {
     }
   }
 
-  /// Many alike are one line: that of the worst.
+  /// Prints the other frames. Similar frames share one line, that of the worst.
   void other_frames() {
     out_ << "\nother frames, in us from being queued to their end\n";
     out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
@@ -148,7 +148,7 @@ class BudgetText {
     return worst;
   }
 
-  /// ", or 96 us late".
+  /// Returns for example ", or 96 us late".
   std::string steady_delay() const {
     Time delay{};
     for (const auto& row : budget_.rows) {
@@ -189,7 +189,8 @@ class BudgetText {
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
   }
 
-  /// No verdict: for that a server must be late, and all that comes by itself come just then.
+  /// Warns only, without effect on the verdict: this case needs a late server and all frames that
+  /// come by themselves at the same moment.
   void warn_of_services() {
     const Time tolerated = plan_.cycle.period / 10;
     const auto delay = budget_.sync_delay_behind_services();

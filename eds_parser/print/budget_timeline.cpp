@@ -48,7 +48,7 @@ class Timeline {
     line.replace(at, text.size(), text);
   }
 
-  /// At round times.
+  /// Returns the axis with ticks at round times.
   std::string axis() const {
     const double end = us(picture_.end);
     double step = 1;
@@ -61,7 +61,7 @@ class Timeline {
     return line;
   }
 
-  /// Left of its column where there is no room to the right.
+  /// Prints a label to the left of its column if there is no room on the right.
   void print_mark(const CycleMark& mark) {
     const auto label = fmt::format("{} {:.0f}", mark.text, us(mark.at));
     const std::size_t at = column(mark.at);
@@ -80,7 +80,7 @@ class Timeline {
     return line;
   }
 
-  /// At least one column.
+  /// Fills the columns of a time span, at least one.
   void fill(std::string& line, Time begin, Time end, char sign) const {
     if (end <= begin) return;
     const std::size_t first = column(begin);

@@ -6,11 +6,11 @@
 
 namespace takt {
 
-/// One JSON document: device, all objects, PDOs, findings (`takt eds show --json`). Written object
-/// by object, so that a large dictionary does not need much memory.
+/// Prints one JSON document: device, all objects, PDOs, findings (`takt eds show --json`). It is
+/// written object by object, so that a large dictionary does not need much memory.
 void print_json(std::ostream& out, const ObjectDictionary& dictionary, const Findings& findings);
 
-/// The same for people: device, PDO tables, objects.
+/// Prints the dictionary for people: device, PDO tables, objects.
 void print_text(std::ostream& out, const ObjectDictionary& dictionary);
 
 }  // namespace takt

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN and no infinities: they become strings.
+/// NaN and infinities become strings, because JSON does not have them.
 Json json_of(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -177,12 +177,13 @@ Json json_of(const Finding& finding) {
           {"message", finding.message}};
 }
 
-/// Bytes that are not UTF-8 (a file name, say) must not end the program.
+/// Replaces bytes that are not UTF-8, for example in a file name, because they must not end the
+/// program.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// `"name":[` and one item a line.
+/// Prints `"name":[` and one item on each line.
 template <class Items, class Wanted>
 void print_items(std::ostream& out, std::string_view name, const Items& items, Wanted wanted) {
   out << ",\n\"" << name << "\":[";

@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t widest_name = 44;
 constexpr std::size_t widest_value = 34;
 
-/// Characters of a UTF-8 text.
+/// Number of characters of a UTF-8 text.
 std::size_t width(std::string_view text) noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// One line's worth of text, at most `most` characters.
+/// Returns the text on one line, cut to at most `most` characters.
 std::string shortened(std::string_view text, std::size_t most) {
   std::string out;
   std::size_t count = 0;
@@ -62,7 +62,7 @@ std::string text_of(const Value& value, DataType type) {
   return is_text ? '"' + to_utf8(bytes) + '"' : hex_bytes(bytes);
 }
 
-/// `131474 (0x00020192)`: the value, and the text where that says more.
+/// Returns the value, with the text of the file if that says more: `131474 (0x00020192)`.
 std::string value_text(const SubObject& sub) {
   const auto& value = sub.value();
   const auto& text = sub.parameter_text.empty() ? sub.default_text : sub.parameter_text;
@@ -100,7 +100,7 @@ std::string profile_text(const ObjectDictionary& dictionary) {
          hex(static_cast<std::uint32_t>(*value), 8);
 }
 
-/// `version 1.2, EDS 4.0, modified 05-12-2026 by A. Author`.
+/// Returns for example `version 1.2, EDS 4.0, modified 05-12-2026 by A. Author`.
 std::string file_text(const FileInfo& info) {
   std::string text;
   const auto add = [&text](std::string_view before, std::string_view what) {
@@ -131,7 +131,7 @@ void print_notes(std::ostream& out, const FileNotes& notes) {
   }
 }
 
-/// `lift  number 1  reference +A1`, of what there is.
+/// Prints for example `lift  number 1  reference +A1`, without the parts that are not given.
 void print_commissioning(std::ostream& out, const Commissioning& node) {
   const auto reference = [](const std::string& text) {
     return text.empty() ? text : "  reference " + text;
@@ -147,7 +147,7 @@ void print_commissioning(std::ostream& out, const Commissioning& node) {
   if (node.serial_number != 0) print_fact(out, "LSS serial", hex(node.serial_number, 8));
 }
 
-/// `M2  Digital output  version 1.0  MOD-DO-8  (3 connected)`.
+/// Returns for example `M2  Digital output  version 1.0  MOD-DO-8  (3 connected)`.
 std::string module_text(const ModuleInfo& module, const std::vector<std::uint16_t>& connected) {
   auto text = 'M' + std::to_string(module.number) + "  " + module.product_name;
   if (!module.product_version.empty()) text += "  version " + module.product_version;
@@ -197,7 +197,7 @@ std::string cob_id_text(const PdoDescription& pdo) {
   return "no COB-ID";
 }
 
-/// `byte 2..5`, or bits where an entry does not fill bytes.
+/// Returns for example `byte 2..5`, or the bits if an entry does not fill whole bytes.
 std::string place_text(const MappedObject& entry) {
   const unsigned first = entry.bit_offset;
   const unsigned last = first + std::max<unsigned>(entry.bits, 1) - 1;
@@ -268,7 +268,7 @@ void print_object(std::ostream& out, const Object& object, std::size_t columns) 
   }
 }
 
-/// Names that the application has for objects.
+/// Prints the names that the application gives to objects.
 void print_denotations(std::ostream& out, const std::vector<Object>& objects) {
   bool first = true;
   const auto print = [&](std::string_view key, std::string_view text) {

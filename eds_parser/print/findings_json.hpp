@@ -7,14 +7,14 @@
 
 namespace takt {
 
-/// One file that was judged.
+/// One checked file with its findings.
 struct JudgedFile {
   std::string file;
   bool readable = false;
   Findings findings;
 };
 
-/// {"files": [{"file", "readable", "findings": [{"line", "column", "severity", "rule",
+/// Prints {"files": [{"file", "readable", "findings": [{"line", "column", "severity", "rule",
 /// "message"}]}], "errors", "warnings", "notes"}.
 void print_findings_json(std::ostream& out, std::span<const JudgedFile> files);
 

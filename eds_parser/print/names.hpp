@@ -6,13 +6,15 @@
 
 namespace takt {
 
-/// `VAR`, `RECORD`.
+/// Returns the name of an object type, for example `VAR` or `RECORD`.
 std::string_view object_type_name(ObjectType type) noexcept;
-/// `mandatory`, `optional`, `manufacturer`; an unlisted object by where it belongs.
+/// Returns the list of an object: `mandatory`, `optional` or `manufacturer`. For an unlisted object
+/// this is the list to which it belongs.
 std::string_view list_name(const Object& object) noexcept;
-/// Hex pairs without prefix: `01a105`.
+/// Formats bytes as hex pairs without prefix, for example `01a105`.
 std::string hex_bytes(std::string_view bytes);
-/// `SYNC 1`, `every 3rd SYNC` ... of a PDO's transmission type. CiA 301, tables 69 and 72.
+/// Returns a PDO's transmission type in words, for example `SYNC 1` or `every 3rd SYNC`. CiA 301,
+/// tables 69 and 72.
 std::string transmission_name(std::uint8_t type, bool is_tpdo);
 
 }  // namespace takt

@@ -7,18 +7,18 @@
 
 namespace takt {
 
-/// What of a plan to print.
+/// Which parts of a plan to print, and the options to print with it.
 struct PlanPrint {
-  std::optional<NodeId> node;  ///< only this node
+  std::optional<NodeId> node;  ///< only this node; empty = all nodes
   RealtimeOptions realtime;
   LcmOptions lcm;
 };
 
-/// The plan for people: bus, cycle with its time budget, nodes with their PDOs, image, LCM
-/// channels, boot plans step by step with the bytes of every frame.
+/// Prints the plan for people: bus, cycle with its time budget, nodes with their PDOs, image, LCM
+/// channels, and boot plans step by step with the bytes of every frame.
 void print_plan_text(std::ostream& out, const BusPlan& plan, const PlanPrint& what);
 
-/// The same as one JSON document. Times in microseconds, bytes as hex pairs.
+/// Prints the plan as one JSON document. Times are in microseconds, bytes are hex pairs.
 void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what);
 
 }  // namespace takt

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// Which steps stand inside a `compare ... skip if same ... target` group, for the indentation.
+/// Marks the steps inside a `compare ... skip if same ... target` group, which are indented.
 std::vector<bool> skippable(const BootPlan& boot) {
   std::vector<bool> inside(boot.steps.size(), false);
   for (std::size_t i = 0; i < boot.steps.size(); ++i) {
@@ -50,7 +50,7 @@ class BootText {
     return first + ", then twice as long each time up to " + span_text(node_.longest_reboot_delay);
   }
 
-  /// Only what differs from the usual.
+  /// Prints only values that differ from the defaults.
   void sdo_access() {
     if (const auto& channel = node_.sdo.channel) {
       lines_.line("  SDO channel: requests on {}, answers on {}", to_string(channel->request),
@@ -67,7 +67,7 @@ class BootText {
                 step_value(step), step_limit(step), step.purpose);
   }
 
-  /// How long the step may take: of the wait, of each silence of an SDO transfer.
+  /// Returns the limit of the step: of its wait, or of each silence in its SDO transfer.
   static std::string step_limit(const BootStep& step) {
     if (step.action == BootAction::nmt || step.action == BootAction::skip_if_same) return {};
     return "<" + span_text(step.timeout);

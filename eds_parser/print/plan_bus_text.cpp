@@ -34,7 +34,7 @@ class BusText {
   }
 
  private:
-  /// Only what is not the default.
+  /// Returns only the values that differ from the defaults.
   std::string start_up_text() const {
     const StartUpPlan& start = plan_.start_up;
     std::string text;

@@ -16,7 +16,7 @@ namespace {
 
 enum class Part : std::uint8_t { bus, node, image, limits, lcm, boot };
 
-/// Sections in the order of a plan: all nodes, then all boots.
+/// Key that sorts sections in the order of a plan: all nodes, then all boots.
 using Key = std::pair<Part, unsigned>;
 using Sections = std::map<Key, std::string>;
 
@@ -30,7 +30,8 @@ std::string text_of(const Add& add) {
   return std::move(out).str();
 }
 
-/// Without positions, which shift when a line comes or goes: `    12 in  arm.x` is `  in  arm.x`.
+/// Removes positions, which shift if a line comes or goes:
+/// `    12 in  arm.x` becomes `  in  arm.x`.
 std::string without_numbers(const std::string& text) {
   std::string out;
   for (const std::string_view line : lines_of(text)) {
@@ -38,7 +39,7 @@ std::string without_numbers(const std::string& text) {
     const std::size_t end = std::min(line.find_first_not_of("0123456789", word), line.size());
     const bool numbered = word >= 2 && end > word && end < line.size() && line[end] == ' ';
     std::string kept = numbered ? "  " + std::string{line.substr(end + 1)} : std::string{line};
-    const std::size_t target = kept.find("-> ");  // of a skip: a step's number as well
+    const std::size_t target = kept.find("-> ");  // a skip also names the number of a step
     if (numbered && target != std::string::npos) {
       const std::size_t digits = kept.find_first_not_of("0123456789", target + 3);
       kept.erase(target, digits == std::string::npos ? digits : digits - target);
@@ -48,7 +49,8 @@ std::string without_numbers(const std::string& text) {
   return out;
 }
 
-/// Columns are as wide as their longest entry: one more line would change all others.
+/// Removes padding. Columns are as wide as their longest entry, so one more line would change all
+/// others.
 std::string without_padding(const std::string& text) {
   std::string out;
   for (const std::string_view line : lines_of(text)) {
@@ -63,10 +65,11 @@ std::string without_padding(const std::string& text) {
   return out;
 }
 
-/// The same device file is often reached by another path.
+/// Removes the folder of the device file, because two plans often reach the same file by different
+/// paths.
 std::string without_folder(std::string text, const NodePlan& node) {
   const std::string& path = node.description_file;
-  const std::size_t name = path.find_last_of('/') + 1;  // npos + 1: there is no folder
+  const std::size_t name = path.find_last_of('/') + 1;  // npos + 1 = 0 if there is no folder
   const std::size_t at = name == 0 ? std::string::npos : text.find('(' + path + ')');
   if (at != std::string::npos) text.erase(at + 1, name);
   return text;
@@ -119,7 +122,7 @@ std::vector<DiffLine> lines_of_key(const Sections& before, const Sections& after
   return diff_lines(of(before), of(after));
 }
 
-/// Both sides of one comparison.
+/// The sections of both sides of a comparison.
 struct Compared {
   Sections before;
   Sections after;

@@ -8,30 +8,30 @@
 
 namespace takt {
 
-/// One of two plans, and what it is called.
+/// One of two plans with its name.
 struct PlanSide {
   const BusPlan& plan;
   std::string name;
 };
 
-/// What changes on the bus and in the image from one plan to the other, as `diff -u` prints it:
-/// bus, cycle, nodes with their PDOs, image, boots; nodes are matched by their id. Empty: nothing.
-/// `only`: this node alone.
+/// Returns the differences of two plans on the bus and in the image in the format of `diff -u`:
+/// bus, cycle, nodes with their PDOs, image, boots. Nodes are matched by their node-ID. The text is
+/// empty if there is no difference. `only` restricts it to one node.
 std::string plan_diff(const PlanSide& before, const PlanSide& after,
                       std::optional<NodeId> only = {});
 
-/// The same of one node alone: its PDOs and its boot.
+/// Returns the differences of one node: its PDOs and its boot.
 std::string node_diff(const PlanSide& before, const PlanSide& after, NodeId node);
 
-/// What differs in one part of a plan, line by line, without the lines' indentation.
+/// The lines that differ in one part of a plan, without their indentation.
 struct PlanChange {
   std::string_view part;       ///< bus (with the cycle), node, image, limits, lcm, boot
-  std::optional<NodeId> node;  ///< of the parts node and boot
+  std::optional<NodeId> node;  ///< only in the parts node and boot
   std::vector<std::string> removed;
   std::vector<std::string> added;
 };
 
-/// plan_diff() for programs: the parts that differ, in the order of a plan.
+/// Returns the content of plan_diff() for programs: the parts that differ, in the order of a plan.
 std::vector<PlanChange> plan_changes(const PlanSide& before, const PlanSide& after,
                                      std::optional<NodeId> only = {});
 std::vector<PlanChange> node_changes(const PlanSide& before, const PlanSide& after, NodeId node);

@@ -18,7 +18,7 @@ Json json_of(const PlanChange& change, const std::string& node_name) {
   return json;
 }
 
-/// Of the second plan, where it has the node.
+/// Returns the name in the second plan, or in the first if the second does not have the node.
 std::string name_of(std::optional<NodeId> node, const PlanSide& before, const PlanSide& after) {
   if (!node) return {};
   for (const BusPlan* plan : {&after.plan, &before.plan}) {

@@ -8,12 +8,12 @@
 
 namespace takt {
 
-/// {"before", "after", "changes": [{"part", "node", "name", "removed", "added"}]}; `node` and
-/// `name` only of the parts of one node.
+/// Prints {"before", "after", "changes": [{"part", "node", "name", "removed", "added"}]}. Only the
+/// parts of one node have `node` and `name`.
 void print_plan_diff_json(std::ostream& out, const PlanSide& before, const PlanSide& after,
                           std::optional<NodeId> only = {});
 
-/// What an entry of the device data changes for one node.
+/// The changes that an entry of the device data makes to one node.
 struct DeviceChanges {
   NodeId node;
   std::string name;
@@ -22,7 +22,7 @@ struct DeviceChanges {
   std::vector<PlanChange> changes;
 };
 
-/// {"file", "nodes": [{"node", "name", "device_data", "device_data_file", "changes"}]}.
+/// Prints {"file", "nodes": [{"node", "name", "device_data", "device_data_file", "changes"}]}.
 void print_device_changes_json(std::ostream& out, const std::string& file,
                                std::span<const DeviceChanges> nodes);
 

@@ -103,7 +103,7 @@ Json step_json(const BootStep& step, std::size_t number, const StepFrames& frame
   return out;
 }
 
-/// Its key in `identity`; nullptr: another object.
+/// Returns the object's key in `identity`, or nullptr if it is another object.
 const char* identity_key(ObjectKey object) {
   if (object == ObjectKey{0x1000, 0}) return "device_type";
   if (object == ObjectKey{0x1018, 1}) return "vendor_id";
@@ -113,7 +113,7 @@ const char* identity_key(ObjectKey object) {
   return nullptr;
 }
 
-/// As which device the boot takes it: `{"device_type": 131474, "vendor_id": 59}`.
+/// Returns the identity that the boot expects: `{"device_type": 131474, "vendor_id": 59}`.
 Json identity_json(const BootPlan& boot) {
   Json out = Json::object();
   for (const BootStep& step : boot.steps) {

@@ -15,7 +15,7 @@ std::string owner(const BusPlan& plan, const LimitLine& line) {
   return line.axis == 1 ? node : fmt::format("{}.{}", node, line.axis);
 }
 
-/// `-1.5 .. 1.5 rad`, `2 rad/s`, `from 3 V`.
+/// Returns for example `-1.5 .. 1.5 rad`, `2 rad/s` or `from 3 V`.
 std::string value(const LimitLine& line) {
   if (line.source == LimitSource::none) return "none";
   const bool bounds = line.kind == LimitKind::position || line.kind == LimitKind::range;

@@ -9,18 +9,18 @@
 
 namespace takt {
 
-/// `write if differs`.
+/// Returns the action in words, for example `write if differs`.
 std::string_view action_name(BootAction action) noexcept;
-/// `start`, `reset communication`.
+/// Returns the command in words, for example `start` or `reset communication`.
 std::string_view command_name(NmtCommand command) noexcept;
-/// The value of a step as a number (up to 8 bytes) or as hex pairs.
+/// Formats the value of a step as a number (up to 8 bytes) or as hex pairs.
 std::string value_text(const BootStep& step);
-/// Microseconds without fraction: `2000 us`.
+/// Formats a time in microseconds without fraction, for example `2000 us`.
 std::string us_text(Time time);
-/// Milliseconds where that is exact, else microseconds.
+/// Formats a time in milliseconds if that is exact, else in microseconds.
 std::string span_text(Time time);
 
-/// A LCM channel of the daemon and the type that it carries.
+/// An LCM channel of the daemon and the type that it carries.
 struct LcmChannel {
   std::string name;
   std::string type;

@@ -101,7 +101,7 @@ class NodeText {
     if (row.field_count != 0 && !row.multiplexed()) {
       for (const std::string& line : pdo_picture(plan_, row)) lines_.line("    {}", line);
     }
-    unsigned expected = row.multiplexed() ? 32 : 0;  // behind address, index and sub-index
+    unsigned expected = row.multiplexed() ? 32 : 0;  // the data follow address, index and sub-index
     for (std::uint16_t i = 0; i < row.field_count; ++i) {
       const PdoField& field = plan_.pdos.fields[row.first_field + i];
       const Signal& signal = plan_.layout.signals[field.signal];
@@ -119,7 +119,7 @@ class NodeText {
     lines_.line("    bit {:>2}..{:<2}  gap", first, first + bits - 1);
   }
 
-  /// The object that its frames name.
+  /// The object that the frames of an MPDO name.
   static std::string mpdo_object(const PdoRow& row) {
     return to_string(ObjectKey{static_cast<std::uint16_t>(row.header >> 8),
                                static_cast<std::uint8_t>(row.header >> 24)});

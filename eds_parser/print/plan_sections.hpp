@@ -11,7 +11,7 @@
 
 namespace takt {
 
-/// The plan's text, line by line, none with a blank at its end.
+/// Writes the plan's text line by line, without blanks at the ends of lines.
 class PlanLines {
  public:
   explicit PlanLines(std::ostream& out) : out_{out} {}
@@ -27,18 +27,18 @@ class PlanLines {
   std::ostream& out_;
 };
 
-// The sections in their order. All but the first begin with an empty line.
+// These functions write the sections in their order. All but the first begin with an empty line.
 void add_bus(PlanLines& lines, const BusPlan& plan, const RealtimeOptions& realtime);
 void add_cycle(PlanLines& lines, const BusPlan& plan);
 void add_waits(PlanLines& lines, const BusPlan& plan);
 void add_node(PlanLines& lines, const BusPlan& plan, std::size_t index);
 void add_image(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
-/// Nothing where the bus has nothing that could have limits.
+/// Writes nothing if no output of the bus could have limits.
 void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only);
 void add_lcm(PlanLines& lines, const BusPlan& plan, const LcmOptions& options);
 void add_boot(PlanLines& lines, const NodePlan& node);
 
-/// `INTEGER16`, or the width of what has no type.
+/// Returns the type, for example `INTEGER16`, or the width in bits if the type is unknown.
 std::string bits_text(const Signal& signal);
 
 }  // namespace takt

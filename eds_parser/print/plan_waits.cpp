@@ -31,7 +31,7 @@ class Waits {
     list_.push_back({.wait = wait, .limit = limit, .what = std::move(what)});
   }
 
-  /// "every node", or the names of those that it holds for.
+  /// Returns "every node", or the names of the nodes for which `holds` is true.
   template <class Holds>
   std::string nodes(Holds holds) const {
     std::string names;
@@ -72,7 +72,7 @@ class Waits {
 
   using ObjectLimit = std::pair<Time, std::string>;
 
-  /// The first entry for an object counts.
+  /// Returns the time-outs of objects. If an object has several entries, the first one counts.
   static std::set<ObjectLimit> object_limits(const SdoAccess& sdo) {
     std::set<ObjectLimit> limits;
     for (const SdoObjectTimeout& entry : sdo.timeouts) {
@@ -87,11 +87,12 @@ class Waits {
     return limits;
   }
 
-  /// Objects with a time-out of their own, those of the same nodes and the same limit together.
+  /// Adds the objects that have separate time-outs. Objects of the same nodes with the same limit
+  /// share a line.
   void sdo_objects() {
     std::set<ObjectLimit> limits;
     for (const NodePlan& node : plan_.nodes) limits.merge(object_limits(node.sdo));
-    std::map<ObjectLimit, std::string> rows;  // limit and nodes, objects
+    std::map<ObjectLimit, std::string> rows;  // from limit and nodes to objects
     for (const ObjectLimit& limit : limits) {
       const std::string whose =
           nodes([&](const NodePlan& node) { return object_limits(node.sdo).contains(limit); });

@@ -6,14 +6,14 @@
 
 namespace takt {
 
-/// Something that the master waits for, and how long at most.
+/// One kind of wait of the master, and how long it lasts at most.
 struct PlanWait {
   std::string wait;  ///< its name in JSON: "lss_store"
   Time limit{};
-  std::string what;
+  std::string what;  ///< what the master waits for, in words
 };
 
-/// Every wait that is not told with its node, PDO or boot step.
+/// Returns every wait that the plan does not show with its node, PDO or boot step.
 std::vector<PlanWait> plan_waits(const BusPlan& plan);
 
 }  // namespace takt

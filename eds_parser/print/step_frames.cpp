@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-/// From here on a value goes by block where the node allows it.
+/// Values of at least this size, in bytes, use block transfer if the node allows it.
 constexpr std::size_t block_from = 128;
 
 void add_byte(std::string& out, unsigned value) {
@@ -87,11 +87,11 @@ class Frames {
     return out;
   }
 
-  /// Initiate upload. CiA 301, 7.2.4.3.5.
+  /// The request that initiates an upload. CiA 301, 7.2.4.3.5.
   std::string upload(ObjectKey object) const { return begin(0x40, object) + "00000000"; }
 
-  /// Initiate download: expedited up to 4 bytes, else with its size, segmented or by block.
-  /// CiA 301, 7.2.4.3.3 and 7.2.4.3.9.
+  /// The request that initiates a download: expedited up to 4 bytes, else with its size, segmented
+  /// or by block. CiA 301, 7.2.4.3.3 and 7.2.4.3.9.
   std::string download(const BootStep& step) const {
     const std::size_t size = step.value.size();
     const bool expedited = size >= 1 && size <= 4;
@@ -105,18 +105,19 @@ class Frames {
     return out;
   }
 
-  /// Bit 30 of a COB-ID stands in its last byte.
+  /// Leaves the last byte open, because it holds bit 30 of the COB-ID, which the device decides.
   std::string with_bit_30_of_device(const BootStep& step) const {
     const std::string out = download(step);
     return out.substr(0, out.size() - 2) + "..";
   }
 
-  /// Of a COB-ID, which the master knows from then on.
+  /// Remembers that the master knows this COB-ID from now on.
   void remember(ObjectKey object) {
     if (switched_.contains(object)) cob_id_ = object;
   }
 
-  /// What is written depends on what was read last, which a step before may have done.
+  /// The written value depends on the value that was read last. An earlier step may have read it
+  /// already.
   StepFrames after_reading(ObjectKey object, std::string write) {
     if (cob_id_ == object) return {.first = std::move(write)};
     cob_id_ = object;
@@ -125,8 +126,8 @@ class Frames {
 
   const NodePlan& node_;
   std::string request_;
-  std::set<ObjectKey> switched_{};     ///< COB-IDs that are switched off or on
-  std::optional<ObjectKey> cob_id_{};  ///< the one that was read or written last
+  std::set<ObjectKey> switched_{};     ///< COB-IDs that the boot switches off or on
+  std::optional<ObjectKey> cob_id_{};  ///< COB-ID that was read or written last
 };
 
 }  // namespace

@@ -62,7 +62,7 @@ struct Firmware {
   }
 };
 
-/// "16.00.00".
+/// Formats a version as "16.00.00".
 inline std::string to_string(const Firmware& version) {
   std::string text;
   for (const std::uint16_t part : version.parts) {

@@ -6,8 +6,7 @@
 
 namespace takt {
 
-/// Address of one device on the bus, 1..127. An object of this type is always valid. CiA
-/// 301, 7.3.3.
+/// Address of one device on the bus, 1..127. A NodeId is always valid. CiA 301, 7.3.3.
 class NodeId {
  public:
   static constexpr std::optional<NodeId> from(unsigned value) noexcept {

@@ -11,16 +11,16 @@ std::string_view name(LimitKind kind) noexcept;
 /// Returns `file`, `device` or `none`.
 std::string_view name(LimitSource source) noexcept;
 
-/// Whether the range that a device reports is a real limit. It is none if it is empty or covers the
-/// whole of an INTEGER16 or INTEGER32.
+/// Whether the range that a device reports is a real limit. It is none if it is empty, covers the
+/// whole of an INTEGER16, or reaches either end of an INTEGER32.
 constexpr bool plausible_range(std::int64_t low, std::int64_t high) noexcept {
   const bool whole16 = low <= -0x7FFF && high == 0x7FFF;
   const bool whole32 = low <= -0x7FFF'FFFFLL || high >= 0x7FFF'FFFFLL;
   return low < high && !whole16 && !whole32;
 }
 
-/// Whether a reported magnitude is a real limit. It is none if it is 0 or the highest value of its
-/// type.
+/// Whether a reported magnitude is a real limit. It is none if it is 0 or the highest value of a
+/// type (0xFFFF, or 0x7FFF'FFFF and above).
 constexpr bool plausible_size(std::int64_t value) noexcept {
   return value > 0 && value != 0xFFFF && value < 0x7FFF'FFFF;
 }

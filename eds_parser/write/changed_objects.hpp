@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// Objects of `before` that `after` lacks or describes as another: access, type, a value, a limit.
-/// A type may appear where there was none.
+/// Returns the objects of `before` that `after` lacks or describes differently: in access, type, a
+/// value or a limit. A type that `before` does not have is not a difference.
 std::set<std::uint16_t> changed_objects(const ObjectDictionary& before,
                                         const ObjectDictionary& after);
 

@@ -16,7 +16,7 @@ bool is_configured(const SubObject& sub) noexcept {
   return sub.parameter_value && sub.is_configurable();
 }
 
-/// Of an entry of a mapping.
+/// Whether an entry of a mapping is configured with an object.
 bool maps_something(const SubObject& sub) noexcept {
   return is_configured(sub) && integer_of(sub.parameter_value).value_or(0) != 0;
 }
@@ -25,7 +25,8 @@ bool any_configured(const Object* object) noexcept {
   return object != nullptr && std::ranges::any_of(object->subs, is_configured);
 }
 
-/// Index of the communication record whose PDO an object belongs to; 0: none.
+/// Returns the index of the communication record of the PDO to which an object belongs, or 0 if it
+/// does not belong to a PDO.
 std::uint16_t pdo_of(std::uint16_t index) noexcept {
   if (index < 0x1400 || index > 0x1BFF) return 0;
   return static_cast<std::uint16_t>(index & ~0x0200U);
@@ -47,7 +48,7 @@ class Collector {
         add_pdo(pdo);
         last_pdo = pdo;
       } else if (pdo != last_pdo && dictionary_.find(pdo) == nullptr) {
-        add_all(object);  // a mapping without its communication record
+        add_all(object);  // a mapping without a communication record
       }
     }
     return std::move(entries_);
@@ -132,8 +133,8 @@ class Collector {
     if (writable) add({mapping.index, 0}, *count, Value{static_cast<std::uint64_t>(number)});
   }
 
-  /// Of a mapping whose sub 0 has no value: up to the last entry that is configured. The device
-  /// would fill a gap with what it has.
+  /// Returns the number of entries of a mapping whose sub 0 has no value, up to the last configured
+  /// entry. In a gap the device would keep the entry that it has.
   std::int64_t entries_of(const Object& mapping) {
     std::int64_t number = 0;
     for (const auto& sub : mapping.subs) {

@@ -8,17 +8,18 @@
 
 namespace takt {
 
-/// What a DCF configures (each ParameterValue that may be written), in the order in which a device
-/// takes it: ascending, and each PDO as one piece: invalid, mapping off, mapping, parameters,
-/// valid. What is left out is told. CiA 302-3; CiA 301, 7.5.2.36.
+/// Returns the values that a DCF configures (each ParameterValue that may be written), in an order
+/// in which a device accepts them. Objects are in ascending order, and the values of each PDO
+/// follow each other: PDO invalid, mapping off, mapping, parameters, PDO valid. `report` gets the
+/// values that are left out. CiA 302-3; CiA 301, 7.5.2.36.
 std::vector<ConciseEntry> configured_values(const ObjectDictionary& dictionary, Report& report);
 
 struct ConfiguredValues {
-  std::vector<ConciseEntry> entries;  ///< empty where a finding is an error
-  Findings findings;                  ///< those of the file too
+  std::vector<ConciseEntry> entries;  ///< empty if a finding is an error
+  Findings findings;                  ///< including those of the file
 };
 
-/// The same of a file as it was read. One with an error configures nothing.
+/// Returns the same for a file that was read. A file with an error configures nothing.
 ConfiguredValues configured_values(const EdsFile& file);
 
 }  // namespace takt

@@ -41,7 +41,7 @@ std::string cpp_name(std::string_view text) {
   return name;
 }
 
-/// A name that is not in `used`; it is then.
+/// Returns a name that is not in `used`, and adds it to `used`.
 std::string unique_name(std::string_view text, std::set<std::string>& used) {
   auto name = cpp_name(text);
   while (!used.insert(name).second) name += '_';
@@ -57,7 +57,7 @@ std::string quoted_text(std::string_view text) {
   return out += '"';
 }
 
-/// Positions of one node's signals, a constant each.
+/// Returns the positions of one node's signals, one constant each.
 std::string positions(const BusPlan& plan, std::size_t node, const std::string& space) {
   std::string out = "\nnamespace " + space + " {\n";
   std::set<std::string> used;

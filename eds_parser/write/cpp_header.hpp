@@ -5,9 +5,9 @@
 
 namespace takt {
 
-/// The image layout as a C++ header without dependencies: positions of all signals by node and
-/// name, names, units and scales, and the hash that image_t repeats, so that an application can
-/// tell that it was built for another network.
+/// Returns the image layout as a C++ header without dependencies: positions of all signals by node
+/// and name, names, units, scales, and the layout hash. image_t repeats this hash, so that an
+/// application can detect that it was built for another network.
 std::string to_cpp_header(const BusPlan& plan);
 
 }  // namespace takt

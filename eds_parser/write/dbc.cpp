@@ -10,9 +10,9 @@
 namespace takt {
 namespace {
 
-constexpr unsigned remote_bit = 9;  // of the statusword; only for its value texts
+constexpr unsigned remote_bit = 9;  // bit of the statusword that needs special value texts
 
-/// The value of a signal in DBC's terms.
+/// A signal in the terms of DBC.
 struct DbcSignal {
   std::string name;
   unsigned start = 0;
@@ -21,7 +21,7 @@ struct DbcSignal {
   double scale = 1.0;
   double offset = 0.0;
   std::string unit{};
-  std::string multiplex{};  ///< "M", "m5"; empty: in every frame
+  std::string multiplex{};  ///< "M", "m5"; empty = in every frame
 };
 
 class DbcWriter {
@@ -109,7 +109,8 @@ class DbcWriter {
     multiplex_.clear();
   }
 
-  /// One MPDO is a row for each object; they are one message.
+  /// Whether the row continues the previous MPDO. An MPDO has one row for each object, but is one
+  /// message.
   bool continues_mpdo(const PdoRow& row) {
     const bool same = row.multiplexed() && mpdo_ == row.cob_id;
     mpdo_ = row.multiplexed() ? std::optional{row.cob_id} : std::nullopt;
@@ -171,7 +172,8 @@ class DbcWriter {
     }
   }
 
-  /// An output that one PDO carries twice is one signal of the image and two of the message.
+  /// Makes a name unique in the message. An output that a PDO carries twice is one signal of the
+  /// image but two signals of the message.
   std::string unique_in_message(const std::string& name) {
     std::string unique = name;
     for (unsigned n = 2; !full_names_.insert(unique).second; ++n) {
@@ -211,20 +213,20 @@ class DbcWriter {
 
   const BusPlan& plan_;
   const DbcOptions& options_;
-  std::vector<std::string> nodes_;  // their names, by node_index
+  std::vector<std::string> nodes_;  // names of the nodes, by node_index
   std::string out_;
   std::string comments_;
   std::string attributes_;
   std::string values_;
   std::string value_types_;
-  std::string texts_;      // of one EMCY message
-  std::string id_;         // of the message that is being written
-  std::string last_name_;  // of its last signal
-  std::string multiplex_;  // of the signals of one MPDO object
+  std::string texts_;      // value texts of one EMCY message
+  std::string id_;         // identifier of the current message
+  std::string last_name_;  // name of its last signal
+  std::string multiplex_;  // multiplexer of the signals of one MPDO object
   std::optional<CobId> mpdo_;
   std::set<std::string> message_names_;
-  std::set<std::string> names_;       // of signals of one message
-  std::set<std::string> full_names_;  // the same, before they are cut
+  std::set<std::string> names_;       // names of the signals of one message
+  std::set<std::string> full_names_;  // the same before shortening
 };
 
 }  // namespace

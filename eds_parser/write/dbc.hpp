@@ -6,15 +6,15 @@
 namespace takt {
 
 struct DbcOptions {
-  /// Statuswords and controlwords as their bits by name; false: as one value. (One signal over
-  /// another is an error for most readers of DBC, so it is one or the other.)
+  /// True: statuswords and controlwords are written as named bits. False: each is one value. Both
+  /// at once is not possible, because most readers of DBC refuse signals that overlap.
   bool word_bits = true;
 };
 
-/// The frames of a bus as a DBC: PDOs as the master configures them, SYNC, EMCY, heartbeats.
-/// Physical values are SI as takt shows them. Signal names are the objects'; where they exceed the
-/// 32 characters that DBC allows, the long name is an attribute. Text beyond Windows-1252 becomes
-/// `?`.
+/// Returns the frames of a bus as a DBC file: PDOs as the master configures them, SYNC, EMCY,
+/// heartbeats. Physical values are in SI units, as takt shows them. Signals have the names of the
+/// objects. If a name exceeds the 32 characters that DBC allows, the long name is an attribute.
+/// Characters outside Windows-1252 become `?`.
 std::string to_dbc(const BusPlan& plan, const DbcOptions& options = {});
 
 }  // namespace takt

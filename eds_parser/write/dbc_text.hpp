@@ -5,13 +5,13 @@
 
 namespace takt {
 
-/// A C identifier: what is none becomes `_`.
+/// Makes a C identifier. Characters that it may not have become `_`.
 std::string dbc_name(std::string_view text);
-/// `name` in at most 32 characters and not yet in `used`, which it joins.
+/// Shortens `name` to at most 32 characters so that it is not yet in `used`, and adds it to `used`.
 std::string shorten(const std::string& name, std::set<std::string>& used);
-/// Text within quotes: Windows-1252 without quotes, from UTF-8.
+/// Converts UTF-8 to text for use within quotes: Windows-1252 without quotes.
 std::string dbc_text(std::string_view utf8);
-/// The shortest text that reads back as the same number.
+/// Returns the shortest text that reads back as the same number.
 std::string dbc_number(double value);
 
 }  // namespace takt

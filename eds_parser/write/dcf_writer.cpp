@@ -28,7 +28,7 @@ std::string_view base_name(std::string_view path) noexcept {
   return slash == std::string_view::npos ? path : path.substr(slash + 1);
 }
 
-/// Of two values for one object the later counts.
+/// Returns the values by object. If an object has two values, the later one counts.
 std::map<ObjectKey, const DcfValue*> last_values(const DcfOptions& options) {
   std::map<ObjectKey, const DcfValue*> last;
   for (const auto& value : options.values) last[value.object] = &value;
@@ -92,7 +92,7 @@ class DcfWriter {
     return true;
   }
 
-  /// Whether the device would take the value: read as the reader will.
+  /// Whether the device would accept the value, read in the same way as in the written DCF.
   bool good(const DcfValue& value, const SubObject& sub) {
     if (trim(value.text).size() != value.text.size()) {
       return refuse(sub.pos, "outer-blanks",
@@ -118,7 +118,7 @@ class DcfWriter {
                       ": the device would refuse it");
   }
 
-  /// Where the value of an object stands depends on how the file describes the object.
+  /// Writes a value to the place that depends on how the file describes the object.
   void place(ObjectKey key, std::string_view keyword, std::string text) {
     const auto* own = sections_.sub_object(key);
     const auto* main = sections_.object(key.index);
@@ -128,7 +128,7 @@ class DcfWriter {
     const auto* list = sections_.value_list(key.index);
     const bool in_list = list != nullptr && sections_.list_entry(*list, key.sub);
     if (in_list && keyword == "ParameterValue") {
-      place_in_list(key, std::move(text));  // it counts before that of a section
+      place_in_list(key, std::move(text));  // the list has priority over a section
     } else if (own != nullptr) {
       set(*own, keyword, std::move(text));
     } else if (main != nullptr && sections_.entry(*main, "compactsubobj")) {
@@ -138,7 +138,7 @@ class DcfWriter {
     }
   }
 
-  /// Sets one key of a section; what stands behind the old value as a comment stays.
+  /// Sets one key of a section. A comment behind the old value stays.
   void set(const IniSection& section, std::string_view key, std::string text) {
     std::string lower{key};
     std::ranges::transform(lower, lower.begin(), fold);
@@ -205,7 +205,8 @@ class DcfWriter {
     }
   }
 
-  /// What the file describes of the object stays; returns the number of new sub-objects.
+  /// Appends the missing sections of an object. Existing sections stay. Returns the number of new
+  /// sub-objects.
   std::size_t append_sections(const Object& object,
                               const std::map<std::uint8_t, std::string>& values) {
     std::size_t added = 0;
@@ -230,7 +231,8 @@ class DcfWriter {
     return added;
   }
 
-  /// A PDO that a DCF does not list is off, of an EDS it is as its default. CiA 306, 5.3.3.1.
+  /// Writes out valid PDOs that are only implied. In a DCF a PDO that is not listed is off, whereas
+  /// in an EDS its default applies. CiA 306, 5.3.3.1.
   void keep_pdos_on() {
     for (const auto& pdo : describe_pdos(dictionary_)) {
       const auto index = pdo.communication_index();
@@ -247,7 +249,8 @@ class DcfWriter {
     }
   }
 
-  /// Communication and mapping of a PDO that CompactPDO implies stand or fall together.
+  /// Adds the other record of a PDO that CompactPDO implies: communication and mapping are only
+  /// valid together.
   void add_pdo_partners() {
     std::vector<std::uint16_t> partners;
     for (const auto& [index, values] : implied_) {
@@ -336,7 +339,7 @@ bool holds(const ObjectDictionary& dictionary, const DcfValue& value) {
          to_bytes(*wanted, sub->type) == to_bytes(*sub->parameter_value, sub->type);
 }
 
-/// Reads what was written: a file may hold a value in more places than one.
+/// Reads the written text to confirm the values, because a file may hold a value in several places.
 void confirm(const std::string& text, const ObjectDictionary& before, const DcfOptions& options,
              Report& report) {
   if (options.values.empty()) return;

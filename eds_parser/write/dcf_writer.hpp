@@ -11,7 +11,7 @@
 namespace takt {
 
 /// A value for a DCF, as a user writes it: `0x3E8`, `$NODEID+0x200`, `-5`, a text, hex byte pairs.
-/// For a DOMAIN `@FILE`: the device gets the content of that file (DownloadFile).
+/// For a DOMAIN object, `@FILE` gives the device the content of that file (DownloadFile).
 struct DcfValue {
   ObjectKey object;
   std::string text;
@@ -21,20 +21,20 @@ struct DcfOptions {
   std::optional<NodeId> node{};
   std::optional<std::uint16_t> baudrate_kbit{};
   std::string node_name{};
-  std::string out_name{};  ///< becomes [FileInfo] FileName; empty: left as it is
+  std::string out_name{};  ///< new [FileInfo] FileName; empty = unchanged
   std::vector<DcfValue> values{};
 };
 
 struct DcfText {
   std::string text;
-  Findings findings;  ///< errors: there is no text
+  Findings findings;  ///< if one of them is an error, there is no text
 };
 
-/// Turns an EDS or DCF into the DCF of one device: ParameterValue of the given objects,
-/// [DeviceComissioning], and in [FileInfo] LastEDS. All else stays byte for byte (a UTF-16 file
-/// becomes UTF-8). What only CompactPDO or modules imply is written out where it gets a value.
-/// A value that the device would refuse (read-only, outside its limits or its type) is an error.
-/// CiA 306, 5.
+/// Turns an EDS or DCF into the DCF of one device. It writes ParameterValue of the given objects,
+/// [DeviceComissioning], and LastEDS in [FileInfo]. The rest stays byte for byte, except that a
+/// UTF-16 file becomes UTF-8. An object that only CompactPDO or modules imply is written out if it
+/// gets a value. A value that the device would refuse (read-only, outside its limits or its type)
+/// is an error. CiA 306, 5.
 DcfText write_dcf(std::string_view source, const std::string& source_name,
                   const DcfOptions& options);
 

@@ -18,20 +18,22 @@
 namespace takt {
 namespace {
 
-constexpr int most_passes = 40;  // each rule speaks a thousand times at most in one
+constexpr int most_passes = 40;  // in one pass each rule reports a thousand findings at most
 
-constexpr int most_tries = 8;  // of one pass, each with more objects left as they are
+constexpr int most_tries = 8;  // in one pass; each try leaves more objects unchanged
 
-constexpr std::uint32_t most_keys = 256;  // of a section in which a key is looked for
+constexpr std::uint32_t most_keys = 256;  // largest section in which a missing key is searched
 
 constexpr std::array<std::string_view, 11> object_keys{
     "ParameterName", "DataType",   "ObjectType",    "AccessType",   "SubNumber",     "LowLimit",
     "HighLimit",     "PDOMapping", "CompactSubObj", "DefaultValue", "ParameterValue"};
 
-/// Of these, slips are mended; what stands behind the others would begin to count then.
+/// Misspellings of these keys are mended. With the other keys, values that had no effect before
+/// would take effect.
 constexpr auto mended_keys = std::span{object_keys}.first<2>();
 
-/// What is not mended of an object, as the file would say something else.
+/// Which errors of an object are not mended, because mending them would change the meaning of the
+/// file.
 enum class Left : std::uint8_t { slips, all };
 
 using LeftObjects = std::map<std::uint16_t, Left>;
@@ -55,7 +57,7 @@ class FixPass {
     }
   }
 
-  /// Empty: nothing is left to mend.
+  /// Returns the mended text, or an empty text if there is nothing left to mend.
   std::string run(Findings& fixed) {
     std::vector<const Finding*> rest;
     for (const Finding& finding : eds_.findings) {
@@ -113,7 +115,8 @@ class FixPass {
     return entry_finding(rule, at->second);
   }
 
-  /// Nothing tells whether the objects of modules stay what they are: they are not connected.
+  /// Whether a finding is left as it is. This is the case for most findings on modules: the objects
+  /// of modules are not connected, so nothing shows whether an edit would change them.
   bool is_left(const IniSection& section, std::string_view rule) const {
     const SectionName name = classify_section(section);
     if (name.kind == SectionKind::module) {
@@ -129,7 +132,7 @@ class FixPass {
     return true;
   }
 
-  /// The line is known by its number alone.
+  /// Mends a `#` comment. Only the number of its line is known.
   bool hash_comment(std::uint32_t line) {
     if (line_starts_.empty()) {
       line_starts_.push_back(0);
@@ -158,7 +161,7 @@ class FixPass {
     if (rule == "sub-number-missing") return sub_number(section, nullptr);
     if (rule != "section-name-form") return false;
     const std::uint32_t line = section.pos.line;
-    if (!touched_.insert(line).second) return done_.contains(line);  // both forms at once
+    if (!touched_.insert(line).second) return done_.contains(line);  // one edit mends both findings
     done_.insert(line);
     std::string name{section.name};
     if (name.starts_with("0x") || name.starts_with("0X")) name.erase(0, 2);
@@ -168,7 +171,8 @@ class FixPass {
     return replace(section.name, name);
   }
 
-  /// All of the file or none: those that are left would no longer be taken for decimal.
+  /// Mends either all decimal sub-indices of the file or none, because remaining ones would no
+  /// longer be read as decimal.
   bool hexadecimal_subs() {
     if (subs_mended_) return *subs_mended_;
     const auto is_free = [this](const IniSection& section) {
@@ -198,7 +202,7 @@ class FixPass {
 
   bool touch(const Place& at) { return touched_.insert(at.entry.line).second; }
 
-  /// Number of sections of sub-objects, as the reader counts them.
+  /// Returns the number of sub-object sections, as the reader counts them.
   std::size_t subs_of(std::uint16_t index) {
     if (subs_.empty()) {
       for (const IniSection& each : file_.sections) {
@@ -239,7 +243,7 @@ class FixPass {
     return replace(bare, std::to_string(rate->magnitude / 1000));
   }
 
-  /// A slip of a key that the section does not have: `AcessType`.
+  /// Mends a misspelling of a key that the section does not have, such as `AcessType`.
   bool slip(const Place& at) {
     const SectionName name = classify_section(*at.section);
     if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return false;
@@ -274,18 +278,18 @@ class FixPass {
   const LeftObjects& left_;
   SectionIndex sections_;
   TextEdits edits_;
-  std::set<std::uint32_t> touched_;  ///< lines that have their edit
-  std::set<std::uint32_t> done_;     ///< of these, values and names made plain for all findings
+  std::set<std::uint32_t> touched_;  ///< lines that already have an edit
+  std::set<std::uint32_t> done_;     ///< those whose edit mends all their findings
   ListFix lists_;
   std::map<std::uint32_t, const IniSection*> section_at_;
   std::map<std::uint32_t, Place> entry_at_;
   std::map<std::uint32_t, std::set<std::string_view>> rules_at_;
   std::vector<std::size_t> line_starts_;
   std::map<std::uint16_t, std::set<std::uint8_t>> subs_;
-  std::optional<bool> subs_mended_;  ///< sub-indices in decimal; none: not tried yet
+  std::optional<bool> subs_mended_;  ///< decimal sub-indices were mended; empty = not tried yet
 };
 
-/// False: all of these are left already.
+/// Adds objects to those that are left unchanged. Returns false if all of them were left already.
 bool leave(const std::set<std::uint16_t>& objects, LeftObjects& left) {
   bool more = false;
   for (const std::uint16_t index : objects) {
@@ -302,7 +306,8 @@ struct Pass {
   EdsFile eds;
 };
 
-/// One pass; none where nothing is left to mend, or the file would say something else.
+/// Runs one pass. Returns std::nullopt if nothing is left to mend, or if mending would change the
+/// meaning of the file.
 std::optional<Pass> one_pass(const std::string& text, const std::string& source_name,
                              const EdsFile& eds, LeftObjects& left) {
   Report ignored{source_name};

@@ -8,7 +8,8 @@
 namespace takt {
 
 /// Rules of `takt eds check` whose findings have only one sensible reading, so that fix_eds() can
-/// mend them. Of unknown keys only slips of some known ones; of those in brackets not every case.
+/// mend them. fix_eds() also mends unknown keys that are misspellings of certain known keys. It
+/// does not mend every case of the rules on section names.
 inline constexpr std::array<std::string_view, 33> fixable_rules{
     "access-type-letter", "baudrate-unit",      "blank-in-key",
     "boolean-word",       "byte-order-mark",    "compact-and-sub-number",
@@ -23,14 +24,14 @@ inline constexpr std::array<std::string_view, 33> fixable_rules{
     "sub-number-wrong",   "type-word",          "wrong-list"};
 
 struct FixedEds {
-  std::string text;       ///< the whole file; what is not mended stays byte for byte
-  Findings fixed;         ///< what was mended, as it was found
-  Findings left;          ///< what the mended text still has
-  bool readable = false;  ///< false: no EDS or DCF; `left` says why
+  std::string text;       ///< the whole file; parts that are not mended stay byte for byte
+  Findings fixed;         ///< findings that were mended, as they were found
+  Findings left;          ///< findings that the mended text still has
+  bool readable = false;  ///< false: not an EDS or DCF; `left` gives the reason
 };
 
-/// Mends what can be read in only one way. Objects, sub-objects and values stay what they were;
-/// a UTF-16 file becomes UTF-8.
+/// Mends errors that can be read in only one way. Objects, sub-objects and values do not change. A
+/// UTF-16 file becomes UTF-8.
 FixedEds fix_eds(std::string_view source, const std::string& source_name);
 
 }  // namespace takt

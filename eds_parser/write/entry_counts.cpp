@@ -19,7 +19,7 @@ std::size_t tools(const IniFile& file) {
       }));
 }
 
-/// Types of modules, however often one is described.
+/// Returns the number of module types. A type that is described several times counts once.
 std::size_t modules(const IniFile& file) {
   std::set<std::uint16_t> numbers;
   for (const IniSection& section : file.sections) {

@@ -6,8 +6,8 @@
 
 namespace takt {
 
-/// What the count in a section (`NrOfEntries`, `Lines`, `Items`, `ObjectLinks`) should be; none:
-/// the section has no such count.
+/// Returns the correct count for a section (`NrOfEntries`, `Lines`, `Items`, `ObjectLinks`), or
+/// std::nullopt if the section has no such count.
 std::optional<std::size_t> counted_entries(const IniFile& file, const IniSection& section);
 
 }  // namespace takt

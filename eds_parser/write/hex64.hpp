@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// 0x and sixteen digits.
+/// Formats a value as 0x and sixteen digits.
 inline std::string hex64(std::uint64_t value) {
   char text[24];
   std::snprintf(text, sizeof text, "0x%016llX", static_cast<unsigned long long>(value));

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-/// A type as lcm-gen reads it; units and objects as comments.
+/// Returns a message type in the format of lcm-gen. Units and objects are comments.
 std::string to_lcm(const TypedMessage& message, const BusPlan& plan);
 
 }  // namespace takt

@@ -33,7 +33,8 @@ bool ListFix::move(const IniEntry& entry) {
   const auto number = parse_number(without_comment(entry.value));
   if (!number || number->magnitude > 0xFFFF) return false;
   const auto index = static_cast<std::uint16_t>(number->magnitude);
-  if (!number->hex && sections_.object(index) == nullptr) return false;  // else when 0x is there
+  // A later pass moves the entry once its 0x has been added.
+  if (!number->hex && sections_.object(index) == nullptr) return false;
   drop(entry.line);
   add(index);
   return true;
@@ -48,7 +49,8 @@ void ListFix::remove_line(const IniEntry& entry) {
   edits_.replace(text_.substr(first, end - first), "");
 }
 
-/// A finding of the list stands at its name, or at one of its entries.
+/// Whether one of the lines belongs to the section. A finding on a list is at its name or at one of
+/// its entries.
 bool ListFix::within(const IniSection& section, const std::set<std::uint32_t>& lines) const {
   if (lines.contains(section.pos.line)) return true;
   return std::ranges::any_of(file_.entries(section),

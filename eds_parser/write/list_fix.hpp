@@ -10,22 +10,22 @@
 
 namespace takt {
 
-/// Mends the three lists of objects: entries that repeat go, objects without an entry get one,
-/// each stands in its list, numbers run from 1, the count is right.
+/// Mends the three lists of objects. It removes repeated entries, adds entries for objects that
+/// have none, moves entries to the right list, numbers entries from 1, and corrects the counts.
 class ListFix {
  public:
-  /// `touched` receives the lines that are not to be edited any more.
+  /// `touched` receives the lines that later edits must not change.
   ListFix(std::string_view text, const IniFile& file, const SectionIndex& sections,
           TextEdits& edits, std::set<std::uint32_t>& touched)
       : text_{text}, file_{file}, sections_{sections}, edits_{edits}, touched_{touched} {}
 
-  /// The entry on this line says what another one has said.
+  /// The entry on this line repeats another one.
   void drop(std::uint32_t line) { dropped_.insert(line); }
-  /// The object of this entry belongs into another list. False: it is not clear which object.
+  /// The object of this entry belongs in another list. Returns false if the object is not clear.
   bool move(const IniEntry& entry);
   /// No list has this object.
   void add(std::uint16_t index) { added_.insert(index); }
-  /// The list whose count or name is on this line is wrong in its count, or in its numbers.
+  /// The count, or the numbering, of the list whose count or name is on this line is wrong.
   void count(std::uint32_t line) { counted_.insert(line); }
   void renumber(std::uint32_t line) { renumbered_.insert(line); }
   void run();

@@ -9,13 +9,13 @@
 
 namespace takt {
 
-/// Finds the sections of a file by what they are about; of a repeated one the first counts, as it
-/// does for the reader.
+/// Finds the sections of a file by the objects that they describe. If a section is repeated, the
+/// first one counts, as in the reader.
 class SectionIndex {
  public:
   explicit SectionIndex(const IniFile& file);
 
-  /// nullptr: the file has none.
+  /// Each of these functions returns nullptr if the file has no such section.
   const IniSection* object(std::uint16_t index) const noexcept;
   const IniSection* sub_object(ObjectKey key) const noexcept;
   const IniSection* value_list(std::uint16_t index) const noexcept;
@@ -23,9 +23,9 @@ class SectionIndex {
 
   std::optional<IniEntry> entry(const IniSection& section,
                                 std::string_view lower_key) const noexcept;
-  /// The entry of a value list for one sub-index, however many zeros its key starts with.
+  /// Returns the entry of a value list for one sub-index. Its key may have leading zeros.
   std::optional<IniEntry> list_entry(const IniSection& list, std::uint8_t sub) const noexcept;
-  /// Behind which a line is added to the section: its last entry, or its name.
+  /// Returns the text behind which new lines of the section belong: its last entry, or its name.
   std::string_view last_line(const IniSection& section) const noexcept;
 
  private:

@@ -29,7 +29,7 @@ void TextEdits::add_line(std::size_t at, std::string_view line) {
 }
 
 std::string TextEdits::apply() && {
-  // what is added comes before what is removed at the same place
+  // Insertions come before removals at the same place.
   std::ranges::stable_sort(edits_, {},
                            [](const Edit& edit) { return std::pair{edit.at, edit.length != 0}; });
   std::string out;

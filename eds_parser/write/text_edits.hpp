@@ -6,15 +6,17 @@
 
 namespace takt {
 
-/// Changes to a text. What they do not name stays byte for byte; new lines end as those of the
-/// text do.
+/// A set of changes to a text. The rest of the text stays byte for byte. New lines have the same
+/// line end as those of the text.
 class TextEdits {
  public:
   explicit TextEdits(std::string_view text);
 
-  /// `part` and `anchor` below are views into the text. Of two edits of one place the first counts.
+  /// Replaces `part`. `part`, and `anchor` below, are views into the text. If two edits affect the
+  /// same place, the first one counts.
   void replace(std::string_view part, std::string with);
-  /// Adds a line behind that which holds `anchor`; of two behind one line the first added is first.
+  /// Adds a line behind the line that holds `anchor`. Lines added behind the same line keep their
+  /// order.
   void insert_line_after(std::string_view anchor, std::string_view line);
   void append_line(std::string_view line);
   bool any() const noexcept { return !edits_.empty(); }

@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 14> value_rules{
     "nodeid-without-dollar", "number-suffix", "octal-number",       "octet-string-form",
     "real-bit-pattern",      "type-word"};
 
-/// Of an entry that gives an element a value; unknown: it gives none.
+/// Returns the keyword of an entry that gives an element a value, or Keyword::unknown for other
+/// entries.
 Keyword value_keyword(const SectionName& section, std::string_view key) noexcept {
   if (section.kind == SectionKind::value_list) {
     return entry_number(key) ? Keyword::parameter_value : Keyword::unknown;
@@ -38,7 +39,8 @@ Keyword value_keyword(const SectionName& section, std::string_view key) noexcept
   }
 }
 
-/// What the section of an object describes: a VAR, or an element by CompactSubObj.
+/// Returns the element that the section of an object describes: a VAR, or an element by
+/// CompactSubObj.
 const SubObject* described_by(const Object& object, const IniSection& section) noexcept {
   const bool has_elements = object.type == ObjectType::array || object.type == ObjectType::record ||
                             object.type == ObjectType::defstruct;
@@ -48,7 +50,8 @@ const SubObject* described_by(const Object& object, const IniSection& section) n
   return found == object.subs.end() ? nullptr : &*found;
 }
 
-/// nullptr: there is none, or it is not clear which one.
+/// Returns the element to which an entry belongs, or nullptr if there is none or if it is not
+/// clear.
 const SubObject* element_of(const ObjectDictionary& dictionary, const IniSection& section,
                             std::string_view key) noexcept {
   const SectionName name = classify_section(section);
@@ -63,7 +66,7 @@ const SubObject* element_of(const ObjectDictionary& dictionary, const IniSection
   return object == nullptr ? nullptr : described_by(*object, section);
 }
 
-/// What was read at this entry; none: another entry counts.
+/// Returns the value that was read at this entry, or std::nullopt if another entry counts.
 std::optional<Value> value_read(const SubObject& sub, Keyword keyword, const IniEntry& entry) {
   switch (keyword) {
     case Keyword::default_value:
@@ -90,8 +93,8 @@ std::string magnitude_text(const ParsedNumber& number) {
                     : std::to_string(number.magnitude);
 }
 
-/// None: it is no number, or it can't be written so that it reads as the same. Hexadecimal stays
-/// hexadecimal.
+/// Returns a number in plain notation. Hexadecimal stays hexadecimal. Returns std::nullopt if the
+/// text is not a number, or if no plain notation reads back as the same number.
 std::optional<std::string> plain_number(std::string_view bare) {
   const auto number = parse_number(bare);
   if (!number) return {};
@@ -109,7 +112,8 @@ std::optional<std::string> plain_number(std::string_view bare) {
   return same ? std::optional{plain} : std::nullopt;
 }
 
-/// `1` for `true` and for numbers but 0; none: neither.
+/// Returns `1` for `true` and numbers other than 0, `0` for `false` and 0, and std::nullopt for
+/// other texts.
 std::optional<std::string> plain_flag(std::string_view bare) {
   for (const auto* yes : {"true", "yes", "on"}) {
     if (same_word(bare, yes)) return "1";
@@ -122,7 +126,8 @@ std::optional<std::string> plain_flag(std::string_view bare) {
   return {};
 }
 
-/// A number that follows the node id has no such text: it would not follow any more.
+/// Returns the text of a value, or std::nullopt if it is relative to the node-ID, because the text
+/// would lose this relation.
 std::optional<std::string> value_text(const std::optional<Value>& value, DataType type,
                                       std::string_view bare) {
   const auto written = parse_number(bare);

@@ -9,12 +9,14 @@
 
 namespace takt {
 
-/// Of findings that one plain way to write the value of an entry mends, all at once.
+/// Whether plain_value() mends the findings of this rule. It mends all such findings of an entry at
+/// once.
 bool is_value_rule(std::string_view rule) noexcept;
 
-/// How CiA 306 writes what an entry has, without a comment. `rules`: what was found there. Reals
-/// are decimal and without the `f` of a programming language, octets bare hex pairs; what is sound
-/// stays as it is. None: it is no value, or its type is not known.
+/// Returns the value of an entry as CiA 306 writes it, without a comment. `rules` are the rules of
+/// the findings on this entry. Reals become decimal, without the `f` of programming languages, and
+/// octets become bare hex pairs. A correct value stays unchanged. Returns std::nullopt if the entry
+/// has no valid value or if its type is not known.
 std::optional<std::string> plain_value(const ObjectDictionary& dictionary,
                                        const IniSection& section, const IniEntry& entry,
                                        const std::set<std::string_view>& rules);
