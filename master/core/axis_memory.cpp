@@ -44,7 +44,8 @@ void AxisMemory::see(std::int64_t statusword) noexcept {
   }
 }
 
-/// A word that disables is not believed before the drive says that it is disabled.
+/// A controlword that disables has no effect here; only a statusword shows that the drive is
+/// disabled.
 void AxisMemory::write(std::int64_t controlword) noexcept {
   if (!enables(controlword)) return;
   word_ = ServiceWord::under_way;

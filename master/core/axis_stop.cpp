@@ -66,7 +66,7 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
   entered_ = answered_ = now;
 }
 
-/// The transitions of an axis. What is not listed changes nothing.
+/// The transitions of an axis. Observations that are not listed change nothing.
 ///
 ///   state     seen                                     next
 ///   unseen    it is enabled                            braking
@@ -74,12 +74,13 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
 ///   asked, rested: as unseen
 ///   braking   enabled, certainly at standstill         standing
 ///   braking   disabled                                 settling
+///   braking   disabled, certainly at standstill        stopped
 ///   standing  disabled                                 stopped
 ///   standing  enabled, moves again                     braking
 ///   settling  disabled, certainly at standstill        stopped
 ///   settling  disabled, moves after the grace          dropped
 ///   settling  enabled again                            braking
-///   (any)     the time is over: see cut()              cut
+///   braking   the time is over: see cut()              cut
 AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
   using enum AxisState;
   const bool enabled = seen == Seen::powered || seen == Seen::standing;
@@ -127,7 +128,7 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   if (sample.statusword) powered_ = !disabled(*sample.statusword);
   disabled_seen_ = disabled_seen_ || (sample.statusword && !powered_);
   if (!seen() && !sample.statusword) return;
-  // Velocities that come without a statusword say nothing of whether it is enabled.
+  // A velocity without a statusword does not tell whether the axis is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
   if (needs_word && !sample.statusword && !standstill_.certain()) return;
   // A single value outside the window in `standing` is noise until the window was left for good.

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Nothing was heard of a node that has no id of its own.
+/// For a node that gets its node-ID by LSS and has given no sign of life.
 std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
   return "nothing at all was heard of node " + std::to_string(int{node.id.value()}) +
          ", which gets this id by LSS (`lss: true`) as soon as a device without id answers that "
@@ -23,7 +23,7 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
          std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
 }
 
-/// Where the first answer is still missing, the channel of the network file may be the cause.
+/// If no first answer has come, the SDO channel of the network file may be the cause.
 std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const SdoChannel used = node.sdo.channel_of(node.id);
   if (failure.letter != 'B' || used == default_sdo_channel(node.id)) return {};
@@ -36,8 +36,8 @@ std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootF
          "channel";
 }
 
-/// The newest reset before the failure, where the node has answered in this boot before it and not
-/// since.
+/// Returns the newest reset before the failure if the node has answered in this boot before that
+/// reset and not since. Returns nullptr otherwise.
 const BootStep* reset_of_a_node_that_was_there(const NodePlan& node, const BootFailure& failure) {
   const auto& steps = node.boot_plan.steps;
   const BootStep* reset = nullptr;
@@ -126,7 +126,7 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
          " than the network file expects: correct whichever is wrong";
 }
 
-/// The device has accepted a block download and then fell silent. CiA 301, 7.2.4.3.9.
+/// The device has accepted a block download and then became silent. CiA 301, 7.2.4.3.9.
 bool accepted_block(const BootFailure& failure) noexcept {
   return failure.received_size != 0 && (failure.received[0] & 0xE3) == 0xA0;
 }
@@ -140,7 +140,8 @@ std::string against_counter() {
          "(`store_configuration: 1` of this node), or go without counter (`sync_overflow: 0`)";
 }
 
-/// Segments without end, or more of them than any object has that a boot looks at.
+/// For an endless sequence of segments, or a value that is longer than any object that a boot
+/// reads.
 std::string against_long_answer(const BootStep& step, const BootFailure& failure) {
   const std::string object = to_string(failure.object);
   if (!step.value.empty() && step.value.size() < request_bytes) {
@@ -152,7 +153,7 @@ std::string against_long_answer(const BootStep& step, const BootFailure& failure
          " bytes: remove it from the network file";
 }
 
-/// A slow server, or one that answers something else, is no silent one.
+/// For a server that answers late, or with another object than the requested one.
 std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
   if (failure.late > node.sdo_timeout && node.sdo_timeout > Time{}) {
     return "the device answers after " + time_text(failure.late) + ": raise `sdo_timeout_ms` of " +
@@ -165,7 +166,7 @@ std::string against_odd_answers(const NodePlan& node, const BootFailure& failure
          "client talks to it at the same time (stop other masters and tools)";
 }
 
-/// The master has ended the transfer, because the answer breaks the protocol.
+/// For an answer that breaks the protocol, so that the master has ended the transfer.
 std::string against_protocol_error(const BootFailure& failure) {
   const std::string other =
       ". Or a second SDO client talks to the node at the same time (stop other masters and tools)";
@@ -231,7 +232,7 @@ std::string against_dead_node(const BootStep& step) {
          ", or use `reset: communication` where it may be reset";
 }
 
-/// Else nothing came of the device that tells about its software.
+/// The device has given an answer that tells something about its software.
 bool tells_of_program(const BootFailure& failure) noexcept {
   if (failure.letter < 'G' || failure.letter > 'I') return false;
   return failure.fault == SdoFault::none || failure.fault == SdoFault::aborted_by_device ||

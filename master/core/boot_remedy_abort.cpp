@@ -13,7 +13,7 @@ bool is_mapping_entry(ObjectKey object) noexcept {
          (object.index >= 0x1A00 && object.index <= 0x1BFF);
 }
 
-/// "TPDO2" of a communication or mapping object, "the PDO" of others.
+/// "TPDO2" for a communication or mapping object, "the PDO" for other objects.
 std::string pdo_name(ObjectKey object) {
   const unsigned area = object.index & 0xFE00U;
   const std::string number = std::to_string((object.index & 0x1FFU) + 1);
@@ -22,7 +22,8 @@ std::string pdo_name(ObjectKey object) {
   return "the PDO";
 }
 
-/// The object that a mapping entry maps: "6077:00"; else the written object itself.
+/// The object that a mapping entry maps, for example "6077:00"; for other objects, the written
+/// object itself.
 std::string mapped_object(const BootStep& step) {
   if (!is_mapping_entry(step.object) || step.object.sub == 0 || step.value.size() != 4) {
     return to_string(step.object);
@@ -96,7 +97,7 @@ std::string against_rare_abort(const BootFailure& failure) {
       return object +
              " does not fit what else is set in the device: set first what it depends on "
              "(entries of `sdo` are written in their order)";
-    case 0x0609'0036:  // maximum below minimum
+    case 0x0609'0036:  // the maximum is below the minimum
       return "the limits of the device for " + object +
              " contradict each other: write the limit objects first, or restore the defaults "
              "(`restore_configuration: 1`)";

@@ -9,8 +9,8 @@ namespace {
 
 struct Setting {
   std::uint16_t index;
-  std::string_view key;      ///< of the network file
-  std::string_view without;  ///< what to write to go without it
+  std::string_view key;      ///< key of the network file
+  std::string_view without;  ///< what the user can write to do without the setting
 };
 
 constexpr std::array settings{

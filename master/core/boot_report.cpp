@@ -13,7 +13,7 @@
 namespace takt {
 namespace {
 
-/// One line of the explanation: "  sent      605  40 ...".
+/// Adds one line of the explanation: "  sent      605  40 ...".
 void add_line(std::string& text, std::string_view label, const std::string& content) {
   if (content.empty()) return;
   text += "\n  ";
@@ -22,7 +22,7 @@ void add_line(std::string& text, std::string_view label, const std::string& cont
   text += content;
 }
 
-/// "0x0000015A (346)", or the bytes where there are more than eight.
+/// A value as "0x0000015A (346)", or its bytes if there are more than eight.
 std::string value_text(std::span<const std::uint8_t> bytes, std::size_t size) {
   if (size == 0) return "nothing (zero bytes)";
   if (size > 8) {
@@ -94,7 +94,7 @@ std::string received_text(const NodePlan& node, const BootStep& step, const Boot
   return failure.fault == SdoFault::timeout ? text + ", then " + silence_text(step, failure) : text;
 }
 
-/// 0x1F57, bits 7..1. CiA 302-3.
+/// Describes the flash status 0x1F57: bit 0 and the error code in bits 7..1. CiA 302-3.
 std::string_view flash_text(std::uint8_t status) noexcept {
   if ((status & 1U) != 0) return "the device is still busy with its flash memory";
   switch (status >> 1U) {
@@ -154,7 +154,7 @@ std::string meaning_text(const BootFailure& failure) {
   return {};
 }
 
-/// How far a transfer of more than one frame came.
+/// Describes the progress of a transfer of more than one frame.
 std::string moved_text(const BootStep& step, const BootFailure& failure) {
   const std::string moved = std::to_string(failure.moved);
   if (failure.fault == SdoFault::none) return {};
@@ -169,7 +169,7 @@ std::string step_title(const BootStep& step) {
   return step.object == ObjectKey{} ? "unnamed step" : "object " + to_string(step.object);
 }
 
-/// What an identity status is about; empty: another status.
+/// The identity entry that an error status is about; empty for any other status.
 std::string_view identity_part(char letter) noexcept {
   switch (letter) {
     case 'C':
@@ -187,7 +187,8 @@ std::string_view identity_part(char letter) noexcept {
   }
 }
 
-/// CiA 302-2 has one letter for an identity that differs and for one that the device does not tell.
+/// Describes the error status. CiA 302-2 uses the same letter for an identity that differs and for
+/// one that the device does not report.
 std::string status_text(const BootFailure& failure) {
   const std::string start = std::string{failure.letter} + " of CiA 302-2: ";
   const std::string part{identity_part(failure.letter)};
@@ -248,7 +249,7 @@ std::string explain(const BusPlan& plan, std::size_t node_index, const BootFailu
   if (failure.fault == SdoFault::none && failure.sent_size != 0) {
     add_line(text, "expected", wanted_text(step));
   }
-  if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for that
+  if (step.action != BootAction::await_operational) {  // CiA 302 has no letter for this failure
     add_line(text, "status", status_text(failure));
   }
   add_line(text, "heard", heard_text(failure));

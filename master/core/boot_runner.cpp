@@ -11,7 +11,7 @@ bool begins_with_reset(const BootStep& step) noexcept {
          (step.action == BootAction::nmt && is_reset(step.command));
 }
 
-/// What tells whether the right device is there.
+/// The step checks whether the right device is there.
 bool is_identity(const BootStep& step) noexcept {
   return step.action == BootAction::probe ||
          (step.action == BootAction::expect &&
@@ -170,7 +170,7 @@ void BootRunner::enter(Time now) noexcept {
   begin(step);
 }
 
-/// What makes a node tell its state and harms none that is OPERATIONAL.
+/// The step makes a node report its state, and does not disturb a node that is OPERATIONAL.
 bool BootRunner::asks(const BootStep& step) noexcept {
   const std::uint16_t index = step.object.index;
   switch (step.action) {
@@ -188,7 +188,7 @@ bool BootRunner::asks(const BootStep& step) noexcept {
   }
 }
 
-/// What would change a node that is left running, or is not needed.
+/// The step would change a node that stays OPERATIONAL, or is not needed.
 bool BootRunner::skips(const BootStep& step) const noexcept {
   if (asks_) return !asks(step);
   switch (step.action) {
@@ -265,7 +265,8 @@ bool BootRunner::end_wait(Time now, const SdoClient& client) noexcept {
     case BootAction::await_operational:
       if (heartbeat_in_step_ && heard_ == NmtState::operational) break;
       if (!over) return false;
-      // Whoever has no heartbeat can't tell; whoever has one should have said it.
+      // A node without heartbeat cannot report the state; a node with heartbeat should have
+      // reported it.
       if (heartbeat_seen_) return fail({.fault = SdoFault::timeout}, now, client), true;
       break;
     case BootAction::probe:

@@ -4,15 +4,15 @@
 #include "master/core/boot_runner.hpp"
 #include "master/core/boot_value.hpp"
 
-// SDO transfers of the steps, and what their results mean.
+// SDO transfers of the boot steps, and the evaluation of their results.
 
 namespace takt {
 namespace {
 
 constexpr std::uint32_t pdo_invalid = 0x8000'0000;  // CiA 301, 7.5.2.35, bit 31
-constexpr std::uint32_t no_rtr = 0x4000'0000;       // bit 30
+constexpr std::uint32_t no_rtr = 0x4000'0000;       // bit 30: no RTR allowed
 
-/// Objects with an identifier that may change only while bit 31 is set.
+/// The object holds a COB-ID that may change only while its bit 31 is set.
 bool is_cob_id(ObjectKey object) noexcept {
   if (object == ObjectKey{0x1014, 0}) return true;
   return object.sub == 1 && ((object.index >= 0x1400 && object.index <= 0x15FF) ||
@@ -43,8 +43,9 @@ bool BootRunner::begin_transfer(Time now, SdoClient& client) noexcept {
   return true;
 }
 
-/// Parameters are written in PRE-OPERATIONAL, which a device that starts itself leaves unasked; one
-/// that is stopped answers no SDO at all. A node that is left running is not written to.
+/// Parameters are written in PRE-OPERATIONAL. A device that starts by itself leaves this state
+/// unasked, and a device in STOPPED answers no SDO at all. A node that stays OPERATIONAL is not
+/// written to.
 bool BootRunner::needs_preop() const noexcept {
   if (preoperational_ || running_ || asks_) return false;
   return phase_ == Phase::download_next || heard_ == NmtState::stopped;
@@ -112,7 +113,7 @@ void BootRunner::on_uploaded(const SdoResult& result, Time now, const SdoClient&
   }
 }
 
-/// Of a step that compares.
+/// Handles a difference in a step that compares.
 void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& client) noexcept {
   const BootStep& step = current();
   if (running_) {
@@ -128,7 +129,8 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
   phase_ = Phase::download_next;
 }
 
-/// The objects have 32 bits. A node that restarts in its boot is asked again.
+/// Takes a limit; these objects have 32 bits. If the node restarts during its boot, the limit is
+/// read again and replaces the earlier reading.
 void BootRunner::take_limit() noexcept {
   if (received_ != 4) return;
   const LimitReading reading{current().object, load_le<std::uint32_t>(received())};
@@ -139,7 +141,8 @@ void BootRunner::take_limit() noexcept {
   limits_read_ = std::max(limits_read_, index + 1);
 }
 
-/// A number is a revision, anything else a text.
+/// Takes the firmware version. The revision number in 0x1018 is a number; all other objects hold a
+/// text.
 void BootRunner::take_firmware() noexcept {
   const auto bytes = received();
   if (current().object.index == 0x1018) {
@@ -182,11 +185,11 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
                                const SdoClient& client) noexcept {
   const BootStep& step = current();
   if (result.fault == SdoFault::none) return on_written();
-  // A write is never repeated. Where its answer stays away, or the device calls it redundant, a
-  // look at the object tells whether it has worked.
+  // A write is never repeated. If its answer does not come, or the device calls the write
+  // redundant, reading the object back tells whether the write has worked.
   const bool refused = result.fault == SdoFault::aborted_by_device;
   if (refused && may_be_missing(step, result.abort_code)) return next();
-  if (!refused && step.may_restart) return next();  // it restarts instead of answering
+  if (!refused && step.may_restart) return next();  // the device restarts instead of answering
   if (step.action == BootAction::download_program) return fail(result, now, client);
   if (refused && !may_be_redundant(step, result.abort_code)) return fail(result, now, client);
   refused_ = result;

@@ -73,7 +73,7 @@ std::string_view when_back(std::uint32_t reaction) noexcept {
   return {};
 }
 
-/// A SYNC that another device makes.
+/// Describes an event of the SYNC of another device.
 std::string sync_line(const BusPlan& plan, const Event& event) {
   const std::string maker =
       plan.cycle.sync_producer ? subject(plan, plan.cycle.sync_producer->value()) : "its producer";

@@ -42,7 +42,7 @@ std::string_view reason(std::uint32_t detail) noexcept {
   return "of an unknown reason";
 }
 
-/// Where an actual position comes from, and what makes it come soon.
+/// Describes which TPDO carries an actual position, and what makes the device send it soon.
 std::string first_time_text(const BusPlan& plan, SignalIndex signal) {
   const PdoRow* const pdo = tpdo_of(plan.pdos, signal);
   if (pdo == nullptr) return {};

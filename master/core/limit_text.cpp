@@ -18,7 +18,7 @@ std::string number(double value, const std::string& unit) {
   return text.data() + (unit.empty() ? std::string{} : " " + unit);
 }
 
-/// Of the line that limits this signal in this way.
+/// The unit of the line that limits this signal in this way.
 std::string unit_of(const BusPlan& plan, SignalIndex signal, LimitKind kind) {
   for (const LimitLine& line : plan.limits.lines) {
     if (line.kind == kind && std::ranges::find(line.signals, signal) != line.signals.end()) {
@@ -35,7 +35,7 @@ double raw_number(const Signal& signal, std::int64_t raw) {
   return signal.type == DataType::real64 ? std::bit_cast<double>(raw) : static_cast<double>(raw);
 }
 
-/// `-1.5 .. 1.5 rad`, `2 rad/s`.
+/// A limit as text: `-1.5 .. 1.5 rad`, `2 rad/s`.
 std::string read_value(const LimitLine& line, std::int64_t value) {
   const auto in_unit = [&](double raw) { return raw * line.scale + line.offset; };
   if (line.kind != LimitKind::position) {

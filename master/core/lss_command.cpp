@@ -80,7 +80,7 @@ std::string what(LssOp op) {
   return "unknown service";
 }
 
-/// CiA 305, error codes of configure node id, configure bit timing and store.
+/// Describes the error codes of configure node-ID, configure bit timing and store. CiA 305.
 std::string refusal(const LssResult& result) {
   const std::string code = " (error " + std::to_string(result.error) + ")";
   if (result.error == 255) {

@@ -26,7 +26,7 @@ void LssMaster::begin(const LssCommand& command, Time timeout, Time now) noexcep
   ask();
 }
 
-/// The frames of the next question.
+/// Prepares the frames of the next question.
 void LssMaster::ask() noexcept {
   using lss::Service;
   count_ = next_ = 0;
@@ -145,7 +145,7 @@ Time LssMaster::wait() const noexcept {
   return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
 }
 
-/// The time for answers is over, or the one that was awaited has come.
+/// Evaluates the question: the time for answers is over, or the expected answer has come.
 void LssMaster::on_reaction(Time now) noexcept {
   send_at_ = std::max(send_at_, now);
   if (scans()) return on_scan_reaction();

@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-/// Devices that it concerns are in configuration state afterwards.
+/// After this command, the addressed devices are in configuration state.
 bool leads_to_configuration(const LssCommand& command) noexcept {
   return (command.op == LssOp::switch_global && command.a == 1) ||
          command.op == LssOp::switch_selective;
@@ -13,7 +13,8 @@ bool leads_to_configuration(const LssCommand& command) noexcept {
 
 }  // namespace
 
-/// A scan that was lost may have found somebody all the same.
+/// The command may have brought a device into configuration state. Even a scan that was lost may
+/// have found one.
 bool LssRunner::may_configure(const LssCommand& command, LssOutcome outcome) const noexcept {
   if (command.op != LssOp::fast_scan) return leads_to_configuration(command);
   return outcome != LssOutcome::nobody || master_.scan_may_have_switched();

@@ -17,8 +17,8 @@ void LssFastScan::begin_part(std::uint8_t part) noexcept {
   ask_below(32);
 }
 
-/// The highest unknown bit below `bit`; where there is none, the whole part is asked for again and
-/// the devices go on to the next one.
+/// Asks for the highest unknown bit below `bit`. If there is none, the next question confirms the
+/// whole part, and the devices go on to the next part.
 void LssFastScan::ask_below(int bit) noexcept {
   const std::uint32_t mask = question_.part < confirmed_ ? ~0U : mask_[question_.part];
   do {
@@ -37,7 +37,8 @@ void LssFastScan::on_reaction(bool answered) noexcept {
   ask_below(bit);
 }
 
-/// One lost or late answer must not make all devices unfound: silence counts the second time.
+/// Evaluates the first question. A single lost or late answer must not hide all devices, so only
+/// the second silence counts.
 void LssFastScan::on_anybody(bool answered) noexcept {
   if (answered) {
     doubtful_ = restarts_ != 0;
@@ -47,10 +48,11 @@ void LssFastScan::on_anybody(bool answered) noexcept {
   doubtful_ = true;
 }
 
-/// An answer that was lost or late has been taken for a 1 or for that of the next question, or
-/// the devices have gone on to the next part unheard. A part with known bits may just belong to
-/// nobody. Only a device that has gone to configuration state unheard makes a higher one the next
-/// that is found: a lost answer makes an address too high.
+/// Evaluates the confirmation of a part. If no device confirms it, an answer was lost or late and
+/// was taken for a 1 or for the answer to the next question, or the devices have gone on to the
+/// next part without a received answer. If bits of the part were given, there may also be no such
+/// device. A lost answer makes an address too high. The scan finds a higher address next only if a
+/// device has entered configuration state without a received answer.
 void LssFastScan::on_confirm(bool answered) noexcept {
   const std::uint8_t part = question_.part;
   may_have_switched_ = may_have_switched_ || part + 1 == parts;
@@ -75,7 +77,8 @@ void LssFastScan::keep_unheard() noexcept {
   if (!unheard_ || asked < *unheard_) unheard_ = asked;
 }
 
-/// What is confirmed needs one question for each part, and leads the devices to where it was.
+/// Starts the scan again. Each confirmed part then needs only one question, and leads the devices
+/// back to the part that has failed.
 void LssFastScan::start_over() noexcept {
   if (restarts_ == most_restarts) {
     state_ = LssScanState::lost;
@@ -107,7 +110,8 @@ void LssSlowScan::on_reaction(bool answered) noexcept {
   ask();
 }
 
-/// The lower half of the revisions, then of the serial numbers, then the one that is left.
+/// Asks for the lower half of the revision numbers, then of the serial numbers, and at the end for
+/// the remaining address.
 void LssSlowScan::ask() noexcept {
   question_ = left_;
   const std::size_t from = left_[2] != left_[3] ? 2 : 4;

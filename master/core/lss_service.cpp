@@ -11,7 +11,8 @@ namespace {
 
 using Commands = std::array<LssCommand, LssRunner::most_commands>;
 
-/// How many there are; 0: not a list of services that a running master offers.
+/// Returns the number of commands; 0 if the request is no list of services that a running master
+/// offers.
 std::size_t unpack(const Request& request, Commands& commands) noexcept {
   const std::size_t count = request.size / lss_command_bytes;
   if (request.size % lss_command_bytes != 0 || count > commands.size()) return 0;
@@ -69,7 +70,7 @@ void LssService::finish(Time now) noexcept {
   if (searched_ != nullptr) conclude(*std::exchange(searched_, nullptr), now);
 }
 
-/// Results take the place of the commands.
+/// Answers the request; the results replace the commands.
 void LssService::answer() noexcept {
   RequestSlot& slot = *std::exchange(request_, nullptr);
   std::size_t size = 0;
@@ -93,7 +94,7 @@ bool LssService::begin_request() noexcept {
   return true;
 }
 
-/// A node that has shown no sign of life may be without id.
+/// Begins a search. A node that has shown no sign of life may have no node-ID.
 void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexcept {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     Candidate& candidate = candidates_[(turn_ + i) % candidates_.size()];
@@ -110,7 +111,8 @@ void LssService::begin_search(Time now, std::span<const NodeStatus> nodes) noexc
   }
 }
 
-/// Once that may be the device of a node that is looked for next, or an answer was lost.
+/// Returns true if only other devices have answered twice in a row. A single such scan may have met
+/// the device of a node that is searched for next, or may have lost an answer.
 bool LssService::only_others_answered(Candidate& candidate) const noexcept {
   const LssResult& scan = runner_.results().front();
   const bool answered = scan.frames > LssFastScan::frames_of_silence;

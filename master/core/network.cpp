@@ -8,7 +8,8 @@
 namespace takt {
 namespace {
 
-/// Keeps `sum` the number of those that are true; `known` is what this one was.
+/// Updates one flag of a list and the number of true flags, `sum`. `known` is the previous value of
+/// the flag.
 void recount(bool now, std::vector<bool>::reference known, std::size_t& sum) noexcept {
   if (now == known) return;
   known = now;
@@ -116,7 +117,8 @@ void Network::on_frame(const Frame& frame, Time now, Outbox& out) noexcept {
   touched(index_[node], now);
 }
 
-/// Of an EMCY with a COB-ID of its own.
+/// The sender of an EMCY that does not have the COB-ID of the predefined connection set; nullptr if
+/// there is none.
 NodeSession* Network::emcy_sender(CobId id) noexcept {
   for (const auto& [own, position] : emcy_ids_) {
     if (own == id) return &sessions_[position];
@@ -124,7 +126,7 @@ NodeSession* Network::emcy_sender(CobId id) noexcept {
   return nullptr;
 }
 
-/// A sign of life of a node that is not in the network file. CiA 302-2, status A.
+/// Reports a sign of life of a node that is not in the network file. CiA 302-2, status A.
 void Network::meet_stranger(const Frame& frame, Time now) noexcept {
   const std::uint32_t node = frame.id.id() & 0x7F;
   const bool sign_of_life = (frame.id.id() & 0x780U) == 0x700 && frame.length != 0 && node != 0;
@@ -140,7 +142,7 @@ void Network::on_time(Time now, Outbox& out) noexcept {
   follow_start(now);
   send_heartbeat(now, out);
   send_own_commands(now, out);
-  serve_own_dictionary(now, out);  // what it confirms follows
+  serve_own_dictionary(now, out);  // before the NMT commands that it accepts
   send_commands(now, out);
   if (!observe_) lss_.on_time(now, out, statuses_);
   run_sessions(now, out);
@@ -157,7 +159,8 @@ void Network::send_heartbeat(Time now, Outbox& out) noexcept {
   if (heartbeat_at_ <= now) heartbeat_at_ = now + plan_.master_heartbeat;
 }
 
-/// What is confirmed must not be lost.
+/// Serves a request to the dictionary of the master. NMT commands are refused if there is no room
+/// for them, because a confirmed command must not be lost.
 void Network::ask_own_dictionary(const Frame& frame, Time now) noexcept {
   using enum SdoServer::Orders;
   server_.on_frame(frame, now, stopping_ || requests_.full() ? refused : taken);
@@ -166,13 +169,14 @@ void Network::ask_own_dictionary(const Frame& frame, Time now) noexcept {
   }
 }
 
-/// A block goes out in one turn, as far as there is room.
+/// Sends the answers of the dictionary. A block is sent in one turn, as far as there is room.
 void Network::serve_own_dictionary(Time now, Outbox& out) noexcept {
   while (server_.deadline() <= now && out.room() != 0) server_.on_time(now, out);
 }
 
 void Network::run_sessions(Time now, Outbox& out) noexcept {
-  // A session may have a second frame for the same moment, hence the rounds; `out` ends them.
+  // A session may have more than one frame for the same moment, so the loop repeats until `out` is
+  // full or no session sends.
   bool again = first_deadline() <= now;
   while (again) {
     again = false;
@@ -208,7 +212,7 @@ Time Network::deadline() const noexcept {
 void Network::withdraw(std::uint64_t id) noexcept {
   requests_.withdraw(id);
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // it may turn to the next one
+    if (sessions_[i].withdraw(id)) deadlines_[i] = Time{};  // the next request may begin
   }
 }
 
@@ -222,7 +226,7 @@ bool Network::submit(const Request& request, Time now) noexcept {
   } else if (NodeSession* const peer = session(request.node); peer != nullptr) {
     peer->on_request(now);
     touched(index_[request.node], now);
-  } else if (request.kind != RequestKind::lss) {  // those wait in a lane of their own
+  } else if (request.kind != RequestKind::lss) {  // LSS requests wait in their own lane
     requests_.answer(*slot, SdoFault::no_such_node);
   }
   return true;

@@ -3,7 +3,7 @@
 #include "master/core/network.hpp"
 #include "master/wire/nmt.hpp"
 
-// NMT of the whole network: its start, and what the loss of one node means to the others.
+// NMT of the whole network: its start, and the reactions to the loss of a node.
 
 namespace takt {
 namespace {
@@ -27,7 +27,7 @@ void Network::follow_start(Time now) noexcept {
   if (start_.matters()) tell(EventKind::network_ready, now, 0, 0);
 }
 
-/// CiA 302-2, error handling of a running node.
+/// Reacts to the loss of a node. CiA 302-2, error handling of a running node.
 void Network::on_loss(std::size_t index, Time now) noexcept {
   const NodePlan& node = plan_.nodes[index];
   if (node.mandatory && plan_.start_up.on_loss != MandatoryLoss::only_it) {
@@ -91,7 +91,8 @@ void Network::on_sync_back() noexcept {
   }
 }
 
-/// The master is not addressed by its own broadcast: it follows by itself. CiA 302-2.
+/// Changes the NMT state of the master itself. The master does not receive its own broadcast, so it
+/// follows it by itself. CiA 302-2.
 void Network::command_master(NmtCommand command) noexcept {
   const bool starts_anew = own_state_ == NmtState::stopped && command != NmtCommand::stop;
   sync_restarts_ = sync_restarts_ || starts_anew || is_reset(command);
@@ -112,8 +113,9 @@ void Network::command_master(NmtCommand command) noexcept {
   }
 }
 
-/// Node whose axes this command takes the PDOs, or the SYNC, from; 0: all, none: no axes. A reset
-/// is not held up: it is also the remedy for a device that does not stop.
+/// The node whose axes lose their PDOs or the SYNC by this command; 0 means all nodes, std::nullopt
+/// no axes. A reset does not wait for axes, because it is also the remedy for a device that does
+/// not stop.
 std::optional<std::uint8_t> Network::axes_reached(const NmtMessage& message) const noexcept {
   if (nmt_stop_ == NmtStop::immediate || !ends_exchange(message.command)) return std::nullopt;
   const bool own = message.node == plan_.master_id.value();
@@ -125,7 +127,7 @@ std::optional<std::uint8_t> Network::axes_reached(const NmtMessage& message) con
   return any ? std::optional{reached} : std::nullopt;
 }
 
-/// The axes may be enabled: they are stopped first.
+/// The command has to wait until its axes are stopped, because they may be enabled.
 bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
   const auto reached = axes_reached(message);
   return reached && axes_at_rest_ != 0 && axes_at_rest_ != *reached;
@@ -149,7 +151,8 @@ void Network::give_up_boots(Time now) noexcept {
   }
 }
 
-/// False: no room, too soon, or axes have to be stopped first.
+/// Sends an NMT command. Returns false if there is no room, the inhibit time is not over, or axes
+/// have to be stopped first.
 bool Network::send_command(const NmtMessage& message, Time now, Outbox& out) noexcept {
   const auto reached = axes_reached(message);
   if (waits_for_axes(message)) {

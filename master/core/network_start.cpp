@@ -25,7 +25,8 @@ std::size_t NetworkStart::missing(std::span<const NodeStatus> nodes) const noexc
 
 bool NetworkStart::update(std::span<const NodeStatus> nodes) noexcept {
   if (ready_ || missing(nodes) != 0) return false;
-  // One broadcast for all waits for the first try of each optional node too.
+  // A single broadcast that starts all nodes also waits for the first boot attempt of each optional
+  // node.
   const bool trying = std::ranges::any_of(nodes, [](const NodeStatus& node) {
     return node.boot == BootState::booting && !node.boot_tried;
   });

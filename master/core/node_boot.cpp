@@ -5,13 +5,13 @@
 #include "master/core/node_session.hpp"
 #include "master/wire/bytes.hpp"
 
-// How a session boots its node, and what becomes of it.
+// The boot of a node by its session, and the consequences of its result.
 
 namespace takt {
 namespace {
 
 constexpr Time default_reboot_delay = std::chrono::seconds{1};
-constexpr std::uint8_t most_failed_boots = 20;  // the pause has long stopped growing
+constexpr std::uint8_t most_failed_boots = 20;  // the pause has reached its maximum long before
 
 bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
   return a.step == b.step && a.fault == b.fault && a.abort_code == b.abort_code &&
@@ -20,19 +20,20 @@ bool same_cause(const BootFailure& a, const BootFailure& b) noexcept {
 
 constexpr std::uint16_t sync_length_emcy = 0x8240;
 
-/// A SYNC with counter came before the node had its 0x1019. Some stacks keep that error, and stay
-/// out of OPERATIONAL, until their next reset; by then they know of the counter.
+/// A SYNC with counter came before the node had its 0x1019. Some stacks keep that error until their
+/// next reset and do not enter OPERATIONAL; after the reset, they know the counter.
 bool met_counter_too_early(const BootFailure& failure) noexcept {
   return failure.action == BootAction::await_operational && failure.emcy == sync_length_emcy;
 }
 
-/// A reset makes no other device of it.
+/// Another device has answered. A reset cannot change that.
 bool is_another_device(const BootFailure& failure) noexcept {
   return failure.action == BootAction::expect && failure.fault == SdoFault::none &&
          failure.object.index == 0x1018;
 }
 
-/// The first, second, fourth, eighth ...: a node that stays away must not fill the log.
+/// Returns true for the first, second, fourth, eighth ... failure, so that an absent node does not
+/// fill the log.
 bool worth_telling(std::uint32_t count) noexcept { return std::has_single_bit(count); }
 
 }  // namespace
@@ -92,7 +93,7 @@ void NodeSession::on_boot_done(Time now) noexcept {
   }
 }
 
-/// Each tenth of a program.
+/// Reports the progress of a program download after each tenth.
 void NodeSession::tell_progress(Time now) noexcept {
   const std::size_t size = runner_.program_size();
   if (size == 0) return;
@@ -116,7 +117,7 @@ void NodeSession::tell_firmware(Time now) noexcept {
   const auto is = runner_.firmware();
   if (!is || !plan_->firmware) return;
   Firmware assumed = plan_->firmware->assumed;
-  if (plan_->firmware->of_revision()) assumed.parts[2] = 0;  // a revision has two parts
+  if (plan_->firmware->of_revision()) assumed.parts[2] = 0;  // a revision number has only two parts
   if (*is != assumed) tell(EventKind::firmware_differs, now, is->packed());
 }
 
@@ -124,8 +125,8 @@ void NodeSession::on_boot_failed(Time now) noexcept {
   runner_.stop();
   guard_.stop();
   BootFailure failure = runner_.failure();
-  // A node that should be alive and shows no sign of it is asked by SDO next: it may be OPERATIONAL
-  // and have no heartbeat.
+  // A node that should be alive but shows no sign of life is asked by SDO next: it may be
+  // OPERATIONAL without a heartbeat.
   const bool silent = failure.action == BootAction::await_alive;
   const bool other = is_another_device(failure) || runner_.identifies();
   retry_later(BootState::failed,
@@ -135,7 +136,7 @@ void NodeSession::on_boot_failed(Time now) noexcept {
               now);
   if (status_.emcy_count != emcys_at_boot_) failure.emcy = status_.last_emcy;
   if (met_counter_too_early(failure) && !std::exchange(counter_excused_, true)) {
-    retry_at_ = now;  // is no failure of the node yet
+    retry_at_ = now;  // this is no failure of the node yet
     return;
   }
   if (failed_boots_ < most_failed_boots) ++failed_boots_;
@@ -158,7 +159,7 @@ void NodeSession::retry_later(BootState state, BootRunner::From from, Time now) 
   retry_at_ = now + pause_before_retry();
 }
 
-/// Twice as long after each boot that failed.
+/// The pause doubles after each failed boot, up to a maximum.
 Time NodeSession::pause_before_retry() const noexcept {
   const Time first = plan_->reboot_delay > Time{} ? plan_->reboot_delay : default_reboot_delay;
   const Time longest = std::max(first, plan_->longest_reboot_delay);
@@ -167,13 +168,13 @@ Time NodeSession::pause_before_retry() const noexcept {
   return std::min(pause, longest);
 }
 
-/// The newest boot has failed because there was no sign of the node at all.
+/// The newest boot has failed because the node gave no sign of life at all.
 bool NodeSession::was_absent() const noexcept {
   return status_.boot == BootState::failed && last_failure_.fault == SdoFault::timeout &&
          last_failure_.node_state == NmtState::unknown;
 }
 
-/// A node that restarts again and again waits for its next turn.
+/// The node restarts again and again, so it waits for its next regular boot.
 bool NodeSession::restless(Time now) noexcept {
   constexpr Time window = std::chrono::seconds{10};
   constexpr std::uint32_t most_bootups = 5;

@@ -12,7 +12,7 @@ void NodeGuard::start(Time now) noexcept {
 
 void NodeGuard::node_was_reset() noexcept {
   stop();
-  last_toggle_ = true;  // so 0 is what has to come
+  last_toggle_ = true;  // so the next answer must have toggle bit 0
 }
 
 void NodeGuard::request_sent(Time now) noexcept {

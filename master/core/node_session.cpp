@@ -58,7 +58,7 @@ void NodeSession::follow_request(Time now) noexcept {
   begin_request(now);
 }
 
-/// Tells how far a file is and whether it is still wanted.
+/// Publishes the progress of a transfer, and cancels it if the sender has called it off.
 void NodeSession::follow_transfer(Time now) noexcept {
   SdoTransfer* const transfer = active_->request.transfer;
   if (transfer == nullptr) return;
@@ -82,7 +82,8 @@ void NodeSession::answer_request(const SdoResult& result) noexcept {
   next_look_ = never;
 }
 
-/// Those that were called off while they waited are answered at once.
+/// Activates the next request. Requests that were called off while they waited are answered at
+/// once.
 bool NodeSession::next_request() noexcept {
   for (;;) {
     active_ = shared_.requests.next(plan_->id.value());
@@ -125,7 +126,7 @@ void NodeSession::on_sdo_answer(const Frame& frame, Time now) noexcept {
   advance(now);
 }
 
-/// False: an answer that counts as not received.
+/// Returns false if the message is a guarding answer that counts as not received.
 bool NodeSession::take_guarding_answer(const Heartbeat& sign, Time now) noexcept {
   if (sign.state == NmtState::bootup || guard_.on_answer(sign.toggle, now)) return true;
   if (guard_.repeated() == 1) tell(EventKind::guarding_toggle, now);
@@ -152,8 +153,9 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   advance(now);
 }
 
-/// A node that leaves OPERATIONAL unasked (it missed the master's heartbeat, say) is brought back.
-/// The first such heartbeat may have been under way while the node was started.
+/// Brings a node back that leaves OPERATIONAL unasked, for example because it has missed the
+/// heartbeat of the master. The first such heartbeat is ignored, because it may have been under way
+/// while the node was started.
 void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
   const bool out = status_.boot == BootState::ready && wanted_ == NmtState::operational &&
                    (state == NmtState::preoperational || state == NmtState::stopped);
@@ -217,9 +219,9 @@ void NodeSession::pause() noexcept {
 void NodeSession::resume() noexcept {
   if (!std::exchange(paused_, false) || stopping_) return;
   if (own_command_ == NmtCommand::stop) {
-    own_command_.reset();  // it was not sent yet
+    own_command_.reset();  // NMT stop was not sent yet
   } else if (wanted_ == NmtState::stopped) {
-    own_command_ = NmtCommand::start;  // unless it was told something else since
+    own_command_ = NmtCommand::start;  // unless another command was sent since
   }
 }
 
@@ -240,7 +242,7 @@ void NodeSession::node_was_reset() noexcept {
 
 void NodeSession::on_emcy(const Frame& frame, Time now) noexcept {
   if (frame.length == 0) return;
-  Emcy emcy = emcy_of(plan_->id, frame);  // what it lacks stands as it was told before
+  Emcy emcy = emcy_of(plan_->id, frame);  // missing fields keep their last values
   if (frame.length < 2) emcy.code = status_.last_emcy;
   if (frame.length < 3) emcy.error_register = status_.error_register;
   if (!watch_.on_emcy(emcy, now, status_)) return;
@@ -283,7 +285,7 @@ void NodeSession::on_commanded(NmtCommand command, Time now) noexcept {
   assume(NmtState::unknown, now);
   if (managed_ == Managed::no || stopping_ || status_.boot == BootState::idle) return;
   if (booting()) return boot(BootRunner::From::beginning, now);
-  // Until its boot-up message, or for the pause.
+  // The boot waits for the boot-up message, or for the pause.
   retry_later(BootState::lost, BootRunner::From::beginning, now);
 }
 

@@ -6,9 +6,9 @@
 namespace takt {
 namespace {
 
-constexpr std::uint16_t axis_step = 0x800;  // between two axes of one device
+constexpr std::uint16_t axis_step = 0x800;  // index distance between two axes of one device
 constexpr std::uint16_t axes_per_node = 8;
-constexpr std::uint32_t fallback_cycles = 2;  // enough that each device has seen it act
+constexpr std::uint32_t fallback_cycles = 2;  // long enough for each device to receive the fallback
 
 std::optional<SignalIndex> find(const ImageLayout& layout, std::uint8_t node_index,
                                 std::uint16_t index, bool output) {
@@ -22,7 +22,8 @@ std::optional<SignalIndex> find(const ImageLayout& layout, std::uint8_t node_ind
   return std::nullopt;
 }
 
-/// Empty: the device has no such axis, or nothing can be done about it.
+/// Returns std::nullopt if the device has no such axis, or if the master has no means to command
+/// it.
 std::optional<StopAxis> axis_of(const BusPlan& plan, std::uint8_t node_index, std::uint8_t number) {
   const auto at = [&](std::uint16_t base, bool output) {
     const auto index = static_cast<std::uint16_t>(base + number * axis_step);
@@ -45,8 +46,9 @@ AxisPlan plan_of(const NodePlan& node, std::uint8_t number) {
   return found == node.axes.end() ? AxisPlan{.number = number} : *found;
 }
 
-/// An axis of a node whose boot has failed may be enabled, too: another master has enabled it, or
-/// the one before. CiA 302-2: B is no answer at all, L is found OPERATIONAL.
+/// What is known of an axis before the stop. Even if the boot of its node has failed, the axis may
+/// be enabled, because another master or a previous run has enabled it. In CiA 302-2, status B
+/// means that no answer has come, L that the node was found OPERATIONAL.
 AxisPrior prior_of(const NodeStatus& node, const AxisMemory& memory) noexcept {
   if (node.boot_count != 0 || node.boot == BootState::ready) {
     return memory.disabled() ? AxisPrior::disabled : AxisPrior::exposed;
@@ -112,7 +114,8 @@ void OrderedStop::take(std::size_t axis, const AxisSample& sample) noexcept {
   if (sample.position) answers_[axis].position = sample.position;
 }
 
-/// PDOs that are received and not stale, else what an SDO has read.
+/// Collects the samples: values of received PDOs that are not stale, otherwise values that were
+/// read by SDO.
 void OrderedStop::look(Time now, const StopView& view) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const StopAxis& axis = axes_[i];
@@ -138,8 +141,8 @@ bool OrderedStop::all_settled(Time now, const StopView& view) const noexcept {
   return true;
 }
 
-/// An axis may have got an enabling word in the cycle before, which its statusword does not show
-/// yet: every axis is commanded for some cycles first.
+/// An axis may have received an enabling controlword in the previous cycle, which its statusword
+/// does not show yet. So every axis is commanded for some cycles first.
 bool OrderedStop::nothing_to_stop() const noexcept {
   if (stage_ == StopStage::fallback) return false;
   return std::ranges::all_of(stops_, [](const AxisStop& stop) {
@@ -181,7 +184,8 @@ void OrderedStop::enter(StopStage stage) noexcept {
   steps_ = 0;
 }
 
-/// Where an axis is not confirmed, everything stays armed: the devices themselves are what is left.
+/// If an axis is not confirmed, all supervision stays armed, because only the devices themselves
+/// can still react.
 void OrderedStop::leave_axes(StopStage stage) noexcept {
   enter(all_confirmed() ? StopStage::disarm : stage);
 }
@@ -201,7 +205,7 @@ void OrderedStop::leave_axes(StopStage stage) noexcept {
 void OrderedStop::step(Time now, const StopView& view) noexcept {
   if (stage_ == StopStage::running || stage_ == StopStage::done) return;
   const bool out_of_time = now >= limit();
-  // A word has to be on the bus before the answer to it can count.
+  // A controlword has to be on the bus before its answer can count.
   const bool seen = steps_++ >= fallback_cycles;
   if (!axes_done()) look(now, view);
   switch (stage_) {
@@ -236,9 +240,9 @@ std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noe
   const AxisState state = stops_[axis].state();
   switch (stage_) {
     case StopStage::fallback:
-      // Where one node is stopped alone its outputs take no fallback, and its application goes on.
+      // If only one node is stopped, its outputs take no fallback, and its application continues.
       if (node_index_ != every_node) return stops_[axis].controlword();
-      // The declared fallback may be to disable; but an axis that moves must not be disabled.
+      // The declared fallback may disable the axis, but an axis that moves must not be disabled.
       if (!stops_[axis].seen() || state == AxisState::exempt) return std::nullopt;
       return stops_[axis].controlword();
     case StopStage::quick_stop:

@@ -11,10 +11,10 @@ namespace takt {
 namespace {
 
 constexpr Time longest_gap = std::chrono::milliseconds{50};
-constexpr double fewest_cycles = 3;           // of longest_gap
-constexpr double from_actual_cycles = 1;      // of a way that begins at the actual position
-constexpr std::int64_t profile_position = 1;  // 6060, 6061
-constexpr double rounding = 1e-6;             // counts, of the arithmetic
+constexpr double fewest_cycles = 3;           // least number of cycles for longest_gap
+constexpr double from_actual_cycles = 1;      // cycles of a step that begins at the actual position
+constexpr std::int64_t profile_position = 1;  // value of 0x6060 and 0x6061
+constexpr double rounding = 1e-6;             // rounding errors of the arithmetic, in counts
 
 /// Statusword: Operation enabled. CiA 402-2, table of states.
 constexpr bool operation_enabled(std::int64_t statusword) noexcept {
@@ -98,7 +98,7 @@ bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint3
   return false;
 }
 
-/// As the wire carries it: bits beyond the width of the object are cut.
+/// The value as the frame carries it: bits beyond the width of the object are cut off.
 double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexcept {
   if (signal.type == DataType::real32) {
     return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
@@ -110,8 +110,9 @@ double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexce
   return static_cast<double>(top >> spare);
 }
 
-/// The shorter way where positions turn over. Two positions of one turn are less than a turn apart:
-/// whole turns beyond that are a way that the axis would go.
+/// The distance between two positions; for positions that wrap around, the shorter way. Two
+/// positions of one turn are less than a turn apart; whole turns beyond that are a distance that
+/// the axis would move.
 double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
   const OutputLimit& limit = limits_[place];
   const double way = to - from;
@@ -135,7 +136,8 @@ bool OutputLimits::enabled(std::size_t place) const noexcept {
          operation_enabled(image_.values[*statusword]);
 }
 
-/// The drive has said so, too: until then it still follows each set-point.
+/// The axis is in profile position mode, and the drive confirms this mode. Until then, the axis
+/// still follows each set-point.
 bool OutputLimits::in_profile(std::size_t place, std::int64_t mode) const noexcept {
   const OutputLimit& limit = limits_[place];
   const bool commanded = limit.mode ? mode_of(mode) == profile_position : limit.profile;
@@ -200,7 +202,8 @@ std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& w
   return std::nullopt;
 }
 
-/// Second difference. Each of the three values is rounded to a count, which may feign as much.
+/// Checks the second difference. Each of the three values is rounded to a count, and this rounding
+/// can look like the acceleration `feigned`.
 std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
                                                    const Way& way) const noexcept {
   const Slot& slot = slots_[place];
@@ -292,7 +295,7 @@ void OutputLimits::expire(std::uint64_t cycle) noexcept {
 void OutputLimits::admit(std::size_t place, std::int64_t raw, std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
   slot.news = true;
-  // Frames by event aren't sent again for the same value: the command counts as sent.
+  // An event-driven frame is not sent again for the same value, so the command counts as sent.
   if (!slot.known || number(signal_of(place), raw) != slot.value) return;
   slot.cycle = cycle;
   slot.speed = 0;

@@ -14,7 +14,7 @@ namespace {
 using Value = OwnDictionary::Value;
 
 constexpr std::string_view device_name = "takt CANopen master";
-constexpr std::uint8_t all_nodes = 128;  // sub-index of 0x1F82
+constexpr std::uint8_t all_nodes = 128;  // sub-index of 0x1F82 that stands for all nodes
 constexpr std::uint32_t makes_sync = 0x4000'0000;
 constexpr std::uint32_t makes_time = 0x4000'0000;
 
@@ -62,7 +62,7 @@ std::uint64_t count_of(Time time) noexcept {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<Unit>(time).count());
 }
 
-/// Value of 0x1F82: 0 unknown, 1 missing, else as in the heartbeat.
+/// Value of 0x1F82: 0 means unknown, 1 missing; other values are as in the heartbeat.
 std::uint8_t state_code(const NodeStatus& status) noexcept {
   if (status.boot == BootState::lost || status.boot == BootState::failed) return 1;
   switch (status.nmt) {
@@ -94,7 +94,7 @@ std::optional<NmtCommand> requested(std::uint8_t code) noexcept {
   }
 }
 
-/// One value for each node.
+/// The object has one sub-index for each node.
 constexpr bool is_node_list(std::uint16_t index) noexcept {
   switch (index) {
     case 0x1F26:  // configuration date
@@ -102,7 +102,7 @@ constexpr bool is_node_list(std::uint16_t index) noexcept {
     case 0x1F55:  // software version
     case 0x1F81:  // assignment
     case 0x1F84:  // device type
-    case 0x1F85:  // vendor id
+    case 0x1F85:  // vendor-ID
     case 0x1F86:  // product code
     case 0x1F87:  // revision number
     case 0x1F88:  // serial number
@@ -113,7 +113,7 @@ constexpr bool is_node_list(std::uint16_t index) noexcept {
   }
 }
 
-/// 0x1F80.
+/// Value of 0x1F80.
 std::uint32_t start_up_of(const BusPlan& plan) noexcept {
   using namespace start_up;
   std::uint32_t bits = is_master;
@@ -125,7 +125,7 @@ std::uint32_t start_up_of(const BusPlan& plan) noexcept {
   return bits;
 }
 
-/// 0x1F8A of a node; 0: nothing is restored.
+/// Value of 0x1F8A for a node; 0 means that nothing is restored.
 std::uint8_t restored_sub(const BootPlan& boot) noexcept {
   const auto restores = [](const BootStep& step) {
     return step.action == BootAction::write && step.object.index == restore_defaults;
@@ -134,7 +134,7 @@ std::uint8_t restored_sub(const BootPlan& boot) noexcept {
   return found == boot.steps.end() ? std::uint8_t{0} : found->object.sub;
 }
 
-/// What the boot of a node looks for in an object; 0: it does not look.
+/// The value that the boot of a node expects in an object; 0 means none.
 std::uint32_t expected(const NodePlan& node, ObjectKey object) noexcept {
   for (const BootStep& step : node.boot_plan.steps) {
     const bool looks = step.action == BootAction::expect || step.action == BootAction::compare;
@@ -143,7 +143,7 @@ std::uint32_t expected(const NodePlan& node, ObjectKey object) noexcept {
   return 0;
 }
 
-/// 0x1F81 of a node.
+/// Value of 0x1F81 for a node.
 std::uint32_t assignment_of(const NodePlan& node) noexcept {
   using namespace assigned;
   const auto has = [&](BootAction action) {
@@ -181,7 +181,7 @@ Value OwnDictionary::read(ObjectKey key) const noexcept {
 Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
   const CyclePlan& cycle = plan_.cycle;
   if (key.index == 0x1016) return read_consumers(key.sub);
-  if (key.index == 0x1018) {  // takt has no vendor id of CAN in Automation
+  if (key.index == 0x1018) {  // takt has no vendor-ID of CAN in Automation
     if (key.sub > 4) return refuse(abort_code::no_sub_index);
     return key.sub == 0 ? number(std::uint8_t{4}) : number(std::uint32_t{0});
   }
@@ -239,7 +239,7 @@ Value OwnDictionary::read_communication(ObjectKey key) const noexcept {
   return known && key.sub != 0 ? refuse(abort_code::no_sub_index) : value;
 }
 
-/// Whose heartbeat is missed after how long, in the order of the nodes.
+/// Value of 0x1016: the heartbeat consumers, in the order of the nodes.
 Value OwnDictionary::read_consumers(std::uint8_t sub) const noexcept {
   const std::size_t count = plan_.nodes.size();
   if (sub == 0) return number(static_cast<std::uint8_t>(count));

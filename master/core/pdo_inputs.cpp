@@ -68,13 +68,13 @@ void PdoInputs::set_reception(std::size_t node_index, Reception reception) noexc
     row.misses = 0;
     row.waited = false;
     row.was_late = false;
-    // The first frame may take up to n beats, and with a SYNC start value as long as the counter
-    // takes to come to it; 2 n more is too long for every phase.
+    // The first frame may take up to n beats, and with a SYNC start value also the time until the
+    // counter reaches it. A margin of 2 n beats covers every phase.
     const bool watched = reception >= Reception::listening && row.every != 0;
     const std::uint64_t counted =
         plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;
     row.due = watched ? beat_ + counted + 2 * std::uint64_t{row.every} : not_due;
-    // Who only listens does not know which SYNC a frame answers.
+    // With any other reception, the master does not know which SYNC a frame answers.
     const bool windowed = reception == Reception::full && plan_.cycle.sync &&
                           plan_.pdos.tpdos[i].synchronous() && window_ > Time{};
     row.window = windowed ? window_ : never;
@@ -103,8 +103,8 @@ std::uint16_t PdoInputs::find_extended(CobId id) const noexcept {
   return found != extended_.end() && cob_id(*found) == id ? *found : no_row;
 }
 
-/// The object of an MPDO: its header is the lower half of the frame. A DAM frame to node 0 is for
-/// all, so for the master too.
+/// Finds the object of an MPDO by its header, the lower half of the frame. A DAM frame to node 0
+/// addresses all nodes, including the master.
 std::uint16_t PdoInputs::find_object(std::uint16_t first, const Frame& frame) const noexcept {
   constexpr std::uint32_t to_all = 0x80;
   auto header = static_cast<std::uint32_t>(load(frame));
@@ -126,8 +126,9 @@ std::uint16_t PdoInputs::row_of(const Frame& frame) const noexcept {
   return rows_[position].multiplexed ? find_object(position, frame) : position;
 }
 
-/// Told once, until a frame of right length comes. A short frame is ignored whole, of a long one
-/// the first bytes count: then true.
+/// Counts a frame of wrong length, and reports it once until a frame of the right length comes.
+/// Returns true if the frame can be used: a short frame is ignored completely, of a long frame the
+/// first bytes are used.
 bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   const bool longer = stamped.frame.length > row.length;
@@ -141,8 +142,8 @@ bool PdoInputs::use_odd_length(std::size_t position, const StampedFrame& stamped
   return longer;
 }
 
-/// A synchronous frame after its window: told when that begins, unless it counts as missing
-/// already. False: it is not to be used.
+/// Counts a synchronous frame after its window. The first one is reported, unless it counts as
+/// missing already. Returns false if the frame is not to be used.
 bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noexcept {
   Row& row = rows_[position];
   ++row.late;
@@ -159,7 +160,7 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
 [[gnu::always_inline]] inline void PdoInputs::accept(Row& row, PdoMark& news,
                                                      const StampedFrame& stamped) noexcept {
   unpack(load(stamped.frame), {fields_.data() + row.first, row.count}, image_.values.data());
-  // A frame from before this SYNC answers the one before.
+  // A frame that arrived before this SYNC answers the previous SYNC.
   const unsigned before = stamped.when < sync_ ? 1 : 0;
   ++news.received;
   news.cycle = static_cast<std::uint32_t>(cycle_) - before;
@@ -169,14 +170,14 @@ bool PdoInputs::use_late(std::size_t position, const StampedFrame& stamped) noex
   if (row.deadline > Time{}) row.expires = stamped.when + row.deadline;
   if (row.every != 0) {
     row.known = row.reception == Reception::full;
-    // Without a phase of its own a frame may come one round later.
+    // While its phase is unknown, a frame may come one round later.
     row.due = of_beat + (row.known ? 1U : 2U) * std::uint64_t{row.every};
     if (row.waited && before == 0) {
       row.waited = false;
       --outstanding_;
       last_arrival_ = stamped.when;
     } else if (before != 0 && row.known && row.due == beat_ && !row.waited) [[unlikely]] {
-      // Its phase is known just now, so this beat begins to wait for it.
+      // The phase has just become known, so this beat begins to wait for the frame.
       row.waited = true;
       ++expected_;
       ++outstanding_;

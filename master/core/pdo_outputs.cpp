@@ -62,7 +62,7 @@ void PdoOutputs::fall(Output& output, SignalIndex signal) noexcept {
   if (what.fallback == Fallback::value) image_.values[signal] = what.fallback_value;
 }
 
-/// Outputs without a time to live keep their value, as they do when their sender falls silent.
+/// Outputs without a time to live keep their value, as they do when no more commands come.
 void PdoOutputs::let_go(Output& output, SignalIndex signal) noexcept {
   if (!output.commanded || output.fallen || output.limit == 0) return;
   fall(output, signal);
@@ -132,8 +132,8 @@ void PdoOutputs::tell_changes(std::size_t position, bool lacking, OutputMoment m
   row.held_told = true;
 }
 
-/// Times count in cycles: a late wake-up makes none of them longer. It makes the inhibit time
-/// shorter by as much, a stall by no more than a quarter of a period.
+/// Times are counted in cycles, so that a late wake-up does not lengthen them. A late wake-up
+/// shortens the inhibit time by the same amount, but by no more than a quarter of a period.
 bool PdoOutputs::due(std::size_t position, OutputMoment moment) const noexcept {
   const PdoRow& pdo = plan_.pdos.rpdos[position];
   const Row& row = rows_[position];

@@ -49,7 +49,7 @@ Obeying PdoOutputs::obeying(SignalIndex signal) const noexcept {
   return output.commanded && !output.fallen ? Obeying::yes : Obeying::no;
 }
 
-/// Every commanded output of the node takes its fallback.
+/// Lets every commanded output of the node take its fallback.
 void PdoOutputs::drop_node(std::size_t node_index) noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto signal = static_cast<SignalIndex>(inputs_count_ + i);
@@ -80,8 +80,9 @@ bool PdoOutputs::judge(std::size_t place, std::int64_t value, std::int64_t mode,
   return false;
 }
 
-/// A cycle without outputs, or an inhibit time, may keep the fallback back. Until it is sent the
-/// axis follows set-points, but commands would count as those of an axis that does not.
+/// A cycle without outputs, or an inhibit time, may delay the fallback. Until the fallback is sent,
+/// the axis follows its set-points, but commands would be judged as those of an axis that does not
+/// follow. So the refusal lasts until then.
 void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -92,7 +93,8 @@ void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
   limits_.forgive(place, moment.cycle);
 }
 
-/// A new mode is judged as well: the position that it makes valid may be far away.
+/// Judges a new command. A new mode of operation is judged as well, because the position that it
+/// makes valid may be far away.
 void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
                             OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
@@ -145,7 +147,7 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   if (place == OutputLimits::no_place) return !limits_.holds(node_index);
   if (!limited_row_open(place)) return true;
   const OutputLimit& limit = limits_.limit(place);
-  if (limit.signal != signal) {  // the mode of an axis
+  if (limit.signal != signal) {  // `signal` is the mode of operation of an axis
     if (!outputs_[output_of(limit.signal)].known) return !limits_.holds(node_index);
     return judge(place, image_.values[limit.signal], value, moment) && !limits_.holds(node_index);
   }
@@ -157,8 +159,8 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   return true;
 }
 
-/// The input that holds a set-point of this RPDO back until it comes for the first time, plus 1; 0:
-/// there is none. See OutputLimits::lacks_start().
+/// Index of the input for whose first value a set-point of this RPDO waits, plus 1; 0 means none.
+/// See OutputLimits::lacks_start().
 std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {
   for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
     const SignalIndex signal = fields_[pdo.first_field + i].signal;

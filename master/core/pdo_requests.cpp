@@ -10,7 +10,7 @@ Frame remote_request(const PdoRow& row) noexcept {
   return {.id = row.cob_id, .length = row.length, .rtr = true};
 }
 
-/// Row of this PDO; rows.size(): there is none.
+/// The row of this PDO, or rows.size() if there is none.
 std::size_t find(const std::vector<PdoRow>& rows, std::uint8_t node, std::uint16_t number) {
   const auto found = std::ranges::find_if(rows, [&](const PdoRow& row) {
     return row.node.value() == node && row.number == number && !row.multiplexed();
@@ -30,7 +30,7 @@ PdoRequests::PdoRequests(const BusPlan& plan)
   }
 }
 
-/// What there is to send and which TPDO answers it.
+/// Determines the frame to send and the TPDO that answers it.
 SdoFault PdoRequests::prepare(const Request& request, Slot& slot) const noexcept {
   const std::size_t tpdo = find(plan_.pdos.tpdos, request.node, request.object.index);
   if (tpdo == plan_.pdos.tpdos.size()) return SdoFault::no_such_pdo;
@@ -45,7 +45,7 @@ SdoFault PdoRequests::prepare(const Request& request, Slot& slot) const noexcept
   }
   slot.rpdo = static_cast<std::uint16_t>(rpdo);
   const PdoRow& row = plan_.pdos.rpdos[rpdo];
-  const bool mapped = row.length != 0;  // else its mapping is not known
+  const bool mapped = row.length != 0;  // otherwise the mapping is unknown
   if (mapped && request.size != row.length) return SdoFault::wrong_length;
   if (request.size > slot.frame.data.size()) return SdoFault::too_long;
   slot.frame = {.id = row.cob_id, .length = static_cast<std::uint8_t>(request.size)};
@@ -61,8 +61,8 @@ bool PdoRequests::submit(const Request& request, Time now) noexcept {
   *slot = Slot{.state = Slot::State::to_send, .id = request.id, .order = ++order_};
   ++used_;
   slot->timeout = request.timeout > Time{} ? request.timeout : waits::pdo_answer;
-  // Those before it may wait for the same PDO, one after another, an exchange with a rest behind
-  // it.
+  // Earlier requests may wait for the same PDO one after another. After an exchange that has timed
+  // out, the master also waits for its late answer.
   const Time::rep turns = request.kind == RequestKind::pdo_exchange ? 2 : 1;
   slot->deadline = now + turns * waits::pdo_turn(slot->timeout);
   const SdoFault fault = prepare(request, *slot);
@@ -77,8 +77,9 @@ void PdoRequests::answer(Slot& slot, SdoFault fault) noexcept {
   if (fault != SdoFault::none) slot.frame.length = 0;
 }
 
-/// The answer to a time-out may come late: it must not be taken for that of the next request. A
-/// remote request is different, any frame of its PDO is as good.
+/// After a time-out, the answer may come late; it must not be taken for the answer to the next
+/// request. This does not apply to a remote frame, because every frame of its PDO is a valid
+/// answer.
 void PdoRequests::give_up(Slot& slot, Time now) noexcept {
   if (slot.state == Slot::State::sent && !slot.frame.rtr) {
     Time& until = owed_until_[slot.tpdo];
@@ -96,7 +97,7 @@ void PdoRequests::forget_owed(Time now) noexcept {
   }
 }
 
-/// One request at a time for each TPDO: answers carry no number.
+/// Permits one request at a time for each TPDO, because answers carry no number.
 bool PdoRequests::is_next(const Slot& slot) const noexcept {
   if (owed_until_[slot.tpdo] != never) return false;
   return std::ranges::none_of(slots_, [&](const Slot& other) {
@@ -118,7 +119,8 @@ void PdoRequests::send(Slot& slot, std::span<const bool> exchanging, Time now,
   ++waiting_;
 }
 
-/// A poll each cycle is due in each, although this thread does not wake up at the same time in all.
+/// A poll with the period of the cycle is due in each cycle, although this thread does not wake up
+/// at exactly the same phase each time.
 bool PdoRequests::is_due(const Poll& poll, std::uint64_t beat, Time now) const noexcept {
   const PdoRow& row = plan_.pdos.tpdos[poll.row];
   if (row.poll > Time{}) return now >= poll.next - plan_.cycle.period / 8;

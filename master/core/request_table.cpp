@@ -55,7 +55,7 @@ void RequestTable::answer(RequestSlot& slot, SdoFault fault, std::uint32_t abort
                           std::size_t size) noexcept {
   if (slot.state == RequestSlot::State::waiting) --waiting_;
   slot.state = RequestSlot::State::answered;
-  slot.order = ++order_;  // replies are taken in the order of their answers
+  slot.order = ++order_;  // replies are taken in the order of the answers
   slot.fault = fault;
   slot.abort_code = abort_code;
   slot.request.size = static_cast<std::uint16_t>(size);

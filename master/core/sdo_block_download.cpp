@@ -42,7 +42,7 @@ void SdoBlockDownload::sent() noexcept {
   waits_ = answered();
   if (state_ != State::segments) return;
   const std::size_t end = std::min(offset() + segment_bytes, value_.size());
-  if (crc_used_ && end > summed_) {  // not of a repeated segment
+  if (crc_used_ && end > summed_) {  // a repeated segment is not counted again
     crc_ = sdo_crc(value_.subspan(summed_, end - summed_), crc_);
     summed_ = end;
   }
@@ -51,7 +51,7 @@ void SdoBlockDownload::sent() noexcept {
 
 SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
   using Kind = SdoBlockStep::Kind;
-  if (state_ != State::initiate && accepts(frame)) return {};  // said twice
+  if (state_ != State::initiate && accepts(frame)) return {};  // a repeated frame
   switch (state_) {
     case State::initiate:
       return on_accept(frame);
@@ -60,7 +60,7 @@ SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
       break;
     case State::end:
       if (is_block_end_confirm(frame)) return {.kind = Kind::done};
-      if (is_block_confirm(frame)) return {};  // said twice
+      if (is_block_confirm(frame)) return {};  // a repeated frame
       break;
   }
   return block_abort(abort_code::command_unknown);
@@ -81,11 +81,12 @@ SdoBlockStep SdoBlockDownload::on_accept(const Frame& frame) noexcept {
   return {.kind = SdoBlockStep::Kind::goes_on};
 }
 
-/// Comes in the middle of a sub-block too: some servers confirm as soon as a segment is missing.
+/// Handles a confirmation. It may come in the middle of a sub-block, because some servers confirm
+/// as soon as a segment is missing.
 SdoBlockStep SdoBlockDownload::on_confirm(const Frame& frame) noexcept {
   const SdoBlockConfirm confirm = decode_block_confirm(frame);
   if (confirm.received > sent_in_block_) {
-    if (confirm == newest_) return {};  // of the sub-block before, said twice
+    if (confirm == newest_) return {};  // the repeated confirmation of the previous sub-block
     return block_abort(abort_code::sequence);
   }
   if (!valid_block_size(confirm.segments)) return block_abort(abort_code::block_size);

@@ -57,7 +57,7 @@ SdoBlockStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
     return {
         .kind = Kind::abort, .fault = SdoFault::too_long, .abort_code = abort_code::out_of_memory};
   }
-  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // 0: some mean "unknown"
+  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some use 0 for "unknown"
   crc_used_ = begin.crc;
   state_ = State::segments;
   to_send_ = Next::start;
@@ -65,7 +65,7 @@ SdoBlockStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
 }
 
 SdoBlockStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
-  if (to_send_ != Next::nothing) return {};  // before it was asked for, or once more
+  if (to_send_ != Next::nothing) return {};  // the segment comes too early, or is a repetition
   const SdoBlockSegment part = decode_block_segment(frame);
   if (part.number == 0 || part.number > setup_.segments) return block_abort(abort_code::sequence);
   if (part.number == in_sequence_ + 1) {
@@ -81,7 +81,7 @@ SdoBlockStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
     in_sequence_ = part.number;
     asked_again_ = false;
   }
-  // Whatever was missed, the server stops here and waits.
+  // Even if segments were missed, the server stops here and waits.
   if (part.last || part.number == setup_.segments) {
     if (in_sequence_ == 0 && ++fruitless_ == most_fruitless_blocks) {
       return block_abort(abort_code::sequence);
@@ -108,7 +108,7 @@ bool SdoBlockUpload::confirm_after_silence() noexcept {
 
 SdoBlockStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   const bool confirmed = to_send_ == Next::nothing;
-  if (!confirmed || !is_block_end(frame)) return {};  // a segment that was under way already
+  if (!confirmed || !is_block_end(frame)) return {};  // a segment that was already under way
   const SdoBlockEnd end = decode_block_end(frame);
   if (repeats_last(frame) && end.crc != crc_with_held(end)) return {};
   if (!commit(segment_bytes - end.unused)) {
@@ -122,13 +122,14 @@ SdoBlockStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   return {.kind = Kind::done};
 }
 
-/// The last segment once more; of some numbers it looks like the end of the transfer.
+/// The frame repeats the last segment. With some segment numbers, that looks like the end of the
+/// transfer.
 bool SdoBlockUpload::repeats_last(const Frame& frame) const noexcept {
   const SdoBlockSegment part = decode_block_segment(frame);
   return part.last && part.number == confirmed_ && part.data == held_;
 }
 
-/// What the end has to say.
+/// The CRC that the end of the transfer has to carry.
 std::uint16_t SdoBlockUpload::crc_with_held(const SdoBlockEnd& end) const noexcept {
   return crc_used_ ? sdo_crc(std::span{held_}.first(segment_bytes - end.unused), crc_) : 0;
 }

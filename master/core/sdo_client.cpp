@@ -10,11 +10,12 @@ namespace takt {
 
 namespace {
 
-/// An object of no more bytes may come without block transfer: four segments are as quick.
+/// Objects of up to this number of bytes may come without block transfer, because four segments are
+/// as quick.
 constexpr std::uint8_t switch_threshold = 28;
 
-/// Codes by which servers say that they can't do block transfer, rather than that they can't do
-/// this transfer.
+/// The abort code says that the server does not support block transfer at all, rather than that it
+/// refuses this one.
 bool refuses_block(std::uint32_t code) noexcept {
   switch (code) {
     case abort_code::command_unknown:
@@ -130,7 +131,7 @@ std::optional<Frame> SdoClient::next_frame() const noexcept {
 }
 
 Answer SdoClient::answer_to_next() const noexcept {
-  // An abort, or the end of a block upload.
+  // The frame is an abort, or the end of a block upload.
   if (state_ == State::idle) return left_stream_ ? Answer::after_stream : Answer::none;
   if (state_ == State::falling_back) return Answer::none;
   if (state_ == State::block_upload && block_upload_.asks_for_sub_block()) return Answer::stream;
@@ -198,7 +199,7 @@ void SdoClient::abort(SdoFault fault, std::uint32_t code) noexcept {
   late_segments_ = segments;
 }
 
-/// Of a block, only the last segment may be short.
+/// The frame has all the bytes that it needs. In a block, only the last segment may be short.
 bool SdoClient::is_whole(const Frame& frame) const noexcept {
   const bool segment =
       state_ == State::block_upload && block_upload_.in_sub_block() && frame.data[0] != 0x80;
@@ -206,7 +207,8 @@ bool SdoClient::is_whole(const Frame& frame) const noexcept {
   return frame.length >= sdo_answer_bytes(frame);
 }
 
-/// CAN repeats a frame now and then. The end of a block transfer, come once more, begins nothing.
+/// CAN sometimes repeats a frame. A repeated end of a block transfer does not answer a new
+/// transfer.
 bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
   const bool end = is_block_end(frame) || is_block_end_confirm(frame);
   return in_initiate() && (block_unheard_ || end);
@@ -241,19 +243,19 @@ void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
 }
 
 void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
-  // Servers put any object into an abort, so all are taken, but for the late one of a transfer that
-  // was given up before this one.
+  // Servers put arbitrary objects into an abort, so all aborts are accepted, except for the late
+  // abort of a transfer that was given up before this one.
   const ObjectKey object = sdo_object(frame);
   if (given_up_ == object && object != object_) return;
-  // The server heard our end of the block transfer before this one twice: an end without a
-  // transfer.
+  // The server has received the end of the previous block transfer twice, and refuses the second
+  // one as an end without a transfer.
   const bool of_end = block_ended_ && (in_initiate() || unanswered_block()) && object != object_ &&
                       sdo_abort_code(frame) == abort_code::command_unknown;
   if (of_end) {
     block_ended_ = false;
     return;
   }
-  // It refuses the block transfer after all, and not what was asked for since.
+  // The server refuses the block transfer late; it does not refuse the request that was sent since.
   if (block_unheard_ && sdo_abort_code(frame) == abort_code::command_unknown) {
     block_unheard_ = false;
     return learn_no_block(abort_code::command_unknown);
@@ -269,13 +271,14 @@ void SdoClient::on_abort(const Frame& frame, Time now) noexcept {
   deadline_ = now + waits::sdo_settle;
 }
 
-/// No data have moved yet.
+/// No data were transferred yet.
 bool SdoClient::unanswered_block() const noexcept {
   return (state_ == State::block_upload && !block_upload_.accepted()) ||
          (state_ == State::block_download && !block_download_.accepted());
 }
 
-/// The server refuses block transfer before any data have moved: the same by segments.
+/// The server refuses block transfer before any data were transferred, so the client transfers the
+/// value by segments.
 bool SdoClient::fall_back(std::uint32_t code) noexcept {
   if (!unanswered_block() || !refuses_block(code)) return false;
   if (code == abort_code::command_unknown) learn_no_block(code);
@@ -287,16 +290,16 @@ void SdoClient::learn_no_block(std::uint32_t code) noexcept {
   if (!std::exchange(block_refused_, true)) no_block_ = {.object = object_, .abort_code = code};
 }
 
-/// A server that is mute for block transfers alone answers here.
+/// Notes an answer. If a server was silent only for the block transfer, it supports no block
+/// transfer.
 void SdoClient::heard(const Frame& frame) noexcept {
   last_received_ = frame;
   if (std::exchange(block_unheard_, false)) learn_no_block(0);
 }
 
 void SdoClient::on_block(const Frame& frame, Time now) noexcept {
-  if (last_sent_.length == 0) return;  // nothing has been asked yet
-  if (frame.data[0] == 0x80)
-    return on_abort(frame, now);  // as a segment it would have the number 0
+  if (last_sent_.length == 0) return;                      // nothing was requested yet
+  if (frame.data[0] == 0x80) return on_abort(frame, now);  // a segment never has the number 0
   const bool upload = state_ == State::block_upload;
   const SdoBlockStep step =
       upload ? block_upload_.on_frame(frame) : block_download_.on_frame(frame);
@@ -310,7 +313,7 @@ void SdoClient::on_block(const Frame& frame, Time now) noexcept {
       return;
     case SdoBlockStep::Kind::plain:
       begin_plain(State::upload_initiate);
-      to_send_.reset();  // this is its answer
+      to_send_.reset();  // this frame is already the answer
       return on_upload_initiate(frame);
     case SdoBlockStep::Kind::abort:
       return abort(step.fault, step.abort_code);

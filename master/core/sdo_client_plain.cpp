@@ -1,19 +1,20 @@
 #include "master/core/sdo_client.hpp"
 #include "master/wire/sdo_abort.hpp"
 
-// Transfers without blocks: expedited and in segments. CiA 301, 7.2.4.3.3 to 7.2.4.3.8.
+// Expedited and segmented transfers. CiA 301, 7.2.4.3.3 to 7.2.4.3.8.
 
 namespace takt {
 
-/// An answer that fits no request, unless it may belong to an earlier one: that of a transfer that
-/// was given up comes late, and CAN repeats a frame now and then.
+/// Aborts the transfer because of an answer that does not fit the request. An answer that may
+/// belong to an earlier request is ignored: the answer to a transfer that was given up may come
+/// late, and CAN sometimes repeats a frame.
 void SdoClient::on_wrong_answer(const Frame& frame) noexcept {
   if (late_possible_ || frame == previous_answer_ || frame == last_received_) return;
   last_received_ = frame;
   abort(SdoFault::aborted_by_master, abort_code::command_unknown);
 }
 
-/// Of another object than was asked for, and of none that was asked for before.
+/// Notes the answer for an object that neither this request nor an earlier one has asked for.
 void SdoClient::on_other_object(const Frame& frame) noexcept {
   if (late_now_ || frame == previous_answer_) return;
   last_received_ = frame;
@@ -32,7 +33,7 @@ void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
   if (begin.size.value_or(0) > buffer_.size()) {
     return abort(SdoFault::too_long, abort_code::out_of_memory);
   }
-  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // 0: some mean "unknown"
+  if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some use 0 for "unknown"
   state_ = State::upload_segments;
   to_send_ = upload_segment_request(channel_.request, toggle_);
 }
@@ -51,9 +52,9 @@ void SdoClient::on_upload_segment(const Frame& frame) noexcept {
   if (announced_ && done_ > *announced_) {
     return abort(SdoFault::aborted_by_master, abort_code::length_too_high);
   }
-  // Some announce the room for a string and send the string.
+  // Some devices announce the size of the buffer of a string and send only the string.
   if (part.last) return finish({.size = done_, .shortened = done_ < announced_.value_or(0)});
-  if (part.size == 0) {  // a server that never ends
+  if (part.size == 0) {  // the server would never end
     return abort(SdoFault::aborted_by_master, abort_code::length_mismatch);
   }
   toggle_ = !toggle_;

@@ -37,7 +37,7 @@ void SdoServer::on_frame(const Frame& frame, Time now, Orders orders) noexcept {
   if (state_ != State::idle) deadline_ = now + waits::own_server;
   if (frame.data[0] == 0x80 ||
       (state_ != State::block_download && sdo_request(frame) == SdoRequest::abort)) {
-    state_ = State::idle;  // never answered
+    state_ = State::idle;  // an abort is never answered
     deadline_ = never;
     to_send_.reset();
     return;
@@ -62,8 +62,8 @@ void SdoServer::on_frame(const Frame& frame, Time now, Orders orders) noexcept {
 }
 
 void SdoServer::on_initiate(const Frame& frame) noexcept {
-  // A block transfer that has ended already: CAN repeats a frame now and then. An abort would hit
-  // the next request of the client.
+  // The frame belongs to a block transfer that has already ended, because CAN sometimes repeats a
+  // frame. An abort would hit the next request of the client.
   if (is_block_end(frame) || is_block_end_confirm(frame)) return;
   object_ = sdo_object(frame);
   toggle_ = false;
@@ -109,7 +109,8 @@ void SdoServer::begin_download(const Frame& frame) noexcept {
   const SdoInitiate begin = decode_initiate(frame);
   value_ = {};
   if (begin.expedited) {
-    // Without a size it is as long as the object: every object that can be written is one byte.
+    // Without an indicated size, the value is as long as the object; every writable object has one
+    // byte.
     const std::size_t size = begin.size ? begin.payload().size() : 1;
     return write(std::as_bytes(begin.payload()).first(size),
                  download_answer(channel_.answer, object_));

@@ -10,7 +10,8 @@ namespace takt {
 namespace {
 
 constexpr Time poll_pause = std::chrono::milliseconds{10};
-constexpr Time write_pause = std::chrono::milliseconds{100};  // between them the axis is observed
+/// The axis is observed between two writes.
+constexpr Time write_pause = std::chrono::milliseconds{100};
 constexpr Time default_sdo_timeout = std::chrono::seconds{1};
 
 bool keeps_alive(const NodePlan& node) {
@@ -19,7 +20,7 @@ bool keeps_alive(const NodePlan& node) {
   });
 }
 
-/// The value makes the device watch the master.
+/// The step writes a value that makes the device supervise the master.
 bool arms(const BusPlan& plan, const BootStep& step) {
   if (step.action != BootAction::write && step.action != BootAction::write_if_differs) return false;
   const bool any = std::ranges::any_of(step.value, [](std::byte b) { return b != std::byte{0}; });
@@ -38,9 +39,9 @@ bool arms(const BusPlan& plan, const BootStep& step) {
   }
 }
 
-/// The device says of itself that it has another profile than that of drives. A device without a
-/// standard profile (0) may be a drive, and so may one of several logical devices: its device type
-/// is that of the first. CiA 301, 0x1000.
+/// The device type names another profile than that of drives. A device without a standard profile
+/// (0) may be a drive. So may a device with several logical devices, because its device type is
+/// that of the first one. CiA 301, 0x1000.
 bool is_no_drive(std::uint32_t device_type) noexcept {
   constexpr std::uint32_t several_devices = 0xFFFF;
   const std::uint32_t profile = device_type & 0xFFFF;
@@ -116,7 +117,7 @@ bool StopRequests::read_next(std::size_t axis, bool needs_word, bool needs_motio
   return true;
 }
 
-/// A controlword that no PDO carries comes first.
+/// Makes the next request of an axis. A controlword that no PDO carries has priority.
 bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& stop,
                                bool exchanging) noexcept {
   const StopAxis& of = axes_[axis];
@@ -138,9 +139,9 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
   return read_next(axis, !exchanging || !of.statusword, moves_unseen);
 }
 
-/// Its boot has come as far as to the step that arms it, even if it failed later, or in this step
-/// without an answer. A write that the device refused has armed nothing, unless an earlier boot
-/// has. A node that is lost is not there.
+/// The device is armed: its boot has reached the step that arms it, even if it failed later, or
+/// failed in this step without an answer. A write that the device has refused has armed nothing,
+/// unless an earlier boot has. A lost node does not count as armed.
 bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept {
   if (node.boot == BootState::ready) return true;
   const bool answered = node.boot_letter != 'B' || node.nmt != NmtState::unknown;
@@ -148,7 +149,8 @@ bool StopRequests::armed(const Job& job, const NodeStatus& node) const noexcept 
   return node.boot == BootState::failed && answered && job.step <= node.boot_step && !refused;
 }
 
-/// The writes of a device follow each other; after one that it does not take no more are tried.
+/// Makes the next write that disarms. The writes of a device follow each other; after the first one
+/// that it does not accept, no more are tried.
 const Request* StopRequests::next_job(std::span<const NodeStatus> nodes) noexcept {
   for (; next_job_ < jobs_.size(); ++next_job_, ++answered_) {
     const Job& job = jobs_[next_job_];

@@ -24,7 +24,8 @@ std::string number_text(double value) {
   return text.data();
 }
 
-/// In the unit of the network file, below 1 m/s in mm/s; raw where there is no unit.
+/// The velocity in the unit of the network file, and in mm/s below 1 m/s. The value is raw if the
+/// file gives no unit.
 std::string velocity_text(const BusPlan& plan, const Event& event) {
   const bool differences = (event.detail & by_position) != 0;
   const auto index =

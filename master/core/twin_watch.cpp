@@ -8,12 +8,13 @@ namespace takt {
 namespace {
 
 constexpr std::uint32_t window_periods = 8;
-constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add one
-constexpr std::uint32_t most_surplus = 2;      // answers
+constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add a heartbeat
+constexpr std::uint32_t most_surplus = 2;      // surplus answers
 
 enum class Request : std::uint8_t { other, transfer, block };
 
-/// Begins a transfer, or answers its beginning. CiA 301, 7.2.4.3: every one has exactly one answer.
+/// Classifies the frame of a client. CiA 301, 7.2.4.3: the beginning of every transfer has exactly
+/// one answer.
 Request request_of(const Frame& frame) noexcept {
   switch (frame.data[0] >> 5U) {
     case 1:
