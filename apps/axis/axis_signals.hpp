@@ -10,7 +10,7 @@
 namespace takt {
 
 /// Places of the values of one CiA 402 axis in the image. The objects are those of the first axis
-/// of a device; axis n has them at n * 0x800 above (n = 0, 1 ...).
+/// of a device; those of each further axis are 0x800 higher.
 struct AxisSignals {
   /// Index of a value in the layout. Empty if no PDO carries the value.
   using Position = std::optional<std::size_t>;

@@ -23,7 +23,8 @@ enum class Enabling : std::uint8_t {
 struct DriveSequenceLimits {
   /// Number of steps for which bit 7 of the controlword is low before its rising edge.
   std::uint32_t reset_low_steps = 10;
-  /// A drive that has not reached its goal is stuck if its state does not change for more steps.
+  /// A drive that has not reached its goal is stuck if its state does not change for more than this
+  /// number of steps.
   std::uint32_t hop_steps = 2500;
 };
 

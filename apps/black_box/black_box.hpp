@@ -79,7 +79,7 @@ class BlackBox {
   std::map<std::pair<std::string, std::uint8_t>, Time> faults_;
   std::string reason_;  // reason of the recording that is due; empty if none is due
   Time due_ = never;
-  Time last_{};          // begin of the newest recording; 0 if there is none
+  Time last_{};          // start of the newest recording; 0 if there is none
   bool wanted_ = false;  // true if the bus thread was asked for its tape
   std::thread writer_;
   std::atomic<bool> writing_{false};

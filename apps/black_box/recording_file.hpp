@@ -53,7 +53,7 @@ struct LoadedRecording {
 };
 
 /// Returns a hash of everything in the plan that affects the actions of the master. The names of
-/// bus and interface and the requested real-time priority do not count.
+/// bus and interface and the requested real-time options do not count.
 std::string plan_fingerprint(const BusPlan& plan);
 
 /// Writes `stem.log` (in the format of `candump -L`), `stem.events.json` and `stem.journal`.

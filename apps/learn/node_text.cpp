@@ -137,8 +137,10 @@ class NodeText {
     }
   }
 
-  /// Writes the heartbeat consumer. An entry of 0x1016 with the node-ID of the master becomes
-  /// `heartbeat_consumer`; an entry with another node-ID becomes a comment.
+  /// Writes the heartbeat consumer by the entries of 0x1016. The defaults hold for an entry with
+  /// the node-ID of the master, except for `heartbeat_multiplier` if its time differs. Without such
+  /// an entry, the key is `heartbeat_consumer: false`. An entry with another node-ID becomes a
+  /// comment.
   void watch_master() {
     bool watches = false;
     for (const auto& [key, value] : values_) {

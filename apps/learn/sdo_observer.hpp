@@ -23,7 +23,7 @@ struct SdoTransfer {
 /// bounded for any frames.
 class SdoObserver {
  public:
-  /// Longest value that is kept, bytes.
+  /// Longest value of a segmented transfer that is kept, bytes. BlockText keeps less.
   static constexpr std::size_t most_kept = std::size_t{1} << 16U;
 
   /// Takes a frame of the client. Returns the transfer if this frame ends it.

@@ -9,8 +9,8 @@ namespace takt {
 
 /// Returns the bytes of an object as a value in a network file. Text and raw bytes are quoted.
 /// Returns std::nullopt if a network file can't hold the value: text or raw bytes that are empty,
-/// not ASCII or longer than 4096 bytes, a real number that is not finite, or an unsigned number
-/// above 2^63 - 1.
+/// not ASCII or longer than 4096 bytes, a number that does not have 1 to 8 bytes, a real number
+/// that is not finite, or an unsigned number above 2^63 - 1.
 std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type);
 
 }  // namespace takt

@@ -34,9 +34,13 @@ class BusScan {
   /// `timeout` is the longest time that an SDO server may take to answer.
   explicit BusScan(Time timeout, std::size_t most_at_once = 16);
 
+  /// Takes a received frame.
   void on_frame(const Frame& frame, Time now);
+  /// Sends the frames that are due. The caller calls it after each frame and at deadline().
   void on_time(Time now, Outbox& out);
+  /// Returns the time of the next call of on_time().
   Time deadline() const noexcept;
+  /// Returns true if all nodes have been asked.
   bool done() const noexcept { return running_.empty() && next_ > last_node; }
 
   /// Returns the nodes that were heard, by node-ID.
