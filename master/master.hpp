@@ -62,6 +62,7 @@ class Master {
   /// Waits for the bus thread to end.
   void join();
 
+  /// The plan of the bus, as it was given to the constructor.
   const BusPlan& plan() const noexcept { return plan_; }
 
   /// Takes the next process image in order. Returns false if there is none. The image is valid

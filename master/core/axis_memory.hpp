@@ -4,9 +4,9 @@
 
 namespace takt {
 
-/// Remembers of one axis, between ordered stops, whether it is disabled: its newest statusword said
-/// so, and no command since then could enable it. In doubt an axis is not disabled. Bus thread
-/// only.
+/// Remembers between ordered stops whether an axis is disabled: its newest statusword has shown
+/// that, and no command since then could enable it. In doubt, an axis counts as not disabled. Bus
+/// thread only.
 class AxisMemory {
  public:
   /// A statusword this soon after an enabling word may be older than the answer to it.
@@ -35,6 +35,7 @@ class AxisMemory {
 
   /// The axis was seen disabled, and nothing could enable it since.
   bool disabled() const noexcept { return disabled_; }
+  /// The node has reported OPERATIONAL although this master has not booted it.
   bool operational() const noexcept { return operational_; }
 
   template <class Archive>
@@ -46,8 +47,8 @@ class AxisMemory {
   /// What services have brought to the controlword.
   enum class ServiceWord : std::uint8_t {
     harmless,   ///< No service has brought an enabling word, or the drive was seen to ignore it.
-    under_way,  ///< An enabling word was asked for; it may reach the drive at any time.
-    standing,   ///< The service is answered. The word may still stand in the drive.
+    under_way,  ///< An enabling word was requested; it may reach the drive at any time.
+    standing,   ///< The service is answered. The enabling word may still be in force in the drive.
   };
 
   bool disabled_ = false;

@@ -39,7 +39,7 @@ enum class AxisVerdict : std::uint8_t {
   enabled,  ///< The axis was not disabled.
   silent,   ///< No answer has come for some time.
   lost,     ///< The node does not exchange PDOs and does not answer.
-  refused,  ///< The node answers, but refuses to tell the statusword.
+  refused,  ///< The node answers, but refuses the read of the statusword.
 };
 
 /// What was read of an axis since the last call. An empty value is not new, or not reliable. The
@@ -56,11 +56,13 @@ struct AxisSample {
 /// certain when the value has stayed within a window for `standstill_time`.
 class Standstill {
  public:
+  /// Shortest rest that counts as certain standstill.
   static constexpr Time standstill_time = std::chrono::milliseconds{50};
 
   explicit Standstill(const AxisPlan& plan) noexcept
       : velocity_window_{plan.velocity_window}, position_window_{plan.position_window} {}
 
+  /// Takes a new sample.
   void take(Time now, const AxisSample& sample) noexcept;
   /// The value has stayed within the window for long enough.
   bool certain() const noexcept { return resting_ && last_ - since_ >= standstill_time; }
@@ -68,6 +70,7 @@ class Standstill {
   bool moves() const noexcept { return measured_ && !resting_; }
   /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
   std::int64_t velocity() const noexcept { return velocity_; }
+  /// The newest velocity comes from differences of 0x6064.
   bool by_position() const noexcept { return by_position_; }
 
  private:
@@ -90,7 +93,9 @@ class Standstill {
 /// disabled. The table in axis_stop.cpp has the transitions. Bus thread only.
 class AxisStop {
  public:
+  /// Controlword of the command "quick stop".
   static constexpr std::int64_t quick_stop_word = 0x0002;
+  /// Controlword of the command "disable voltage".
   static constexpr std::int64_t disable_voltage_word = 0x0000;
   /// An axis that disables itself at the end of its ramp may show a velocity for this long.
   static constexpr Time settling_grace = std::chrono::milliseconds{40};
@@ -98,7 +103,9 @@ class AxisStop {
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
   explicit AxisStop(const AxisPlan& plan) noexcept : standstill_{plan} {}
 
+  /// Begins the stop of this axis.
   void begin(Time now, AxisPrior prior) noexcept;
+  /// Takes a new sample and advances the stop.
   void step(Time now, const AxisSample& sample) noexcept;
   /// The time in which the axis can come to standstill is over.
   void cut() noexcept;
@@ -118,20 +125,24 @@ class AxisStop {
   }
   /// The stop has nothing more to wait for.
   bool settled() const noexcept;
+  /// The stop is confirmed, or there was nothing to stop.
   bool confirmed() const noexcept {
     return state_ == AxisState::stopped || state_ == AxisState::exempt ||
            state_ == AxisState::asked || state_ == AxisState::rested;
   }
-  /// The axis was seen at standstill and disabled, and its newest statusword still says disabled.
+  /// The axis was seen at standstill and disabled, and its newest statusword still shows that it is
+  /// disabled.
   bool rests() const noexcept { return state_ == AxisState::stopped && !powered_; }
   /// The controlword that this axis has to receive now.
   std::int64_t controlword() const noexcept;
+  /// Time since the newest sample, or since the stop began.
   Time silence(Time now) const noexcept { return now - answered_; }
   /// The velocity when the axis was disabled, else the newest one.
   std::int64_t velocity() const noexcept;
   bool by_position() const noexcept { return standstill_.by_position(); }
   /// The abort code of AxisVerdict::refused.
   std::uint32_t refusal() const noexcept { return refusal_; }
+  /// The report on this axis. `exchanging` tells whether the node exchanges PDOs.
   AxisVerdict verdict(Time now, bool exchanging) const noexcept;
 
   /// The power stage is off: the state is "not ready to switch on", "switch on disabled", "fault"

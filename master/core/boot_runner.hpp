@@ -37,12 +37,15 @@ class BootRunner {
   /// be the same one.
   explicit BootRunner(const BootPlan& plan) noexcept;
 
+  /// Begins a boot.
   void start(From from, Time now) noexcept;
+  /// Ends the boot; the state is idle.
   void stop() noexcept { state_ = State::idle; }
 
   /// Handles a boot-up message. Either the current step waits for it, or the node has restarted and
   /// the plan begins again.
   void on_bootup(Time now, SdoClient& client) noexcept;
+  /// Takes a heartbeat or a guarding answer.
   void on_heartbeat(NmtState state) noexcept;
   /// Takes the results of the client and runs the plan until a step has to wait.
   void on_time(Time now, SdoClient& client) noexcept;
@@ -55,6 +58,7 @@ class BootRunner {
   /// the commands of the plan, the runner sends PRE-OPERATIONAL before a write, unless the node is
   /// known to be in that state.
   std::optional<NmtCommand> nmt_to_send() const noexcept;
+  /// The command of nmt_to_send() was sent.
   void nmt_sent(Time now, SdoClient& client) noexcept;
 
   State state() const noexcept { return state_; }

@@ -19,6 +19,7 @@ class FallbackWriter {
 
   /// Begins to write the fallbacks of those outputs that were commanded.
   void begin(const PdoOutputs& outputs) noexcept;
+  /// Drops all writes that are not submitted yet.
   void stop() noexcept { next_ = values_.size(); }
 
   /// A write waits to be submitted.

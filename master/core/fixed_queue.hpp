@@ -12,6 +12,7 @@ class FixedQueue {
   static_assert(N >= 2 && (N & (N - 1)) == 0);
 
  public:
+  /// Adds an item. Returns false if the queue is full.
   bool push(const T& item) noexcept {
     if (head_ - tail_ == N) {
       ++lost_;
@@ -20,6 +21,7 @@ class FixedQueue {
     items_[head_++ & (N - 1)] = item;
     return true;
   }
+  /// Takes the oldest item. Returns false if the queue is empty.
   bool pop(T& item) noexcept {
     if (head_ == tail_) return false;
     item = items_[tail_++ & (N - 1)];

@@ -25,6 +25,7 @@ template <class Words>
 class KeptState {
  public:
   template <class... T>
+  /// Saves or restores the values, in this order.
   void operator()(T&... values) noexcept {
     (one(values), ...);
   }

@@ -20,7 +20,9 @@ class LssMaster {
   /// Begins a service; the master must be idle. `timeout` applies to each answer; 0 means the
   /// default of the service.
   void begin(const LssCommand& command, Time timeout, Time now) noexcept;
+  /// Takes a frame. Only answers that the running service expects are used.
   void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  /// Handles time-outs and sends at most one frame.
   void on_time(Time now, Outbox& out) noexcept;
   Time deadline() const noexcept;
   /// Returns the result once, when the service is over.

@@ -13,6 +13,7 @@ namespace takt {
 /// Bus thread only.
 class LssRunner {
  public:
+  /// The largest number of commands in a list, limited by the size of a request.
   static constexpr std::size_t most_commands = 28;
 
   /// Begins a list. Commands after the first most_commands are not run. `timeout` applies to each

@@ -28,6 +28,7 @@ class LssFastScan {
   /// Tells the scan whether a device has answered the question.
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
+  /// The address that was found, valid in LssScanState::found.
   const LssAddress& address() const noexcept { return address_; }
   /// A device may be in configuration state because it has received the last question, even if its
   /// answer was lost.
@@ -74,6 +75,7 @@ class LssSlowScan {
   const std::array<std::uint32_t, 6>& question() const noexcept { return question_; }
   void on_reaction(bool answered) noexcept;
   LssScanState state() const noexcept { return state_; }
+  /// The address that was found, valid in LssScanState::found.
   LssAddress address() const noexcept { return {left_[0], left_[1], left_[2], left_[4]}; }
 
  private:

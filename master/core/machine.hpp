@@ -24,11 +24,13 @@ enum class Answer : std::uint8_t {
 /// Frames that machines want to send, in order, with a fixed capacity. Bus thread only.
 class Outbox {
  public:
+  /// Largest number of frames.
   static constexpr std::size_t capacity = 256;
 
   /// Limits the outbox to `frames` frames in total: the budget of a cycle.
   void set_limit(std::size_t frames) noexcept { limit_ = frames < capacity ? frames : capacity; }
   std::size_t limit() const noexcept { return limit_; }
+  /// Number of frames that the outbox still accepts.
   std::size_t room() const noexcept { return size_ < limit_ ? limit_ - size_ : 0; }
 
   /// Adds a frame. Returns false if the outbox is full; the machine then has to try again later.

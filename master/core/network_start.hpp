@@ -14,7 +14,9 @@ class NetworkStart {
  public:
   explicit NetworkStart(const BusPlan& plan) noexcept : plan_{&plan} {}
 
+  /// Begins the start-up; the boot time counts from `now`.
   void begin(Time now) noexcept;
+  /// Every mandatory node has booted.
   bool ready() const noexcept { return ready_; }
   /// Returns true once, when the network has become ready.
   bool update(std::span<const NodeStatus> nodes) noexcept;

@@ -20,6 +20,7 @@ class NodeGuard {
   /// Stops guarding. The first answer after a boot-up message has toggle bit 0.
   void node_was_reset() noexcept;
 
+  /// A guarding request is due.
   bool wants_request(Time now) const noexcept { return now >= next_request_; }
   void request_sent(Time now) noexcept;
 

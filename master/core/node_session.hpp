@@ -22,6 +22,7 @@ namespace takt {
 class NmtGate {
  public:
   explicit NmtGate(Time inhibit) noexcept : inhibit_{inhibit} {}
+  /// The inhibit time is over, and a command may be sent.
   bool open(Time now) const noexcept { return now >= next_; }
   void sent(Time now) noexcept { next_ = now + inhibit_; }
 
@@ -56,9 +57,11 @@ class NodeSession {
   NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
 
   void start(Time now) noexcept;
+  /// Takes a frame of the SDO server of the node.
   void on_sdo_answer(const Frame& frame, Time now) noexcept;
   /// Takes a heartbeat, guarding answer or boot-up message.
   void on_heartbeat(const Heartbeat& sign, Time now) noexcept;
+  /// Takes an EMCY of any length.
   void on_emcy(const Frame& frame, Time now) noexcept;
   /// A request for this node has been accepted.
   void on_request(Time now) noexcept;
@@ -101,6 +104,7 @@ class NodeSession {
   /// Ends all running work and sends this last command to the node. A node with `keep_alive` goes
   /// to PRE-OPERATIONAL in any case.
   void begin_stop(NmtCommand last) noexcept;
+  /// begin_stop() was called, and the last command and all aborts were sent.
   bool stopped() const noexcept;
 
   /// A block transfer is under way.

@@ -31,6 +31,7 @@ struct NodeStatus {
   std::uint32_t emcy_count = 0;
   std::uint32_t boot_count = 0;      ///< number of successful boots
   std::uint32_t heartbeat_lost = 0;  ///< number of losses
+  /// Number of requests and boots that the device has ended with an SDO abort.
   std::uint32_t sdo_aborts = 0;
   Time last_heartbeat{};  ///< monotonic clock; 0 means never
 

@@ -17,6 +17,7 @@ class NodeWatch {
   /// supervised.
   explicit NodeWatch(Time heartbeat_timeout) noexcept : timeout_{heartbeat_timeout} {}
 
+  /// What a heartbeat or boot-up message has shown.
   enum class Sign : std::uint8_t { bootup, same_state, new_state };
 
   /// Takes a heartbeat or a boot-up message. The first heartbeat starts the heartbeat consumer. A

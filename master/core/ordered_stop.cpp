@@ -193,15 +193,15 @@ void OrderedStop::leave_axes(StopStage stage) noexcept {
 /// The transitions of the stop:
 ///
 ///   stage       ends when                                                 next
-///   fallback    there are no axes and it acts, or its limit               disarm
-///   fallback    it acts, or its limit                                     quick_stop
-///   quick_stop  every axis is settled or can't be reached                 disarm, nmt
+///   fallback    the plan has no axes and the fallback acts, or its limit  disarm
+///   fallback    the fallback acts, or its limit                           quick_stop
+///   quick_stop  every axis is settled or unreachable                      disarm, nmt
 ///   quick_stop  its limit: the axes that still move are cut               disable
-///   disable     every axis is settled, or its limit                       disarm, nmt
+///   disable     every axis is settled or unreachable, or its limit        disarm, nmt
 ///   disarm      every device is disarmed, or its limit                    nmt
 ///   nmt         every command is sent, or its limit                       done
 ///
-/// `disarm, nmt`: disarm where every axis is confirmed, else nmt.
+/// `disarm, nmt` means disarm if every axis is confirmed, otherwise nmt.
 void OrderedStop::step(Time now, const StopView& view) noexcept {
   if (stage_ == StopStage::running || stage_ == StopStage::done) return;
   const bool out_of_time = now >= limit();

@@ -27,7 +27,7 @@ enum class StopStage : std::uint8_t {
 
 /// Whether the ordered stop was confirmed. The numbers are those of `stop` in status_t.
 enum class StopResult : std::uint8_t {
-  none,         ///< no stop asked for
+  none,         ///< No stop was requested.
   under_way,    ///< The result is not decided yet.
   confirmed,    ///< Every axis was seen at standstill and disabled, or was disabled before.
   unconfirmed,  ///< Some axis was not.
@@ -50,7 +50,9 @@ struct StopView {
   std::span<const std::uint64_t> stale;  ///< stale signals of the image, one bit for each
   std::span<const bool> exchanging;      ///< by node index: its PDOs are exchanged
   std::span<const NodeStatus> nodes;
+  /// Every device is disarmed, as far as that is possible.
   bool disarmed = false;
+  /// All frames of the network's stop were sent.
   bool network_stopped = false;
 };
 
@@ -66,6 +68,7 @@ class OrderedStop {
   static constexpr Time longest_silence = std::chrono::seconds{1};
 
   explicit OrderedStop(const BusPlan& plan);
+  /// The axes of all CiA 402 devices that the master can command or read.
   static std::vector<StopAxis> axes_of(const BusPlan& plan);
 
   /// Value of target() for a stop of all nodes.
@@ -98,6 +101,7 @@ class OrderedStop {
   void call_off() noexcept { stage_ = StopStage::running; }
 
   StopStage stage() const noexcept { return stage_; }
+  /// The result so far.
   StopResult result() const noexcept;
   std::span<const StopAxis> axes() const noexcept { return axes_; }
   const AxisStop& axis(std::size_t index) const noexcept { return stops_[index]; }
@@ -114,6 +118,7 @@ class OrderedStop {
   /// The controlword that this axis has to receive now; std::nullopt leaves the commanded one.
   std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
+  /// The statusword shows that the power stage is off.
   static constexpr bool disabled(std::int64_t statusword) noexcept {
     return AxisStop::disabled(statusword);
   }

@@ -30,6 +30,7 @@ class OwnDictionary {
 
     std::span<const std::byte> data() const noexcept { return std::span{bytes}.first(size); }
   };
+  /// Reads an object. The abort code of the result is not 0 if the object cannot be read.
   Value read(ObjectKey key) const noexcept;
 
   /// The NMT command that a write requests. Node 0 means all nodes.
@@ -38,6 +39,7 @@ class OwnDictionary {
     NmtCommand command = NmtCommand::start;
     std::uint8_t node = 0;
   };
+  /// Checks a write. The abort code of the result is not 0 if the object cannot be written.
   Order write(ObjectKey key, std::span<const std::byte> value) const noexcept;
 
  private:

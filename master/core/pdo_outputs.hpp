@@ -81,6 +81,7 @@ class PdoOutputs {
   std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
   /// Every signal of this RPDO has a value that can be sent.
   bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
+  /// Status of an RPDO; `row` is the index into PdoTable::rpdos.
   RpdoStatus status(std::size_t row) const noexcept {
     return {.sent = rows_[row].sent, .ready = rows_[row].ready};
   }

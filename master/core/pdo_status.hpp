@@ -25,6 +25,7 @@ static_assert(std::is_trivially_copyable_v<RpdoStatus>);
 
 /// What one TPDO has done since the previous image.
 struct PdoMark {
+  /// The TPDO has arrived.
   static constexpr std::uint8_t arrived = 1;
   /// The TPDO was expected and did not come, or its deadline is over.
   static constexpr std::uint8_t missing = 2;

@@ -51,6 +51,7 @@ struct Request {
   Time timeout{};  ///< time-out of the SDO transfer; 0 means that of the node
   /// Used instead of `data` if not nullptr; it must live until the reply was taken.
   SdoTransfer* transfer = nullptr;
+  /// Bytes of `data` that are used.
   std::uint16_t size = 0;
   std::array<std::byte, request_bytes> data{};
 };
@@ -61,6 +62,7 @@ struct Reply {
   std::uint64_t id = 0;
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
+  /// Bytes of `data` that are used.
   std::uint16_t size = 0;
   std::array<std::byte, request_bytes> data{};
 };

@@ -29,6 +29,7 @@ class RequestTable {
 
   RequestTable() : slots_(capacity) {}
 
+  /// The lane in which a request waits.
   static std::uint8_t lane(const Request& request) noexcept {
     if (request.kind == RequestKind::lss) return lss_lane;
     return request.kind == RequestKind::nmt ? std::uint8_t{0} : request.node;
@@ -50,6 +51,7 @@ class RequestTable {
   void cancel_all() noexcept;
   /// Cancels and answers the requests with this id that still wait.
   void withdraw(std::uint64_t id) noexcept;
+  /// Takes the oldest reply. Returns false if there is none.
   bool take(Reply& reply) noexcept;
   /// No request is under way, and no reply waits to be taken.
   bool idle() const noexcept { return waiting_ == 0 && answered_ == 0; }

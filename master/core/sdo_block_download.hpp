@@ -20,6 +20,7 @@ class SdoBlockDownload {
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
+  /// The frame of to_send() was sent.
   void sent() noexcept;
   /// The server will answer the frame that is to be sent next.
   bool answered() const noexcept;

@@ -17,6 +17,7 @@ namespace takt {
 /// 301, 7.2.4.3.13.
 class SdoBlockUpload {
  public:
+  /// Parameters of an upload.
   struct Begin {
     SdoChannel channel;
     ObjectKey object;
@@ -30,6 +31,7 @@ class SdoBlockUpload {
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
+  /// The frame of to_send() was sent.
   void sent() noexcept { to_send_ = Next::nothing; }
   /// The server will answer the frame that is to be sent next with a sub-block.
   bool asks_for_sub_block() const noexcept {

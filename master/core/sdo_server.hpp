@@ -25,6 +25,7 @@ class SdoServer {
   /// Whether the server accepts a request for an NMT command now.
   enum class Orders : std::uint8_t { taken, refused };
 
+  /// Takes a frame of a client.
   void on_frame(const Frame& frame, Time now, Orders orders) noexcept;
   /// Handles the time-out and sends at most one frame.
   void on_time(Time now, Outbox& out) noexcept;

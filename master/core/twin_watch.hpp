@@ -19,8 +19,11 @@ class TwinWatch {
   TwinWatch(Time heartbeat_period, CobId sdo_request) noexcept
       : period_{heartbeat_period}, sdo_request_{sdo_request} {}
 
+  /// Takes a heartbeat. Returns the sign that has shown two devices, if any.
   std::optional<DuplicateSign> on_heartbeat(Time now) noexcept;
+  /// Takes a frame of the SDO server. Returns the sign that has shown two devices, if any.
   std::optional<DuplicateSign> on_sdo_answer(const Frame& frame, Time now) noexcept;
+  /// Takes the frames that the master sends to the node, and counts the SDO requests among them.
   void on_sdo_requests(std::span<const Frame> frames) noexcept;
   /// Clears all counters, because the device was reset.
   void restart() noexcept;

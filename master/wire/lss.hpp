@@ -57,6 +57,7 @@ struct FastScan {
   constexpr bool operator==(const FastScan&) const noexcept = default;
 };
 
+/// Makes the frame of a fastscan question.
 constexpr Frame request(const FastScan& scan) noexcept {
   Frame frame = request(Service::fast_scan, scan.number);
   frame.data[5] = scan.bit_check;
@@ -73,6 +74,7 @@ struct Answer {
   /// The answer to `inquire_...`; `inquire_node_id` uses its lowest byte.
   std::uint32_t number = 0;
 
+  /// The answer has this command specifier.
   constexpr bool is(Service service, std::uint8_t offset = 0) const noexcept {
     return code == static_cast<std::uint8_t>(service) + offset;
   }

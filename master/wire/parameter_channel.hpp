@@ -21,6 +21,7 @@ enum class Command : std::uint16_t { read = 1, write = 2 };
 
 /// An answer of the converter.
 struct Answer {
+  /// The converter has executed the command; otherwise `error` is valid.
   bool done = false;
   std::uint16_t error = 0;  ///< 0 means no error; error_text() describes it
   std::uint32_t value = 0;
