@@ -131,7 +131,8 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   // A velocity without a statusword does not tell whether the axis is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
   if (needs_word && !sample.statusword && !standstill_.certain()) return;
-  // A single value outside the window in `standing` is noise until the window was left for good.
+  // An axis leaves `standing` only if its newest value lies outside the window; a value inside is
+  // enough to stay, even if the standstill is not certain again.
   if (state_ == AxisState::standing && powered_ && !standstill_.moves()) return;
   go(next(state_, judge(now)), now);
 }

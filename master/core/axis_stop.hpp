@@ -12,14 +12,14 @@ enum class AxisState : std::uint8_t {
   asked,     ///< As `unseen`; but an answer is not required, because the node was neither ready nor
              ///< OPERATIONAL.
   rested,    ///< As `unseen`; but the axis was disabled before, and nothing could enable it since.
-  exempt,    ///< Nothing is to be stopped: the axis was disabled when the stop began, its node was
+  exempt,    ///< There is nothing to stop: the axis was disabled when the stop began, its node was
              ///< never heard, or it is no drive.
   braking,   ///< The axis is commanded to stop quickly, and was not seen at standstill.
   standing,  ///< The axis was seen at standstill, and is commanded to disable.
   settling,  ///< The axis disabled itself before its standstill was certain.
   stopped,   ///< The axis was seen at standstill and disabled.
   cut,       ///< The time was over: the axis was commanded to disable although it still moved.
-  dropped,   ///< The axis was disabled and moved on.
+  dropped,   ///< The axis was disabled and continued to move.
 };
 
 /// What is known of an axis when the stop begins.

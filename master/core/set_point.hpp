@@ -12,7 +12,7 @@ inline constexpr std::uint32_t output_released = 0xFFFF'FFFF;
 
 /// The newest command for one output, as the front thread has left it.
 struct SetPoint {
-  std::int64_t value = 0;          ///< raw
+  std::int64_t value = 0;          ///< raw value of the object
   std::uint32_t generation = 0;    ///< changes with each command; 0 means never commanded
   std::uint32_t time_to_live = 0;  ///< cycles; 0 means the configured one
   Time when{};                     ///< when the front thread has determined the age of the command

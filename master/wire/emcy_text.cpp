@@ -94,7 +94,7 @@ constexpr std::array texts{
     EmcyText{0xF002, 0xF002, "sub-synchronous run"},
     EmcyText{0xF003, 0xF003, "stroke operation"},
     EmcyText{0xF004, 0xF004, "control"},
-    // classes
+    // classes of error codes
     EmcyText{0x0000, 0x00FF, "error reset or no error"},
     EmcyText{0x1000, 0x10FF, "generic error"},
     EmcyText{0x2100, 0x21FF, "current, input side"},

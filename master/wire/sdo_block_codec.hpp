@@ -45,7 +45,7 @@ struct SdoBlockAccept {
 /// One segment. The last segment of a transfer is padded; the end frame indicates how many of its
 /// bytes are unused.
 struct SdoBlockSegment {
-  std::uint8_t number = 0;  ///< 1..127
+  std::uint8_t number = 0;  ///< sequence number, 1..127
   bool last = false;
   std::array<std::uint8_t, segment_bytes> data{};
 };
