@@ -21,7 +21,7 @@ constexpr std::int64_t ready = 0x0231;
 constexpr std::int64_t enabled = 0x0237;
 constexpr std::int64_t fault = 0x0218;
 
-/// Positions of the layout of two_axes().
+/// Positions of signals in the layout of two_axes().
 constexpr std::int32_t position_5 = 2;
 constexpr std::int32_t controlword_5 = 4;
 constexpr std::int32_t controlword_6 = 5;
@@ -258,7 +258,7 @@ TEST(AxisControl, HasNoTargetWithoutAPositionBeforeItIsGivenOne) {
   EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 2000, 0x0007, 0));
 }
 
-/// Axis 5 with its mode of operation and its display in the places of axis 6.
+/// Axis 5, whose mode of operation and mode display replace the signals of axis 6.
 class AxisWithModes : public ::testing::Test {
  protected:
   AxisWithModes() {
@@ -270,7 +270,7 @@ class AxisWithModes : public ::testing::Test {
     axes_.set_layout(input_);
     axes_.set_goal(DriveGoal::enabled);
   }
-  /// Target position in counts after an image.
+  /// Returns the target position in counts after an image.
   std::int64_t target(std::int64_t shown_mode, std::int64_t position) {
     input_.take(image(++cycle_, {enabled, shown_mode, position, 0}));
     axes_.on_image(input_);

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 using testing::image;
 using testing::two_axes;
 
-/// LCM in the hands of the test.
+/// An LCM that the test controls.
 struct FakeLcm {
   std::deque<std::pair<std::string, std::vector<std::byte>>> arriving;
   std::vector<std::pair<std::string, std::vector<std::byte>>> published;

@@ -55,7 +55,7 @@ TEST(ErrorLog, SaysEachSentenceWithTheTimeOfDayAndItsWeight) {
                             "[0-9:]{8}\\.[0-9]{3}  error  three\n$"));
 }
 
-/// The test itself is the proof that nobody waits: the pipe is full long before the last sentence.
+/// The test would hang if a writer waited, because the pipe is full long before the last message.
 TEST(ErrorLog, WaitsForNobodyAndTellsHowMuchWasLost) {
   Pipe pipe = make_pipe();
   ErrorLog log{std::move(pipe.writer)};
@@ -101,7 +101,7 @@ TEST(ErrorLog, SaysItsSentencesWhereNoThreadCanEverBeCreated) {
   EXPECT_THAT(text, HasSubstr("no thread can be created for stderr"));
 }
 
-/// The test itself is the proof that nobody waits.
+/// The test would hang if a writer waited.
 TEST(ErrorLog, WithoutAThreadWaitsForNobodyEither) {
   Pipe pipe = make_pipe();
   ErrorLog log{std::move(pipe.writer), [](const std::function<void()>&) { return false; }};
@@ -115,7 +115,7 @@ TEST(ErrorLog, WithoutAThreadWaitsForNobodyEither) {
   EXPECT_FALSE(log.flush(0ms)) << "a pipe holds less than what waits";
 }
 
-/// A terminal that nobody reads. Its slave side is opened as a shell opens it for its programs.
+/// A terminal that nobody reads. The slave side is opened as a shell does for its programs.
 struct Terminal {
   FileDescriptor master{::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)};
   FileDescriptor slave = open_slave(master.get());
@@ -127,7 +127,7 @@ struct Terminal {
   }
 };
 
-/// The test hangs where a write to the terminal blocks.
+/// The test hangs if a write to the terminal blocks.
 TEST(ErrorLog, WithoutAThreadWaitsForNoTerminalThatNobodyReads) {
   const Terminal terminal;
   ErrorLog log{open_again(terminal.slave.get()),

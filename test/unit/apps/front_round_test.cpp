@@ -11,20 +11,20 @@ using namespace std::chrono_literals;
 
 constexpr Time period = 2ms;
 
-/// A bus thread and a front thread in virtual time: every step of the front thread takes time, and
-/// the bus thread publishes whenever its time has come, also in the middle of a step.
+/// A bus thread and a front thread in virtual time. Every step of the front thread takes time. The
+/// bus thread publishes when its time has come, even in the middle of a step.
 class VirtualFront {
  public:
   struct Steps {
-    Time first_image{};  ///< when image 1 is published
-    Time prediction{};   ///< from an image to the prediction of the next one
-    Time before_look{};  ///< from the start of serve() to the look for images
-    Time after_look{};   ///< from there to its end
-    Time wake_up{};      ///< what a wait takes beyond its end
+    Time first_image{};  ///< time of the publication of image 1
+    Time prediction{};   ///< time from an image to the prediction of the next one
+    Time before_look{};  ///< time from the start of serve() to the check for images
+    Time after_look{};   ///< time from this check to the end of serve()
+    Time wake_up{};      ///< time by which a wait exceeds its end
   };
   explicit VirtualFront(const Steps& steps) : steps_{steps} {}
 
-  /// The longest time that an image waited for the front thread.
+  /// Returns the longest time for which an image waited for the front thread.
   Time longest_delay(unsigned images) {
     FrontRound round{.next_image = [this] { return next_image(); },
                      .serve = [this] { return serve(); },
@@ -99,7 +99,8 @@ TEST(FrontRound, AsksForTheNextImageBeforeItLooksForImages) {
   EXPECT_EQ(order, "nsnw");
 }
 
-/// After a stall in the middle of a round the wait for the old prediction took up to 20 ms.
+/// Regression: after a stall in the middle of a round, the wait for the old prediction took up to
+/// 20 ms.
 TEST(FrontRound, DoesNotWaitWhereAnImageWasPublishedMeanwhile) {
   Time prediction{7};
   int waits = 0;

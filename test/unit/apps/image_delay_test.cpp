@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time since_1970 = 1'700'000'000s;
 
-/// The last part of an image whose SYNC was at `sync`.
+/// Makes the last part of an image whose SYNC was at `sync`.
 image_t image_of(Time sync) {
   image_t image{};
   image.part = 0;

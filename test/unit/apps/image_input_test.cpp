@@ -16,7 +16,7 @@ ImageInput with_layout() {
   return input;
 }
 
-/// Signals or values [first, first + 4) of the whole, as one of two parts.
+/// Makes one of two parts of a layout; part `part` has the signals [first, first + 4) of the whole.
 layout_t half(layout_t layout, std::int16_t part) {
   layout.part = part;
   layout.parts = 2;
@@ -138,7 +138,7 @@ TEST(ImageInput, SurvivesNumbersThatDoNotFit) {
   EXPECT_FALSE(input.take(layout));
 }
 
-// Cycles of 2^62: the greatest of one forged message, and what the bus has reached never.
+// The cycle 2^62 stands for the greatest cycle of a forged message, which a bus never reaches.
 TEST(ImageInput, IsNotDeafenedByAForgedCycle) {
   constexpr std::int64_t forged = std::int64_t{1} << 62;
   ImageInput input = with_layout();

@@ -80,12 +80,13 @@ TEST_P(AnyMotion, HasTheVelocityThatItsPositionsShow) {
   }
 }
 
-// Worked by hand: ramps 2/4 + 4/20 = 0.7 s covering 2 * 0.7 = 1.4 together, cruise 8.6 / 2 = 4.3 s.
+// Calculated by hand: the ramps take 2/4 + 4/20 = 0.7 s each and cover 2 * 0.7 = 1.4 together; the
+// cruise takes 8.6 / 2 = 4.3 s.
 TEST(JerkLimited, TakesTheShortestTime) {
   EXPECT_DOUBLE_EQ((JerkLimited{10.0, {2.0, 4.0, 20.0}}.duration()), 5.7);
 }
 
-// Four segments of cbrt(0.02 / (2 * 1.25)) = 0.2 s.
+// The move has four segments of cbrt(0.02 / (2 * 1.25)) = 0.2 s.
 TEST(JerkLimited, IsFourSegmentsWhenShort) {
   EXPECT_DOUBLE_EQ((JerkLimited{0.02, {2.0, 4.0, 1.25}}.duration()), 0.8);
 }
@@ -112,7 +113,8 @@ TEST(SynchronisedMove, BringsAllAxesToTheirTargetsTogether) {
   EXPECT_NEAR(move.velocity(2.85)(1), -0.4, 1e-9);
 }
 
-// The second axis has 0.2 to go: ramps 0.04/0.08 + 0.08/0.4 = 0.7 s, cruise 0.172/0.04 = 4.3 s.
+// The second axis moves by 0.2: the ramps take 0.04/0.08 + 0.08/0.4 = 0.7 s, the cruise 0.172/0.04
+// = 4.3 s.
 TEST(SynchronisedMove, KeepsEachAxisWithinItsOwnLimits) {
   const Eigen::Vector2d from{0.0, 0.0};
   const Eigen::Vector2d to{1.0, -0.2};

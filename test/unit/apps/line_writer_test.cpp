@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A pipe in the place of a file: what is not read from it stalls its writer, as a disk may.
+/// A pipe in place of a file. A full pipe stalls the writer, as a slow disk may.
 class LineWriterTest : public testing::Test {
  protected:
   LineWriterTest() {
@@ -33,7 +33,7 @@ class LineWriterTest : public testing::Test {
     ::fcntl(reader_.get(), F_SETFL, 0);
   }
 
-  /// All lines until the file is closed.
+  /// Reads all lines until the file is closed and returns their number.
   std::size_t read_lines() const {
     std::array<char, 65536> chunk;
     std::size_t lines = 0;
@@ -100,7 +100,7 @@ TEST(LineWriter, RefusesAPipeThatNobodyReadsInsteadOfWaitingForAReader) {
   EXPECT_EQ(errno, ENXIO);
 }
 
-/// Files may grow to `bytes`, as on a disk that is full from there on.
+/// Limits the size of files to `bytes`, as on a disk that then is full.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

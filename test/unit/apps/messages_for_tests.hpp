@@ -21,7 +21,8 @@ inline signal_t signal(std::int16_t node, std::int32_t index, bool output, std::
   return made;
 }
 
-/// Statusword, position, controlword and target of nodes 5 and 6; 1000 counts are one unit.
+/// Makes a layout with statusword, position, controlword and target of nodes 5 and 6; 1000 counts
+/// are one unit.
 inline layout_t two_axes() {
   layout_t layout{};
   layout.schema = 2;
@@ -38,7 +39,7 @@ inline layout_t two_axes() {
   return layout;
 }
 
-/// `values`: the inputs; the outputs stay zero.
+/// Makes an image; `values` are the inputs, and the outputs stay zero.
 inline image_t image(std::int64_t cycle, std::initializer_list<std::int64_t> values) {
   image_t made{};
   made.schema = 2;

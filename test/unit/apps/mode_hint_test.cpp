@@ -18,7 +18,7 @@ using testing::two_axes;
 
 enum class Mapped : std::uint8_t { display, both };
 
-/// What an axis is told whose 6061 has this value.
+/// Returns the hint for an axis whose 6061 has this value.
 std::string hint_for(Mapped mapped, std::int64_t shown, std::vector<std::int32_t> stale = {}) {
   layout_t layout = two_axes();
   layout.signals[1] = signal(5, 0x6061, false, 8);

@@ -24,7 +24,7 @@ BusPlan plan_of_master_127() {
   return plan;
 }
 
-/// Of a taktd that runs a bus of the same name.
+/// Makes the status of another taktd that runs a bus with the same name.
 status_t status_of_another() {
   status_t status{};
   status.utime = now / 1us - 100'000;

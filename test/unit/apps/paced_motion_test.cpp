@@ -11,10 +11,11 @@ constexpr double lead = 3 * period;
 
 Eigen::VectorXd at(double position) { return Eigen::VectorXd::Constant(1, position); }
 
-/// An axis that runs at 1 a second, and a bus that takes a set-point some cycles after it was sent.
+/// An axis with a velocity of 1 per second, and a bus that takes a set-point some cycles after the
+/// application sent it.
 class OnABus : public testing::TestWithParam<int> {
  protected:
-  /// One image, one set-point. A bus that stands still takes none.
+  /// Runs one cycle with one image and one set-point. A bus that does not run takes no set-point.
   void cycle(bool bus_runs = true) {
     if (bus_runs) {
       motion.seen(at(shown));
@@ -49,7 +50,7 @@ TEST_P(OnABus, StandsWhileTheBusDoesAndJumpsNoFartherThanItsLead) {
   EXPECT_TRUE(motion.standing());
   EXPECT_GT(motion.refused(), 0.15);
 
-  under_way = {under_way.back()};  // newest wins
+  under_way = {under_way.back()};  // only the newest set-point counts
   for (int i = 0; i < 400; ++i) cycle();
   EXPECT_LE(farthest_jump, lead + 1e-9);
   EXPECT_EQ(motion.refused(), 0.0);

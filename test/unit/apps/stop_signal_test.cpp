@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// In a process of its own, whose signal handlers and counts are gone with it.
+/// Runs `body` in a child process, so that its signal handlers and counts end with the child.
 template <class Body>
 int in_a_child(Body body) {
   const pid_t child = ::fork();
@@ -37,7 +37,7 @@ TEST(StopSignal, BeginsTheStopOfAMasterThatIsMadeAfterTheSignal) {
     std::atomic<bool> stop{false};
     const StopSignal signals;
     ::kill(::getpid(), SIGTERM);
-    if (StopSignal::count() != 0) return 1;  // it waits for let_through()
+    if (StopSignal::count() != 0) return 1;  // the signal waits for let_through()
     signals.let_through();
     StopSignal::stop_with(&stop);
     return stop ? 0 : 2;

@@ -101,7 +101,7 @@ TEST(Sine, SwingsEachAxisByItsOwnAmplitude) {
   EXPECT_NEAR(farthest(1), 0.025, 1e-4);
 }
 
-/// Largest velocity, acceleration and jerk of the first axis, by differences.
+/// Returns the largest velocity, acceleration and jerk of the first axis, computed by differences.
 MotionLimits reached(const Sine& sine) {
   constexpr double step = 1e-3;
   MotionLimits most{.velocity = 0.0, .acceleration = 0.0, .jerk = 0.0};
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(LimitsAndDurations, SineWithin,
                                                           MotionLimits{100.0, 100.0, 3.0}),
                                           testing::Values(2.0, 3.0, 9.0)));
 
-// 2 pi rad/s; at full amplitude the limit of velocity is met exactly.
+// The velocity limit is 2 pi rad/s, which the full amplitude reaches exactly.
 TEST(Sine, SwingsAsFarAsItsVelocityMay) {
   const Sine sine{Eigen::VectorXd::Zero(1),
                   {.amplitude = Eigen::VectorXd::Ones(1), .frequency = 1.0, .duration = 9.0}};

@@ -187,7 +187,7 @@ TEST_F(Boot, EndsForANodeThatRestartsAgainAndAgain) {
   boot(std::move(steps), 500ms);
   EXPECT_EQ(failure().fault, SdoFault::cancelled);
   EXPECT_EQ(failure().restarts, 6);
-  EXPECT_EQ(status().boot, BootState::failed);  // not begun again by each of its boot-up messages
+  EXPECT_EQ(status().boot, BootState::failed);  // a boot-up message starts no new boot
 }
 
 TEST_F(Boot, DoesNotLoopOverATargetThatPointsBack) {

@@ -9,7 +9,7 @@
 namespace takt {
 namespace {
 
-/// Boots a node that fails and shows what a user reads.
+/// Boots a node that fails and returns the report for the user.
 class BootReport : public testing::Test, public NetworkRig {
  protected:
   std::string report(Steps steps, Time span = 10s) {
@@ -165,7 +165,7 @@ TEST_F(BootReport, OfANodeThatTakesTheCounterOfSyncForAnError) {
     node.starts = false;
     node.heartbeats(now, 50ms);
     node.say(now + 60ms, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});
-    node.say(now + 400ms, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});  // and at the second try
+    node.say(now + 400ms, 0x80, {0x40, 0x82, 0x11, 0, 0, 0, 0, 0});  // again at the second try
   };
   Steps steps;
   steps.nmt(NmtCommand::start)

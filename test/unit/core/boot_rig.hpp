@@ -9,7 +9,8 @@ namespace takt {
 
 class Boot : public testing::Test, public NetworkRig {
  protected:
-  /// Boots node 5 with one plan; the device has a drive's identity unless it was changed.
+  /// Boots node 5 with one plan. The device has the identity of a drive unless the test has changed
+  /// `identity`.
   void boot(Steps steps, Time span = 5s) {
     add(5, std::move(steps.plan));
     for (const auto& [key, value] : identity) device().objects.try_emplace(key, value);
@@ -41,7 +42,7 @@ class Boot : public testing::Test, public NetworkRig {
   std::function<void(FakeNode&)> prepare;
 };
 
-/// Reconfigures TPDO1 of node 5 unless it is right already.
+/// Steps that reconfigure TPDO1 of node 5 unless the PDO is already right.
 inline Steps tpdo1() {
   Steps steps;
   steps.object(BootAction::compare, 'J', {0x1800, 1}, bytes({0x85, 0x01, 0x00, 0x40}))

@@ -11,8 +11,8 @@
 
 namespace takt {
 
-/// A device made for tests of the master: an SDO server over a map, NMT, boot-up and heartbeat, and
-/// ways to misbehave. Its frames are built from literals, not with the codecs of the master.
+/// A device for tests of the master with an SDO server on a map, NMT, boot-up and heartbeat, and
+/// ways to misbehave. The frames are built from literals, not with the codecs of the master.
 struct FakeNode {
   using Bytes = std::vector<std::byte>;
   struct Sent {
@@ -36,13 +36,13 @@ struct FakeNode {
   Time heartbeat_period{};
   std::uint8_t state = 0x7F;
 
-  std::function<void(Frame&)> tamper;  // with its SDO answers
-  bool answers_in_turn = false;        // one after another, `latency` each
+  std::function<void(Frame&)> tamper;  // changes SDO answers
+  bool answers_in_turn = false;        // answers one request after another, `latency` each
   Time busy_until{};
 
   std::vector<ObjectKey> writes;
   int resets = 0;
-  std::vector<Sent> sending;  // in the future
+  std::vector<Sent> sending;  // frames to send later
   Time next_heartbeat = never;
 
   static Bytes u(std::uint32_t value, std::size_t size) {
@@ -146,7 +146,7 @@ struct FakeNode {
     for (const auto& sent : sending) first = std::min(first, sent.when);
     return first;
   }
-  /// Frames that are due.
+  /// Removes and returns the frames that are due.
   std::vector<Frame> take(Time now) {
     std::vector<Frame> due;
     for (auto it = sending.begin(); it != sending.end();) {

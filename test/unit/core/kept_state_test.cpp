@@ -36,7 +36,7 @@ TEST(KeptTimes, NeverAndOrdinaryTimesComeBackAsTheyWere) {
   }
 }
 
-/// One value of each kind, at the ends of what the kind can hold.
+/// One value of each kind, at the limits of its range.
 struct Extremes {
   double none = std::numeric_limits<double>::infinity();
   double below = -std::numeric_limits<double>::infinity();
@@ -46,8 +46,8 @@ struct Extremes {
   int large = std::numeric_limits<int>::max();
   int small = std::numeric_limits<int>::min();
   std::int64_t wide = std::numeric_limits<std::int64_t>::min();
-  std::uint16_t last = 7;  // beyond its end
-  Time period{};           // shorter than a period may be
+  std::uint16_t last = 7;  // beyond the end of its range
+  Time period{};           // shorter than the shortest period
   std::optional<int> nothing{};
   std::optional<int> something{std::numeric_limits<int>::max()};
   std::bitset<3> bits{0b101};

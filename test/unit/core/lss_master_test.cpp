@@ -14,7 +14,7 @@ using Bytes = std::array<std::uint8_t, 8>;
 
 Frame answer(Bytes bytes) { return {.id = CobId::base(0x7E4), .length = 8, .data = bytes}; }
 
-/// One service of a master in virtual time; `slave` says what answers come to a request.
+/// One service of an LSS master in virtual time; `slave` returns the answers to a request.
 struct Talk {
   std::function<std::vector<Bytes>(const Bytes&)> slave = [](const Bytes&) {
     return std::vector<Bytes>{};
@@ -71,8 +71,8 @@ struct Talk {
   std::optional<LssResult> result;
 };
 
-// The bytes are those of CiA 305's services, for a slave of vendor 0x15A, product 2, revision
-// 0x00010003, serial number 0xA5.
+// The bytes follow the services of CiA 305 for a slave with vendor-ID 0x15A, product code 2,
+// revision 0x00010003 and serial number 0xA5.
 
 TEST(LssAnswer, MayLeaveOutTheBytesThatSayNothing) {
   const auto decoded = [](std::initializer_list<std::uint8_t> bytes) {
@@ -202,7 +202,7 @@ TEST(LssMaster, InquiresEachPartOfTheIdentity) {
       case 0x5C:
         return {{0x5C, 0x03, 0x00, 0x01, 0x00}};
       default:
-        return {{0x5E, 0x05, 0xFF, 0xFF, 0xFF}};  // bytes behind the node id are reserved
+        return {{0x5E, 0x05, 0xFF, 0xFF, 0xFF}};  // the bytes behind the node-ID are reserved
     }
   };
   EXPECT_EQ(talk.run({.op = LssOp::inquire_vendor}).numbers[0], 0x15AU);

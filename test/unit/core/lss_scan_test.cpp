@@ -9,7 +9,7 @@ namespace {
 
 using Question = lss::FastScan;
 
-/// Devices without node id as CiA 305 describes them, one beside the other.
+/// Devices without a node-ID, as in CiA 305, together on one bus.
 struct Slaves {
   struct Slave {
     LssAddress address;
@@ -54,7 +54,7 @@ TEST(LssFastScan, AsksWhatTheStandardAsksFor) {
   EXPECT_EQ(scan.address(), sample);
   ASSERT_EQ(asked.size(), 133U);
   EXPECT_TRUE(slaves.all[0].configuration);
-  // Around the bits of vendor id 0x15A, written down from the standard's algorithm.
+  // The questions around the bits of vendor-ID 0x15A, derived from the algorithm in the standard.
   EXPECT_EQ(asked[0], (Question{0, 0x80, 0, 0}));
   EXPECT_EQ(asked[1], (Question{0, 0x1F, 0, 0}));
   EXPECT_EQ(asked[24], (Question{0, 0x08, 0, 0}));
@@ -69,7 +69,7 @@ TEST(LssFastScan, AsksWhatTheStandardAsksFor) {
   EXPECT_EQ(asked[131], (Question{0xA4, 0x00, 3, 3}));
   EXPECT_FALSE(answers[131]);
   EXPECT_EQ(asked[132], (Question{0xA5, 0x00, 3, 0}));
-  // Start and four confirmations are answered; silent: 5, 1, 3 and 4 bits.
+  // The start and four confirmations are answered; 5, 1, 3 and 4 bits get no answer.
   EXPECT_EQ(std::ranges::count(answers, false), 5 + 1 + 3 + 4);
 }
 
@@ -138,8 +138,8 @@ struct Outcome {
   std::vector<LssAddress> in_configuration;
 };
 
-/// The answer to question number `missed` is not heard; a late one with the next question, unless
-/// the master waits for it as long as may be.
+/// Runs a scan in which the master misses the answer to question number `missed`. With `late` the
+/// answer comes at the next question, unless the master waits as long as the answer may take.
 Outcome scan_with_fault(Slaves slaves, int missed, bool late) {
   LssFastScan scan;
   bool on_its_way = false;
@@ -156,7 +156,7 @@ Outcome scan_with_fault(Slaves slaves, int missed, bool late) {
   return outcome;
 }
 
-constexpr int last_question = 132;  // after its answer the device is in configuration state
+constexpr int last_question = 132;  // after its answer the device is in the configuration state
 
 TEST(LssFastScan, FindsADeviceWhicheverAnswerIsLost) {
   for (const std::uint32_t serial : {0xA4U, 0xA5U}) {
@@ -177,7 +177,8 @@ TEST(LssFastScan, FindsADeviceWhoseAnswerIsTakenForThatOfTheNextQuestion) {
     for (int late = 0; late <= last_question; ++late) {
       const Outcome outcome = scan_with_fault({{{.address = only}}}, late, true);
 
-      // In the serial number it may look as if another device had switched unheard.
+      // In the serial number the result may look as if another device had switched without an
+      // answer.
       if (outcome.state == LssScanState::lost && late > 99) continue;
       EXPECT_EQ(outcome.state, LssScanState::found) << late;
       EXPECT_EQ(outcome.address, only) << late;
@@ -186,7 +187,7 @@ TEST(LssFastScan, FindsADeviceWhoseAnswerIsTakenForThatOfTheNextQuestion) {
   }
 }
 
-/// Two of them would get the same node id.
+/// Two devices would get the same node-ID.
 TEST(LssFastScan, DoesNotFindASecondDeviceWhereTheFirstOneHasSwitchedUnheard) {
   const LssAddress others[] = {
       {0x15A, 2, 0x0001'0003, 0xA6}, {0x15A, 2, 0x0001'0004, 3}, {0x15A, 3, 0x0001'0003, 0x10}};

@@ -16,7 +16,7 @@ class NetworkTest : public testing::Test, public NetworkRig {
         .nmt(NmtCommand::start);
     return steps.plan;
   }
-  /// A drive with heartbeat each 50 ms, lost after 150 ms.
+  /// Adds a drive whose heartbeat comes every 50 ms and is lost after 150 ms.
   NodePlan& add_drive(std::uint8_t id = 5) {
     auto& node = add(id, simple());
     node.heartbeat_timeout = 150ms;

@@ -100,7 +100,7 @@ TEST_F(NetworkTest, DoesNotSendARequestThatWasWithdrawnWhileItWaited) {
   network->submit(read(3, {0x1000, 0}), now);
   run(10ms);
 
-  network->withdraw(1);  // is under way
+  network->withdraw(1);  // the request is in progress
   network->withdraw(2);
   run(200ms);
 
@@ -189,7 +189,7 @@ TEST_F(NetworkTest, BootsANodeThatAnApplicationHasReset) {
   EXPECT_EQ(status().boot_count, 2U);
   EXPECT_EQ(count(EventKind::heartbeat_lost), 0);
   EXPECT_EQ(sent_count(nmt({0x81, 0x05})), 1);
-  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 1);  // of the first boot only
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 1);  // from the first boot only
 }
 
 // NMT by 0x1F82 of the master
@@ -260,7 +260,7 @@ TEST_F(NetworkTest, StopsWithEveryRequestAnsweredAndEveryNodePreOperational) {
   network->submit(read(9, {0x1000, 0}), now);
   run(5s);
   EXPECT_EQ(replies.back().fault, SdoFault::cancelled);
-  EXPECT_EQ(sent.size(), 3U);  // nothing is booted any more
+  EXPECT_EQ(sent.size(), 3U);  // no node is booted any more
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace takt {
 
-/// Steps of boot plans in one line each.
+/// Builds boot plans with one line per step.
 struct Steps {
   BootPlan plan;
 
@@ -98,7 +98,7 @@ class NetworkRig {
     EXPECT_TRUE(out.empty());
     collect();
   }
-  /// Frames vanish in both directions, by a seed.
+  /// Loses one frame in `frames` on average, in both directions; the choice depends on the seed.
   void lose_one_in(unsigned frames, unsigned seed) {
     lose_one_in_ = frames;
     random_.seed(seed);
@@ -124,8 +124,8 @@ class NetworkRig {
   std::deque<FakeNode> devices;
   std::unique_ptr<Network> network;
   Time now = 10s;
-  std::vector<Frame> sent;  // by the master
-  std::vector<Frame> log;   // all, in order
+  std::vector<Frame> sent;  // frames of the master
+  std::vector<Frame> log;   // all frames in order
   std::vector<Event> events;
   std::vector<Reply> replies;
   std::size_t most_frames = 0;

@@ -18,7 +18,7 @@ class NetworkStartTest : public NetworkTest {
   }
   NodePlan& add_one(std::uint8_t id) {
     NodePlan& node = add_drive(id);
-    node.boot_plan.steps.pop_back();  // its start
+    node.boot_plan.steps.pop_back();  // the step that starts the node
     node.start_later = true;
     return node;
   }

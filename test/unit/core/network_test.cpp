@@ -156,7 +156,7 @@ TEST_F(NetworkTest, FollowsTheStateInTheHeartbeat) {
   start();
   run(200ms);
   events.clear();
-  device().state = 0x7F;  // the drive falls out of OPERATIONAL by itself
+  device().state = 0x7F;  // the drive leaves OPERATIONAL by itself
   run(60ms);
   EXPECT_FALSE(network->exchanges_pdos(0));
   ASSERT_EQ(count(EventKind::node_state), 1);
@@ -173,7 +173,7 @@ TEST_F(NetworkTest, BringsBackANodeThatLeftOperationalByItself) {
   EXPECT_EQ(status().boot, BootState::lost);
   run(200ms);
   EXPECT_EQ(status().boot, BootState::ready);
-  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 0);  // its configuration is read back, not reset
+  EXPECT_EQ(sent_count(nmt({0x82, 0x05})), 0);  // the configuration is read back, not reset
   EXPECT_EQ(sent_count(nmt({0x01, 0x05})), 1);
   EXPECT_TRUE(network->exchanges_pdos(0));
 }
@@ -290,8 +290,8 @@ TEST_F(NetworkTest, CountsAFloodOfEmcysButTellsOnlySome) {
   EXPECT_EQ(events.back().value, 990);
 }
 
-/// As some stacks do: EMCY 8240 for a SYNC that comes before 0x1019 is written, and then no start
-/// until the next reset.
+/// Some stacks report EMCY 8240 for a SYNC that comes before the write of 0x1019, and then refuse
+/// to start until the next reset.
 TEST_F(NetworkTest, BootsANodeOnceMoreThatMetTheCounterOfSyncTooEarly) {
   NodePlan& drive = add_drive();
   drive.mandatory = true;

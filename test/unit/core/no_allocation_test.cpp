@@ -40,7 +40,7 @@ TEST(Allocation, HappensOnlyInTheConstructorOfTheNetwork) {
     now += 1ms;
     out.clear();
     network.on_time(now, out);
-    for (const Frame& frame : out.frames()) {  // devices that answer every other request
+    for (const Frame& frame : out.frames()) {  // the devices answer every other request
       ++frames;
       Frame answer = frame;
       answer.id = CobId::base(frame.id.id() - 0x80);

@@ -26,7 +26,7 @@ BootPlan plan_with_every_action() {
   return steps.plan;
 }
 
-/// What a good device might answer.
+/// Makes an answer that a good device might send.
 Frame answer(const Frame& asked, std::mt19937& random) {
   Frame frame = asked;
   frame.id = CobId::base(asked.id.id() - 0x80);
@@ -38,8 +38,8 @@ Frame answer(const Frame& asked, std::mt19937& random) {
   return frame;
 }
 
-/// Frames that look like those of the nodes, with any content and length, valid often enough to get
-/// deep into every machine.
+/// Makes frames that look like those of the nodes, with random content and length. They are valid
+/// often enough to reach deep states of every state machine.
 Frame noise(std::mt19937& random, const std::vector<Frame>& sent) {
   const auto below = [&random](unsigned limit) { return static_cast<unsigned>(random() % limit); };
   if (!sent.empty() && below(10) < 7) {

@@ -1,14 +1,14 @@
 #include "master/core/boot_report.hpp"
 #include "test/unit/core/boot_rig.hpp"
 
-// Reports name what the device really does, where it does not just keep silent.
+// If a device answers wrongly instead of keeping silent, the report names what it does.
 
 namespace takt {
 namespace {
 
 using OddAnswers = Boot;
 
-/// Reads the identity of node 5.
+/// Makes steps that read the identity of node 5.
 Steps identity_steps() {
   Steps steps;
   steps.object(BootAction::expect, 'C', {0x1000, 0}, bytes({0x92, 0x01, 0x02, 0x00}))

@@ -13,7 +13,7 @@ namespace {
 using Kind = SdoBlockStep::Kind;
 constexpr std::string_view hello = "Hello CANopen block transfer!";
 
-/// The machine of a block download to 1F50:01 of node 5, with literal frames.
+/// Tests the state machine of a block download to 1F50:01 of node 5 with literal frames.
 class BlockDownload : public testing::Test {
  protected:
   void begin(std::string_view text) {

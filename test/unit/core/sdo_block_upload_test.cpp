@@ -20,7 +20,7 @@ Frame segment(std::uint8_t first, std::initializer_list<std::uint8_t> data) {
   return frame;
 }
 
-/// The machine of a block upload of 1021:00 of node 5, with literal frames.
+/// Tests the state machine of a block upload of 1021:00 of node 5 with literal frames.
 class BlockUpload : public testing::Test {
  protected:
   void begin(std::uint8_t segments = 4, std::uint8_t threshold = 0) {

@@ -15,7 +15,7 @@ inline Frame segment(std::uint8_t first, std::initializer_list<std::uint8_t> dat
   return frame;
 }
 
-/// Block transfers of a whole client, which chooses them by itself.
+/// Block transfers of a complete client, which chooses block transfer by itself.
 class SdoClientBlock : public testing::Test {
  protected:
   void download(std::size_t size) {

@@ -86,7 +86,7 @@ TEST_F(SdoClientBlock, TakesShortFramesThatSayEverything) {
   sends(tx({0xA4, 0x21, 0x10, 0x00, 0x7F, 0x1C}));
   hears(short_rx({0xC0, 0x21, 0x10, 0x00}));
   sends(tx({0xA3}));
-  hears(short_rx({0x01, 1, 2}));  // not the last one, so that something is missing
+  hears(short_rx({0x01, 1, 2}));  // not the last segment, so that data is missing
   hears(segment(0x01, {1, 2, 3, 4, 5, 6, 7}));
   hears(short_rx({0x82, 8, 9}));
   sends(tx({0xA2, 0x02, 0x7F}));
@@ -98,7 +98,7 @@ TEST_F(SdoClientBlock, TakesShortFramesThatSayEverything) {
   download(128);
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));
   hears(short_rx({0xA0, 0x50, 0x1F, 0x01}));
-  sends_nothing();  // it lacks the block size
+  sends_nothing();  // the answer lacks the block size
   hears(short_rx({0xA0, 0x50, 0x1F, 0x01, 0x7F}));
   sends_some(19);
   hears(short_rx({0xA2, 0x13, 0x7F}));
@@ -168,7 +168,7 @@ TEST_F(SdoClientBlock, TheEndOfADownloadThatCanRepeatsEndsNothingElse) {
   sends(tx({0x40, 0x18, 0x10, 0x01}));
   hears(rx({0xA1}));
   EXPECT_FALSE(client.take_result());
-  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));  // it heard our end twice
+  hears(rx({0x80, 0x00, 0x00, 0x00, 0x01, 0x00, 0x04, 0x05}));  // the server received our end twice
   EXPECT_FALSE(client.take_result());
   hears(rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00}));
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
@@ -189,7 +189,7 @@ TEST_F(SdoClientBlock, TheEndOfAnUploadThatCanRepeatsEndsNothingElse) {
   client.download({0x6081, 0}, value_, 500ms);
   sends_some(1);
   hears(rx({0xD5}));
-  hears(rx({0x80, 0x21, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));  // it heard our end twice
+  hears(rx({0x80, 0x21, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));  // the server received our end twice
   EXPECT_FALSE(client.take_result());
   hears(rx({0x60, 0x81, 0x60, 0x00}));
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);

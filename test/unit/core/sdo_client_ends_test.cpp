@@ -1,4 +1,4 @@
-// Every transfer of the SDO client, ended at each of its frames: by the server, by the master, by
+// Each transfer of the SDO client ends at each of its frames: by the server, by the master, or by
 // silence.
 #include <algorithm>
 #include <array>
@@ -12,7 +12,8 @@
 namespace takt {
 namespace {
 
-/// What the client sends, then what the server answers; several frames where they follow at once.
+/// The number of frames that the client sends, and the answers of the server; there may be several
+/// of each.
 struct Exchange {
   int sent = 1;
   std::vector<Frame> answers;
@@ -21,7 +22,7 @@ struct Exchange {
 struct Transfer {
   std::string name;
   bool upload = true;
-  std::size_t size = 0;  ///< of a download
+  std::size_t size = 0;  ///< size of a download
   SdoMode mode = SdoMode::plain;
   std::vector<Exchange> exchanges;
 };
@@ -64,7 +65,8 @@ std::vector<Transfer> transfers() {
 
 class SdoClientEnds : public testing::TestWithParam<std::size_t> {
  protected:
-  /// Where the transfer is ended: so many frames of the client and of the server have been seen.
+  /// The point at which a transfer is ended, given by the number of frames of the client and of the
+  /// server.
   struct Point {
     std::size_t exchange = 0;
     int sent = 0;
@@ -82,7 +84,7 @@ class SdoClientEnds : public testing::TestWithParam<std::size_t> {
     client.on_time(now, out);
     return {out.frames().begin(), out.frames().end()};
   }
-  /// False: the point is the end of the transfer.
+  /// Runs the transfer to a point. Returns false if the point is the end of the transfer.
   bool run_to(const Point& point) {
     begin();
     for (std::size_t i = 0; i <= point.exchange; ++i) {
@@ -109,13 +111,13 @@ class SdoClientEnds : public testing::TestWithParam<std::size_t> {
     }
     return all;
   }
-  /// The client has said all it has to say for now.
+  /// True if the client has sent all its frames for now.
   bool waits(const Point& point) const {
     return point.sent == transfer.exchanges[point.exchange].sent;
   }
   bool in_burst(const Point& point) const { return point.sent != 0 && !waits(point); }
 
-  /// The next transfer works, whatever comes late of the old one.
+  /// Checks that the next transfer works even if frames of the old one come late.
   void works_again(const Point& point) {
     EXPECT_TRUE(client.idle());
     EXPECT_TRUE(sends().empty());
@@ -155,7 +157,7 @@ TEST_P(SdoClientEnds, ByAnAbortOfTheServerWhereverItMaySayOne) {
     ASSERT_TRUE(run_to(point));
 
     client.on_frame(rx({0x80, 0x10, 0x20, 0x01, 0x00, 0x00, 0x06, 0x06}), now);
-    now += 20ms;  // refused segments may still be under way
+    now += 20ms;  // refused segments may still be in transit
     EXPECT_TRUE(sends().empty());
 
     const auto result = client.take_result();
@@ -193,14 +195,14 @@ TEST_P(SdoClientEnds, BySilenceWhereverItWaits) {
     EXPECT_LE(client.deadline(), now + 500ms);
     now = client.deadline();
     std::vector<Frame> said = sends();
-    if (!said.empty() && said[0].data[0] == 0xA2) {  // a block: what came is confirmed first
+    if (!said.empty() && said[0].data[0] == 0xA2) {  // a block: received segments are confirmed
       EXPECT_EQ(client.deadline(), now + 500ms);
       now = client.deadline();
       said = sends();
     }
     EXPECT_EQ(said, std::vector{abort});
     const bool by_block = transfer.mode == SdoMode::block || transfer.size >= 128;
-    if (by_block && point.exchange == 0 && point.answers == 0) {  // then by segments
+    if (by_block && point.exchange == 0 && point.answers == 0) {  // now by segments
       EXPECT_EQ(sends().size(), 1U);
       EXPECT_EQ(client.deadline(), now + 500ms);
       now = client.deadline();

@@ -1,4 +1,4 @@
-// What becomes of a block transfer that the server refuses, or does not answer.
+// The fallback of a block transfer that the server refuses or does not answer.
 #include <gtest/gtest.h>
 
 #include "test/unit/core/sdo_client_block.hpp"
@@ -17,7 +17,7 @@ TEST_F(SdoClientFallback, FallsBackToSegmentsWhenTheServerKnowsNoBlock) {
   client.take_result();
   sends_some(1);
   download(128);
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // the client has learnt that
 }
 
 TEST_F(SdoClientFallback, FallsBackInAnUploadToo) {
@@ -44,7 +44,7 @@ TEST_F(SdoClientFallback, DoesNotFallBackOnceDataHaveMoved) {
   sends_some(5);
   hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));
   EXPECT_FALSE(client.take_result());
-  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));  // a segment that was under way
+  hears(rx({0x80, 0x50, 0x1F, 0x01, 0x01, 0x00, 0x04, 0x05}));  // abort for a segment in transit
   now += 20ms;
   sends_nothing();
   const auto result = client.take_result();
@@ -62,7 +62,7 @@ TEST_F(SdoClientFallback, GoesBySegmentsWhereADownloadFindsNoAnswer) {
   EXPECT_FALSE(client.take_result());
   sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));
   EXPECT_EQ(client.deadline(), now + 500ms);
-  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));  // late: of the transfer that is given up
+  hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));  // late answer of the abandoned transfer
   EXPECT_FALSE(client.take_no_block()) << "it may be mute altogether";
   hears(rx({0x60, 0x50, 0x1F, 0x01}));
   const auto told = client.take_no_block();
@@ -77,7 +77,7 @@ TEST_F(SdoClientFallback, GoesBySegmentsWhereADownloadFindsNoAnswer) {
   }
   EXPECT_EQ(client.take_result()->size, 128U);
   download(128);
-  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // it has learnt that
+  sends(tx({0x21, 0x50, 0x1F, 0x01, 0x80}));  // the client has learnt that
   client.drop();                              // a reset
   download(128);
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x80}));

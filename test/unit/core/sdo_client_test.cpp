@@ -86,7 +86,7 @@ TEST_F(SdoClientTest, TakesTheSizeFromTheAnswer) {
 
   upload({0x6041, 0});
   sends(tx({0x40, 0x41, 0x60, 0x00}));
-  hears(rx({0x42, 0x41, 0x60, 0x00, 0x37, 0x02, 0x00, 0x00}));  // no size: all four bytes
+  hears(rx({0x42, 0x41, 0x60, 0x00, 0x37, 0x02, 0x00, 0x00}));  // no size, so all four bytes count
   EXPECT_EQ(client.take_result()->size, 4U);
 }
 
@@ -297,9 +297,9 @@ TEST_F(SdoClientTest, IgnoresTheLateAnswerOfAnEarlierRequest) {
   hears(rx({0x80, 0x18, 0x10, 0x01, 0x00, 0x00, 0x04, 0x05}));  // late abort
   hears(rx({0x00, 1, 2, 3, 4, 5, 6, 7}));                       // late segment
   hears(rx({0x20}));                                            // late confirmation
-  hears(rx({0x60, 0x18, 0x10, 0x02}));                          // of a download
+  hears(rx({0x60, 0x18, 0x10, 0x02}));                          // confirmation of a download
   EXPECT_FALSE(client.take_result());
-  EXPECT_EQ(client.deadline(), now + 500ms);  // strangers don't prolong the wait
+  EXPECT_EQ(client.deadline(), now + 500ms);  // unrelated frames do not extend the wait
 
   hears(rx({0x43, 0x18, 0x10, 0x02, 0x07, 0x00, 0x00, 0x00}));
   EXPECT_EQ(client.take_result()->fault, SdoFault::none);
@@ -317,7 +317,7 @@ Frame short_rx(std::initializer_list<std::uint8_t> bytes) {
   return make_frame(CobId::base(0x585), bytes);
 }
 
-// CiA 301 has eight bytes in each frame; some devices leave out those that say nothing.
+// In CiA 301 each frame has eight bytes; some devices omit the unused ones.
 TEST_F(SdoClientTest, TakesShortAnswersThatSayEverything) {
   upload({0x1018, 1});
   sends(tx({0x40, 0x18, 0x10, 0x01}));
@@ -358,7 +358,7 @@ TEST_F(SdoClientTest, IgnoresAnswersThatLackAPartOfTheirValue) {
   }
   hears(short_rx({0x41, 0x18, 0x10, 0x01}));
   sends(tx({0x60}));
-  hears(short_rx({0x09, 1, 2}));  // says that it has three
+  hears(short_rx({0x09, 1, 2}));  // announces three bytes
   EXPECT_FALSE(client.take_result());
   sends_nothing();
 }

@@ -27,7 +27,7 @@ BusPlan served_plan() {
   return plan;
 }
 
-/// The master (node 127) and a tool that reads it, with literal frames.
+/// The SDO server of the master (node 127) and a tool that reads it, with literal frames.
 class OwnServer : public testing::Test {
  protected:
   OwnServer() {
@@ -89,7 +89,7 @@ TEST_F(OwnServer, TellsItsNameAsABlock) {
                                              answer({0x82, 'a', 's', 't', 'e', 'r'})}));
   const auto end = ask({0xA2, 0x02, 0x7F});
   ASSERT_EQ(end.size(), 1U);
-  EXPECT_EQ(end[0].data[0], 0xC9);  // two bytes of the last segment are no data
+  EXPECT_EQ(end[0].data[0], 0xC9);  // two bytes of the last segment are unused
   EXPECT_EQ(ask({0xA1}), Frames{});
   EXPECT_EQ(server.deadline(), never);
 }

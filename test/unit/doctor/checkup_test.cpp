@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of a kernel, as far as a test writes them.
+/// A root folder with the kernel files that a test writes.
 class Root : public test::Folder {
  public:
   void write(const fs::path& file, const std::string& text) const {

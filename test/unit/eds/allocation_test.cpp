@@ -13,7 +13,7 @@ std::uint64_t allocations_of(std::string_view text) {
   return allocations() - before;
 }
 
-/// `count` objects as most files have them, with names too long to stand in a string itself.
+/// Makes `count` typical objects whose names are too long for the small buffer of a string.
 std::string dense(unsigned count) {
   std::string text = "[ManufacturerObjects]\nSupportedObjects=" + std::to_string(count) + "\n";
   for (unsigned i = 0; i < count; ++i) {
@@ -32,7 +32,8 @@ TEST(Allocation, GrowsWithTheObjectsAndNoFaster) {
   const auto none = allocations_of(dense(0));
   for (const std::uint64_t count : {100U, 1000U, 10000U}) {
     const auto some = allocations_of(dense(static_cast<unsigned>(count)));
-    EXPECT_GE(some, 2 * count);  // or nothing counts them: each has a name and its value
+    EXPECT_GE(some, 2 * count);  // each object has a name and a value; fewer would mean that the
+                                 // allocations are not counted
     EXPECT_LE(some, none + 64 + 3 * count);
   }
 }

@@ -24,7 +24,7 @@ struct Record {
   int timer = 0;
 };
 
-/// Each sub has five lines, sub 1 begins in the first.
+/// Checks a record. Each sub-object has five lines, and sub-index 1 begins in the first line.
 Findings judged(const Record& record) {
   const auto& index = record.index;
   return check(read(sub(index + "sub1", 7, record.cob_id) +
@@ -67,7 +67,7 @@ TEST(CheckPdo, AnEventTimerBesideASynchronousTypeIsTold) {
   EXPECT_TRUE(told({.type = 252, .timer = 100}));
   EXPECT_TRUE(told({.type = 253, .timer = 100}));
   EXPECT_FALSE(told({.type = 1}));
-  EXPECT_FALSE(told({.type = 0, .timer = 100}));  // some devices take it for the event
+  EXPECT_FALSE(told({.type = 0, .timer = 100}));  // for some devices the timer is the event
   EXPECT_FALSE(told({.type = 254, .timer = 100}));
   EXPECT_FALSE(told({.index = "1400", .type = 1, .timer = 100}));  // monitors the reception
   const auto findings = judged({.type = 1, .timer = 100});

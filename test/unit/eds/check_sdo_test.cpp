@@ -60,7 +60,7 @@ TEST(CheckSdo, AFurtherServerNeedsCobIdsOfItsOwn) {
   }
 }
 
-/// Severity and message of what is said about sub 1 of 0x1201.
+/// Returns severity and message of the findings about sub-index 1 of 0x1201.
 std::string said(const std::string& cob_id, std::optional<NodeId> node = std::nullopt) {
   std::string text;
   for (const auto& finding : judged(channel("1201", cob_id, "0x80000000"), node)) {

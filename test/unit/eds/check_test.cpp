@@ -21,7 +21,7 @@ std::string entry(std::string_view section, std::string_view type, std::string_v
 
 constexpr std::uint32_t entry_lines = 6;
 
-/// A TPDO (or RPDO) 1 whose mapping maps `first`, and the objects of a drive.
+/// Makes TPDO1 or RPDO1 with a mapping of `first`, and the objects of a drive.
 std::string pdo(bool is_tpdo, std::string_view cob_id, std::string_view type,
                 std::string_view first) {
   const std::string communication = is_tpdo ? "1800" : "1400";
@@ -171,8 +171,8 @@ TEST(Check, BitsOfSyncTimeAndEmcyAreLookedAtToo) {
     EXPECT_EQ(rules(index, "0xF0"), (std::pair{false, false})) << index;
   }
   EXPECT_EQ(rules("1005", "0xC0000080"),
-            (std::pair{false, false}));  // makes SYNC; 31 means nothing
-  EXPECT_EQ(rules("1012", "0xC0000100"), (std::pair{false, false}));  // takes and makes TIME
+            (std::pair{false, false}));  // produces SYNC; bit 31 has no meaning
+  EXPECT_EQ(rules("1012", "0xC0000100"), (std::pair{false, false}));  // consumes and produces TIME
   EXPECT_EQ(rules("1014", "$NODEID+0x40000080"), (std::pair{false, true}));
   EXPECT_EQ(rules("1014", "$NODEID+0xC0000080"), (std::pair{false, false}));  // off
 }
@@ -298,7 +298,8 @@ TEST(Check, AValueThatIsNeverWrittenIsNotRefused) {
   }
 }
 
-/// Indices that the profile of a device type demands and `objects` have not.
+/// Returns the indices that the profile of a device type requires and that are missing in
+/// `objects`.
 std::vector<std::string> missing(std::string_view device_type, const std::string& objects = "",
                                  std::string_view rule = "profile-object-missing") {
   const auto text = "[1000]\nParameterName=t\nDataType=7\nAccessType=ro\nDefaultValue=" +
@@ -313,7 +314,7 @@ std::vector<std::string> missing(std::string_view device_type, const std::string
 
 using Indices = std::vector<std::string>;
 
-/// A drive of these modes with the objects of every drive and some more.
+/// Makes a drive with these modes, with the objects of every drive and with the objects in `more`.
 std::string drive(std::string_view modes, std::initializer_list<std::string_view> more = {}) {
   std::string text = entry("6502", "7", modes);
   for (const auto index : {"6040", "6041", "6060", "6061"}) text += entry(index, "6", "0");
@@ -356,7 +357,7 @@ TEST(Check, AdvisesADriveToTellItsModesAndToTakeTheCycle) {
 }
 
 TEST(Check, LooksAtEachModuleOfADeviceOfSeveral) {
-  EXPECT_EQ(missing("0xFFFF0192"), Indices{});  // what is where cannot be known
+  EXPECT_EQ(missing("0xFFFF0192"), Indices{});  // the objects of each module are not known
   EXPECT_EQ(missing("0xFFFF0192", entry("67FF", "7", "0x00020192") +
                                       entry("6FFF", "7", "0x00010191") + drive("0x08", {"6071"})),
             (Indices{"6800"}));
@@ -377,7 +378,7 @@ TEST(Check, ComparesIdentityAndMandatoryObjects) {
   const auto other = read_eds("[DeviceInfo]\nVendorNumber=2\n" + entry("1018sub1", "7", "3"), "t");
   EXPECT_TRUE(has(check(other.dictionary), "identity-mismatch"));
   const auto open = read_eds("[DeviceInfo]\nVendorNumber=2\n" + entry("1018sub1", "7", "0"), "t");
-  EXPECT_FALSE(has(check(open.dictionary), "identity-mismatch"));  // 0: not given
+  EXPECT_FALSE(has(check(open.dictionary), "identity-mismatch"));  // 0 means not specified
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(ConfiguredValues, APdoIsSwitchedOffWhileItChanges) {
             "1800:01 85 01 00 40\n");
 }
 
-/// TPDO 1 whose 1A00 has these sub-objects.
+/// Makes TPDO1 whose 1A00 has these sub-objects.
 std::string mapped(const std::string& entries) {
   return record("1800", "") + sub("1800sub0", "5", "DefaultValue=1") +
          sub("1800sub1", "7", "DefaultValue=$NODEID+0x180") + record("1A00", "") + entries;

@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::device_files;
 
-/// Through reader, checks, text and JSON; the JSON must be JSON.
+/// Runs a file through the reader, the checks, and the text and JSON outputs. The JSON must be
+/// valid.
 EdsFile run(const fs::path& path, std::optional<NodeId> node) {
   auto file = read_eds_file(path, node);
   auto judged = check(file.dictionary);
@@ -25,7 +26,7 @@ EdsFile run(const fs::path& path, std::optional<NodeId> node) {
   std::ostringstream text;
   print_json(json, file.dictionary, file.findings);
   print_text(text, file.dictionary);
-  // the largest files only take time here
+  // This check would only take time for the largest files.
   const bool small = json.str().size() < 300'000;
   EXPECT_TRUE(!small || nlohmann::json::accept(json.str())) << path;
   EXPECT_TRUE(std::ranges::is_sorted(file.dictionary.objects, {}, &Object::index)) << path;
@@ -81,23 +82,23 @@ TEST(Corpus, RealFilesGoThrough) {
   for (const auto& path : files) {
     if (!run(path, 1_node).readable) ++refused;
   }
-  EXPECT_LE(refused, 1U);  // one is a remark where a file should be
+  EXPECT_LE(refused, 1U);  // one file of the corpus contains only a remark
 }
 
-/// Defaults of 1014, 1400:01, 2000, 2001:01 and 2001:02 of a small file, for node 1.
+/// The defaults of 1014, 1400:01, 2000, 2001:01 and 2001:02 in a small file, for node 1.
 struct Expected {
   const char* file;
   std::optional<std::int64_t> emcy;
   std::optional<std::int64_t> cob_id;
   std::optional<std::int64_t> single;
-  std::optional<std::int64_t> first;  ///< of two elements, both UNSIGNED16
+  std::optional<std::int64_t> first;  ///< first of two elements, both UNSIGNED16
   std::optional<std::int64_t> second;
-  const char* rule;  ///< a finding that must be there; nullptr: any or none
+  const char* rule;  ///< a required finding; nullptr means no requirement
 };
 
 constexpr std::nullopt_t none = std::nullopt;
 
-// What a careful reader should make of each file; see the corpus' list of cases.
+// The result of a careful reader for each file; see the list of cases in the corpus.
 const Expected expected[] = {
     {"000.eds", 129, 513, 5, 11, 12, nullptr},
     {"001.eds", 129, 513, 5, 11, 12, "nodeid-not-first"},
@@ -199,7 +200,7 @@ const Expected expected[] = {
     {"097.eds", 129, 513, 5, 11, 12, "default-outside-limits"},
 };
 
-/// What a case is about where that is another object.
+/// The subject of a case whose subject is another object.
 struct ExpectedElsewhere {
   const char* file;
   ObjectKey key;

@@ -25,8 +25,8 @@ struct Compared {
   unsigned parameters = 0;
 };
 
-/// A number as its type has it. A bit pattern stands for a negative number, and a negative number
-/// of an unsigned type for its pattern; what needs more bits is no value.
+/// Converts a number to its type. A bit pattern stands for a negative number, and a negative number
+/// of an unsigned type stands for its bit pattern. A number that needs more bits is no value.
 std::optional<Value> in_type(const test::PlainNumber& number, DataType type) {
   const unsigned spare = 64 - bit_width(type);
   const auto extended = static_cast<std::int64_t>(number.bits << spare) >> spare;
@@ -48,8 +48,8 @@ bool is_ascii(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-/// Limits that leave no range are left out; so may be one that is a number above a signed type, or
-/// a bit pattern of it.
+/// The limits of an object. Limits without a range between them are ignored. A limit that is too
+/// large for a signed type, and may be a bit pattern, may be ignored too.
 struct Limits {
   bool inverted = false;
   bool low_above = false;
@@ -77,7 +77,7 @@ Limits limits_of(const PlainSection& section, DataType type) {
           .high_above = above(high)};
 }
 
-/// What one file says, against what eds_parser made of it.
+/// Compares the values in one file with the result of eds_parser.
 class Judge {
  public:
   Judge(const std::filesystem::path& path, Compared& compared)
@@ -105,7 +105,8 @@ class Judge {
   }
 
  private:
-  /// Values in the section of the object itself: of a VAR, or of all entries of a compact list.
+  /// Compares the values in the section of the object itself, which belong to a VAR or to all
+  /// entries of a compact list.
   void judge_object(const std::string& name, const PlainSection& section, const Object& object) {
     const auto subs = ini_.lower_bound(name + "sub");
     if (subs != ini_.end() && subs->first.starts_with(name + "sub")) return;
@@ -117,7 +118,8 @@ class Judge {
     }
   }
 
-  /// CompactSubObj=255 would be sub 255, the types of the structure: 254 is the last entry.
+  /// The last entry of a compact list is 254. With CompactSubObj=255 the last one would be
+  /// sub-index 255, which holds the structure of the object.
   void judge_compact(const std::string& name, const PlainSection& section, std::uint16_t index,
                      std::uint64_t count) {
     const auto last = std::min<std::uint64_t>(count, 254);
@@ -132,7 +134,7 @@ class Judge {
     }
   }
 
-  /// A value of [xxxxValue] is one beside sections of sub-objects too.
+  /// A value in [xxxxValue] also counts beside sections of sub-objects.
   void judge_sub(const std::string& name, const PlainSection& section, ObjectKey key) {
     PlainSection with_value = section;
     const auto values = ini_.find(name.substr(0, 4) + "value");

@@ -24,7 +24,7 @@ struct Integer {
   const char* lowest;
   const char* below;
   const char* highest;
-  const char* pattern;  ///< of -1
+  const char* pattern;  ///< bit pattern of -1
   const char* above;    ///< the pattern
 };
 

@@ -15,7 +15,8 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>{stream}, {}};
 }
 
-/// A legal value for an object: its low limit, else 1.
+/// Returns a legal value for an object: its low limit, else 1. Returns std::nullopt if the object
+/// must not be written.
 std::optional<std::string> new_value(const SubObject& sub) {
   const bool writable = sub.access != Access::ro && sub.access != Access::constant;
   if (!writable || (sub.flags & 1) != 0) return std::nullopt;
@@ -37,7 +38,7 @@ std::vector<DcfValue> values_for(const ObjectDictionary& dictionary) {
   for (const auto& object : dictionary.objects) {
     for (const auto& sub : object.subs) {
       const ObjectKey key{object.index, sub.sub};
-      if (dictionary.find(key) != &sub) continue;  // a VAR told apart by its index alone
+      if (dictionary.find(key) != &sub) continue;  // another one has this key
       if (auto text = new_value(sub)) values.push_back({key, *std::move(text)});
     }
   }
@@ -54,8 +55,9 @@ void expect_same(const SubObject& before, const SubObject& after, const std::str
   EXPECT_EQ(before.default_text, after.default_text) << where;
 }
 
-/// The concise DCF of what was written holds each value of `before`'s objects that got one, and
-/// comes back from its bytes. PDOs are rewritten as a whole, 1010 and 1011 are commands.
+/// Checks the concise DCF of the written file: it must hold each new value of the objects of
+/// `before` and must be readable from its bytes. PDOs are rewritten as a whole; 1010 and 1011 are
+/// commands.
 void expect_concise(const ObjectDictionary& before, const EdsFile& after,
                     const std::string& where) {
   Report report{where};
@@ -73,7 +75,7 @@ void expect_concise(const ObjectDictionary& before, const EdsFile& after,
   }
 }
 
-/// Number of objects that got a value, all of which read back.
+/// Writes values to the objects of a file, checks that all read back, and returns their number.
 std::size_t round_trip(const std::filesystem::path& path) {
   const auto source = text_of(path);
   const auto before = read_eds(source, "x.eds", 5_node);

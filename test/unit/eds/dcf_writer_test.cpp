@@ -68,7 +68,7 @@ TEST(DcfWriter, WhatAModuleBringsIsWrittenBesideWhatTheFileDescribes) {
   for (const auto* section : {"[6200]", "[6200sub0]", "[6200sub1]", "SubNumber=", "1=0x6200\n"}) {
     const auto at = dcf.text.find(section);
     ASSERT_NE(at, std::string::npos) << section;
-    const bool list = std::string_view{section}.starts_with("1=");  // [M1SubExtends] has it, too
+    const bool list = std::string_view{section}.starts_with("1=");  // also in [M1SubExtends]
     EXPECT_EQ(dcf.text.find(section, at + 1) == std::string::npos, !list) << section << dcf.text;
   }
   const auto after = read_eds(dcf.text, "io.dcf");

@@ -6,18 +6,19 @@
 
 namespace takt::test {
 
-/// Written by us, without a fault.
+/// Returns the folder of our own device files without faults.
 inline std::filesystem::path own_eds_files() { return TAKT_SOURCE_DIR "/share/eds"; }
-/// Written by us, with faults as vendors make them.
+/// Returns the folder of our own device files with faults that vendors typically make.
 inline std::filesystem::path nasty_eds_files() { return TAKT_SOURCE_DIR "/test/unit/eds/data"; }
-/// Files of real devices: $TAKT_CORPUS, else a folder beside the source tree. May be missing.
+/// Returns the folder with files of real devices: $TAKT_CORPUS, else a folder beside the source
+/// tree. The folder may be missing.
 inline std::filesystem::path eds_corpus() {
   const char* given = std::getenv("TAKT_CORPUS");
   return given != nullptr ? std::filesystem::path{given}
                           : std::filesystem::path{TAKT_SOURCE_DIR} / "../shared/eds";
 }
 
-/// All EDS and DCF files below a folder, in order of their names.
+/// Returns all EDS and DCF files below a folder, sorted by name.
 inline std::vector<std::filesystem::path> device_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;

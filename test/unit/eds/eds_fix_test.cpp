@@ -18,7 +18,7 @@ bool has(const Findings& findings, std::string_view rule) {
   return std::ranges::find(findings, rule, &Finding::rule) != findings.end();
 }
 
-/// A list of manufacturer objects and what is behind it.
+/// Makes an EDS with a list of manufacturer objects, followed by `objects`.
 std::string with_objects(const std::string& list, const std::string& objects) {
   return std::string{test::base} + "\n[ManufacturerObjects]\n" + list + objects;
 }
@@ -30,7 +30,7 @@ std::string object(const std::string& index, const std::string& more) {
 struct Case {
   std::string rule;
   std::string before;
-  std::string becomes;  ///< part of the mended text
+  std::string becomes;  ///< part of the repaired text
 };
 
 std::string value_case(const std::string& more) {

@@ -139,7 +139,7 @@ TEST(Eds, DropsLimitsThatAreInverted) {
   EXPECT_FALSE(has_error(file.findings));
 }
 
-/// The limits of a VAR of the type: "low..high", `-` for none.
+/// Returns the limits of a VAR of the type as "low..high", with `-` for no limit.
 std::string limits(const std::string& type, const std::string& value, const std::string& keys) {
   const auto file = read(var(type, value) + keys);
   const auto* sub = file.dictionary.find(ObjectKey{0x2000, 0});

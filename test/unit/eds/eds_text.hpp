@@ -8,7 +8,7 @@
 
 namespace takt::test {
 
-/// The headers and mandatory objects of a device without a fault; objects of a test go behind.
+/// The headers and mandatory objects of a device without faults. Tests append their objects.
 inline constexpr std::string_view base = R"([FileInfo]
 FileName=t.eds
 [DeviceInfo]
@@ -53,13 +53,13 @@ AccessType=ro
 DefaultValue=0x15A
 )";
 
-/// Reads `base` and the objects of the test, as node 5; they are listed by [OptionalObjects] and
-/// [ManufacturerObjects] of the test, or the finding "object-not-listed" tells.
+/// Reads `base` and the objects of the test as node 5. The test has to list its objects in
+/// [OptionalObjects] and [ManufacturerObjects]; otherwise there is the finding "object-not-listed".
 inline EdsFile read(std::string_view objects, std::optional<NodeId> node = 5_node) {
   return read_eds(std::string{base} + std::string{objects}, "t.eds", node);
 }
 
-/// Line, in the text that read() makes, of line `line` (from 1) of the test's own part.
+/// Converts a line (from 1) of the test's own part to the line in the text that read() makes.
 inline std::uint32_t line_of(std::uint32_t line) {
   return static_cast<std::uint32_t>(std::ranges::count(base, '\n')) + line;
 }
@@ -73,14 +73,14 @@ inline bool has(const Findings& findings, std::string_view rule) {
   return find(findings, rule) != nullptr;
 }
 
-/// Default value of an object as an integer; none where it has none.
+/// Returns the default value of an object as an integer; empty if there is none.
 inline std::optional<std::int64_t> integer(const EdsFile& file, ObjectKey key) {
   const auto* sub = file.dictionary.find(key);
   if (sub == nullptr || !sub->value()) return std::nullopt;
   return as_integer(*sub->value());
 }
 
-/// One VAR 2000 with the given type and default.
+/// Makes the object 2000, a VAR with the given type and default value.
 inline std::string var(std::string_view type, std::string_view value) {
   return "[2000]\nParameterName=x\nAccessType=rw\nDataType=" + std::string{type} +
          "\nDefaultValue=" + std::string{value} + "\n";

@@ -11,7 +11,7 @@ using test::has;
 using test::line_of;
 using test::read;
 
-/// Where the key of line `line` of the test's own part is told as unknown; false: nowhere.
+/// True if the key in line `line` of the test's own part is reported as unknown.
 bool unknown_key(const EdsFile& file, std::uint32_t line) {
   return std::ranges::any_of(file.findings, [line](const Finding& finding) {
     return finding.rule == "unknown-key" && finding.pos == SourcePos{line_of(line), 1} &&

@@ -15,7 +15,7 @@ std::string repeated(std::string_view piece, std::size_t bytes) {
   return text;
 }
 
-/// Reads and judges a text; the report must stay small whatever the text is.
+/// Reads and checks a text. The report must stay small for any text.
 EdsFile survive(const std::string& text) {
   auto file = read_eds(text, "hostile.eds", 5_node);
   EXPECT_LT(file.findings.size(), 20'000U);

@@ -7,7 +7,7 @@
 namespace takt {
 namespace {
 
-/// Value for node 5, as the fact sheet lists it.
+/// Returns the value for node 5, as listed in the fact sheet.
 std::int64_t at_node_5(std::string_view text) {
   const auto number = parse_number(text);
   if (!number) return -999;
@@ -53,7 +53,7 @@ TEST(Number, SaysWhatWasUnusual) {
   EXPECT_TRUE(parse_number("5.0")->has(NumberQuirk::fraction));
   EXPECT_EQ(at_node_5("1F"), 0x1F);
   EXPECT_TRUE(parse_number("1F")->has(NumberQuirk::hex_without_prefix));
-  EXPECT_EQ(at_node_5("0B12"), 0xB12);  // no binary number
+  EXPECT_EQ(at_node_5("0B12"), 0xB12);  // not a binary number
   EXPECT_TRUE(parse_number("250 ; 25ms")->has(NumberQuirk::comment));
 }
 

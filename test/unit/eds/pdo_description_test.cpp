@@ -78,7 +78,7 @@ TEST(PdoDescription, LetsSub0DecideHowManyEntriesAreActive) {
   EXPECT_EQ(first(tpdo("0x181", "1")).bits, 16U);
   EXPECT_EQ(first(tpdo("0x181", "3")).bits, 56U);
   EXPECT_EQ(first(tpdo("0x181", "0xFE")).mapping.size(), 0U);
-  EXPECT_EQ(first(tpdo("0x181", "")).mapping.size(), 3U);  // count not said: all described
+  EXPECT_EQ(first(tpdo("0x181", "")).mapping.size(), 3U);  // no count: all are described
 }
 
 TEST(PdoDescription, NeedsACommunicationRecord) {

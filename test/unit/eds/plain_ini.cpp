@@ -24,7 +24,8 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// The whole text, or nothing.
+/// Converts the whole text to a number. Returns std::nullopt if a part of the text does not belong
+/// to the number.
 template <class Number>
 std::optional<Number> whole(std::string_view text, int base) {
   Number number{};
@@ -42,7 +43,7 @@ std::optional<std::uint64_t> magnitude(std::string_view text) {
   return whole<std::uint64_t>(text, octal ? 8 : 10);
 }
 
-/// UTF-16 too, as far as it is ASCII.
+/// Reads a file. UTF-16 is supported as far as the characters are ASCII.
 std::string text_of_file(const std::filesystem::path& path) {
   std::ifstream in{path, std::ios::binary};
   std::string text{std::istreambuf_iterator<char>{in}, {}};

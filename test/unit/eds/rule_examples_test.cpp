@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-/// What the text of an example is: objects behind those of a good device, or a file of its own.
+/// Kind of the text of an example: objects to append to a good device, or a complete file.
 enum class Kind : std::uint8_t { objects, whole, dcf };
 
 struct Example {
@@ -255,7 +255,7 @@ TEST(RuleExamples, EachBreaksItsRuleWithTheUsualSeverity) {
   }
 }
 
-/// The entries `Key=value` that the rule list shows are those of the file here.
+/// The entries `Key=value` in the rule list must be those of the examples in this file.
 TEST(RuleExamples, HoldTheEntriesThatTheRuleListShows) {
   for (const auto& example : examples()) {
     const auto rule = std::ranges::find(eds_rules(), example.rule, &RuleInfo::name);
@@ -273,7 +273,7 @@ TEST(RuleExamples, HoldTheEntriesThatTheRuleListShows) {
 TEST(RuleExamples, EveryRuleHasOne) {
   const auto all = examples();
   for (const auto& rule : eds_rules()) {
-    if (rule.name == "file-unreadable") continue;  // no text can break it
+    if (rule.name == "file-unreadable") continue;  // no text can break this rule
     EXPECT_EQ(std::ranges::count(all, rule.name, &Example::rule), 1) << rule.name;
   }
 }

@@ -6,8 +6,8 @@
 namespace takt {
 namespace {
 
-/// Where a rule speaks: `line` counts from the first line of `text`, 0 stands for a file
-/// that cannot be read.
+/// The place of a finding: `line` counts from the first line of `text`; 0 stands for a file that
+/// can't be read.
 struct Place {
   std::string_view rule;
   std::uint32_t line;
@@ -20,7 +20,7 @@ constexpr auto note = Severity::note;
 constexpr auto warning = Severity::warning;
 constexpr auto error = Severity::error;
 
-/// A first line that none of the rules is about, the section and its entries.
+/// Makes a section with its entries after a first line to which no rule applies.
 std::string section(const std::string& name, const std::string& entries) {
   return ";\n[" + name + "]\nParameterName=x\nAccessType=rw\n" + entries;
 }

@@ -13,7 +13,7 @@ using test::integer;
 using test::line_of;
 using test::read;
 
-/// A RECORD 2000 whose sub 1 has the value 7 and a section header of the test.
+/// Reads a RECORD 2000 whose sub-index 1 has the value 7 and the section header of the test.
 EdsFile record_with(const std::string& header) {
   return read(
       "[2000]\nParameterName=r\nObjectType=9\nSubNumber=2\n"
@@ -71,7 +71,7 @@ std::string entry(const std::string& section, unsigned value) {
          "\n";
 }
 
-/// A RECORD with sub-objects of these names, the value of each is its place.
+/// Makes a RECORD with sub-objects of these names; the value of each is its position.
 std::string record_of(const std::string& index, const std::vector<std::string>& subs) {
   std::string text = "[" + index +
                      "]\nParameterName=r\nObjectType=9\nSubNumber=" + std::to_string(subs.size()) +

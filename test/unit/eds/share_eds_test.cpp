@@ -6,7 +6,8 @@
 namespace takt {
 namespace {
 
-/// 0x640 and 0x5C0 + node id, as its manual has them.
+/// True for the findings about 0x640 and 0x5C0 plus node-ID, which are as in the manual of the
+/// Lenze.
 bool is_second_channel_of_a_lenze(const Finding& finding) {
   return finding.file.ends_with("lenze8400.eds") && finding.rule == "cob-id-restricted" &&
          finding.severity == Severity::warning && finding.message.starts_with("1201sub");

@@ -12,7 +12,7 @@ namespace {
 bool never(std::string_view) { return false; }
 bool is_section(std::string_view line) { return line.starts_with('['); }
 
-/// Takes the front of `text` up to and with its next LF.
+/// Removes the first line of `text` including its LF and returns it.
 std::string_view next_line(std::string_view& text) {
   const std::string_view line = text.substr(0, std::min(text.find('\n'), text.size() - 1) + 1);
   text.remove_prefix(line.size());
@@ -26,8 +26,8 @@ std::size_t number_behind(std::string_view text, std::string_view mark) {
   return number;
 }
 
-/// As `patch --binary` does it: LF alone ends a line, every byte of the old lines has to be there.
-/// Empty where the difference cannot be applied.
+/// Applies a difference as `patch --binary` does: only LF ends a line, and every byte of the old
+/// lines has to match. Returns an empty text if the difference can't be applied.
 std::string applied(std::string_view before, std::string_view diff) {
   std::string out;
   std::size_t old_line = 1;
@@ -116,7 +116,7 @@ TEST(TextDiff, NamesALastLineWithoutEnd) {
             "--- x\n+++ y\n@@ -1 +1 @@\n-a\n" + none + "+a\n");
 }
 
-/// Where no line ends with LF, as on old Macs, `diff -u` would show the file as one line.
+/// If no line ends with LF, as on old Macs, `diff -u` would show the file as one line.
 TEST(TextDiff, CarriageReturnsAloneAreShownAsLines) {
   EXPECT_EQ(unified_diff("a\rb\r", "a\rc\r", "x", "y", never),
             "--- x\n+++ y\n@@ -1,2 +1,2 @@\n a\n-b\n+c\n");

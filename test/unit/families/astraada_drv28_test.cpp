@@ -1,4 +1,5 @@
-// Expected times after the card's manual, section 3.5: triggering modes and default settings.
+// The expected times follow the manual of the card, section 3.5: triggering modes and default
+// settings.
 #include <gtest/gtest.h>
 
 #include "test/unit/families/family_device.hpp"
@@ -180,7 +181,7 @@ TEST(AstraadaDrv28, TellsByErrorCodeWhyARequestFails) {
       {{0x02, 0, 0x0A, 0x00, 0xFF, 0xFF, 0, 0}, 3},  // P00.10 := 655.35 Hz
       {{0x02, 0, 0x02, 0x05, 1, 0, 0, 0}, 4},        // terminal 2 like terminal 1
       {{0x01, 0, 0x0D, 0x0F, 0, 0}, 6},              // six bytes
-      {{0x02, 0, 0x00, 0x11, 1, 0, 0, 0}, 7},        // P17.00 can only be read
+      {{0x02, 0, 0x00, 0x11, 1, 0, 0, 0}, 7},        // P17.00 is read-only
   };
   FamilyDevice device = drv28();
   device.start();

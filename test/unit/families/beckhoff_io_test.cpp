@@ -1,4 +1,4 @@
-// Expected times after the FC5101 user manual, page 45: PDO transmission types.
+// The expected times follow the FC5101 user manual, page 45: PDO transmission types.
 #include <gtest/gtest.h>
 
 #include "test/unit/families/family_device.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using Times = std::vector<int>;
 
-/// Inputs repeat the outputs, so that a test can set them.
+/// Terminals whose inputs repeat the outputs, so that a test can set the inputs.
 FamilyDevice terminals() { return {"beckhoff_io.eds", "beckhoff", {.quirks = {"loopback"}}}; }
 
 void outputs(FamilyDevice& device, std::uint8_t low) {
@@ -77,7 +77,7 @@ TEST(BeckhoffIo, ValuesOfRpdoTypes0To240AreValidAtTheNextSync) {
 TEST(BeckhoffIo, OutputsTakeTheirErrorStateWhereSyncStaysAway) {
   FamilyDevice device = terminals();
   device.write({0x1006, 0}, 5000, 4);
-  device.write({0x6206, 1}, 0x0F, 1);  // the upper four keep their state
+  device.write({0x6206, 1}, 0x0F, 1);  // the upper four outputs keep their state
   device.write({0x6207, 1}, 0x03, 1);
   device.start();
   device.at(5);

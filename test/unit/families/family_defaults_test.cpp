@@ -1,4 +1,4 @@
-// Each family as it is delivered: values after power-on with the EDS of share/eds.
+// The factory settings of each family: values after power-on with the EDS of share/eds.
 #include <gtest/gtest.h>
 #include <optional>
 
@@ -7,7 +7,7 @@
 namespace takt::sim {
 namespace {
 
-/// Empty: there is no such object.
+/// Returns the value of an object; empty if there is no such object.
 std::optional<std::uint64_t> value(FamilyDevice& device, ObjectKey key) {
   const Object* object = device.device().objects().find(key);
   if (object == nullptr) return std::nullopt;
@@ -24,7 +24,7 @@ void has(FamilyDevice& device, const std::vector<Default>& defaults) {
     EXPECT_EQ(value(device, one.key), one.value) << to_string(one.key);
 }
 
-/// Its table 3-12. Node 5.
+/// Table 3-12 of the manual, for node 5.
 TEST(FamilyDefaults, OfADrv28AreThoseOfItsTable) {
   FamilyDevice device{"astraada_drv28.eds", "astraada_drv28"};
   has(device, {{{0x1800, 2}, 255}, {{0x1801, 2}, 254}, {{0x1802, 2}, 254}, {{0x1803, 2}, 254}});
@@ -34,7 +34,7 @@ TEST(FamilyDefaults, OfADrv28AreThoseOfItsTable) {
   has(device, {{{0x1800, 1}, 0x185}, {{0x1801, 1}, 0x285}, {{0x1802, 1}, 0x385}});
 }
 
-/// C00367 and C00368 are 0x80; two pairs of PDOs are on, by event, and two SDO servers.
+/// C00367 and C00368 are 0x80; two pairs of event-driven PDOs and two SDO servers are enabled.
 TEST(FamilyDefaults, OfALenzeAreOneSyncIdentifierTwoPairsOfPdosAndTwoSdoServers) {
   FamilyDevice device{"lenze8400.eds", "lenze8400"};
   has(device, {{{0x1005, 0}, 0x80}, {{0x5E90, 0}, 0x80}, {{0x5E8F, 0}, 0x80}});
@@ -75,7 +75,7 @@ TEST(FamilyAborts, OfTerminalsAreThoseOfReservedTypesAndMissingObjects) {
   EXPECT_EQ(device.read({0x1802, 1}), 0x0602'0000U);
 }
 
-/// Each error of the parameter channel leaves the value as it was.
+/// An error of the parameter channel does not change the value.
 TEST(FamilyAborts, OfTheParameterChannelChangeNothing) {
   FamilyDevice device{"astraada_drv28.eds", "astraada_drv28"};
   device.start();

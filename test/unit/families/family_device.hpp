@@ -16,7 +16,8 @@ struct Variant {
   std::vector<std::string> quirks{};
 };
 
-/// Node 5 of a family, made from its EDS and stepped by hand. Times count from start(), in ms.
+/// Node 5 of a device family, built from its EDS and stepped by hand. Times are in ms after
+/// start().
 class FamilyDevice {
  public:
   FamilyDevice(const std::string& eds, const std::string& model, const Variant& variant = {})
@@ -28,7 +29,8 @@ class FamilyDevice {
 
   Device& device() { return *device_; }
 
-  /// Expedited download while the device is PRE-OPERATIONAL; its abort code, 0 = taken.
+  /// Makes an expedited download while the device is PRE-OPERATIONAL and returns its abort code; 0
+  /// means success.
   std::uint32_t write(ObjectKey key, std::uint32_t value, unsigned bytes) {
     Frame request{.id = CobId::base(0x605), .length = 8};
     request.data = {static_cast<std::uint8_t>(0x23 | (4 - bytes) << 2),
@@ -41,7 +43,7 @@ class FamilyDevice {
                     static_cast<std::uint8_t>(value >> 24)};
     return transfer(request);
   }
-  /// The abort code of an upload, 0 = answered.
+  /// Makes an upload and returns its abort code; 0 means success.
   std::uint32_t read(ObjectKey key) {
     return transfer(make_frame(CobId::base(0x605),
                                {0x40, static_cast<std::uint8_t>(key.index & 0xFF),
@@ -53,7 +55,7 @@ class FamilyDevice {
     t0_ = now_;
     receive(make_frame(CobId::base(0), {1, 5}));
   }
-  /// Lets time pass until so many ms after start().
+  /// Lets time pass until `ms` after start().
   void at(int ms) { run(t0_ + std::chrono::milliseconds{ms}); }
   void receive(const Frame& frame) {
     device_->on_frame(frame, now_);
@@ -65,7 +67,7 @@ class FamilyDevice {
     frame.rtr = true;
     receive(frame);
   }
-  /// Four words little endian, as an RPDO.
+  /// Sends four little-endian words as an RPDO.
   void words(std::uint32_t id, std::array<std::uint16_t, 4> values) {
     Frame frame{.id = CobId::base(id), .length = 8};
     for (std::size_t i = 0; i < 8; ++i) {
@@ -74,7 +76,7 @@ class FamilyDevice {
     receive(frame);
   }
 
-  /// When frames of this identifier were sent, in ms after start().
+  /// Returns the times of frames with this identifier in ms after start().
   std::vector<int> times(std::uint32_t id) const {
     std::vector<int> found;
     for (const auto& [when, frame] : frames_) {

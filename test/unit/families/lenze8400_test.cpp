@@ -1,4 +1,4 @@
-// Expected times after the 8400 HighLine reference manual, 11.8.3: transmission type.
+// The expected times follow the 8400 HighLine reference manual, 11.8.3: transmission type.
 #include <gtest/gtest.h>
 
 #include "test/unit/families/family_device.hpp"
@@ -17,7 +17,7 @@ TEST(Lenze8400, Type0IsSentAfterSyncAndOnlyAfterAnEvent) {
   device.write({0x1800, 2}, 0, 1);
   device.start();
   device.at(5);
-  device.sync();  // tells its state once
+  device.sync();  // the drive sends its state once
   device.clear();
 
   device.at(10);
@@ -31,7 +31,7 @@ TEST(Lenze8400, Type0IsSentAfterSyncAndOnlyAfterAnEvent) {
   device.at(31);
   device.words(0x205, {0, 0, 2, 0});
   device.at(32);
-  device.words(0x205, {0, 0, 1, 0});  // back again: a bit has changed all the same
+  device.words(0x205, {0, 0, 1, 0});  // back again; a bit has still changed
   device.at(40);
   device.sync();
 
@@ -49,7 +49,7 @@ TEST(Lenze8400, AnElapsedCycleTimeIsAnEventOfType0) {
     device.sync();
   }
 
-  EXPECT_EQ(device.times(0x185), (Times{10, 30, 50, 80, 100}));  // over at 25, 50, 75, 100
+  EXPECT_EQ(device.times(0x185), (Times{10, 30, 50, 80, 100}));  // expiry at 25, 50, 75, 100
 }
 
 TEST(Lenze8400, Types254And255MeanTheSameAndTheCycleComesOnTop) {
@@ -114,7 +114,7 @@ TEST(Lenze8400, RefusesReservedTypesAnd29BitIdentifiers) {
   EXPECT_EQ(device.read({0x1800, 4}), 0x06090011u);
 }
 
-/// Type 1, SYNC every 20 ms by the drive itself.
+/// A drive with a TPDO of type 1 that produces SYNC every 20 ms.
 FamilyDevice producer(const std::string& firmware) {
   FamilyDevice device = lenze(firmware);
   device.write({0x1800, 2}, 1, 1);
@@ -141,7 +141,7 @@ TEST(Lenze8400, DoesNotObeyItsOwnSyncBeforeFirmware16) {
   EXPECT_EQ(device.times(0x185), Times{});
 }
 
-/// The word that RPDO1 of type 1 brings at 30 ms, as it comes back.
+/// Returns the low byte that the drive echoes at 100 ms after an RPDO1 of type 1 at 30 ms.
 std::uint8_t echoed_by(FamilyDevice device) {
   device.write({0x1400, 2}, 1, 1);
   device.start();
@@ -183,7 +183,8 @@ TEST(Lenze8400, AnswersOnItsSecondParameterChannelToo) {
   EXPECT_TRUE(device.of(0x585).empty());
 }
 
-/// Its page on 0x1201: off by bit 31 first, then another identifier; bits 11 to 29 are 0.
+/// The manual on 0x1201: disable the channel with bit 31 first, then write another identifier; bits
+/// 11 to 29 are 0.
 TEST(Lenze8400, MovesItsSecondChannelOnlyWhileThatIsOff) {
   FamilyDevice device = lenze();
 

@@ -1,4 +1,4 @@
-// Expected times after the ars-informatica page on TPDO communication parameters, and the
+// The expected times follow the ars-informatica page on TPDO communication parameters and the
 // reference timelines of CiA 301.
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// Of a line as `candump -L -e can0` writes it.
+/// Returns the text of an error frame in a line from `candump -L -e can0`.
 std::string read(const char* text) {
   const auto line = parse_candump(text);
   if (!line || !line->error_frame) return "no error frame";

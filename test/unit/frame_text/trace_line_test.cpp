@@ -104,7 +104,7 @@ TEST(RecordedLines, TakeTheNumbersOfAVectorLogAsItsHeadSays) {
   EXPECT_EQ(lines.parse("2.5 1  1793  Rx  d 1 00")->stamp, "2.5");
 }
 
-// Whatever has a time is counted, also what is no frame.
+// The time of every line counts, even if the line is not a frame.
 TEST(RecordedLines, AddUpTheRelativeTimesOfAVectorLog) {
   RecordedLines lines;
   lines.parse("base hex  timestamps relative");

@@ -3,7 +3,8 @@
 
 namespace takt::test {
 
-/// Node 5 with statusword in, controlword (u16) and target (i32) out; node 6 with one u8 out.
+/// A plan with node 5, which has the input statusword and the outputs controlword (u16) and target
+/// (i32), and node 6, which has one u8 output.
 inline BusPlan a_plan() {
   BusPlan plan;
   plan.name = "lift";

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A whole master with devices in virtual time behind a gateway, one client.
+/// A complete master with devices in virtual time behind a gateway with one client.
 class GatewayRig {
  public:
   explicit GatewayRig(BusPlan plan, RigOptions options = {})
@@ -39,7 +39,7 @@ class GatewayRig {
     for (Reply reply; rig.master->take(reply);) gateway.take(reply);
     for (std::size_t i = before; i < rig.events.size(); ++i) gateway.hear(rig.events[i]);
   }
-  /// The next line, or what came instead of it.
+  /// Returns the next line, or a text that tells what came instead.
   std::string next_line() {
     for (int i = 0; i < 20'000 && said.empty(); ++i) cycle();
     if (said.empty()) return "(nothing)";
@@ -69,7 +69,7 @@ void harm(GatewayRig& rig, const std::string& words) {
                       .emcy_code = static_cast<std::uint16_t>(std::stoul(code, nullptr, 16))});
 }
 
-/// Plays a dialogue that was written down by hand.
+/// Plays a hand-written dialogue.
 void play(const std::string& name, GatewayRig& rig) {
   std::ifstream file{TAKT_SOURCE_DIR "/test/unit/gateway/dialogues/" + name};
   ASSERT_TRUE(file) << name;

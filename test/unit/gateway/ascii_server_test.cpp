@@ -202,7 +202,7 @@ TEST_F(AsciiServerTest, ReadsWhatWaitedBeforeItCountsAsSilent) {
   listen();
   const FileDescriptor client = connect();
   write(client, "[1] help\n");
-  clock.pass(std::chrono::seconds{10});  // nobody served it meanwhile
+  clock.pass(std::chrono::seconds{10});  // the server did not run in this time
   while (lines.empty()) serve();
   server->serve();
   EXPECT_TRUE(gone.empty());
@@ -267,7 +267,7 @@ TEST_F(AsciiServerTest, TakesThePlaceOfADeadDaemonOnly) {
   server.reset();
   EXPECT_FALSE(std::filesystem::exists(path_));
 
-  {  // a socket whose owner died without removing it
+  {  // The owner of this socket has died without removing the socket.
     const FileDescriptor dead{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
     const auto address = unix_address(path_);
     ASSERT_EQ(::bind(dead.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);

@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-/// One of three parts, with a node of its own.
+/// Makes one of three parts of a status; each part has its own node.
 status_t part(std::int16_t number, std::int64_t cycle) {
   status_t message{};
   message.session = 1;

@@ -58,8 +58,8 @@ TEST(ChannelPattern, RefusesWhatLcmProgramsDoNotSend) {
   EXPECT_FALSE(ChannelPattern::parse(std::string(ChannelPattern::longest + 1, 'a')));
 }
 
-// A matcher that backtracks would not come to an end here, nor would one that builds a
-// deterministic automaton: the positions before the end of the name are 2^n states there.
+// A matcher with backtracking would not finish here. Neither would a deterministic automaton, which
+// needs 2^n states for the positions before the end of the name.
 TEST(ChannelPattern, EvilPatternsCostNoMoreThanTheirLengthTimesThatOfTheName) {
   const std::string many_a(60, 'a');
   EXPECT_FALSE(matches("(a*)*(a*)*(a*)*(a|aa)*b", many_a));

@@ -34,7 +34,7 @@ class FakeLcm final : public Transport {
   std::vector<std::string>& patterns_;
 };
 
-/// What a program hears that checks images.
+/// The messages that reach a program that checks images.
 class CheckedTransportTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -52,7 +52,7 @@ class CheckedTransportTest : public testing::Test {
     const Bytes envelope = by.seal(channel, message, 42, now);
     return {envelope.begin(), envelope.end()};
   }
-  /// Values of the messages that are heard when this one comes.
+  /// Returns channel and first byte of the messages that are delivered when this one arrives.
   std::string heard(const std::string& channel, const Octets& data) {
     arriving.emplace_back(channel, data);
     std::string all;

@@ -10,9 +10,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time work = 100us;  // what each answer and each event costs here
+constexpr Time work = 100us;  // cost of each answer and each event
 
-/// The time of a rig and the work of the front thread, which takes no time by itself there.
+/// The time of a rig plus the work of the front thread, which takes no time in the rig itself.
 class WorkClocks final : public Clocks {
  public:
   explicit WorkClocks(const test::Rig& rig) : rig_{rig} {}
@@ -25,7 +25,7 @@ class WorkClocks final : public Clocks {
   const test::Rig& rig_;
 };
 
-/// Hands over requests. To publish an answer is work.
+/// A transport that hands over requests. Each published answer costs work.
 class SlowTransport final : public Transport {
  public:
   explicit SlowTransport(WorkClocks& clocks) : clocks_{clocks} {}
@@ -56,7 +56,7 @@ class SlowTransport final : public Transport {
   std::vector<std::byte> buffer_;
 };
 
-/// A guest for whom each event is work.
+/// A guest for which each event costs work.
 class SlowGuest final : public FrontGuest {
  public:
   explicit SlowGuest(WorkClocks& clocks) : clocks_{clocks} {}

@@ -33,7 +33,7 @@ TEST(FrontGap, CommandsAreDiscardedAfterAShortOneAndRequestsAfterASecond) {
   EXPECT_TRUE(gap.discards_requests(3s));
 }
 
-/// What waits in the sockets of the front thread, and what it has sent.
+/// The messages that wait in the sockets of the front thread, and the messages that it has sent.
 class Waiting final : public Transport {
  public:
   bool publish(const std::string& channel, std::span<const std::byte> data) override {
@@ -101,7 +101,7 @@ class StoppedDaemon : public testing::Test {
                   told.push_back(notice.kind);
                   if (notice.kind == "fallback_begun") fallback = notice.text;
                 }};
-  std::string fallback;  // how it was told
+  std::string fallback;  // text of the fallback
 };
 
 TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
@@ -111,7 +111,7 @@ TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
 
   for (int i = 0; i < 20; ++i) lcm.arrive(bridge.channels().command, command(15));
   rig.world->advance_to(rig.world->now() +
-                        10s);  // nothing of the daemon runs, and the application dies
+                        10s);  // the daemon does not run, and the application dies
   bridge.serve();
   for (int i = 0; i < 5; ++i) cycle();
 
@@ -185,7 +185,7 @@ TEST_F(StoppedDaemon, AnswersTransfersThatWaitedOrAreOldByTheirTimeAndDoesNothin
   transfer.id = 2;
   transfer.utime = now() - 11'000'000;
   lcm.arrive(bridge.channels().transfer, transfer);
-  transfer.action = "end";  // nobody waits for an answer
+  transfer.action = "end";  // without a request for an answer
   lcm.arrive(bridge.channels().transfer, transfer);
   for (int i = 0; i < 10; ++i) cycle();
 

@@ -1,4 +1,5 @@
-// One command_t for several axes, from its bytes to the devices of a bus in virtual time.
+// One command_t for several axes, from the bytes of the message to the devices of a bus in virtual
+// time.
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Hands over what it was given.
+/// A transport that delivers one given message.
 class OneMessage final : public Transport {
  public:
   bool publish(const std::string&, std::span<const std::byte>) override { return true; }
@@ -29,7 +30,7 @@ class OneMessage final : public Transport {
   std::vector<std::byte> data;
 };
 
-/// Three axes: RPDOs of types 0, 5 and 1.
+/// A plan with three axes whose RPDOs have the types 0, 5 and 1.
 BusPlan three_axes() {
   BusPlan plan = test::axes({.nodes = 3, .rpdo_type = 0, .period = 4ms, .fallback_cycles = 0});
   plan.pdos.rpdos[1].transmission = 5;

@@ -12,13 +12,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A port of loopback that another program has, which speaks tcpq.
+/// A port on loopback that belongs to another program, which uses tcpq.
 class LcmLinkTest : public testing::Test {
  protected:
   LcmUrl url() const {
     return {.text = other->url(), .scheme = "tcpq", .address = "127.0.0.1", .port = other->port()};
   }
-  /// Does what both sides can do at once, often enough for them to meet.
+  /// Serves both sides without waiting, often enough for them to connect.
   void serve(LcmLink& link) {
     for (int i = 0; i < 100; ++i) {
       link.serve([](std::string_view, std::span<const std::byte>) {});

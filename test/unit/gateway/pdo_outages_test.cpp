@@ -19,7 +19,7 @@ class PdoOutagesTest : public testing::Test {
     }
   }
 
-  /// The text told at once; empty: none.
+  /// Returns the text that is reported at once; empty if there is none.
   std::string hear(int at_ms, EventKind kind, std::uint8_t node = 5) {
     const auto notice =
         outages_.on_event({.when = milliseconds{at_ms}, .kind = kind, .node = node, .value = 1});

@@ -22,7 +22,7 @@ TEST(PrintableText, LetsNoControlCharacterThrough) {
             "?2J");  // CSI of 8-bit terminals
   EXPECT_EQ(printable_text("a\xE2\x80\xAE"
                            "b"),
-            "a?b");  // turns the direction of writing
+            "a?b");  // reverses the direction of writing
   EXPECT_EQ(printable_text("a\xE2\x80\xA8"
                            "b"),
             "a?b");  // a line separator

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Remembers which channels were published on, in order.
+/// Records the channels of the published messages in order.
 class SentChannels final : public Transport {
  public:
   bool publish(const std::string& channel, std::span<const std::byte>) override {
@@ -50,7 +50,7 @@ TEST(PublishingOrder, NothingOfACycleGoesOutBeforeItsImage) {
   }
 }
 
-/// How many kinds of states went out. One may have several parts.
+/// Returns the number of kinds of states that were sent. A state may have several parts.
 int states(const Bridge& bridge, const SentChannels& lcm) {
   const Channels& names = bridge.channels();
   int kinds = 0;

@@ -7,7 +7,8 @@
 
 namespace takt::test {
 
-/// The port of a controller whose state changes in each cycle of 4 ms, which makes one event.
+/// The port of a CAN controller whose state changes in each cycle of 4 ms; each change makes one
+/// event.
 class RestlessPort {
  public:
   explicit RestlessPort(sim::SimPort& port) : port_{port} {}

@@ -4,7 +4,7 @@
 
 namespace takt::test {
 
-/// The clocks of a rig's virtual time, which is its wall clock as well.
+/// The clocks of a rig. The virtual time is also the wall clock.
 class RigClocks final : public Clocks {
  public:
   explicit RigClocks(const Rig& rig) : rig_{rig} {}

@@ -25,7 +25,7 @@ class HandClocks final : public Clocks {
   Time now_ = 100s;
 };
 
-/// Brings what a test puts into it.
+/// A transport that delivers the messages of a test.
 class FakeLcm final : public Transport {
  public:
   bool publish(const std::string& channel, std::span<const std::byte> data) override {

@@ -18,7 +18,7 @@ using Octets = std::vector<std::byte>;
 
 const MessageHandler ignore = [](std::string_view, std::span<const std::byte>) {};
 
-/// A program that speaks tcpq by hand.
+/// A client that uses tcpq with hand-made bytes.
 class Peer {
  public:
   explicit Peer(std::uint16_t port) : socket_{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)} {
@@ -49,7 +49,7 @@ class Peer {
   void send(std::span<const std::byte> bytes) {
     static_cast<void>(::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL));
   }
-  /// Channels of what has come so far.
+  /// Returns the number of messages received so far.
   std::size_t heard() {
     std::byte chunk[4096];
     for (ssize_t size = 1; size > 0;) {
@@ -74,7 +74,7 @@ class TcpqLimits : public testing::Test {
                0, {.clock = clock, .say = [this](const std::string& s) { told.push_back(s); }})
         .value();
   }
-  /// What was sent is there at once on loopback, or a moment later.
+  /// Serves until `done` returns true. On loopback, data arrives at once or a moment later.
   template <class F>
   bool serve_until(TcpqBroker& broker, F done) {
     for (int rounds = 0; rounds < 6000; ++rounds) {
@@ -231,7 +231,7 @@ TEST_F(TcpqLimits, SixtyFourSilentConnectionsLockNobodyOut) {
   EXPECT_EQ(broker->clients(), 64U);
 }
 
-/// As many connections as there are places, which have subscribed.
+/// A broker with the maximum number of connections; all have subscribed.
 class FullHouse : public TcpqLimits {
  protected:
   FullHouse() : broker{make(0us)} {

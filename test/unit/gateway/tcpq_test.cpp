@@ -22,7 +22,8 @@ Octets octets(std::initializer_list<int> values) {
   return bytes;
 }
 
-// What LCM's own client sends: magic 287617FB, version 0100, subscribe "AB", publish "C" 1 byte.
+// The bytes that LCM's own client sends: magic 287617FB, version 0100, subscribe "AB", publish "C"
+// 1 byte.
 const Octets opening = octets({0x28, 0x76, 0x17, 0xFB, 0, 0, 1, 0});
 const Octets subscribe_ab = octets({0, 0, 0, 2, 0, 0, 0, 2, 'A', 'B'});
 const Octets publish_c = octets({0, 0, 0, 1, 0, 0, 0, 1, 'C', 0, 0, 0, 1, 0x55});
@@ -91,7 +92,7 @@ TEST(TcpqParser, RefusesOtherProtocolsAndHugeSizes) {
   EXPECT_TRUE(data.broken());
 }
 
-// Serves all ends until `done`, at most as long as bytes can still be under way.
+// Serves all ends until `done` returns true, at most as long as bytes can still be in transit.
 template <class F>
 bool serve_until(std::vector<Transport*> ends, const MessageHandler& handler, F done) {
   for (int rounds = 0; rounds < 2000; ++rounds) {
@@ -126,7 +127,7 @@ TEST(TcpqBroker, CarriesMessagesFromItsOwnerToClientsAndBack) {
   EXPECT_EQ(heard, (std::vector<std::string>{"UP:3", "DOWN_1:3"}));
 }
 
-/// A server that listens, and answers when it is told to.
+/// A server that listens and answers only when the test calls it.
 class SlowServer {
  public:
   SlowServer() : listener_{::socket(AF_INET, SOCK_STREAM, 0)} {
@@ -146,7 +147,7 @@ class SlowServer {
     const Octets magic = octets({0x28, 0x76, 0x17, 0xFA, 0, 0, 1, 0});
     EXPECT_EQ(::send(client_.get(), magic.data(), magic.size(), 0), 8);
   }
-  /// Channels of what has come so far, "subscribe AB" or "publish C".
+  /// Returns the messages received so far as "subscribe AB" or "publish C".
   const std::vector<std::string>& heard() {
     std::byte chunk[4096];
     const ssize_t size = ::recv(client_.get(), chunk, sizeof chunk, MSG_DONTWAIT);
@@ -205,7 +206,7 @@ TEST(TcpqBroker, RelaysBetweenClients) {
   ASSERT_TRUE(serve_until({broker.get(), &one, &two}, handler,
                           [&] { return one.connected() && two.connected(); }));
 
-  // two's subscription is on its way: repeat until it counts.
+  // The subscription of `two` is in transit, so repeat until it takes effect.
   EXPECT_TRUE(serve_until({broker.get(), &one, &two}, handler, [&] {
     one.publish("X", Octets(1));
     return heard > 0;

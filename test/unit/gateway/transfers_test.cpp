@@ -43,7 +43,7 @@ class TransfersTest : public testing::Test {
     transfers.take(out, now);
     on_time();
   }
-  /// As many steps as there are.
+  /// Runs all steps that are due.
   void on_time() { EXPECT_FALSE(transfers.on_time(now, TimeBudget{clock, 1s})); }
   void reply(SdoFault fault = SdoFault::none, std::uint32_t abort_code = 0) {
     Reply answer{.id = submitted.back().id};
@@ -99,7 +99,7 @@ TEST_F(TransfersTest, PartsOutOfOrderAreAskedForAgain) {
   data(3, {4, 5});
   EXPECT_EQ(last().received, 0);
   data(0, {1, 2, 3});
-  data(0, {1, 2, 3});  // twice
+  data(0, {1, 2, 3});  // the same data twice
   EXPECT_EQ(last().received, 3);
   data(3, {4, 5, 6});  // more than was announced
   EXPECT_EQ(last().received, 3);

@@ -43,7 +43,7 @@ Signal signal(const std::string& name, DataType type, std::uint8_t bits, bool ou
   return made;
 }
 
-/// One node with a word and a scaled position each way.
+/// A plan with one node that has a word and a scaled position in each direction.
 BusPlan lift() {
   BusPlan plan;
   plan.name = "lift";
@@ -77,7 +77,8 @@ std::vector<std::byte> bytes_of(std::string_view hex) {
   return bytes;
 }
 
-// Of the code that lcm-gen makes for Python of `takt export lcm`'s types of lift().
+// Bytes from the Python code that lcm-gen makes of the types that `takt export lcm` writes for
+// lift().
 constexpr std::string_view state_bytes =
     "3423209e0eb8892900000000000f4df800000000002dc6c0000000000000004d000000000000000c0100001237c010"
     "000000000000";
@@ -87,7 +88,7 @@ constexpr std::string_view command_bytes =
 constexpr std::string_view nan_command_bytes =
     "d3e78fee360a75cc0000000000000009000000000000004d0102030405060708000000036d6500000000000000000c"
     "00000005000000000f7ff8000000000000";
-// Of a program that was built with the types of schema 1.
+// Bytes of a program that was built with the types of schema 1.
 constexpr std::string_view old_command_bytes =
     "7856ea84513af34a0000000000000009000000000000004d000000036d6500000000000000000c000000050000000f"
     "c010000000000000";

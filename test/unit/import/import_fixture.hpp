@@ -10,7 +10,7 @@
 
 namespace takt::test {
 
-/// A folder with one device file, in which bus files are judged.
+/// A folder with one device file, in which the tests import bus files.
 class Import : public testing::Test {
  protected:
   Import() {

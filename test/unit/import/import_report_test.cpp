@@ -48,7 +48,7 @@ TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
   EXPECT_THAT(key(bus, "arm.sdo[2]").why, HasSubstr("meant for another object?"));
 }
 
-/// Anchors of which each holds the one before eight times.
+/// Makes anchors, each of which contains the previous one eight times.
 std::string bomb(char name, const std::string& first, bool maps) {
   std::string text = std::string{"  "} + name + "0: &" + name + "0 " + first + "\n";
   for (int level = 1; level < 20; ++level) {

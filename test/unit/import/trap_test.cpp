@@ -1,4 +1,4 @@
-// What other generators do to a bus.yml in silence does not happen here.
+// Other generators silently change some settings of a bus.yml; the import must not do this.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -34,7 +34,7 @@ class Trap : public testing::Test {
     }
     return text;
   }
-  /// Steps of the boot on an object that do `action`.
+  /// Returns the boot steps with `action` on an object.
   static std::vector<BootStep> steps(const LoadedNetwork& network, ObjectKey object,
                                      BootAction action) {
     std::vector<BootStep> found;
@@ -67,7 +67,7 @@ TEST_F(Trap, BitsOfACobIdAreNotLost) {
 
   ASSERT_EQ(errors(network), "");
   EXPECT_EQ(network.plan.pdos.tpdos.at(0).cob_id, CobId::extended(0x12345));
-  const auto on = steps(network, {0x1800, 1}, BootAction::enable_pdo);  // keeps bit 30 as it is
+  const auto on = steps(network, {0x1800, 1}, BootAction::enable_pdo);  // does not change bit 30
   ASSERT_EQ(on.size(), 1u);
   EXPECT_EQ(value(on[0]), 0x2001'2345);
 }
@@ -127,7 +127,8 @@ TEST_F(Trap, AValueInTheWrongUnitIsRefused) {
   EXPECT_THAT(errors(load("", "baudrate: 512000")), HasSubstr("CAN ends at 1000"));
 }
 
-// The tutorial of Lely: a SYNC each second, and outputs that have to be safe before the end.
+// As in the tutorial of Lely: SYNC comes every second, and the outputs have to be safe before the
+// end.
 TEST_F(Trap, AnOrderedStopHasTheTimeThatASlowCycleNeeds) {
   EXPECT_GE(load("", "sync_period: 1000000").plan.stop_timeout, std::chrono::seconds{10});
   EXPECT_EQ(load("", "sync_period: 10000").plan.stop_timeout, std::chrono::seconds{5});

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of somebody without rights, with an EDS and a folder that is shut.
+/// A folder with an EDS and a subfolder that may not be read. The tests run without root rights.
 class DeviceFolder : public testing::Test {
  protected:
   DeviceFolder() {

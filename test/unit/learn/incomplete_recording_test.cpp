@@ -1,4 +1,4 @@
-// Recordings that begin in the middle, lack frames, or leave things unsaid.
+// Recordings that begin in the middle, lack frames, or lack information.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

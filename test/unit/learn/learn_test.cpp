@@ -48,7 +48,7 @@ std::string rules(const Findings& findings) {
   return text;
 }
 
-/// All that a plan does on the bus; names and purposes of steps are left out.
+/// Returns everything that a plan does on the bus, without the names and purposes of steps.
 std::string on_the_bus(const BusPlan& plan) {
   std::ostringstream out;
   out << plan.cycle.period.count() << ' ' << int{plan.cycle.sync_overflow} << ' '
@@ -57,7 +57,8 @@ std::string on_the_bus(const BusPlan& plan) {
     out << "node " << int{node.id.value()} << ' ' << node.heartbeat_timeout.count() << ' '
         << node.guard.period.count() << '\n';
     for (const BootStep& step : node.boot_plan.steps) {
-      // Limits of commands are the master's own matter: no recording has those of the file.
+      // Limits of commands are internal to the master, so a recording does not show the limits of
+      // the file.
       if (step.action == BootAction::read_limit) continue;
       out << "  " << int(step.action) << ' ' << to_string(step.object) << ' ' << step.mask;
       for (const std::byte byte : step.value) out << ' ' << std::to_integer<int>(byte);
@@ -68,7 +69,7 @@ std::string on_the_bus(const BusPlan& plan) {
     for (const PdoRow& row : *rows) {
       out << "pdo " << row.number << ' ' << row.cob_id.id() << ' ' << int{row.transmission} << ' '
           << int{row.length};
-      if (rows == &plan.pdos.tpdos) {  // times of the master leave no trace before it sends
+      if (rows == &plan.pdos.tpdos) {  // the master's times are visible only in sent frames
         out << ' ' << row.inhibit.count() << ' ' << row.event_timer.count();
       }
       for (std::uint16_t i = 0; i < row.field_count; ++i) {
@@ -256,7 +257,7 @@ std::string syncs(const std::vector<std::string>& counters) {
   return log;
 }
 
-/// 0x1019 of a node.
+/// Makes log lines with a write to 0x1019 of a node.
 std::string counter_of(unsigned node, const std::string& overflow) {
   const std::string id = std::to_string(node);
   return "(1.0) can0 60" + id + "#2F191000" + overflow + "000000\n(1.1) can0 58" + id +

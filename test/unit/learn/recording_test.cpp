@@ -1,4 +1,4 @@
-// What lines a recording may hold, and who on the bus is a node or the master.
+// The lines that a recording may contain, and the distinction between nodes and master on the bus.
 #include "apps/learn/recording.hpp"
 
 #include <array>
@@ -186,7 +186,7 @@ TEST(Learn, ReadsADecimalVectorLog) {
   EXPECT_TRUE(bus.findings.empty()) << rules(bus.findings);
 }
 
-// Words of all formats in any order: nothing is expected but that it ends.
+// Words of all formats in random order; the only requirement is that the parser ends.
 TEST(Learn, SurvivesNoiseInTheFormsOfTraces) {
   const std::array<std::string_view, 40> words{
       "1)",  "2)",   "12",  "1",    "8",   "0",        "1060.0", "1.001",      "0601",     "581",
@@ -222,7 +222,7 @@ TEST(Learn, SurvivesNoiseInTheFormsOfTraces) {
     log += '\n';
   }
 
-  EXPECT_GT(heard(log).frames, 500u);  // those of the first interface
+  EXPECT_GT(heard(log).frames, 500u);  // frames of the first interface
 }
 
 TEST(Learn, SurvivesARecordingOfNoise) {

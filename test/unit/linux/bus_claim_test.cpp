@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-/// A bus that no other test has.
+/// A private bus for each test.
 class BusClaimTest : public testing::Test {
  protected:
   BusName bus(const std::string& name = "bus") const {

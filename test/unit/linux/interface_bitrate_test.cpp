@@ -1,4 +1,4 @@
-// What `takt lss set-bitrate --activate` finds out before it sends anything.
+// The checks of `takt lss set-bitrate --activate` before it sends the first frame.
 #include "master/linux/interface_bitrate.hpp"
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// An `ip` that writes down what it is asked for and ends as it is told to.
+/// A fake `ip` program that records its arguments and ends with a given exit code.
 class InterfaceRights : public testing::Test {
  protected:
   InterfaceRights() { ::setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1); }

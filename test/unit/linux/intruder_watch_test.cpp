@@ -12,7 +12,7 @@ const Frame rpdo = make_frame(CobId::base(0x205), {0x0F, 0x00});
 const Frame tpdo = make_frame(CobId::base(0x185), {0x37, 0x06});
 const Frame start_all = make_frame(CobId::base(0x000), {0x01, 0x00});
 
-/// SYNC, RPDO1 and TPDO1 (type 1) of node 5, the master's heartbeat as node 127.
+/// A plan with SYNC, RPDO1 and TPDO1 (type 1) of node 5, and the master's heartbeat as node 127.
 BusPlan plan_of_node_5() {
   BusPlan plan;
   plan.pdos.rpdos.push_back({.cob_id = CobId::base(0x205), .node = 5_node});
@@ -25,7 +25,7 @@ class IntruderWatchTest : public testing::Test {
   void see(const Frame& frame, Origin origin = Origin::this_machine) {
     watch_.on_frame({.frame = frame, .when = now_}, origin);
   }
-  /// The bus thread sends, the diagnostic socket hears it.
+  /// The bus thread sends a frame, and the diagnostic socket receives it.
   void send(const Frame& frame) {
     sent_->add({&frame, 1});
     see(frame);
@@ -104,7 +104,7 @@ TEST_F(IntruderWatchTest, TellsASecondSenderOfAnRpdoWithItsCobId) {
 TEST_F(IntruderWatchTest, DoesNotMistakeFramesUnderWayForIntruders) {
   events();
   const std::array<Frame, 3> batch{rpdo, rpdo, rpdo};
-  sent_->add(batch);  // counted, still in the queue of the controller
+  sent_->add(batch);  // counted, but still in the queue of the controller
 
   EXPECT_TRUE(events().empty());
   for (const Frame& frame : batch) see(frame);
@@ -119,7 +119,7 @@ TEST_F(IntruderWatchTest, StillFindsIntrudersAfterTheSocketHasLostFrames) {
     all.fill(sync_frame);
     return all;
   }();
-  sent_->add(lost);  // sent, never heard
+  sent_->add(lost);  // sent, but never received
   for (int i = 0; i < 30; ++i) {
     now_ += 100 * ms;
     EXPECT_TRUE(events().empty());

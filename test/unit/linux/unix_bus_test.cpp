@@ -17,7 +17,7 @@
 namespace takt {
 namespace {
 
-constexpr Time limit = test::patience;  // of waiting for another thread, never reached
+constexpr Time limit = test::patience;  // for another thread; never reached
 
 const Frame sync_frame = make_frame(CobId::base(0x080), {0x01});
 const Frame tpdo = make_frame(CobId::base(0x185), {1, 2, 3, 4, 5, 6, 7, 8});
@@ -51,7 +51,7 @@ template <class Condition>
 bool soon(UnixBusPort& port, Condition condition) {
   const Time until = port.now() + limit;
   std::array<StampedFrame, 8> some;
-  bool met = condition();  // asked no more often than needed: it may send
+  bool met = condition();  // called only as often as needed, because it may send
   while (!met && port.now() < until) {
     port.wait_frame(port.now() + std::chrono::milliseconds{5});
     port.receive(some);
@@ -60,7 +60,7 @@ bool soon(UnixBusPort& port, Condition condition) {
   return met;
 }
 
-/// All members are connected when each has heard from each other.
+/// Waits until all members are connected: each has received a frame of the other.
 void make_acquainted(UnixBusPort& a, UnixBusPort& b) {
   const Time until = a.now() + limit;
   std::array<StampedFrame, 8> some;
@@ -74,7 +74,7 @@ void make_acquainted(UnixBusPort& a, UnixBusPort& b) {
     b_heard |= b.receive(some) > 0;
   }
   ASSERT_TRUE(a_heard && b_heard);
-  // swallow what is still under way: a marker of each ends it
+  // Discard the frames in transit; a marker frame of each member ends them.
   const Frame marker = make_frame(CobId::base(0x7FF), {});
   a.send({&marker, 1});
   b.send({&marker, 1});
@@ -183,7 +183,8 @@ TEST_F(UnixBus, ASlowReaderLosesFramesIsToldHowManyAndBlocksNobody) {
   make_acquainted(a, slow);
   receive_all(b, 1);
 
-  // Far more than any socket buffer holds, each confirmed by b: the bus is not blocked.
+  // The member sends far more frames than any socket buffer holds, and b confirms each one, so the
+  // bus is not blocked.
   std::size_t confirmed = 0;
   std::array<Frame, 50> burst;
   burst.fill(tpdo);
@@ -257,7 +258,7 @@ TEST_F(UnixBus, WhatTheHostHasTakenArrivesAlthoughItEnds) {
   }
 }
 
-/// A tool that sends one command and ends reads nothing of what the others say meanwhile.
+/// A tool that sends one command and ends does not read the frames that others send in this time.
 TEST_F(UnixBus, WhatAMemberHasSentArrivesAlthoughItEndsWithoutReading) {
   UnixBusPort resident = port();
   for (int run = 0; run < 200; ++run) {

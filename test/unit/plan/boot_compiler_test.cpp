@@ -141,7 +141,7 @@ TEST(BootCompiler, AValueOutsideTheLimitsOfTheEdsIsAWarningAndAWordInThePlan) {
   for (const std::string section : {"[1800sub2]\n", "[6081]\n"}) {
     eds.insert(eds.find(section) + section.size(), "LowLimit=2\nHighLimit=240\n");
   }
-  eds.insert(eds.find("[1017]\n") + 7, "LowLimit=0\nHighLimit=0\n");  // an editor filled them in
+  eds.insert(eds.find("[1017]\n") + 7, "LowLimit=0\nHighLimit=0\n");  // from an EDS editor
 
   const auto net =
       compile(arm("sdo: [{index: 0x6081, value: 500}], tpdo: {1: {transmission: 254}}"), eds);
@@ -279,7 +279,7 @@ TEST(BootCompiler, AConsumerEntryOfTheNetworkFileStays) {
   EXPECT_THAT(steps(net), testing::Contains("write if differs 1016:02 0x007F012C"));
 }
 
-// As the DCFs of Sevcon have it, which would refuse bit 31.
+// The DCFs of Sevcon have such limits, which would refuse bit 31.
 TEST(BootCompiler, EmcyIsNotSwitchedOffWhereTheLimitsForbidIt) {
   const auto after_skip = [](const std::string& limits) {
     const std::string eds = test::tiny_eds() + test::entry("1014", "EMCY", 7, "rw", "0") + limits;

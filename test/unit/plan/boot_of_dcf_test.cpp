@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The tiny drive as a DCF with these values: {"[1006]", "2000"}.
+/// Makes a DCF of the tiny drive with these values, such as {"[1006]", "2000"}.
 std::string tiny_dcf(const std::vector<std::pair<std::string, std::string>>& values) {
   std::string dcf = test::tiny_eds();
   for (const auto& [section, value] : values) {

@@ -10,7 +10,7 @@
 
 namespace takt::test {
 
-/// `action object value` of every step of the first node.
+/// Returns `action object value` for every step of the first node.
 inline std::vector<std::string> steps(const Compiled& net) {
   std::vector<std::string> out;
   for (const BootStep& step : net.plan.nodes.at(0).boot_plan.steps) {
@@ -23,7 +23,7 @@ inline std::vector<std::string> steps(const Compiled& net) {
   return out;
 }
 
-/// `count` of them from one on.
+/// Returns `count` of the steps, starting at `from`.
 inline std::vector<std::string> part(const Compiled& net, std::string_view from,
                                      std::size_t count) {
   std::vector<std::string> all = steps(net);
@@ -39,7 +39,7 @@ inline const BootStep& step_at(const Compiled& net, std::string_view text) {
   return net.plan.nodes[0].boot_plan.steps[static_cast<std::size_t>(found - all.begin())];
 }
 
-/// The network file of one node, `arm` with id 5.
+/// Makes a network file with one node, `arm` with node-ID 5.
 inline std::string arm(std::string_view more = "") {
   return "master: {node_id: 127, sync_period: 10000}\narm: {node_id: 5, dcf: x, " +
          std::string{more} + "}\n";

@@ -1,4 +1,4 @@
-// What a careful colleague would ask about a network file that can be run.
+// The questions of a careful colleague about a network file that can be run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class Careful : public testing::Test {
     plan_ = std::move(network.plan);
     return told;
   }
-  /// Of one drive with these keys more.
+  /// Returns the messages for one drive with these additional keys.
   std::string of_drive(const std::string& keys, const std::string& bus = "") {
     return told_of("bus: {name: lift" + bus + "}\nmaster: {sync_period: 10000}\nnodes:\n  a: {" +
                    drive + ", node_id: 1, " + keys + "}\n");

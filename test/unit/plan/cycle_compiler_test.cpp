@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// `count` drives with a TPDO and an RPDO of 8 bytes each.
+/// Compiles a network with `count` drives; each has a TPDO and an RPDO of 8 bytes.
 Compiled drives(int count, std::string_view master) {
   std::string yaml = "master: {" + std::string{master} +
                      "}\n"
@@ -90,7 +90,8 @@ TEST(CycleCompiler, ASynchronousPdoWithoutSyncIsWarnedOf) {
 TEST(CycleCompiler, HeartbeatsGrowSlowerOnACrowdedBus) {
   EXPECT_EQ(drives(1, "sync_period: 50000").plan.nodes[0].heartbeat_timeout,
             std::chrono::milliseconds{300});
-  // 100 nodes, 65 bits each at 125 kbit/s: 52 ms of heartbeats, at most 2 % of the bus.
+  // The heartbeats of 100 nodes with 65 bits each take 52 ms at 125 kbit/s and may use at most 2 %
+  // of the bus.
   const auto slow = drives(100, "sync_period: 1000000, baudrate: 125");
   EXPECT_EQ(slow.plan.nodes[0].heartbeat_timeout, std::chrono::milliseconds{3 * 2650});
 }

@@ -8,7 +8,7 @@
 namespace takt {
 namespace {
 
-/// One node "axis" (id 5) whose TPDO1 holds the given signals one behind the other.
+/// Makes a plan with one node "axis" (node-ID 5) whose TPDO1 holds the given signals in sequence.
 BusPlan plan_of(std::vector<Signal> signals) {
   BusPlan plan;
   plan.cycle.period = std::chrono::milliseconds{2};

@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// As `takt plan --diff-devices` shows it.
+/// Returns the difference as `takt plan --diff-devices` shows it.
 std::string diff(const std::string& edits, const std::string& rest = "") {
   const std::string yaml =
       "master: {node_id: 127, heartbeat_producer: 101}\narm: {node_id: 5, dcf: x" + rest + "}\n";

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr auto byte = [](unsigned value) { return std::byte{static_cast<std::uint8_t>(value)}; };
 
-/// A drive that counts heartbeats in 5 ms.
+/// Compiles a network with a drive that counts heartbeat times in units of 5 ms.
 test::Compiled drive(const std::string& rest, const std::string& master = "") {
   return compile_with_shipped("master: {node_id: 127, sync_period: 10000" + master +
                               "}\narm: {node_id: 5, dcf: x, device: lenze9400" + rest + "}\n");

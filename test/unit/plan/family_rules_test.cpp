@@ -1,4 +1,4 @@
-// What a device of each family can't do is refused by the plan, with the reason of its manual.
+// The plan refuses what a device family can't do and gives the reason from the manual.
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ TEST(FamilyRules, AskForTheFirmwareOfALenzeThatMakesTheSync) {
   EXPECT_FALSE(has_error(newer.findings));
 }
 
-/// "Disabled time (ms) 500" by default.
+/// The default in the manual is "Disabled time (ms) 500".
 TEST(FamilyRules, ReadTheDisabledTimeOfADrv28InMillisecondsWhereTheFileIsSilent) {
   const test::Compiled net = plan_of("astraada_drv28", "tpdo: {3: {transmission: 254}}");
 

@@ -1,4 +1,5 @@
-// `limits:` of a network file: what the bus thread is to check, and what is refused with a reason.
+// The key `limits:` of a network file: the checks of the bus thread, and the cases that are refused
+// with a reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -21,7 +22,8 @@ constexpr std::string_view units =
     "      velocity: {scale: 0.01, unit: rad/s}\n"
     "      acceleration: {scale: 0.1, unit: rad/s^2}\n";
 
-/// A drive at 2 ms whose RPDO2 carries `mapped`, with these lines more.
+/// Compiles a network with a cycle of 2 ms and a drive whose RPDO2 carries `mapped`, with the given
+/// limits and units.
 Compiled drive(const std::string& limits, const std::string& mapped = "{index: 0x607A}",
                std::string_view its_units = units, const std::string& eds = tiny_eds()) {
   return compile(
@@ -218,7 +220,7 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
   EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("has no such object")));
 }
 
-/// A limited axis whose actual position comes in TPDO2 of this kind.
+/// Compiles a limited axis whose actual position comes in TPDO2 with these keys.
 std::string start_of(const std::string& tpdo, const std::string& limits) {
   const Compiled net = compile(
       "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
@@ -273,7 +275,7 @@ Compiled telling_drive(const std::string& limits, const std::string& mapped,
       tiny_eds() + objects);
 }
 
-/// Objects of the steps that read limits.
+/// Returns the objects of the steps that read limits.
 std::vector<std::string> reads(const Compiled& net) {
   std::vector<std::string> objects;
   for (const BootStep& step : net.plan.nodes.at(0).boot_plan.steps) {

@@ -69,7 +69,8 @@ TEST(LoadNetwork, TheFolderOfTheBlackBoxIsBesideTheNetworkFile) {
   EXPECT_EQ(none.recording.folder, "");
 }
 
-/// Read by a person when it changes: `takt plan share/demo/two_axes.yaml > two_axes.plan.txt`.
+/// A person must review the golden plan when it changes: `takt plan share/demo/two_axes.yaml >
+/// two_axes.plan.txt`.
 TEST(LoadNetwork, ThePlanOfTheDemoIsTheGoldenOne) {
   const auto network = load_network(source / "share/demo/two_axes.yaml");
 

@@ -1,4 +1,4 @@
-// RPDOs that the master sends by source address: `mpdo: sam` and the device's dispatching list.
+// RPDOs that the master sends by source address: `mpdo: sam` and the dispatcher list of the device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -20,7 +20,7 @@ std::string dispatcher(int sub, const std::string& access, const std::string& va
          "\nDefaultValue=" + value + "\nPDOMapping=0\n";
 }
 
-/// The tiny drive with an object dispatching list of two entries.
+/// Makes the tiny drive with an object dispatcher list of two entries.
 std::string eds(const std::string& first = "0", const std::string& second = "0",
                 const std::string& access = "rw") {
   return test::tiny_eds() + test::record("1FD0", "Dispatching list", 3) +
@@ -28,7 +28,7 @@ std::string eds(const std::string& first = "0", const std::string& second = "0",
          dispatcher(2, access, second);
 }
 
-/// RPDO2 by source address, with these lines of the node besides.
+/// Makes a network with an RPDO2 by source address; `lines` adds lines to the node.
 std::string arm(const std::string& objects, const std::string& lines = "") {
   return "master: {sync_period: 10000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n" +
          lines + "    rpdo: {2: {mpdo: sam, transmission: 255, mapping: [" + objects + "]}}\n";

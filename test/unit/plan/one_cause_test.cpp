@@ -1,4 +1,4 @@
-// One mistake in a network file gives one error, which names it.
+// One mistake in a network file gives exactly one error, which names the mistake.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <ostream>
@@ -12,9 +12,9 @@ namespace takt {
 namespace {
 
 struct Mistake {
-  std::string what;   ///< of the good file
-  std::string wrong;  ///< in its place
-  std::string told;   ///< in the error
+  std::string what;   ///< text in the good file
+  std::string wrong;  ///< wrong text in its place
+  std::string told;   ///< text in the error message
 };
 std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.wrong; }
 

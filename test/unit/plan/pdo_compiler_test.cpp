@@ -11,7 +11,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// One node `arm` with id 5 on line 2; `pdos` are its lines from 3 on.
+/// Makes a network file with the node `arm`, node-ID 5, on line 2; `pdos` starts on line 3.
 std::string arm(std::string_view pdos) {
   return "master: {sync_period: 10000}\narm: {node_id: 5, dcf: tiny.eds,\n" + std::string{pdos} +
          "}\n";
@@ -133,7 +133,7 @@ TEST(PdoCompiler, AMappingThatIsFixedEmptyIsSaidToBeEmpty) {
               HasSubstr("can't be mapped anew, the device fixes it empty\n"));
 }
 
-// As the EDS files of EPOS4 and Roboteq have it.
+// The EDS files of EPOS4 and Roboteq have this granularity.
 TEST(PdoCompiler, GranularityZeroFixesNoMappingThatTheRecordsLetWrite) {
   std::string eds = test::tiny_objects() +
                     test::pdo(true, 1, "$NODEID+0x180", 1, {"0x60410010"}, "rw") +
@@ -271,7 +271,7 @@ TEST(CobIds, AnRpdoWithTheIdOfATpdoIsFedByThatDevice) {
   EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a`"));
 }
 
-/// Each device hears, by its RPDO1, TPDO1 of node 1.
+/// The RPDO1 of each device receives TPDO1 of node 1.
 const std::string listener = test::tiny_objects() +
                              test::pdo(false, 1, "0x181", 1, {"0x60400010"}) +
                              test::pdo(true, 1, "$NODEID+0x180", 1, {"0x60410010"});

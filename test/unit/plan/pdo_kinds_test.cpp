@@ -17,7 +17,7 @@ std::string arm(const std::string& line) {
   return "master: {sync_period: 10000}\nnodes:\n  arm: {node_id: 5, dcf: tiny.eds, " + line + "}\n";
 }
 
-/// Steps of the boot plan of the only node whose purpose begins with `text`.
+/// Returns the boot steps of the only node whose purpose starts with `text`.
 std::vector<BootStep> steps(const test::Compiled& net, std::string_view text) {
   std::vector<BootStep> found;
   for (const BootStep& step : net.plan.nodes[0].boot_plan.steps) {
@@ -44,7 +44,8 @@ TEST(PdoKinds, RemoteTypesAreTakenWithTheirPoll) {
   EXPECT_EQ(tpdo(net, 2)->poll_syncs, 5);
 }
 
-// The EDS has 0x40000185: bit 30 forbids remote requests. 0x00000185 is written as a whole.
+// The EDS has 0x40000185, where bit 30 forbids remote requests. The boot writes the complete value
+// 0x00000185.
 TEST(PdoKinds, RemoteRequestsAreAllowedInTheDevice) {
   const auto net = compile(arm("tpdo: {1: {transmission: 253, poll_ms: 100}}"));
   const auto on = steps(net, "TPDO1 on, COB-ID 0x185");

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Besides the usual objects an SDO server with these COB-IDs.
+/// Makes the usual objects and an SDO server with these COB-IDs.
 std::string eds_with_server(const std::string& request, const std::string& answer) {
   return test::tiny_objects() + test::record("1201", "SDO server 2", 3) +
          test::entry("1201sub0", "highest", 5, "const", "2") +
@@ -124,7 +124,7 @@ TEST(SdoAccess, ServiceFramesAreSixteenInEachTenMilliseconds) {
   EXPECT_EQ(frames("19000"), 16);
   EXPECT_EQ(frames("40000"), 64);
   EXPECT_EQ(frames("49999"), 64);
-  EXPECT_EQ(frames("50000"), 16);  // served each 10 ms
+  EXPECT_EQ(frames("50000"), 16);  // served every 10 ms
 }
 
 TEST(SdoAccess, ServiceFramesOfACycleCanBeChosen) {

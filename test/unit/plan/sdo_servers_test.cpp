@@ -1,4 +1,4 @@
-// SDO channels of devices besides the first: 0x1201..0x127F.
+// Additional SDO channels of devices: 0x1201..0x127F.
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using test::entry;
 using test::record;
 using testing::HasSubstr;
 
-/// A device whose second channel is on from the factory.
+/// Makes the EDS of a device whose second channel is enabled by default.
 std::string eds(const std::string& request = "$NODEID+0x640",
                 const std::string& answer = "$NODEID+0x5C0") {
   return test::tiny_objects() + record("1201", "SDO server 2", 3) +
@@ -75,7 +75,8 @@ TEST(SdoServers, OtherServicesAreMetToo) {
   EXPECT_THAT(net.said("cob-id-clash"), HasSubstr("0x641 is EMCY of node `leg`"));
 }
 
-/// Node 1 with `keys` beside node 65; the second channel of the first has the first of the other.
+/// Makes a network with node 1, which has `keys`, and node 65. The second channel of node 1 has the
+/// identifiers of the first channel of node 65.
 std::string lenzes(const std::string& keys = "") {
   return "nodes:\n  pump: {node_id: 1, dcf: x" + keys +
          "}\n  fan: {node_id: 65, dcf: x, sdo: [{index: 0x1201, sub_index: 1, value: "
@@ -93,7 +94,7 @@ TEST(SdoServers, TwoLenze8400Meet64NodeIdsApart) {
   EXPECT_EQ(test::compile_device_file(lenzes(off), "lenze8400.eds").said("cob-id-clash"), "");
 }
 
-/// As an EDS of the maker: the second channel is off, or not there at all.
+/// Makes an EDS like that of the manufacturer, in which the second channel is disabled or missing.
 std::string lenze_eds(const std::string& request) {
   return eds(request, "0x80000000") + entry("1018sub1", "Vendor-ID", 7, "ro", "0x3B") +
          entry("1018sub2", "Product code", 7, "ro", "0x84003");

@@ -16,8 +16,8 @@ using test::compile;
 using test::Compiled;
 using testing::ElementsAre;
 
-/// Frames of the first node's steps of one kind; the download that may follow stands behind a
-/// blank.
+/// Returns the frames of the steps of these kinds of the first node. A download that may follow is
+/// separated by a blank.
 std::vector<std::string> frames(const Compiled& net, std::initializer_list<BootAction> kinds) {
   const NodePlan& node = net.plan.nodes.at(0);
   const std::vector<StepFrames> all = step_frames(node);

@@ -1,4 +1,4 @@
-// How long a drive takes to stop, and below which velocity it stands still.
+// The stopping time of a drive, and the velocity below which the drive counts as standing still.
 #include <gtest/gtest.h>
 #include <string>
 
@@ -12,12 +12,12 @@ using test::entry;
 using test::record;
 
 struct Values {
-  std::string sdo{};   ///< of the network file
-  std::string node{};  ///< more keys of the node
+  std::string sdo{};   ///< SDO values in the network file
+  std::string node{};  ///< additional keys of the node
   std::string master{};
 };
 
-/// A drive with everything that tells its velocity limit and its ramps; all of it is 0.
+/// Makes a drive with all objects for velocity limit and ramps; all values are 0.
 std::string drive_eds() {
   return test::tiny_eds() + entry("605A", "Quick stop option code", 3, "rw", "2") +
          entry("605C", "Disable operation option code", 3, "rw", "1") +
@@ -97,7 +97,7 @@ TEST(StoppingTime, IsNotKnownWhereTheDriveStopsAtItsCurrentLimit) {
   }
 }
 
-// "Disable operation" is no part of the stop: it says quick stop, and disable voltage at
+// "Disable operation" is not part of the stop, which uses quick stop, and disable voltage at
 // standstill.
 TEST(StoppingTime, DoesNotDependOnTheOptionCodeOfDisableOperation) {
   for (const std::string option : {"0", "1"}) {
@@ -116,7 +116,7 @@ TEST(StoppingTime, MakesTheStopAtLeastFiveAndAtMostThirtySeconds) {
         .plan.stop_timeout;
   };
   EXPECT_EQ(of("1000000"), 5s);
-  EXPECT_EQ(of("10000"), 15625ms);  // 10 s, a quarter more, and that is 8 tenths of the stop
+  EXPECT_EQ(of("10000"), 15625ms);  // 10 s and a quarter more are 8 tenths of the stop
   EXPECT_EQ(of("1000"), 30s);
 }
 
@@ -128,7 +128,7 @@ TEST(StoppingTime, IsThatOfWhatMayBeCommandedWhereThatIsLess) {
   EXPECT_EQ(axis(network).stopping_time, 2s);
 }
 
-// The window of standstill
+// velocity window of standstill
 
 TEST(StandstillWindow, IsTheThresholdOfTheDevice) {
   EXPECT_EQ(axis(drive({.sdo = "{index: 0x606F, value: 150}"})).velocity_window, 150);

@@ -12,7 +12,7 @@
 
 namespace takt::test {
 
-/// One [section] of an EDS: a VAR at `section`, or a sub-object where `section` names one.
+/// Makes one [section] of an EDS: a VAR, or a sub-object if `section` names one.
 inline std::string entry(std::string_view section, std::string_view name, int type,
                          std::string_view access, std::string_view value, bool mappable = false) {
   std::ostringstream out;
@@ -29,7 +29,8 @@ inline std::string record(std::string_view section, std::string_view name, int s
   return out.str();
 }
 
-/// Communication and mapping record of PDO `number`; `cob_id` and `entries` as the EDS has them.
+/// Makes the communication and mapping records of PDO `number`; `cob_id` and `entries` are texts as
+/// in an EDS.
 inline std::string pdo(bool is_tpdo, int number, std::string_view cob_id, int transmission,
                        std::vector<std::string> entries, std::string_view mapping_access = "rw") {
   const auto at = [&](int base, std::string_view sub) {
@@ -58,7 +59,8 @@ inline std::string pdo(bool is_tpdo, int number, std::string_view cob_id, int tr
   return text;
 }
 
-/// Objects that most tests want; a CiA 402 drive with an object of every kind of trouble at 2000.
+/// Makes the objects that most tests need: a CiA 402 drive, with one object for each kind of
+/// problem from 2000 on.
 inline std::string tiny_objects() {
   return "[DeviceInfo]\nProductName=tiny\nBaudRate_500=1\nBaudRate_1000=1\nGranularity=8\n"
          "[DummyUsage]\nDummy0001=0\nDummy0005=1\nDummy0006=0\n" +
@@ -89,7 +91,8 @@ inline std::string tiny_objects() {
          entry("2003", "Wide", 7, "rw", "0", true) + entry("2004", "Wider", 7, "rw", "0", true);
 }
 
-/// The usual tiny drive: RPDO1 6040, TPDO1 6041, both on; RPDO2, TPDO2..5 off.
+/// Makes the EDS of the tiny drive: RPDO1 with 6040 and TPDO1 with 6041 are enabled; RPDO2 and
+/// TPDO2..5 are disabled.
 inline std::string tiny_eds() {
   return tiny_objects() + pdo(false, 1, "$NODEID+0x200", 1, {"0x60400010"}) +
          pdo(false, 2, "$NODEID+0x80000300", 1, {"0x60400010", "0x607A0020"}) +
@@ -105,8 +108,9 @@ struct Compiled {
   std::vector<DeviceTable> devices;
   Findings findings;
 
-  /// `line:column severity [rule]` of the errors and warnings of the network file. Questions about
-  /// drives (`mode`, `on-loss`) are left out: careful_questions_test.cpp has their tests.
+  /// Returns `line:column severity [rule]` for the errors and warnings of the network file.
+  /// Questions about drives (`mode`, `on-loss`) are left out: careful_questions_test.cpp has their
+  /// tests.
   std::vector<std::string> complaints() const {
     std::vector<std::string> out;
     for (const Finding& f : findings) {
@@ -117,7 +121,7 @@ struct Compiled {
     }
     return out;
   }
-  /// The messages of one rule, joined.
+  /// Returns all messages of one rule.
   std::string said(std::string_view rule) const {
     std::string out;
     for (const Finding& f : findings) {

@@ -16,7 +16,7 @@ const BusPlan& demo() {
   return network.plan;
 }
 
-/// A plan of one node with these signals.
+/// Makes a plan with one node and these signals.
 BusPlan plan_of(std::vector<Signal> signals, const std::string& bus = "lift",
                 const std::string& node = "arm") {
   BusPlan plan;
@@ -54,7 +54,7 @@ TEST(TypedMessage, FingerprintIsThatOfLcmGen) {
           {"f", LcmPrimitive::float32},
           {"d", LcmPrimitive::float64}}};
 
-  EXPECT_EQ(message.fingerprint(), 0xECF96A28576B2807);  // of its Python code
+  EXPECT_EQ(message.fingerprint(), 0xECF96A28576B2807);  // from the generated Python code
 }
 
 TEST(TypedMessage, EveryNodeHasAStateAndACommand) {

@@ -4,7 +4,8 @@
 
 #include "test/unit/plan/device_data_network.hpp"
 
-// What devices are known for and needs no entry of the device data: share/doc/device_data.md.
+// Known peculiarities of devices that need no entry in the device data; see
+// share/doc/device_data.md.
 
 namespace takt {
 namespace {
@@ -26,7 +27,7 @@ std::string arm(const std::string& rest) {
   return "master: {sync_period: 10000}\narm: {node_id: 5, dcf: x" + rest + "}\n";
 }
 
-// Beckhoff couplers: 0x5500 would switch on PDO 5 to 11 with ids of its own.
+// Beckhoff couplers: 0x5500 would enable PDO 5 to 11 with its own identifiers.
 TEST(WithoutDeviceData, EveryPdoGetsItsCobIdByItsOwnRecord) {
   const auto net = compile(arm(", tpdo: {5: {transmission: 1, mapping: [{index: 0x6064}]}}"));
 
@@ -65,7 +66,7 @@ TEST(WithoutDeviceData, APdoIsOffWhileItsRecordsAreWritten) {
   EXPECT_FALSE(off);
 }
 
-// Roboteq: its commands can only be written.
+// Roboteq: the command objects are write-only.
 TEST(WithoutDeviceData, AnRpdoCarriesWriteOnlyObjects) {
   const auto net = compile(arm(", rpdo: {1: {mapping: [{index: 0x2001}]}}"));
 
@@ -73,7 +74,7 @@ TEST(WithoutDeviceData, AnRpdoCarriesWriteOnlyObjects) {
   EXPECT_EQ(steps_of(net, {0x1600, 1}).back().value, bytes({0x10, 0x00, 0x01, 0x20}));
 }
 
-// ZLAC8030L: 0x6502 is missing or says nothing.
+// ZLAC8030L: 0x6502 is missing or has no useful value.
 TEST(WithoutDeviceData, AnAxisNeedsNoSupportedModes) {
   const auto without = compile(arm(""));
   const auto wrong = compile(
@@ -103,7 +104,7 @@ TEST(WithoutDeviceData, AFileWithoutDeviceTypeIsOfADriveByItsObjects) {
   EXPECT_EQ(denied.said("profile"), "");
 }
 
-// A file that takt learn makes has UNSIGNED8 for what it saw: 253 is -3.
+// A file from takt learn has the type UNSIGNED8 for the value it saw, so 253 means -3.
 TEST(WithoutDeviceData, AnExponentOfUnsignedTypeHasASign) {
   std::string eds = test::tiny_eds();
   const std::size_t type = eds.find("DataType=", eds.find("[60C2sub2]"));
@@ -116,7 +117,7 @@ TEST(WithoutDeviceData, AnExponentOfUnsignedTypeHasASign) {
               testing::HasSubstr("makes 20000 us"));
 }
 
-// Joystick receivers send their TPDOs by themselves, and an NMT command would silence them.
+// Joystick receivers send TPDOs without NMT start, and an NMT command would silence them.
 TEST(WithoutDeviceData, ANodeThatIsNotBootedIsHeardAllTheSame) {
   const auto net = compile(arm(", boot: false"));
 
@@ -124,7 +125,7 @@ TEST(WithoutDeviceData, ANodeThatIsNotBootedIsHeardAllTheSame) {
   EXPECT_THAT(net.plan.pdos.tpdos, testing::SizeIs(1));
 }
 
-// Leadshine: 0x1010 is answered after more than two seconds.
+// Leadshine: the answer to a write of 0x1010 takes more than two seconds.
 TEST(WithoutDeviceData, StoringMayTakeFiveSeconds) {
   const auto net = compile(arm(", sdo_timeout_ms: 100"));
 

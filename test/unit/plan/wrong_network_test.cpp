@@ -1,4 +1,4 @@
-// What a user is told of a network file that can't be run, or would do something else than meant.
+// The messages about a network file that can't be run or that would do something unintended.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +20,7 @@ using testing::Not;
 
 class WrongNetwork : public testing::Test {
  protected:
-  /// Findings of `path`, one a line, without the folder.
+  /// Returns the findings of `path`, one per line, without the folder.
   static std::string told(const fs::path& path) {
     std::string text;
     for (Finding finding : load_network(path).findings) {
@@ -31,7 +31,7 @@ class WrongNetwork : public testing::Test {
   }
   std::string told_of(const std::string& text) { return told(folder_.write("net.yaml", text)); }
 
-  /// Findings of a network with one node, an axis, with these lines more.
+  /// Returns the findings of a network with one node, which is an axis with these additional lines.
   std::string of_axis(const std::string& lines) {
     return told_of(std::string{"master: {sync_period: 10000}\nnodes:\n  a:\n    node_id: 1\n"} +
                    "    dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds\n" + lines);

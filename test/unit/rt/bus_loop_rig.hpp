@@ -14,7 +14,8 @@ using namespace std::chrono_literals;
 using test::FakeNetwork;
 using test::FakePort;
 
-/// The loop over a scripted port; two axes at 2 ms that answer 300 and 400 us after SYNC.
+/// The bus loop on a scripted port with two axes and a cycle of 2 ms. The axes answer 300 and 400
+/// us after SYNC.
 class Loop {
  public:
   explicit Loop(BusPlan bus_plan = test::axes(), BusLoopOptions options = {})

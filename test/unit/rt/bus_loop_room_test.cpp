@@ -1,4 +1,5 @@
-// Service frames leave only with room for all that may go before the outputs besides.
+// A service frame is sent only if there is also room for everything else that may be sent before
+// the outputs.
 #include <gtest/gtest.h>
 
 #include "test/unit/rt/bus_loop_rig.hpp"
@@ -8,12 +9,12 @@ namespace {
 
 constexpr std::uint32_t request = 0x601;
 
-/// Two axes at 1 Mbit/s; once the last PDO is there 1200 us are left until the outputs. A dialogue
-/// takes 270 us, an answer 135 us.
+/// Two axes at 1 Mbit/s. After the last PDO there are 1200 us until the outputs. A dialogue takes
+/// 270 us, an answer 135 us.
 struct Room : testing::Test {
   Room() { bus.run(40); }
 
-  /// In the next cycle.
+  /// Returns the number of frames with this identifier in the next cycle.
   std::size_t sent(std::uint32_t id) {
     bus.port.sent.clear();
     bus.run(1);

@@ -59,7 +59,7 @@ TEST(BusLoop, LearnsALaterArrival) {
   bus.run(100);
   bus.port.answers[1].after = 600us;
   bus.run(1);
-  EXPECT_EQ(bus.port.calls.size(), 7U);  // no outputs, but a wait and a second receive
+  EXPECT_EQ(bus.port.calls.size(), 7U);  // no outputs, but a wait and a second receive()
   bus.run(9);
   EXPECT_EQ(bus.port.calls.size(), 7U);
   bus.run(1);
@@ -81,7 +81,7 @@ TEST(BusLoop, PublishesALatePdoWhenItComes) {
   bus.port.answers[1].after = 400us;
   bus.run(1);
   ASSERT_TRUE(bus.newest(image));
-  EXPECT_LT(image.publish_time - image.sync_time, 430us);  // the next one is not late for it
+  EXPECT_LT(image.publish_time - image.sync_time, 430us);  // the next image is not late
 }
 
 TEST(BusLoop, IsWokenByFramesOfOthersAFewTimesOnly) {
@@ -90,7 +90,7 @@ TEST(BusLoop, IsWokenByFramesOfOthersAFewTimesOnly) {
   ImageView image;
   while (bus.newest(image)) {
   }
-  bus.port.answers[1].after = 5ms;  // it is missing
+  bus.port.answers[1].after = 5ms;  // this TPDO is missing
   for (int i = 0; i < 20; ++i) {
     bus.port.answers.push_back({make_frame(CobId::base(0x701), {5}), 500us + i * 20us});
   }
@@ -133,7 +133,7 @@ TEST(BusLoop, CommandMadeFromAnImageActsAtTheNextSync) {
   ImageView image;
   ASSERT_TRUE(bus.newest(image));
   const std::uint64_t computed_from = image.cycle;
-  // Between publish and outputs of the same cycle: the controller's place.
+  // A controller runs between publish and outputs of the same cycle.
   struct Echo final : Controller {
     void update(const ImageView& in, OutputWriter& out) noexcept override {
       for (SignalIndex i = 4; i < 6; ++i) out.set(i, 0x0F);
@@ -203,7 +203,7 @@ TEST(BusLoop, SendsServiceFramesInTheSlackWithinTheirBudget) {
   EXPECT_EQ(bus.port.sent_with(0x000).size(), 10U);
 }
 
-/// Ten requests that wait to be answered after 250 us each, two at once at most.
+/// Ten requests wait; each is answered after 250 us, and at most two are open at once.
 std::size_t sent_in_one_cycle(bool booting) {
   Loop bus;
   bus.plan.cycle.service_frames = 2;

@@ -23,7 +23,7 @@ TEST(BusLoop, MakesAtMostEightCallsWithAMissingPdoAndTellsIt) {
 
   bus.run(20);
   EXPECT_EQ(bus.most_calls, 8U);
-  EXPECT_EQ(bus.port.calls.size(), 6U);  // nobody waits for the dead one any more
+  EXPECT_EQ(bus.port.calls.size(), 6U);  // the loop no longer waits for the dead node
   const auto events = bus.told();
   EXPECT_EQ(std::ranges::count(events, EventKind::pdo_missing), 1);
 }
@@ -41,7 +41,7 @@ TEST(BusLoop, AfterAStallOf50MsSendsNoBurst) {
   for (std::size_t k = 1; k < syncs.size(); ++k) {
     EXPECT_GE(syncs[k].when - syncs[k - 1].when, 1ms);
     EXPECT_EQ((syncs[k].when - bus.start) % Time{2ms}, 0ns);  // the phase is kept
-    EXPECT_EQ(syncs[k].frame.data[0], k + 1);                 // counts what was sent
+    EXPECT_EQ(syncs[k].frame.data[0], k + 1);  // counts only the SYNCs that were sent
   }
   EXPECT_EQ(syncs[10].when - syncs[9].when, 52ms);
   ImageView image;
@@ -122,8 +122,8 @@ TEST(BusLoop, TwoStallsInARowMakeNoBurstOfSyncs) {
   }
 }
 
-/// The front thread sleeps by the prediction; one that is long over lets it look for images only
-/// every 20 ms.
+/// The front thread sleeps until the predicted image. With an old prediction it would look for
+/// images only every 20 ms.
 TEST(BusLoop, AfterAStallWithinACyclePredictsTheNextImage) {
   Loop bus;
   bus.run(5);
@@ -226,7 +226,7 @@ TEST(BusLoop, CountsTheEventsThatFoundNoRoomInTheServicesToo) {
 TEST(BusLoop, SendsSyncAtOnceWhereAnInterfaceIsBackThatTookOneDownWithIt) {
   Loop bus;
   bus.port.news_now.last_sync_echo = bus.start;
-  bus.run(10);  // not one echo: held, and tried ever less often
+  bus.run(10);  // without an echo, SYNC is held and tried at growing intervals
   bus.port.news_now.interface_down = true;
   bus.port.room = 0;
   bus.port.error = ENETDOWN;
@@ -253,7 +253,7 @@ TEST(BusLoop, ANodeThatIsOffDoesNotDisturbTheOthers) {
   EXPECT_EQ(bus.port.sent_with(0x202).size(), 0U);
   EXPECT_TRUE(bus.told().empty());
 
-  bus.network->set_up(1, true);  // back: its old command is not sent again
+  bus.network->set_up(1, true);  // the node is back; its old command is not sent again
   bus.run(5);
   EXPECT_EQ(bus.port.sent_with(0x202).size(), 0U);
 }

@@ -1,4 +1,4 @@
-// Limits that a drive has told in its boot, as commands are packed.
+// Limits that the boot has read from a drive, checked when the outputs are packed.
 #include <gtest/gtest.h>
 
 #include "master/core/boot_report.hpp"
@@ -11,7 +11,8 @@ constexpr ObjectKey lowest{0x607D, 1};
 constexpr ObjectKey highest{0x607D, 2};
 constexpr ObjectKey fastest{0x607F, 0};
 
-/// 607D in counts of 1 mrad; 607F in 0.01 rad/s, each 0.02 counts in 2 ms.
+/// The device gives 607D in counts of 1 mrad and 607F in units of 0.01 rad/s, which are 0.02 counts
+/// in 2 ms.
 void told_by_the_device(BusPlan& plan) {
   const SignalIndex target = plan.limits.outputs[0].signal;
   plan.limits.outputs[0].range = LimitKind::position;
@@ -54,7 +55,7 @@ TEST(DeviceLimits, HoldCommandsAndAreTold) {
 
   axes.cycle_with(0, 10);
   EXPECT_EQ(axes.position(), 10);
-  axes.cycle_with(0, 21);  // 11 counts, of 10
+  axes.cycle_with(0, 21);  // 11 counts where 10 are allowed
   EXPECT_EQ(axes.position(), 10);
   EXPECT_EQ(axes.refusals(), 1U);
 }

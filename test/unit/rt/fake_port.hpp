@@ -12,12 +12,12 @@
 
 namespace takt::test {
 
-/// A port in virtual time that writes down what the loop does, and answers SYNC as told.
+/// A port in virtual time that records the actions of the loop and answers SYNC as configured.
 class FakePort {
  public:
   struct Answer {
     Frame frame;
-    Time after{};  ///< SYNC
+    Time after{};  ///< delay after SYNC
   };
   struct Sent {
     Frame frame;
@@ -76,10 +76,10 @@ class FakePort {
   std::vector<std::string> calls;
   std::function<void(const Frame&)> on_sent;
   PortNews news_now;
-  Time stall{};          ///< the next precise sleep comes back so much late
-  Time second_stall{};   ///< and the one after it
-  Time receive_stall{};  ///< the next receive() takes so long
-  Time send_stall{};     ///< the next send() hands its frames over so much later
+  Time stall{};          ///< delay of the next precise sleep
+  Time second_stall{};   ///< delay of the precise sleep after that
+  Time receive_stall{};  ///< duration of the next receive()
+  Time send_stall{};     ///< delay of the frames of the next send()
   std::size_t room = 1000;
   int error = 0;
 
@@ -92,7 +92,7 @@ class FakePort {
 };
 static_assert(Port<FakePort>);
 
-/// Services of a bus whose nodes are all up; tests say what it sends.
+/// Network services of a bus whose nodes are all ready; the tests decide what they send.
 class FakeNetwork {
  public:
   explicit FakeNetwork(const BusPlan& plan, NetworkOptions options = {})
@@ -149,7 +149,7 @@ class FakeNetwork {
   bool stopping = false;
   NmtCommand last_command = NmtCommand::start;
   std::uint64_t lost_events = 0;
-  static inline FakeNetwork* newest = nullptr;  ///< the one inside the newest loop
+  static inline FakeNetwork* newest = nullptr;  ///< the instance in the newest loop
 
  private:
   std::vector<NodeStatus> status_;

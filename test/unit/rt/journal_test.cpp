@@ -31,7 +31,7 @@ TEST(Tape, OverwritesItsOldestCyclesAndBeginsWithACycle) {
   for (std::uint64_t cycle = 1; cycle <= 2000; ++cycle) {
     tape.mark_cycle();
     tape.put(word(Mark::cycle, cycle));
-    std::uint64_t* const room = tape.claim(6);  // 7 words a cycle: the end of the tape cuts none
+    std::uint64_t* const room = tape.claim(6);  // 7 words per cycle; the end of the tape cuts none
     for (int i = 0; i < 6; ++i) room[i] = word(Mark::now, cycle);
   }
 
@@ -73,7 +73,7 @@ TEST(Journal, GivesTheRunningTapeAwayAtTheNextCycleAndGoesOnWithTheOther) {
   EXPECT_EQ(journal.wanted(), nullptr);
 }
 
-/// For the thread sanitizer: what was read is not written over.
+/// For the thread sanitizer: words that were read are not overwritten.
 TEST(Journal, IsReadByOneThreadWhileTheOtherRecords) {
   Journal journal{8192};
   std::atomic<bool> done{false};
@@ -148,7 +148,7 @@ TEST(JournalRequest, KeepsTheValueOfALongDownload) {
   EXPECT_EQ(other[2].data, transfers[2].data);
 }
 
-/// It would have to be copied by the bus thread, in one cycle.
+/// The bus thread would have to copy such a download in one cycle.
 TEST(JournalRequest, LeavesAGapForADownloadOfMegabytes) {
   Journal journal{32 << 20};
   SdoTransfers transfers;
@@ -170,7 +170,7 @@ TEST(JournalRequest, RefusesWhatIsNone) {
   EXPECT_FALSE(get_request(huge, back, transfers));
 }
 
-/// Another frame than was recorded: nothing comes any more, and the difference stands.
+/// If a frame differs from the recorded one, the replay ends and keeps the difference.
 TEST(ReplayPort, NamesTheFrameThatDiffers) {
   const Recording recording{.words = {word(Mark::now, 1000), word(Mark::send, 0x0000'0001'0001), 0,
                                       word(Mark::now, 2000)},

@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 inline constexpr std::int64_t enable_operation = 0x000F;
 inline constexpr std::int64_t quick_stop = 0x0002;
 
-/// Axes with a position of 1 mrad a count at 2 ms, and what goes to them.
+/// Axes with positions of 1 mrad per count and a cycle of 2 ms, and the outputs that the master
+/// sends to them.
 class LimitedAxes {
  public:
   explicit LimitedAxes(unsigned axes, const OutputLimit& limit, void (*change)(BusPlan&) = nullptr)
@@ -42,12 +43,12 @@ class LimitedAxes {
   void release(std::size_t output) {
     points_[output] = {0, points_[output].generation + 1, output_released, now_ + Time{1ms}};
   }
-  /// From within the bus thread.
+  /// Writes an output from within the bus thread.
   void write(std::size_t output, std::int64_t value) {
     pdos_.outputs().command(static_cast<SignalIndex>(plan_.layout.inputs + output), value, 0,
                             next_moment());
   }
-  /// One cycle; what goes out is in controlword() and position().
+  /// Runs one cycle; controlword() and position() then give the sent values.
   void cycle() {
     const OutputMoment moment = next_moment();
     ++cycle_;
@@ -63,9 +64,9 @@ class LimitedAxes {
     command(axis, position);
     cycle();
   }
-  /// The node exchanges PDOs anew; nothing was told in its boot.
+  /// The node exchanges PDOs again; its boot has reported no limits.
   void open(unsigned axis) { pdos_.outputs().open(axis, points_); }
-  /// It has booted once more and has not sent a TPDO since.
+  /// The node has booted again and has not sent a TPDO since.
   void boot(unsigned axis) {
     pdos_.inputs().set_reception(axis, Reception::off);
     pdos_.inputs().set_reception(axis, Reception::full);

@@ -1,4 +1,4 @@
-// Why cycles go by without SYNC, as the event `cycles_missed` says it.
+// The causes of cycles without SYNC in the event `cycles_missed`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vector>
@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A bus on which each SYNC is on the wire 60 us after it was handed over, while `echoes` is true.
+/// A bus on which each SYNC is on the wire 60 us after send(), while `echoes` is true.
 class EchoLoop : public Loop {
  public:
   EchoLoop() {
@@ -23,7 +23,7 @@ class EchoLoop : public Loop {
       if (seen) port.news_now.last_sync_echo = port.now() + 60us;
     };
   }
-  /// The causes of all cycles without SYNC so far.
+  /// Returns the causes of all cycles without SYNC so far.
   std::vector<MissedBecause> causes() {
     std::vector<MissedBecause> all;
     for (Event event; exchange->events.pop(event);) {

@@ -15,7 +15,7 @@ constexpr std::int64_t operation_enabled = 0x0237;
 constexpr std::int64_t quick_stop_active = 0x0217;
 constexpr std::int64_t switch_on_disabled = 0x0250;
 
-/// The stop of two axes, stepped every 2 ms. Positions change by `speed` counts a step.
+/// The stop of two axes, stepped every 2 ms. The positions change by `speed` counts per step.
 class Stop {
  public:
   explicit Stop(std::int64_t word = operation_enabled)
@@ -82,7 +82,7 @@ TEST(OrderedStop, GoesFromFallbackToQuickStop) {
 TEST(OrderedStop, DisablesAnAxisWhenItWasSeenAtStandstill) {
   Stop stop;
   stop.speed = {100, 100};
-  stop.values[0] = stop.values[1] = quick_stop_active;  // 605A = 6: it stays there
+  stop.values[0] = stop.values[1] = quick_stop_active;  // 605A = 6: the axis stays in this state
   stop.step(200);
   EXPECT_EQ(stop.machine.controlword(0), 0x0002);
 
@@ -109,7 +109,7 @@ TEST(OrderedStop, GoesOnOnlyWhenEveryAxisIsDisabled) {
 
 TEST(OrderedStop, ConfirmsAxesThatWereDisabledAtTheBeginning) {
   Stop stop{switch_on_disabled};
-  stop.speed = {100, 0};  // somebody turns it by hand
+  stop.speed = {100, 0};  // a person turns the axis by hand
   stop.step(10);
   EXPECT_EQ(stop.machine.result(), StopResult::confirmed);
 }

@@ -1,4 +1,4 @@
-// Limits beside the modes of an axis, and against random commands.
+// Limits together with the modes of an axis, and limits against random commands.
 #include <gtest/gtest.h>
 #include <random>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace takt::test {
 namespace {
 
-/// RPDO of the axis with its mode behind the target, TPDO with the mode that it shows.
+/// Adds the mode behind the target in the RPDO of the axis, and the displayed mode in its TPDO.
 void add_modes(BusPlan& plan) {
   const std::size_t inputs = plan.layout.inputs;
   Signal shown = make_signal(NodeId::from(1).value(), 0, {0x6061, 0});

@@ -1,4 +1,4 @@
-// Commands against the limits of their outputs, as they are packed.
+// Checks commands against the limits of their outputs when the outputs are packed.
 #include <cstring>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(OutputLimits, TellAStreamOutsideOnceAndHearNothingOfItsNodeMeanwhile) {
   for (int i = 0; i < 40; ++i) axes.cycle_with(0, 505 + i);
   EXPECT_EQ(axes.position(), 5);
   EXPECT_EQ(axes.controlword(), quick_stop);
-  axes.set(0, enable_operation);  // alone: the target that was refused still counts
+  axes.set(0, enable_operation);  // sent alone; the refused target still counts
   axes.cycle();
   EXPECT_EQ(axes.controlword(), quick_stop);
   EXPECT_EQ(axes.refusals(), 1U);
@@ -185,7 +185,7 @@ TEST(OutputLimits, LetADisabledAxisFollowItsActualPosition) {
   axes.cycle_with(0, 700);
   EXPECT_EQ(axes.position(), 700);
   axes.feedback(0, 700, 0x0027);
-  axes.cycle_with(0, 5);  // enabled: no jump back
+  axes.cycle_with(0, 5);  // the axis is enabled, and there is no jump back
   EXPECT_EQ(axes.position(), 700);
 }
 
@@ -212,7 +212,7 @@ TEST(OutputLimits, TakeTheShorterWayAroundTheWidthOfTheObject) {
   axes.cycle();
   axes.cycle_with(0, 2147483645);
   EXPECT_EQ(axes.position(), 2147483645);
-  axes.cycle_with(0, -2147483646);  // 5 counts on
+  axes.cycle_with(0, -2147483646);  // 5 counts further
   EXPECT_EQ(axes.position(), -2147483646);
   EXPECT_EQ(axes.refusals(), 0U);
 }
@@ -307,7 +307,7 @@ TEST(OutputLimits, HoldForAControllerInTheBusThreadToo) {
   axes.write(1, 5);
   axes.cycle();
   axes.write(1, 505);
-  axes.write(0, enable_operation);  // behind it, in the same cycle
+  axes.write(0, enable_operation);  // later in the same cycle
   axes.write(1, 6);
   axes.cycle();
   EXPECT_EQ(axes.position(), 5);
@@ -336,7 +336,7 @@ TEST(OutputLimits, LetASenderGiveItsAxisUpWithoutAWord) {
   axes.feedback(0, 700);
   axes.cycle();
   axes.cycle_with(0, 705);
-  axes.release(0);  // its values count for nothing
+  axes.release(0);  // the values are no longer in use
   axes.release(1);
   axes.cycle();
   EXPECT_EQ(axes.position(), 705);
@@ -349,7 +349,7 @@ TEST(OutputLimits, ForgetWhatWasSentBeforeTheNodeCameBack) {
                      plan.limits.outputs[0].feedback.reset();
                      plan.layout.signals[3].seeded_from.reset();
                    }};
-  axes.cycle_with(0, 700);  // nothing is known that it could be held against
+  axes.cycle_with(0, 700);  // there is no reference for a check
   EXPECT_EQ(axes.position(), 700);
   axes.cycle_with(0, 711);
   EXPECT_EQ(axes.position(), 700);

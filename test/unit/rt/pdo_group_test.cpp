@@ -1,4 +1,5 @@
-// When RPDOs go out: type 0, type n, events inside the inhibit time, several with one SYNC, MPDO.
+// The times at which RPDOs are sent: type 0, type n, events inside the inhibit time, several with
+// one SYNC, MPDO.
 #include <gtest/gtest.h>
 #include <memory>
 #include <vector>
@@ -11,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Axes with one RPDO each, a cycle of 2 ms; targets are commanded by hand.
+/// Axes with one RPDO each and a cycle of 2 ms. The tests command the targets by hand.
 class Axes {
  public:
   explicit Axes(BusPlan plan) : plan_{std::move(plan)}, nodes_{plan_.nodes.size()} {
@@ -19,12 +20,12 @@ class Axes {
     for (std::size_t i = 0; i < nodes_; ++i) pdos_.outputs().open(i, points_);
     for (std::size_t i = 0; i < nodes_; ++i) set(i, 0);
   }
-  /// Controlword 0x0F and this target, in the set of commands that is being made.
+  /// Adds the controlword 0x0F and this target to the present set of commands.
   void set(std::size_t axis, std::int64_t target) {
     points_[axis] = {0x0F, points_[axis].generation + 1, 0, {}};
     points_[nodes_ + axis] = {target, points_[nodes_ + axis].generation + 1, 0, {}};
   }
-  /// COB-IDs of the frames of the next cycle.
+  /// Runs the next cycle and returns the COB-IDs of its frames.
   std::vector<std::uint32_t> cycle(std::size_t accepted = 100) {
     ++cycle_;
     const Time now = static_cast<Time::rep>(cycle_) * Time{2ms};
@@ -137,7 +138,7 @@ TEST(RpdoType255, KeepsAnEventInsideTheInhibitTime) {
   EXPECT_EQ(bus.cycle(), (Ids{0x201}));
   bus.set(0, 1);
   EXPECT_TRUE(bus.cycle().empty());
-  bus.set(0, 0);  // back to what was sent: the event stays an event
+  bus.set(0, 0);  // the value returns to the sent one, but the event remains
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(bus.cycle().empty());
   EXPECT_EQ(bus.cycle(), (Ids{0x201}));
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(bus.cycle().empty());

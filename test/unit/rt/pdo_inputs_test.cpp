@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Inputs of a plan, and a bus that beats every 2 ms.
+/// The inputs of a plan and a bus with a SYNC every 2 ms.
 class Inputs {
  public:
   explicit Inputs(BusPlan plan, Reception reception = Reception::full)
@@ -27,7 +27,7 @@ class Inputs {
     taken = pdos.receive({.frame = make_frame(CobId::base(id), bytes), .when = now_ + after});
   }
   std::uint32_t close() { return pdos.close(now_ + Time{1200us}); }
-  /// A beat in which these nodes answer.
+  /// Runs a cycle in which these nodes answer.
   std::uint32_t beat_with(std::initializer_list<unsigned> nodes) {
     beat();
     for (const unsigned node : nodes) frame(0x180 + node, {0x37, 0x02, 0x01, 0, 0, 0});
@@ -186,7 +186,7 @@ TEST(PdoInputs, NoLongerWaitForANodeThatStaysAway) {
   EXPECT_EQ(in.pdos.expected(), 1U);
   in.frame(0x181, {0, 0, 0, 0, 0, 0});
   EXPECT_TRUE(in.pdos.complete());
-  EXPECT_EQ(in.close(), 1U);  // it is missing all the same
+  EXPECT_EQ(in.close(), 1U);  // the PDO still counts as missing
 }
 
 TEST(PdoInputs, FrameFromBeforeThisSyncDoesNotCompleteTheCycle) {
@@ -196,7 +196,7 @@ TEST(PdoInputs, FrameFromBeforeThisSyncDoesNotCompleteTheCycle) {
   EXPECT_EQ(in.close(), 1U);
 
   in.beat();
-  in.frame(0x181, {0x11, 0, 0, 0, 0, 0}, -500us);  // late answer to the SYNC before
+  in.frame(0x181, {0x11, 0, 0, 0, 0, 0}, -500us);  // late answer to the previous SYNC
   EXPECT_EQ(in.image.values[0], 0x11);
   EXPECT_FALSE(in.pdos.complete());
   in.frame(0x181, {0x12, 0, 0, 0, 0, 0});

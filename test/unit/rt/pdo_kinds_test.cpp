@@ -1,4 +1,5 @@
-// What PdoInputs tell of each PDO, synchronous window, deadline, and multiplexed PDOs.
+// The mark that PdoInputs gives each PDO, the synchronous window, the deadline, and multiplexed
+// PDOs.
 #include <gtest/gtest.h>
 #include <memory>
 #include <vector>
@@ -11,7 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Inputs of a plan and a bus that beats every 2 ms; images are taken like the bus loop takes them.
+/// The inputs of a plan and a bus with a SYNC every 2 ms. The tests take images as the bus loop
+/// does.
 class Bus {
  public:
   explicit Bus(BusPlan plan)
@@ -28,7 +30,7 @@ class Bus {
     pdos.receive({.frame = make_frame(id, bytes), .when = now_ + after});
   }
   void frame(Time after = 300us) { frame(CobId::base(0x181), {0x37, 2, 1, 0, 0, 0}, after); }
-  /// What the image of this cycle tells of the first TPDO.
+  /// Closes the cycle and returns the mark of the first TPDO in its image.
   PdoMark close() {
     pdos.close(now_ + Time{1200us});
     const PdoMark mark = pdos.marks()[0];

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Outputs of a plan and the set-points that the front thread left.
+/// The outputs of a plan and the set-points from the front thread.
 class Outputs {
  public:
   explicit Outputs(BusPlan plan) : plan_{std::move(plan)}, pdos{plan_, events} {
@@ -53,8 +53,8 @@ class Outputs {
   EventQueue events;
   PdoExchange pdos;
   std::vector<SetPoint> points;
-  std::size_t accepted = 100;  // frames that the interface takes
-  Time late{};                 // how much later than its time a cycle packs
+  std::size_t accepted = 100;  // number of frames that the interface accepts
+  Time late{};                 // delay of a cycle when it packs its outputs
 };
 
 BusPlan one_axis(std::uint8_t type = 1, bool seeds = false) {
@@ -126,7 +126,7 @@ TEST(PdoOutputs, FollowTheFeedbackOnlyUntilTheNodeIsCommanded) {
   EXPECT_EQ(out.pack().at(0).data[2], 0x11);
 
   out.command(controlword, 0x000F);
-  out.feedback(1, {0, 0, 0x12, 0, 0, 0});  // sags while it is being enabled
+  out.feedback(1, {0, 0, 0x12, 0, 0, 0});  // the axis sags while it is being enabled
   EXPECT_EQ(out.pack().at(0).data[2], 0x11);
 }
 
@@ -350,7 +350,7 @@ TEST(PdoOutputs, CommandFromTheCycleItselfIsAsGoodAsAnyOther) {
   out.pdos.outputs().command(3, 77, 0, {.cycle = 1});
   EXPECT_EQ(out.pack().at(0), make_frame(CobId::base(0x201), {0x0F, 0, 77, 0, 0, 0}));
   out.pdos.outputs().command(0, 1, 0, {.cycle = 1});     // an input
-  out.pdos.outputs().command(9999, 1, 0, {.cycle = 1});  // nothing
+  out.pdos.outputs().command(9999, 1, 0, {.cycle = 1});  // no signal
 }
 
 TEST(PdoOutputs, WhileStoppingHearNoCommandAndSendWhatIsForced) {

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Node 1: TPDO1 of six bytes, RPDO1 on request.
+/// A plan whose node 1 has a TPDO1 of six bytes and an RPDO1 on request.
 BusPlan plan_of(Time poll = {}, std::uint16_t poll_syncs = 0) {
   BusPlan plan = test::axes({.nodes = 2, .tpdo_type = 253});
   plan.pdos.tpdos[0].poll = poll;
@@ -36,7 +36,7 @@ class Asker {
     for (const std::uint8_t byte : data) request.data[request.size++] = std::byte{byte};
     return requests.submit(request, 0ms);
   }
-  /// At 1 ms; it times out at 501 ms.
+  /// Makes a request at 1 ms that stays without an answer; the request times out at 501 ms.
   void ask_in_vain() {
     ask(1, RequestKind::pdo_exchange, {1, 0, 0, 0, 0, 0});
     at(1ms);

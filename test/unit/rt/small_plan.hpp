@@ -6,7 +6,7 @@
 
 namespace takt::test {
 
-/// Adds a PDO of a node and its fields; returns its row.
+/// Adds a PDO of a node with its fields and returns the row of the PDO.
 inline PdoRow& add_pdo(BusPlan& plan, bool transmit, PdoRow row,
                        std::initializer_list<PdoField> fields) {
   row.first_field = static_cast<std::uint16_t>(plan.pdos.fields.size());
@@ -50,8 +50,9 @@ struct AxesOptions {
   std::uint32_t fallback_cycles = 3;
 };
 
-/// `n` axes: TPDO1 statusword and position, RPDO1 controlword and target position. Node ids from
-/// 1. Signals: statuswords, positions, controlwords, targets, each a column over the axes.
+/// `n` axes: TPDO1 statusword and position, RPDO1 controlword and target position. Node-IDs start
+/// at 1. The signals are the statuswords, positions, controlwords and targets; each kind is a block
+/// with one signal per axis.
 inline BusPlan axes(AxesOptions options = {}) {
   const unsigned n = options.nodes;
   BusPlan plan;

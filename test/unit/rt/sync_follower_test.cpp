@@ -185,7 +185,7 @@ TEST_F(SyncFollowerTest, TakesTheFirstSyncAfterALossForTheBeat) {
   EXPECT_EQ(follower->beat(), 173ms);
 }
 
-// The loop that keeps to it. Two axes at 2 ms; SYNC comes from outside.
+// A bus loop that follows an external SYNC, with two axes and a cycle of 2 ms.
 
 class FollowingLoop : public testing::Test {
  protected:
@@ -198,7 +198,7 @@ class FollowingLoop : public testing::Test {
     plan.cycle.on_sync_loss = on_loss;
     return plan;
   }
-  /// SYNC at this time, and the two TPDOs 300 and 400 us after it.
+  /// Queues a SYNC at this time and the two TPDOs 300 and 400 us after SYNC.
   void sync(Time when) {
     loop.port.inbox.push_back({.frame = Frame{.id = CobId::base(0x080)}, .when = when});
     for (const test::FakePort::Answer& answer : loop.port.answers) {
@@ -278,7 +278,7 @@ class FallingLoop : public FollowingLoop {
     for (int i = 0; i < 6; ++i) sync(first + i * 2ms);
     loop.run(2);
     loop.command_all(0x0F, 5000);
-    loop.run(10);  // the last of them without SYNC
+    loop.run(10);  // the last cycles have no SYNC
   }
 };
 

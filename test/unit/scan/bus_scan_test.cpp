@@ -18,7 +18,7 @@ Bytes aborts(Bytes request) {
   return answer;
 }
 
-/// A scan in virtual time; `slave` gives the answer of a node to a request, if any.
+/// A scan in virtual time; `slave` returns the answer of a node to a request, if there is one.
 struct Bus {
   std::function<std::optional<Bytes>(unsigned, const Bytes&)> slave;
   std::size_t most_at_once = 0;
@@ -83,7 +83,7 @@ TEST(BusScan, AsksAll127NodesOnceAndOnlySomeAtATime) {
   EXPECT_TRUE(scan.nodes().empty());
   ASSERT_EQ(bus.asked.size(), 127U);
   for (std::uint32_t i = 0; i < 127; ++i) EXPECT_EQ(bus.asked[i], 0x601 + i);
-  EXPECT_LE(bus.most_at_once, 2 * 16U);  // requests, and aborts of those before
+  EXPECT_LE(bus.most_at_once, 2 * 16U);  // requests, and aborts of earlier requests
 }
 
 TEST(BusScan, KeepsANodeThatOnlySendsHeartbeats) {

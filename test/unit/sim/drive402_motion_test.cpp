@@ -28,7 +28,7 @@ TEST_F(Drive, MovesToATargetWithTheHandshake) {
   EXPECT_EQ(get(0x6041) & 0x0400, 0x0400);
 }
 
-// 5000 units at 10,000/s with ramps of 100,000/s2: 0.1 + 0.4 + 0.1 s
+// 5000 units at 10,000/s with ramps of 100,000/s2 take 0.1 + 0.4 + 0.1 s.
 
 TEST_F(Drive, NeedsTheTimeOfItsTrapezoid) {
   enable(1);

@@ -46,7 +46,7 @@ class Drive : public testing::Test {
       run(1ms);
     }
   }
-  /// Statusword without the bits of the mode.
+  /// Returns the statusword without the bits of the mode.
   std::int64_t state() { return get(0x6041) & 0x27F; }
 
   ObjectStore store_;

@@ -18,7 +18,7 @@ Frame zeros(std::uint32_t id, std::initializer_list<std::uint8_t> first) {
   return frame;
 }
 
-// lengths of frames as canframelen.c of can-utils gives them
+// The lengths of frames come from canframelen.c of can-utils.
 TEST(FrameBits, MatchesExactLengthsOfTheReference) {
   const Vector vectors[] = {
       {make_frame(CobId::base(0x080), {}), 0x1C05, 4, 48},
@@ -51,7 +51,7 @@ TEST(FrameBits, CountsNoDataOfARemoteFrame) {
   EXPECT_EQ(frame_bits(request).total, 46);
 }
 
-/// The same bit by bit, as the standard words it.
+/// Computes the length bit by bit, as described in the standard.
 std::uint32_t slow_length(const Frame& frame) {
   std::vector<int> bits{0};
   const auto put = [&](std::uint32_t value, int count) {

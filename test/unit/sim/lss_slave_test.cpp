@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::array<std::uint8_t, 8>;
 
-/// Vendor 0x15A, product 2, revision 0x00010003, serial number 0xA5.
+/// Makes a device with vendor-ID 0x15A, product code 2, revision 0x00010003 and serial number 0xA5.
 DeviceTable table_with(const std::string& quirk) {
   SampleDevice device = communicating(5_node);
   device.quirk(quirk)
@@ -42,7 +42,7 @@ class LssSlaveTest : public ::testing::Test {
     for (const Transmission& item : device->out().pending()) said.push_back(item.frame);
     device->out().clear();
   }
-  /// The answer to one request; all zero: none.
+  /// Returns the answer to one request; all bytes are zero if there is none.
   Bytes ask(Bytes request) {
     said.clear();
     device->on_frame({.id = CobId::base(0x7E5), .length = 8, .data = request}, now);
@@ -194,7 +194,7 @@ TEST_F(LssSlaveTest, FollowsAFastscanToTheEnd) {
   EXPECT_EQ(ask({0x51, 0, 0, 0, 0, 0x09, 0, 0}), (Bytes{0x4F}));
   EXPECT_EQ(ask({0x51, 0, 0, 0, 0, 0x08, 0, 0}), silence);
   EXPECT_EQ(ask({0x51, 0x5A, 0x01, 0, 0, 0x00, 0, 1}), (Bytes{0x4F}));
-  EXPECT_EQ(ask({0x51, 0x5A, 0x01, 0, 0, 0x00, 0, 1}), silence);  // it is at the product code
+  EXPECT_EQ(ask({0x51, 0x5A, 0x01, 0, 0, 0x00, 0, 1}), silence);  // now at the product code
   EXPECT_EQ(ask({0x51, 0x02, 0, 0, 0, 0x00, 1, 2}), (Bytes{0x4F}));
   EXPECT_EQ(ask({0x51, 0x03, 0, 1, 0, 0x00, 2, 3}), (Bytes{0x4F}));
   EXPECT_EQ(ask({0x51, 0xA4, 0, 0, 0, 0x01, 3, 3}), (Bytes{0x4F}));

@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// One OPERATIONAL device and the frames that it sent since the last look.
+/// One OPERATIONAL device and the frames that it has sent since the last check.
 class Sender {
  public:
   explicit Sender(SampleDevice table) : device_{table.build(), Random{1}, {.pdo = 0ns}} {
@@ -25,7 +25,7 @@ class Sender {
     device_.out().clear();
     return found;
   }
-  /// By SDO: an event for its PDOs.
+  /// Writes by SDO, which is an event for the PDOs.
   void write(std::initializer_list<std::uint8_t> bytes) {
     device_.on_frame(make_frame(CobId::base(0x605), bytes), 200ms);
   }
@@ -38,7 +38,7 @@ class Sender {
   Device device_;
 };
 
-/// A PDO whose mapping has the mark `count` and these entries.
+/// Makes a device with a PDO whose mapping has the mark `count` in sub-index 0 and these entries.
 SampleDevice multiplexed(std::uint16_t communication, std::uint32_t cob, std::uint8_t count,
                          std::vector<std::uint32_t> entries = {}) {
   SampleDevice device = communicating(5_node);

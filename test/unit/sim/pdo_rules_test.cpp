@@ -24,7 +24,7 @@ class PdoRules : public testing::Test {
     device_.out().clear();
   }
 
-  /// Abort code of an expedited write of `size` bytes; 0: done.
+  /// Returns the abort code of an expedited write of `size` bytes; 0 means success.
   std::uint32_t write(std::uint16_t index, std::uint8_t sub, std::uint32_t value, unsigned size) {
     Frame request =
         make_frame(CobId::base(0x605), {static_cast<std::uint8_t>(0x23 | (4 - size) << 2),
@@ -77,7 +77,7 @@ TEST_F(PdoRules, RefuseEntriesThatCanNotBe) {
   EXPECT_EQ(write(0x1A00, 1, 0x0005'0008, 4), 0x0602'0000u) << "a dummy in a TPDO";
 }
 
-/// As vendors have it: an entry of the default mapping that the rest of the file would forbid.
+/// In files of vendors the default mapping may have an entry that the rest of the file forbids.
 TEST(PdoRulesOfVendors, ADeviceTakesBackTheMappingThatItCameWith) {
   Device device{communicating(5_node).pdo(0x1400, 0x205, 255, {0x2010'0010}).build(), Random{1}};
   device.power_on(0ns);

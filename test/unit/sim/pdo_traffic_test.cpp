@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// One device that is stepped by hand; frames come out with the time they are ready.
+/// One device that is stepped by hand. Frames come out with the time at which they are ready.
 class Traffic {
  public:
   explicit Traffic(SampleDevice device) : device_{device.build(), Random{1}, {.pdo = 0ns}} {
@@ -43,7 +43,7 @@ class Traffic {
   }
   std::uint64_t get(std::uint16_t index) { return device_.objects().find({index, 0})->value; }
   void clear() { frames_.clear(); }
-  /// Frames of this identifier since clear().
+  /// Returns the frames with this identifier since clear().
   std::vector<Transmission> of(std::uint32_t id) const {
     std::vector<Transmission> found;
     for (const Transmission& item : frames_) {
@@ -98,7 +98,8 @@ TEST(Tpdo, TypeNIsSentAtEachNthSync) {
   EXPECT_EQ(sent, (std::vector{3, 6, 9}));
 }
 
-// n = 3, start = 2, overflow 10: at the start SYNC, then each third by plain counting
+// With n = 3, start = 2 and overflow 10 the PDO is sent at the start SYNC, and then at each third
+// SYNC by plain counting.
 TEST(Tpdo, StartsWithTheSyncOfItsStartValue) {
   SampleDevice table = with_tpdo(3);
   Traffic device{table};
@@ -164,7 +165,7 @@ TEST(Tpdo, IsDroppedAfterTheSynchronousWindow) {
   EXPECT_EQ(device.of(0x185)[0].expires, device.now() + 500us);
 }
 
-// inhibit 10 ms, event timer 50 ms; events at 0, 3, 7, 12, 80 ms
+// The inhibit time is 10 ms, the event timer 50 ms; events come at 0, 3, 7, 12 and 80 ms.
 TEST(Tpdo, FollowsTheTimelineOfInhibitTimeAndEventTimer) {
   const DeviceTable table = with_tpdo(255).build();
   ObjectStore store{table};

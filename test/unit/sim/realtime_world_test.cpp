@@ -36,7 +36,7 @@ class QueueChannel final : public FrameChannel {
     to_devices_.push_back(frame);
     changed_.notify_all();
   }
-  /// The next frame of a device; waits as long as it takes.
+  /// Waits without a time limit for the next frame of a device.
   Frame take() {
     std::unique_lock lock{mutex_};
     changed_.wait(lock, [this] { return !from_devices_.empty(); });

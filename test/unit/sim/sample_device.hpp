@@ -13,7 +13,7 @@ inline std::vector<std::byte> little_endian(std::uint64_t value, unsigned width)
   return bytes;
 }
 
-/// Builds tables of devices by hand.
+/// Builds the table of a device by hand.
 class SampleDevice {
  public:
   explicit SampleDevice(NodeId node) { table_.node = node; }
@@ -80,7 +80,7 @@ class SampleDevice {
       .node = NodeId::from(1).value(), .name = {}, .objects = {}, .model = {}, .quirks = {}};
 };
 
-/// A device with all the communication objects and two PDOs a direction.
+/// Makes a device with all communication objects and two PDOs in each direction.
 inline SampleDevice communicating(NodeId node) {
   const std::uint32_t id = node.value();
   SampleDevice device{node};

@@ -3,7 +3,7 @@
 
 namespace takt::sim {
 
-/// A CiA 402 drive with the objects of all modes.
+/// Makes a CiA 402 drive with the objects of all modes.
 inline SampleDevice drive(NodeId node) {
   using enum DataType;
   SampleDevice device = communicating(node);

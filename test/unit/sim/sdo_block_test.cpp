@@ -32,7 +32,7 @@ class SdoBlockServer : public testing::Test {
     device_.on_time(50ms);
     device_.out().clear();
   }
-  /// All that the device answers until it waits.
+  /// Returns all answers of the device until it waits.
   std::vector<Bytes> ask(Bytes request) {
     now_ += 1ms;
     device_.on_frame({.id = CobId::base(0x605), .length = 8, .data = request}, now_);

@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::array<std::uint8_t, 8>;
 
-/// A device after its boot-up, and somebody who talks to its SDO server.
+/// A device after its boot-up, and a client that talks to its SDO server.
 class SdoConversation : public testing::Test {
  protected:
   SdoConversation() : SdoConversation(communicating(5_node).build()) {}
@@ -21,7 +21,7 @@ class SdoConversation : public testing::Test {
     device_.out().clear();
   }
 
-  /// What the device answers; all zero: nothing.
+  /// Returns the answer of the device; all bytes are zero if there is none.
   Bytes ask(Bytes request) {
     now_ += 1ms;
     device_.on_frame({.id = CobId::base(0x605), .length = 8, .data = request}, now_);

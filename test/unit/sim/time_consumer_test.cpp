@@ -25,7 +25,7 @@ class DeviceTimeOfDay : public testing::Test {
   void hear(Time when) {  // 2000-03-01 12:00:00.000
     device->on_frame(make_frame(CobId::base(0x100), {0x00, 0x2E, 0x93, 0x02, 0x10, 0x17}), when);
   }
-  /// Abort code of a write of 0x1012, 0 where it is taken.
+  /// Returns the abort code of a write to 0x1012; 0 means success.
   std::uint32_t write(std::array<std::uint8_t, 4> value) {
     device->on_frame(make_frame(CobId::base(0x605),
                                 {0x23, 0x12, 0x10, 0x00, value[0], value[1], value[2], value[3]}),

@@ -15,7 +15,7 @@ class Bus : public testing::Test {
     for (int i = 0; i < 4; ++i) bus_.attach({});
   }
 
-  /// All frames that leave the wire until `end`.
+  /// Returns all frames that leave the wire until `end`.
   std::vector<WireFrame> run(Time end) {
     std::vector<WireFrame> frames;
     WireFrame wire;
@@ -123,7 +123,7 @@ TEST_F(Bus, RepeatsADestroyedFrame) {
   for (const WireFrame& wire : run(1s)) {
     ++(wire.result == WireResult::sent ? good : bad);
     if (wire.result == WireResult::destroyed) {
-      EXPECT_GE(wire.bits, 15);       // a bit, error flag and delimiter
+      EXPECT_GE(wire.bits, 15);       // one bit, error flag and delimiter
       EXPECT_LE(wire.bits, 55 + 20);  // the longest frame without data, flags with echoes
     }
   }

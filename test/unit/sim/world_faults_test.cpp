@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Two devices, a master's port, and everything that was on the wire.
+/// Two devices, a port of the master, and a record of everything on the wire.
 class WorldFaults : public testing::Test, protected BusObserver {
  protected:
   void build(Faults faults, std::vector<DeviceTable> tables = {}) {

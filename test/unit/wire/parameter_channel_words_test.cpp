@@ -5,7 +5,7 @@
 namespace takt {
 namespace {
 
-/// The error codes of the card's manual: invalid command, address, value, operation failed,
+/// The error codes in the manual of the card: invalid command, address, value, operation failed,
 /// password, frame, read-only, while running, locked.
 TEST(ParameterChannel, TellsEachErrorCodeInWords) {
   const char* const words[] = {"no error",
