@@ -13,9 +13,15 @@ install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTE
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
-# The pages link only to each other. COMPONENT: they can be installed without a build.
-install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc FILES_MATCHING PATTERN *.md)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+# The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link
+# to it. COMPONENT: they can be installed without a build.
+install(DIRECTORY share/doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
+        FILES_MATCHING PATTERN *.md PATTERN index.md EXCLUDE)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS share/doc/index.md)
+file(READ share/doc/index.md index_page)
+string(REPLACE "(../../CHANGELOG.md)" "(CHANGELOG.md)" index_page "${index_page}")
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/index.md "${index_page}")
+install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/index.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 
 # systemd reads lib/systemd below /usr and below /usr/local.
 install(FILES share/systemd/taktd@.service DESTINATION lib/systemd/system)

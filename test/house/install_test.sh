@@ -15,9 +15,11 @@ prefix=$tmp/prefix
 cmake --install "$build" --prefix "$prefix" >/dev/null
 
 for file in bin/takt bin/taktd bin/takt-move lib/systemd/system/taktd@.service lib/systemd/network/60-takt-can.link \
-  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml share/doc/takt/index.md; do
+  etc/security/limits.d/takt.conf share/takt/lcm/image_t.lcm share/takt/demo/two_axes.yaml share/doc/takt/index.md \
+  share/doc/takt/CHANGELOG.md; do
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }
 done
+! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }
 eds=$(find "$prefix/share/takt/eds" -name '*drive*.eds' | head -n 1)
 
 # systemd tries a taktd again without limit, and understands each line.
