@@ -1,93 +1,506 @@
 #!/usr/bin/env python3
-"""axes.py BUS [SECONDS] - enables all axes of a bus, moves them in a soft sine over LCM, disables them."""
-import hashlib, lcm, math, os, random, stat, sys, time as clock
-from takt import command_t, envelope_t, image_t, layout_t  # made by lcm-gen -p
+"""Enables all axes of a bus, moves each of them there and back in a sine, and disables them.
 
-FORTH = {0x08: 0x80, 0x28: 0x80, 0x40: 0x06, 0x60: 0x06, 0x21: 0x07, 0x23: 0x0F, 0x27: 0x0F}  # statusword: controlword
-BACK = {0x27: 0x07, 0x23: 0x06}
-bus, seconds = sys.argv[1].upper(), 2 * math.ceil(float(sys.argv[2] if len(sys.argv) > 2 else 10) / 2)
-signals, values, stale, newest = {}, {}, set(), {}  # by place in the image; the newest message by type
+    axes.py BUS [SECONDS] [--following-limit LIMIT]
 
-def on_layout(channel, data):
-    layout = newest[layout_t] = layout_t.decode(data)  # a large layout or image comes in parts
-    if layout.schema != 2: sys.exit(f"axes.py: the daemon has schema {layout.schema}, this program schema 2")
-    signals.update(enumerate(layout.signals, layout.first_signal))
-def on_image(channel, data):
-    try: image = newest[image_t] = image_t.decode(data)
-    except ValueError: return  # the schema of the layout tells why
-    values.update(enumerate(image.values, image.first_signal))
-    stale.difference_update(range(image.first_signal, image.first_signal + image.num_values))
-    stale.update(image.stale)
+How to try it on the simulated bus of share/demo/two_axes.yaml:
 
-def read_keys(path):  # of a file that nobody else can use, as taktd reads it
-    bad = f"axes.py: key file {path}: "
-    try: file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-    except OSError as wrong: sys.exit(bad + wrong.strerror)
-    info = os.fstat(file)
-    if not stat.S_ISREG(info.st_mode): sys.exit(bad + "it is not a regular file")
-    if info.st_uid not in (0, os.geteuid()): sys.exit(bad + "it belongs to another user")
-    if info.st_mode & 0o077: sys.exit(bad + f"others than its owner can use it: chmod 600 {path}")
-    keys = [words for line in open(file) if (words := line.partition("#")[0].split())]
-    return keys if keys else sys.exit(bad + "there is no key in it")
+    python3 -m venv venv && venv/bin/pip install lcm
+    lcm-gen -p --ppath venv/lib/python3*/site-packages share/lcm/*.lcm    # makes the module takt
+    taktd share/demo/two_axes.yaml --bus sim &
+    venv/bin/python apps/python/axes.py demo
 
-envelope, file = envelope_t(), os.environ.get("TAKT_KEYS")
-keys = read_keys(file) if file else []
-key = keys[0] if keys else None  # the first is ours
-envelope.schema, envelope.instance = 1, random.SystemRandom().getrandbits(63)
-def publish(channel, message):  # in an envelope where there is a key, see share/doc/security.md
-    if not key: return link.publish(channel, message.encode())
-    envelope.key, envelope.channel, envelope.session, envelope.utime = key[0], channel, message.session, clock.time_ns() // 1000
-    envelope.counter, envelope.data = envelope.counter + 1, message.encode()
-    envelope.size, envelope.mac = len(envelope.data), bytes(32)
-    sealed = envelope.encode()[:-32]
-    link.publish(f"{bus}_SECURED", sealed + hashlib.blake2b(sealed, key=bytes.fromhex(key[1]), digest_size=32).digest())
+Each axis moves away from its actual position by the distance of its unit (MOVES below) and back.
+In each cycle of the bus, the daemon publishes an image of all inputs. This program computes one
+set-point for each axis from it and sends all of them in one command.
 
-counters = {}  # of those who sign, by key and instance
-def on_signed(channel, data):  # what is forged, altered, replayed, delayed or out of order changes nothing
-    try: sealed = envelope_t.decode(data)
-    except ValueError: return
-    secret, sender = dict(keys).get(sealed.key), (sealed.key, sealed.instance)
-    if not secret or hashlib.blake2b(data[:-32], key=bytes.fromhex(secret), digest_size=32).digest() != bytes(sealed.mac): return
-    if abs(clock.time_ns() // 1000 - sealed.utime) > 1_000_000 or sealed.counter <= counters.get(sender, 0): return
-    counters[sender] = sealed.counter
-    if sealed.channel in (f"{bus}_LAYOUT", f"{bus}_IMAGE"):
-        {f"{bus}_LAYOUT": on_layout, f"{bus}_IMAGE": on_image}[sealed.channel](sealed.channel, sealed.data)
+If the following error of an axis exceeds its limit, or an axis leaves Operation enabled, or its PDOs
+stay away, all axes are disabled in order and the program ends with a message. It does the same after
+Ctrl-C or SIGTERM, but first slows the motion down; a second signal ends it at once. However it ends,
+it releases its outputs, and the drives take the fallback of the network file.
 
-link, checks = lcm.LCM(), os.environ.get("TAKT_CHECK_IMAGES") == "true"
-if checks and not keys: sys.exit("axes.py: TAKT_CHECK_IMAGES needs a key file: TAKT_KEYS=FILE")
-heard = {"SIGNED": on_signed} if checks else {"LAYOUT": on_layout, "IMAGE": on_image}
-subscriptions = [link.subscribe(f"{bus}_{name}", call) for name, call in heard.items()]
-while len(newest) < 2 or not newest[layout_t].total_signals == len(signals) == len(values): link.handle()
-if not checks: link.unsubscribe(subscriptions[0])
-at = {(s.node_id, s.index): place for place, s in signals.items() if s.sub == 0}  # object -> place in the image
-axes = {node: signals[at[node, 0x6064]] for node, index in at if index == 0x6040}  # node -> signal of its position
-size = {node: 0.5 / s.scale if s.unit else 10000 for node, s in axes.items()}  # rad or counts
-layout, moving, time, last, unseen = newest[layout_t], False, 0.0, 0, 0
-states, start, outputs, command = {}, {}, {}, command_t()
-command.sender, command.instance = "axes.py", random.SystemRandom().randrange(1, 2**63)  # one sender each, whatever its name
-try:
-    while time < seconds or set(states.values()) & set(BACK):
-        if not link.handle_timeout(1000): sys.exit("axes.py: no image for 1 s")
-        while link.handle_timeout(0): pass  # only the newest image counts
-        image, states = newest[image_t], {node: values[at[node, 0x6041]] & 0x6F for node in axes}
-        if image.session != layout.session: sys.exit("axes.py: the daemon has restarted")
-        missing = [s.node for node, s in axes.items() if stale & {at[node, 0x6041], at[node, 0x6064]}]
-        unseen = unseen + 1 if missing else 0
-        if moving and unseen > 50: sys.exit(f"axes.py: no PDOs of {missing}")
-        if moving and time < seconds and set(states.values()) != {0x27}: sys.exit("axes.py: an axis left Operation enabled")
-        time += min(image.cycle - last, 5) * layout.period_ns * 1e-9 if moving else 0.0  # a gap is no jump
-        for node, signal in axes.items():
-            if not moving and signal.node in missing: continue  # where is it?
-            start[node] = start[node] if moving else values[at[node, 0x6064]]
-            target = round(start[node] + size[node] * (1 - math.cos(math.pi * min(time, seconds))) / 2)
-            wanted = {0x6040: (FORTH if time < seconds else BACK).get(states[node], 0), 0x6060: 8, 0x607A: target}
-            outputs.update((at[node, index], value) for index, value in wanted.items() if (node, index) in at)
-        moving, last = moving or not missing and set(states.values()) == {0x27}, image.cycle
-        command.schema, command.session, command.cycle = 2, image.session, image.cycle
-        command.num_values, command.signals, command.values = len(outputs), list(outputs), list(outputs.values())
-        publish(f"{bus}_COMMAND", command)
-finally:  # however it ends, the outputs are free at once and take their fallback
-    if command.num_values and newest[image_t].session == command.session:
-        command.release, command.num_values, command.signals, command.values = True, 0, [], []
-        publish(f"{bus}_COMMAND", command)
-print(f"{len(axes)} axes moved for {time:.1f} s")
+Exit codes: 0 the axes moved, 1 an axis did not follow or the motion did not come to its end, 2 wrong
+use, no axis to move or another schema, 3 no daemon heard.
+
+If the bus has keys (share/doc/security.md): TAKT_KEYS=FILE, and TAKT_CHECK_IMAGES=true to believe
+only images that the daemon has signed.
+"""
+import argparse
+import collections
+import math
+import os
+import random
+import signal
+import sys
+import time
+
+import lcm
+from takt import command_t, image_t, layout_t  # made by lcm-gen -p
+
+SCHEMA = 2  # of the LCM messages that this program knows
+GOOD, NOT_MOVED, WRONG_USE, NO_DAEMON = 0, 1, 2, 3  # exit codes
+
+# Distance of the motion and largest following error by the unit of an axis. No unit: raw counts.
+Move = collections.namedtuple("Move", "distance following_limit")
+MOVES = {
+    "rad": Move(0.5, 0.1),  # less than a twelfth of a turn
+    "deg": Move(30.0, 6.0),
+    "°": Move(30.0, 6.0),
+    "m": Move(0.005, 0.001),  # five millimetres
+    "mm": Move(5.0, 1.0),
+    "": Move(1000.0, 200.0),
+}
+MOVE_TIME = 2.0  # seconds there and back
+
+SLOW_DOWN_TIME = 0.5  # seconds from full speed to standstill after a signal
+ENABLE_TIME = 30.0  # seconds until all axes have to be in Operation enabled
+DISABLE_TIME = 2.0  # seconds until all axes have to be disabled
+LAYOUT_TIME = 10.0  # seconds until the daemon has to be heard
+IMAGE_TIME = 1  # seconds between two images
+MOST_STALE_IMAGES = 50  # images in sequence without the PDOs of an axis
+MOST_CYCLES = 5  # The motion advances by so many cycles at most, so missed cycles are no jump.
+
+# The CiA 402 state machine: a state is seen in some bits of the statusword (0x6041). The controlword
+# (0x6040) leads one step further on the way to Operation enabled, or on the way back.
+State = collections.namedtuple("State", "name mask bits to_enable to_disable is_disabled")
+OPERATION_ENABLED = State("Operation enabled", 0x6F, 0x27, 0x0F, 0x07, False)
+STATES = (
+    State("Not ready to switch on", 0x4F, 0x00, 0x00, 0x00, True),
+    State("Switch on disabled", 0x4F, 0x40, 0x06, 0x00, True),
+    State("Ready to switch on", 0x6F, 0x21, 0x07, 0x06, True),
+    State("Switched on", 0x6F, 0x23, 0x0F, 0x06, False),
+    OPERATION_ENABLED,
+    State("Quick stop active", 0x6F, 0x07, 0x00, 0x00, False),
+    State("Fault reaction active", 0x4F, 0x0F, 0x00, 0x00, False),
+    State("Fault", 0x4F, 0x08, 0x80, 0x00, True),
+)
+UNKNOWN_STATE = State("an unknown state", 0, 0, 0x00, 0x00, False)
+CYCLIC_SYNCHRONOUS_POSITION = 8  # mode of operation (0x6060)
+
+# The objects of the first axis of a device, and whether they are outputs. Those of each further axis
+# are 0x800 higher.
+OBJECTS = {
+    (0x6041, False): "statusword",
+    (0x6064, False): "position",
+    (0x6040, True): "controlword",
+    (0x607A, True): "target",
+    (0x6060, True): "mode",  # optional
+}
+FIRST_OBJECT, LAST_OBJECT, AXIS_STEP = 0x6000, 0x9FFF, 0x800
+
+
+class Failure(Exception):
+    """Ends the program with a message and an exit code."""
+
+    def __init__(self, message, code=NOT_MOVED):
+        super().__init__(message)
+        self.code = code
+
+
+class OrderedStop(Failure):
+    """The motion ends early, but images still come: the axes are disabled in order."""
+
+
+class StopSignals:
+    """Remembers Ctrl-C and SIGTERM until the motion has slowed down. A second one ends at once."""
+
+    def __init__(self):
+        self.name = None
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self.on_signal)
+
+    def on_signal(self, number, frame):
+        if self.name:
+            raise Failure("a second signal: not waiting for the axes any longer")
+        self.name = signal.Signals(number).name
+
+    def received(self):
+        return self.name is not None
+
+
+class Bus:
+    """Receives the layout and the images of one bus, and sends set-points to it."""
+
+    def __init__(self, name, stop, envelopes=None, check_images=False):
+        self.name, self.stop = name.upper(), stop
+        self.envelopes = envelopes  # None: the bus has no keys
+        self.layout, self.image = None, None  # the newest part of each
+        self.complete = False  # The layout and an image have come in full.
+        self.fresh = False  # An image has come in full since the last call of next_image().
+        self.signals, self.values, self.stale = {}, {}, set()  # by place in the image
+        self.command = command_t()
+        self.command.schema, self.command.sender = SCHEMA, "axes.py"
+        self.command.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
+        try:
+            self.link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
+        except RuntimeError as wrong:
+            raise Failure(f"no connection to LCM: {wrong}", NO_DAEMON) from None
+        if check_images:
+            self.link.subscribe(f"{self.name}_SIGNED", self.on_signed)
+        else:
+            self.link.subscribe(f"{self.name}_LAYOUT", self.on_layout)
+            self.link.subscribe(f"{self.name}_IMAGE", self.on_image)
+
+    def on_layout(self, channel, data):
+        if self.complete:
+            return
+        try:
+            layout = layout_t.decode(data)
+        except ValueError:
+            raise Failure("the daemon sends another layout_t than this program knows: run lcm-gen "
+                          "with the types of the daemon", WRONG_USE) from None
+        refuse_unknown_schema(layout.schema)
+        if self.layout is None or identity(layout) != identity(self.layout):
+            self.signals, self.values, self.stale, self.image = {}, {}, set(), None
+        self.layout = layout  # A large layout comes in parts.
+        self.signals.update(enumerate(layout.signals, layout.first_signal))
+
+    def on_image(self, channel, data):
+        try:
+            image = image_t.decode(data)
+        except ValueError:
+            return  # It is of another schema; the layout says which one.
+        refuse_unknown_schema(image.schema)
+        self.image = image  # A large image comes in parts, too.
+        self.values.update(enumerate(image.values, image.first_signal))
+        places = range(image.first_signal, image.first_signal + image.num_values)
+        self.stale.difference_update(places)
+        self.stale.update(image.stale)
+        self.fresh = image.part + 1 == image.parts
+
+    def on_signed(self, channel, data):
+        envelope = self.envelopes.open(data)
+        if envelope is None:
+            return
+        if envelope.channel == f"{self.name}_LAYOUT":
+            self.on_layout(envelope.channel, envelope.data)
+        elif envelope.channel == f"{self.name}_IMAGE":
+            self.on_image(envelope.channel, envelope.data)
+
+    def receive(self, seconds):
+        """Handles one message; returns False if none came in time."""
+        try:
+            return self.link.handle_timeout(math.ceil(1000 * seconds)) > 0
+        except OSError:
+            if self.stop.received():  # A signal interrupts the wait.
+                return False
+            raise Failure("the connection to LCM has ended",
+                          NOT_MOVED if self.complete else NO_DAEMON) from None
+
+    def receive_until(self, condition, seconds, failure):
+        deadline = time.monotonic() + seconds
+        while not condition():
+            left = deadline - time.monotonic()
+            if left <= 0:
+                raise failure
+            self.receive(left)
+
+    def wait_for_layout(self):
+        def condition():
+            if self.stop.received():
+                raise Failure(f"stopped by {self.stop.name}")
+            if not self.layout or not self.image or identity(self.layout) != identity(self.image):
+                return False
+            return self.layout.total_signals == len(self.signals) == len(self.values)
+
+        self.receive_until(condition, LAYOUT_TIME, Failure(
+            f"no layout and image of the bus {self.name} for {LAYOUT_TIME:g} s: is taktd running, "
+            "with the same LCM_DEFAULT_URL?", NO_DAEMON))
+        self.complete = True
+
+    def next_image(self):
+        """Waits for the next image; returns the seconds by which the motion advances."""
+        last = self.image.cycle
+        self.receive_until(lambda: self.fresh, IMAGE_TIME, Failure(f"no image for {IMAGE_TIME} s"))
+        while self.receive(0):
+            pass  # Only the newest image counts.
+        self.fresh = False
+        if self.restarted():
+            raise Failure("the daemon has restarted")
+        return min(self.image.cycle - last, MOST_CYCLES) * self.layout.period_ns * 1e-9
+
+    def restarted(self):
+        return identity(self.image) != identity(self.layout)
+
+    def send(self, set_points):
+        """Sends {place in the image: raw value}."""
+        self.command.num_values = len(set_points)
+        self.command.signals, self.command.values = list(set_points), list(set_points.values())
+        self.publish_command()
+
+    def release(self):
+        """Gives up all outputs; the drives take their fallback at once."""
+        if self.command.session == 0 or self.restarted():
+            return  # It has commanded nothing in this session of the daemon.
+        self.command.release = True
+        try:
+            self.send({})
+        except OSError:
+            pass  # The connection has ended: the daemon notices that no command comes.
+
+    def publish_command(self):
+        self.command.utime = time.time_ns() // 1000
+        self.command.session, self.command.cycle = self.layout.session, self.image.cycle
+        channel, data = f"{self.name}_COMMAND", self.command.encode()
+        if self.envelopes:
+            data = self.envelopes.seal(channel, self.command.session, data)
+            channel = f"{self.name}_SECURED"
+        self.link.publish(channel, data)
+
+
+def identity(message):
+    """The run of the daemon and the order of the values: that of a layout is that of its images."""
+    return message.session, message.hash if isinstance(message, layout_t) else message.layout_hash
+
+
+def refuse_unknown_schema(schema):
+    if schema != SCHEMA:
+        raise Failure(f"the daemon has schema {schema}, this program schema {SCHEMA}", WRONG_USE)
+
+
+class Axis:
+    """One CiA 402 axis: what the image says about it, and its set-points. Positions are raw."""
+
+    def __init__(self, name, places, position_signal, following_limit=None):
+        self.name = name
+        self.places = places  # {"statusword": place in the image, ...}
+        self.unit, self.scale = position_signal.unit, position_signal.scale
+        if self.unit not in MOVES:
+            raise Failure(f"{name} has the unit '{self.unit}'; this program knows distances only for "
+                          + ", ".join(unit or "raw counts" for unit in MOVES), WRONG_USE)
+        if self.unit == "":
+            self.scale = 1.0
+        self.move = MOVES[self.unit]
+        if following_limit is not None:
+            self.move = self.move._replace(following_limit=following_limit)
+        self.state = UNKNOWN_STATE
+        self.actual = None  # position; None until it was seen
+        self.start = None  # position from which it moves
+        self.target = None  # the newest target position
+        self.controlword = 0
+        self.stale_images = 0  # in sequence
+
+    def read(self, bus):
+        """Takes over statusword and position of the newest image, if both have arrived."""
+        if bus.stale & {self.places["statusword"], self.places["position"]}:
+            self.stale_images += 1
+            return
+        self.stale_images = 0
+        self.state = decode_statusword(bus.values[self.places["statusword"]])
+        self.actual = bus.values[self.places["position"]]
+
+    def is_enabled(self):
+        return self.state is OPERATION_ENABLED
+
+    def is_silent(self):
+        return self.stale_images > MOST_STALE_IMAGES
+
+    def following_error(self):
+        """Target minus actual position, in the unit of the axis."""
+        return (self.target - self.actual) * self.scale
+
+    def stay(self):
+        """Holds the axis where it is. Its target follows its position until it is enabled."""
+        if self.start is None or not self.is_enabled():
+            self.start = self.target = self.actual
+
+    def go(self, seconds):
+        """Sets the target of this time of the motion: a sine from the start position and back."""
+        share = (1.0 - math.cos(2.0 * math.pi * seconds / MOVE_TIME)) / 2.0  # 0 .. 1 .. 0
+        self.target = self.start + round(share * self.move.distance / self.scale)
+
+    def set_points(self):
+        """Returns {place in the image: raw value}; nothing until the position was seen."""
+        if self.target is None:
+            return {}
+        wanted = {"controlword": self.controlword, "target": self.target,
+                  "mode": CYCLIC_SYNCHRONOUS_POSITION}
+        return {self.places[what]: value for what, value in wanted.items() if what in self.places}
+
+
+def decode_statusword(statusword):
+    return next((state for state in STATES if statusword & state.mask == state.bits), UNKNOWN_STATE)
+
+
+def find_axes(signals, following_limit=None):
+    """Returns the axes of a layout whose PDOs have all objects that a motion needs."""
+    found = {}  # {(node, number of the axis in its device): {"statusword": place, ...}}
+    for place, entry in signals.items():
+        if entry.sub != 0 or not FIRST_OBJECT <= entry.index <= LAST_OBJECT:
+            continue
+        number, offset = divmod(entry.index - FIRST_OBJECT, AXIS_STEP)
+        what = OBJECTS.get((FIRST_OBJECT + offset, bool(entry.output)))
+        if what:
+            found.setdefault((entry.node_id, number), {})[what] = place
+    axes = []
+    for (_, number), places in sorted(found.items()):
+        if not {"statusword", "controlword"} <= places.keys():
+            continue  # It is no axis.
+        node = signals[next(iter(places.values()))].node
+        name = node if number == 0 else f"{node}.{number + 1}"
+        if not {"position", "target"} <= places.keys():
+            print(f"{name} is not moved: its actual or its target position is in no PDO")
+        else:
+            axes.append(Axis(name, places, signals[places["position"]], following_limit))
+    if not axes:
+        raise Failure("there is no axis to move", WRONG_USE)
+    return axes
+
+
+def names(axes):
+    return ", ".join(axis.name for axis in axes)
+
+
+def send_set_points(bus, axes):
+    bus.send({place: value for axis in axes for place, value in axis.set_points().items()})
+
+
+def enable(bus, axes, stop):
+    """Leads all axes to Operation enabled, each at its actual position."""
+    waited = 0.0
+    while True:
+        waited += bus.next_image()
+        for axis in axes:
+            axis.read(bus)
+            if axis.stale_images == 0:  # Otherwise its last set-points are held.
+                axis.stay()
+                axis.controlword = axis.state.to_enable
+        send_set_points(bus, axes)
+        if stop.received():
+            raise OrderedStop(f"stopped by {stop.name}")
+        waiting = [axis for axis in axes if axis.stale_images or not axis.is_enabled()]
+        if not waiting:
+            return
+        if waited > ENABLE_TIME:
+            raise OrderedStop("; ".join(why_not_enabled(axis) for axis in waiting))
+
+
+def why_not_enabled(axis):
+    if axis.is_silent():
+        return f"no PDOs of {axis.name}"
+    return f"{axis.name} does not reach Operation enabled: it is in {axis.state.name}"
+
+
+def move(bus, axes, seconds, stop):
+    """Moves all axes there and back for so many seconds."""
+    elapsed, speed = 0.0, 1.0
+    while elapsed < seconds:
+        step = bus.next_image()
+        for axis in axes:
+            axis.read(bus)
+        check_motion(axes)
+        if stop.received():
+            speed = max(0.0, speed - step / SLOW_DOWN_TIME)
+        elapsed = min(elapsed + speed * step, seconds)
+        for axis in axes:
+            axis.go(elapsed)
+            axis.controlword = axis.state.to_enable
+        send_set_points(bus, axes)
+        if speed == 0.0:
+            raise OrderedStop(f"stopped by {stop.name} after {elapsed:.1f} s of motion")
+
+
+def check_motion(axes):
+    """Compares the newest image with the targets that were sent before it."""
+    silent = [axis for axis in axes if axis.is_silent()]
+    if silent:
+        raise OrderedStop(f"no PDOs of {names(silent)}")
+    for axis in axes:
+        if not axis.is_enabled():
+            raise OrderedStop(f"{axis.name} left Operation enabled: it is in {axis.state.name}")
+        error, limit = axis.following_error(), axis.move.following_limit
+        if axis.stale_images == 0 and abs(error) > limit:
+            raise OrderedStop(f"{axis.name} does not follow: its following error is {error:.4g} "
+                              f"{axis.unit or 'counts'}, the limit is {limit:g}")
+
+
+def disable(bus, axes):
+    """Disables all axes in order. Returns a line for each axis that did not confirm it."""
+    waited = 0.0
+    while True:
+        waited += bus.next_image()
+        for axis in axes:
+            axis.read(bus)
+            axis.controlword = axis.state.to_disable
+        send_set_points(bus, axes)
+        left = [axis for axis in axes if axis.target is not None and not axis.state.is_disabled]
+        if not left:
+            return []
+        if waited > DISABLE_TIME:
+            return [f"no PDOs of {axis.name}" if axis.is_silent() else
+                    f"{axis.name} does not confirm that it is disabled" for axis in left]
+
+
+def enable_move_disable(bus, axes, seconds, stop):
+    problems = []
+    try:
+        enable(bus, axes, stop)
+        move(bus, axes, seconds, stop)
+    except OrderedStop as why:
+        problems.append(str(why))
+    problems += [line for line in disable(bus, axes) if line not in problems]
+    if problems:
+        raise Failure("; ".join(problems))
+
+
+def connect(options, stop):
+    """Returns the bus, with signed envelopes if there is a key file."""
+    envelopes, path = None, os.environ.get("TAKT_KEYS")
+    check_images = os.environ.get("TAKT_CHECK_IMAGES") == "true"
+    if path:
+        from envelopes import Envelopes, read_keys  # beside this file
+        try:
+            envelopes = Envelopes(read_keys(path))
+        except ValueError as wrong:
+            raise Failure(str(wrong), WRONG_USE) from None
+    elif check_images:
+        raise Failure("TAKT_CHECK_IMAGES needs a key file: TAKT_KEYS=FILE", WRONG_USE)
+    return Bus(options.bus, stop, envelopes, check_images)
+
+
+def run(options):
+    stop = StopSignals()
+    bus = connect(options, stop)
+    bus.wait_for_layout()
+    axes = find_axes(bus.signals, options.following_limit)
+    for axis in axes:
+        unit = axis.unit or "counts"
+        print(f"{axis.name} moves by {axis.move.distance:g} {unit} and back; its following error may "
+              f"be up to {axis.move.following_limit:g} {unit}")
+    seconds = MOVE_TIME * math.ceil(options.seconds / MOVE_TIME)  # It ends where it began.
+    try:
+        enable_move_disable(bus, axes, seconds, stop)
+    finally:
+        bus.release()
+    print(f"{len(axes)} {'axis' if len(axes) == 1 else 'axes'} moved for {seconds:.1f} s")
+
+
+def positive(text):
+    value = float(text)
+    if not 0.0 < value < math.inf:
+        raise ValueError
+    return value
+
+
+def parse_command_line():
+    parser = argparse.ArgumentParser(prog="axes.py", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bus", metavar="BUS", help="name of the bus in the network file")
+    parser.add_argument("seconds", metavar="SECONDS", nargs="?", type=positive, default=10.0,
+                        help="time of the motion, rounded up to whole moves (default: 10)")
+    parser.add_argument("--following-limit", metavar="LIMIT", type=positive,
+                        help="largest following error, in the unit of each axis (default: by unit)")
+    return parser.parse_args()
+
+
+def main():
+    try:
+        run(parse_command_line())
+    except Failure as why:
+        print(f"axes.py: {why}", file=sys.stderr)
+        return why.code
+    return GOOD
+
+
+if __name__ == "__main__":
+    sys.exit(main())

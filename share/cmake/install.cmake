@@ -11,6 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/takt)
 install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp)
 install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
+install(FILES apps/python/envelopes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 
 # The pages link only to each other and to CHANGELOG.md, which is installed beside them: the installed index has another link

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """python_axes_faults.py TYPES - apps/python/axes.py on a bus of two drives in this process, where things go wrong.
 TYPES: folder of what `lcm-gen -p` made."""
+import contextlib
 import hashlib
+import io
 import os
 import pathlib
 import runpy
+import signal
 import sys
 import tempfile
 import time
@@ -13,23 +16,27 @@ AXES = pathlib.Path(__file__).resolve().parent.parent.parent / "apps/python/axes
 NEXT = {(0x40, 0x06): 0x21, (0x21, 0x07): 0x23, (0x23, 0x0F): 0x27, (0x27, 0x07): 0x23, (0x23, 0x06): 0x21,
         (0x08, 0x80): 0x40}  # statusword, controlword: next statusword
 STATUSWORD, POSITION, CONTROLWORD, TARGET = 0, 2, 4, 6  # place of the first node's, the second's follows
+SCALE = {"": 1.0, "rad": 6.283185307179586e-4, "m": 1e-6}  # by unit
+GOOD, NOT_MOVED, WRONG_USE = 0, 1, 2  # exit codes
 failures = []
 
 
-def layout(session):
+def layout(session, unit=""):
     made = takt.layout_t()
     made.schema, made.parts, made.session, made.hash, made.period_ns = 2, 1, session, 7, 2_000_000
     for index in (0x6041, 0x6064, 0x6040, 0x607A):
         for node in (1, 2):
-            signal = takt.signal_t()
-            signal.node, signal.node_id, signal.index, signal.scale = f"axis{node}", node, index, 1.0
-            made.signals.append(signal)
+            entry = takt.signal_t()
+            entry.node, entry.node_id, entry.index, entry.output = f"axis{node}", node, index, index in (0x6040, 0x607A)
+            entry.unit, entry.scale = unit, SCALE.get(unit, 1.0)
+            made.signals.append(entry)
     made.num_signals = made.total_signals = len(made.signals)
     return made
 
 
 class Bus:
     """In the place of module lcm; `fault(bus, cycle)` may change anything before an image."""
+    unit, schema, most_cycles = "", 2, 5000
 
     def __init__(self, fault):
         self.fault, self.cycle, self.session, self.stale, self.silent = fault, 0, 5, [], False
@@ -64,10 +71,12 @@ class Bus:
             return 0
         if self.due:
             self.due.pop()
-            self.handlers["LAYOUT"](None, layout(self.session).encode())
+            made = layout(self.session, self.unit)
+            made.schema = self.schema
+            self.handlers["LAYOUT"](None, made.encode())
             return 1
         self.cycle += 1
-        assert self.cycle < 5000, "it waits for ever"
+        assert self.cycle < self.most_cycles, "it waits for ever"
         for axis in (0, 1):
             if axis in self.held: continue
             word = self.values[STATUSWORD + axis]
@@ -81,17 +90,22 @@ class Bus:
         return 1
 
 
-def run(fault=lambda bus, cycle: None, kind=Bus):
-    """The bus afterwards and the message that axes.py ended with; None: it came to its end."""
-    bus = kind(fault)
-    sys.modules["lcm"], sys.argv = bus, ["axes.py", "demo", "2"]
+def run(fault=lambda bus, cycle: None, kind=Bus, options=()):
+    """The bus afterwards, the exit code of axes.py and what it said on stderr."""
+    bus, said = kind(fault), io.StringIO()
+    sys.modules["lcm"], sys.argv = bus, ["axes.py", "demo", "2", *options]
+    usual = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        runpy.run_path(str(AXES), run_name="__main__")
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+            runpy.run_path(str(AXES), run_name="__main__")
+        return bus, None, "it did not end with an exit code"
     except SystemExit as end:
-        return bus, end.code
+        return bus, end.code, said.getvalue()
     except (AssertionError, KeyError, KeyboardInterrupt) as wrong:
-        return bus, f"{type(wrong).__name__}: {wrong}"
-    return bus, None
+        return bus, None, f"{type(wrong).__name__}: {wrong}"
+    finally:
+        for number, handler in usual.items():
+            signal.signal(number, handler)
 
 
 def check(name, good, told):
@@ -101,9 +115,14 @@ def check(name, good, told):
         print(f"      {told}")
 
 
-def ends(name, message, fault, releases=True):
-    bus, told = run(fault)
-    check(name, told is not None and message in str(told) and bus.released == releases, (told, bus.released))
+def ends(name, message, fault, releases=True, code=NOT_MOVED, **rest):
+    bus, ended, told = run(fault, **rest)
+    check(name, ended == code and message in told and bus.released == releases, (ended, told, bus.released))
+    return bus
+
+
+def is_disabled(name, bus, axes=(0, 1)):
+    check(name, all(bus.values[STATUSWORD + axis] == 0x21 for axis in axes), bus.values)
 
 
 def at(cycle, change):
@@ -136,34 +155,98 @@ def boots_late(bus, cycle):
         bus.values[STATUSWORD], bus.values[POSITION] = (0x00, 0) if bus.stale else (0x40, 1000)
 
 
-sys.path.insert(0, sys.argv[1])
+def block(axis):
+    """From cycle 100 on, the position of this axis stays where it is at that time."""
+    stuck = []
+
+    def fault(bus, cycle):
+        if cycle >= 100:
+            stuck.append(bus.values[POSITION + axis])
+            bus.values[POSITION + axis] = stuck[0]
+    return fault
+
+
+def lag(bus, cycle):
+    """The first axis is 150 counts behind its target, while it moves forth."""
+    bus.values[POSITION] = max(1000, bus.values[POSITION] - 150) if bus.values[POSITION] > 1000 else bus.values[POSITION]
+
+
+def of_unit(name):
+    return type("BusOfUnit", (Bus,), {"unit": name})
+
+
+def terminate(bus):
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def steps(bus):
+    """The largest step between two target positions of the first axis."""
+    targets = [command[TARGET] for command in bus.commands if TARGET in command]
+    return max(abs(b - a) for a, b in zip(targets, targets[1:]))
+
+
+def distance(unit):
+    """How far the targets of the two axes are from their start, in this unit, and whether all went well."""
+    bus, code, told = run(kind=of_unit(unit))
+    far = [max(abs(command[TARGET + axis] - start) for command in bus.commands) for axis, start in enumerate((1000, -500))]
+    return code == GOOD, [raw * SCALE[unit] for raw in far]
+
+
+sys.path[:0] = [sys.argv[1], str(AXES.parent)]
 import takt  # noqa: E402  what lcm-gen made
 
-bus, told = run()
-check("two axes move there and back and are disabled", told is None and bus.values[:POSITION] == [0x21, 0x21], told)
+bus, code, told = run()
+check("two axes move there and back and are disabled", code == GOOD and bus.values[:POSITION] == [0x21, 0x21], told)
 check("and released", bus.released, told)
 farthest = max(command.get(TARGET, 0) for command in bus.commands)
-check("by 10000 counts from where they were", farthest == 11000 and bus.values[POSITION] == 1000, farthest)
+check("by 1000 counts from where they were", farthest == 2000 and bus.values[POSITION] == 1000, farthest)
+good, far = distance("m")
+check("a linear axis moves by millimetres at most", good and all(0.001 <= metres <= 0.010 for metres in far), far)
+good, far = distance("rad")
+check("a rotary axis moves by a fraction of a turn", good and all(0.1 <= angle <= 1.6 for angle in far), far)
+bus = ends("an axis of an unknown unit is not moved", "unit 'furlong'", lambda bus, cycle: None, releases=False,
+           code=WRONG_USE, kind=of_unit("furlong"))
+check("and nothing is commanded", not bus.commands, bus.commands[:1])
 
-bus, told = run(at(1, trip))
-check("a fault before the start is reset", told is None and bus.values[STATUSWORD] == 0x21, told)
-bus, told = run(at(1, begin_enabled))
-check("axes that are enabled already do not jump", told is None and bus.commands[0][TARGET] == 1000,
+bus, code, told = run(at(1, trip))
+check("a fault before the start is reset", code == GOOD and bus.values[STATUSWORD] == 0x21, told)
+bus, code, told = run(at(1, begin_enabled))
+check("axes that are enabled already do not jump", code == GOOD and bus.commands[0][TARGET] == 1000,
       (told, bus.commands[:1]))
-bus, told = run(boots_late)
+bus, code, told = run(boots_late)
 first = next(command for command in bus.commands if TARGET in command)
-check("an axis that boots late is commanded from its position", told is None and first[TARGET] == 1000, (told, first))
+check("an axis that boots late is commanded from its position", code == GOOD and first[TARGET] == 1000, (told, first))
 skip = at(300, lambda bus: setattr(bus, "cycle", bus.cycle + 200))
-bus, told = run(skip)
-jump = max(abs(b[TARGET] - a[TARGET]) for a, b in zip(bus.commands, bus.commands[1:]))
-check("missed cycles are no jump", told is None and jump < 200, jump)
+bus, code, told = run(skip)
+check("missed cycles are no jump", code == GOOD and steps(bus) < 20, steps(bus))
 
-ends("a fault in motion ends it", "left Operation enabled", at(300, trip))
+bus = ends("a fault in motion ends it", "axis1 left Operation enabled", at(300, trip))
+is_disabled("and the other axis is disabled", bus, axes=[1])
+ends("an axis that stays in Fault ends it", "axis1 does not reach Operation enabled: it is in Fault",
+     lambda bus, cycle: trip(bus) if cycle < 15100 else None, kind=type("Patient", (Bus,), {"most_cycles": 17000}))
 ends("another session ends it", "restarted", at(300, restart), releases=False)
-ends("a node that is silent in motion ends it", "no PDOs of ['axis1']", at(300, die))
-ends("a node that is silent at the end ends it", "no PDOs of ['axis1']", at(1003, die))
+ends("a node that is silent in motion ends it", "no PDOs of axis1", at(300, die))
+ends("a node that is silent at the end ends it", "no PDOs of axis1", at(1003, die))
 ends("images that end end it", "no image", at(300, lambda bus: setattr(bus, "silent", True)))
-ends("an exception in motion ends it", "KeyboardInterrupt", at(300, interrupt))
+bus, code, told = run(at(300, interrupt))
+check("an exception in motion ends it", "KeyboardInterrupt" in told and bus.released, told)
+
+bus = ends("a following error ends it with its exit code", "axis2 does not follow", block(1))
+is_disabled("and both axes are disabled", bus)
+bus, code, told = run(lag)
+check("a following error within the limit is none", code == GOOD, told)
+ends("--following-limit sets the limit", "the limit is 100", lag, options=["--following-limit", "100"])
+ends("a limit that is no number is refused", "--following-limit", lambda bus, cycle: None, releases=False, code=WRONG_USE,
+     options=["--following-limit", "nan"])
+
+bus = ends("SIGTERM in motion ends it", "stopped by SIGTERM", at(300, terminate))
+is_disabled("and both axes are disabled then", bus)
+check("after they have slowed down", steps(bus) < 5 and bus.commands[-1][TARGET] > 1100, (steps(bus), bus.commands[-1]))
+ends("SIGTERM before the motion ends it", "stopped by SIGTERM", at(2, terminate))
+ends("a second signal ends it at once", "a second signal", lambda bus, cycle: terminate(bus) if cycle in (300, 310) else None)
+bus = ends("another schema is refused", "schema 3, this program schema 2", lambda bus, cycle: None, releases=False,
+           code=WRONG_USE, kind=type("BusOfSchema3", (Bus,), {"schema": 3}))
+check("and nothing is commanded there", not bus.commands, bus.commands[:1])
 
 
 def reads_keys(name, message, change):
@@ -173,9 +256,9 @@ def reads_keys(name, message, change):
         file.write_text("# of this plant\nplant " + "5a" * 32 + "\n")
         file.chmod(0o600)
         os.environ["TAKT_KEYS"] = str(change(file) or file)
-        bus, told = run(lambda bus, cycle: None)
+        bus, code, told = run()
         del os.environ["TAKT_KEYS"]
-        check(name, message in str(told) and not bus.commands, told)
+        check(name, code == WRONG_USE and message in told and not bus.commands, (code, told))
 
 
 def seal(daemon, channel, data, counter, secret="5a" * 32, age=0):
@@ -216,9 +299,9 @@ def checks_images(name, forge):
         file.write_text("plant " + "5a" * 32 + "\n")
         file.chmod(0o600)
         os.environ.update(TAKT_KEYS=str(file), TAKT_CHECK_IMAGES="true")
-        bus, told = run(kind=Signing)
+        bus, code, told = run(kind=Signing)
         del os.environ["TAKT_KEYS"], os.environ["TAKT_CHECK_IMAGES"]
-    check(name, told is None and not hasattr(bus, "unsigned") and bus.values[:POSITION] == [0x21, 0x21], told)
+    check(name, code == GOOD and not hasattr(bus, "unsigned") and bus.values[:POSITION] == [0x21, 0x21], told)
 
 
 def restarted(data):
@@ -242,6 +325,7 @@ reads_keys("a key file that others write is refused", "others than its owner can
 reads_keys("a link to a key file is refused", "key file", link)
 reads_keys("a folder is refused", "not a regular file", lambda file: file.parent)
 reads_keys("a key file that is not there is refused", "key file", lambda file: file.with_name("none"))
+reads_keys("a key that is too short is refused", "64 hexadecimal digits", lambda file: (file.write_text("plant 5a5a\n"), None)[1])
 reads_keys("a key file without a key is refused", "no key", lambda file: (file.write_text("# nothing\n"), None)[1])
 checks_images("signed images move the axes", lambda bus, channel, data, good: [])
 checks_images("an image signed with another secret changes nothing",

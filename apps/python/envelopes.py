@@ -1,0 +1,88 @@
+"""Signed envelopes for axes.py, where a bus has keys. share/doc/security.md describes them.
+
+A program that runs on a bus without keys does not need this file.
+"""
+import hashlib
+import hmac
+import os
+import random
+import stat
+import time
+
+from takt import envelope_t  # made by lcm-gen -p
+
+MAC_SIZE = 32  # bytes, at the end of the encoded envelope
+OLDEST = 1_000_000  # microseconds between the clocks of sender and receiver
+
+
+def read_keys(path):
+    """Returns {name: secret} of a key file. ValueError says why a file is refused, as taktd does."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError as wrong:
+        raise ValueError(f"key file {path}: {wrong.strerror}") from None
+    try:
+        info = os.fstat(descriptor)
+        if not stat.S_ISREG(info.st_mode):
+            raise ValueError(f"key file {path}: it is not a regular file")
+        if info.st_uid not in (0, os.geteuid()):
+            raise ValueError(f"key file {path}: it belongs to another user")
+        if info.st_mode & 0o077:
+            raise ValueError(f"key file {path}: others than its owner can use it: chmod 600 {path}")
+        with open(descriptor, encoding="utf-8", closefd=False) as file:
+            lines = [words for line in file if (words := line.partition("#")[0].split())]
+    finally:
+        os.close(descriptor)
+    if not lines:
+        raise ValueError(f"key file {path}: there is no key in it")
+    try:
+        keys = {name: bytes.fromhex(secret) for name, secret in lines}
+    except ValueError:
+        keys = {}
+    if len(keys) != len(lines) or any(len(secret) != 32 for secret in keys.values()):
+        raise ValueError(f"key file {path}: each line is a name of its own and 64 hexadecimal digits")
+    return keys
+
+
+class Envelopes:
+    """Seals messages with the first key, and opens those that one of the keys has signed."""
+
+    def __init__(self, keys):
+        self.keys = keys
+        self.own_key = next(iter(keys))
+        self.instance = random.SystemRandom().getrandbits(63)
+        self.counter = 0  # increases with each envelope of this instance
+        self.counters = {}  # the newest counter of each sender, by key and instance
+
+    def seal(self, channel, session, message):
+        """Returns the encoded envelope of an encoded message."""
+        self.counter += 1
+        envelope = envelope_t()
+        envelope.utime, envelope.schema, envelope.session = time.time_ns() // 1000, 1, session
+        envelope.instance, envelope.counter = self.instance, self.counter
+        envelope.key, envelope.channel = self.own_key, channel
+        envelope.size, envelope.data = len(message), message
+        envelope.mac = bytes(MAC_SIZE)
+        signed = envelope.encode()[:-MAC_SIZE]
+        return signed + mac_of(signed, self.keys[self.own_key])
+
+    def open(self, data):
+        """Returns the envelope; None if it is forged, altered, repeated, too old or out of order."""
+        try:
+            envelope = envelope_t.decode(data)
+        except ValueError:
+            return None
+        secret, sender = self.keys.get(envelope.key), (envelope.key, envelope.instance)
+        signed = data[:-MAC_SIZE]
+        if secret is None or not hmac.compare_digest(mac_of(signed, secret), bytes(envelope.mac)):
+            return None
+        if abs(time.time_ns() // 1000 - envelope.utime) > OLDEST:
+            return None
+        if envelope.counter <= self.counters.get(sender, 0):
+            return None
+        self.counters[sender] = envelope.counter
+        return envelope
+
+
+def mac_of(signed, secret):
+    return hashlib.blake2b(signed, key=secret, digest_size=MAC_SIZE).digest()
