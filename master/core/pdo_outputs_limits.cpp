@@ -85,6 +85,7 @@ bool PdoOutputs::judge(std::size_t place, std::int64_t value, std::int64_t mode,
 /// follow. So the refusal lasts until then.
 void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
   const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
+  if (!limits_.holds(node_index)) return;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
     const bool waits = row.open && row.ready && row.pending;
