@@ -206,7 +206,8 @@ struct ObjectDictionary {
   std::vector<DynamicChannel> channels;                  ///< in the order of the file
   std::vector<ParameterReference> parameter_references;  ///< in ascending order of index
   std::vector<ModuleInfo> modules;                       ///< in ascending order of number
-  std::vector<std::uint16_t> connected_modules;  ///< module numbers in the order of the slots
+  std::vector<std::uint16_t>
+      connected_modules;  ///< the module number in each slot, first slot first
 
   const Object* find(std::uint16_t index) const noexcept;
   const SubObject* find(ObjectKey key) const noexcept;

@@ -143,9 +143,10 @@ class Network {
     axes_at_rest_ = 0;
     rest_ = how;
   }
-  /// An ordered stop begins: a command that waits for its axes is answered and never sent.
+  /// Answers and drops the NMT commands that wait until their axes stand still, because an ordered
+  /// stop begins.
   void drop_awaiting() noexcept;
-  /// An ordered stop begins: the boots of nodes that were never ready are given up.
+  /// Gives up the boots of nodes that were never ready, because an ordered stop begins.
   void give_up_boots(Time now) noexcept;
   /// The NMT state of the master itself.
   NmtState own_state() const noexcept { return own_state_; }

@@ -74,7 +74,7 @@ void PdoInputs::set_reception(std::size_t node_index, Reception reception) noexc
     const std::uint64_t counted =
         plan_.pdos.tpdos[i].sync_start == 0 ? 0 : plan_.cycle.sync_overflow;
     row.due = watched ? beat_ + counted + 2 * std::uint64_t{row.every} : not_due;
-    // With any other reception, the master does not know which SYNC a frame answers.
+    // Without full reception, the master does not know which SYNC a frame answers.
     const bool windowed = reception == Reception::full && plan_.cycle.sync &&
                           plan_.pdos.tpdos[i].synchronous() && window_ > Time{};
     row.window = windowed ? window_ : never;
