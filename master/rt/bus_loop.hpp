@@ -147,6 +147,7 @@ class BusLoop {
   std::optional<std::uint8_t> halt_target() const noexcept;
   void begin_halt(Time now, std::uint8_t node_index) noexcept;
   void step_halt(Time now) noexcept;
+  bool halt_is_over() const noexcept;
   void end_halt() noexcept;
   bool silent() const noexcept;
   void take_fallbacks() noexcept;

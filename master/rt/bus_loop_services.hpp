@@ -39,6 +39,7 @@ bool BusLoop<P, N>::stalled(Time now) const noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::serve() noexcept {
   excuse_absence();
+  end_halt();
   serve_round();
   while (plan_.cycle.period >= long_cycle && rest_until_next_round()) {
     give_events();

@@ -223,12 +223,9 @@ std::optional<std::uint8_t> BusLoop<P, N>::halt_target() const noexcept {
 template <Port P, class N>
 void BusLoop<P, N>::follow_own_state() noexcept {
   if constexpr (requires { network_.own_state(); }) {
-    if (options_.observe || stop_.stage() != StopStage::running) return;
     const auto target = halt_target();
-    const bool halting = halt_.stage() != StopStage::running;
+    if (options_.observe || stop_.stage() != StopStage::running || !target || halt_is_over()) return;
     const Time now = port_.now();
-    if (halting && target != halt_.target()) end_halt();
-    if (!target) return;
     if (halt_.stage() == StopStage::running) begin_halt(now, *target);
     step_halt(now);
   }
@@ -257,8 +254,20 @@ void BusLoop<P, N>::begin_halt(Time now, std::uint8_t node_index) noexcept {
   call_off_fallbacks();
 }
 
+/// Returns true when the command that the axes of the halt had to stop for has left.
+template <Port P, class N>
+bool BusLoop<P, N>::halt_is_over() const noexcept {
+  if constexpr (requires { network_.own_state(); }) {
+    return halt_.stage() != StopStage::running && halt_target() != halt_.target();
+  }
+  return false;
+}
+
+/// Gives the controlwords back to the applications. This is done in the cycle after the command,
+/// when the RPDOs of its nodes are shut: none may follow the command.
 template <Port P, class N>
 void BusLoop<P, N>::end_halt() noexcept {
+  if (!halt_is_over()) return;
   const bool all = halt_.target() == OrderedStop::every_node;
   for (std::size_t i = 0; i < halt_.axes().size(); ++i) {
     const auto controlword = halt_.axes()[i].controlword;

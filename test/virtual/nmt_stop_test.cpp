@@ -123,6 +123,25 @@ TEST_F(NmtStopOfAxes, LeavesTheAxesOfOtherNodesAlone) {
   }
 }
 
+TEST_F(NmtStopOfAxes, LeavesNoWordOfAnApplicationBehindTheCommand) {
+  for (const NmtCommand command : {NmtCommand::stop, NmtCommand::enter_preoperational}) {
+    for (const std::uint8_t node : {std::uint8_t{1}, std::uint8_t{0}}) {
+      order(command, node);
+      command_for(200, 0x000F);
+
+      const auto sent = nmt_at(static_cast<std::uint8_t>(command), node);
+      ASSERT_TRUE(sent);
+      EXPECT_LT(rig.recorder.with(first_words).back().start, *sent + 5ms);
+      EXPECT_EQ(rig.recorder.with(first_words).back().frame.data[0], 0x00);
+      order(NmtCommand::start, 0);
+      rig.run(10);
+      command_for(10, 0x000F);
+      ASSERT_EQ(rig.recorder.with(first_words).back().frame.data[0], 0x0F) << "it is free again";
+      rig.recorder.frames.clear();
+    }
+  }
+}
+
 TEST_F(NmtStopOfAxes, LeavesAtOnceWhereTheAxesAreDisabled) {
   rig.command_all(0x0000, 1);
   rig.run(3);
@@ -153,6 +172,14 @@ TEST_F(NmtStopOfAxes, NeedsNoOtherConfirmationInTheOrderedStop) {
     rig.run(200);
     ASSERT_TRUE(nmt_at(0x02, node));
   }
+  EXPECT_EQ(stop_in_order(), StopResult::confirmed);
+  EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
+}
+
+TEST_F(NmtStopOfAxes, NeedsNoOtherConfirmationWhereAnApplicationGoesOn) {
+  order(NmtCommand::stop, 1);
+  command_for(200, 0x000F);
+  ASSERT_TRUE(nmt_at(0x02, 1));
   EXPECT_EQ(stop_in_order(), StopResult::confirmed);
   EXPECT_EQ(rig.count(EventKind::axis_not_stopped), 0);
 }
