@@ -19,7 +19,7 @@ def frame_of(text):
     return number | flags, bytes.fromhex(payload)
 
 
-def main(log, pcap):
+def to_pcap(log, pcap):
     with open(log) as lines, open(pcap, "wb") as out:
         out.write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, LINKTYPE_CAN_SOCKETCAN))
         for line in lines:
@@ -32,4 +32,4 @@ def main(log, pcap):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    to_pcap(*sys.argv[1:3])

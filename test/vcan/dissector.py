@@ -1,14 +1,19 @@
-"""What Wireshark's CANopen dissector makes of the traffic on vcan0."""
+"""What Wireshark's CANopen dissector makes of the traffic on vcan0.
+
+tshark is slow in user-mode-linux. So a judge that run_judge.py has started leaves its recordings in a folder, and the
+dissector reads them when the guest has ended.
+"""
 import collections
 import contextlib
+import json
+import os
 import pathlib
+import shutil
 import subprocess
-import sys
 import tempfile
 
-from candump_to_pcap import frame_of
+from candump_to_pcap import frame_of, to_pcap
 
-HERE = pathlib.Path(__file__).resolve().parent
 REMOTE = "Remote Transmission Request"
 
 
@@ -43,12 +48,32 @@ def judge_dissector(check, log, least, remote=(), foreign=(), unread=()):
     remote request to plain CAN: only those for the identifiers in `remote` are right. `foreign`: the frames, as
     frame_of() has them, that the judge sent itself and that may be anything. `unread`: what the dissector says of
     frames that are right and that it does not know."""
+    case = {"least": least, "remote": list(remote), "unread": list(unread),
+            "foreign": [(number, payload.hex()) for number, payload in foreign]}
+    folder = os.environ.get("JUDGE_RECORDINGS")
+    if folder is None:
+        return dissect(check, log, **case)
+    name = pathlib.Path(folder) / f"{len(list(pathlib.Path(folder).glob('*.json')))}"
+    shutil.copyfile(log, name.with_suffix(".log"))
+    name.with_suffix(".json").write_text(json.dumps(case))
+
+
+def dissect_all(check, folder):
+    """Reads what the judges have left in the folder. Returns the number of recordings."""
+    cases = sorted(pathlib.Path(folder).glob("*.json"))
+    for case in cases:
+        dissect(check, case.with_suffix(".log"), **json.loads(case.read_text()))
+    return len(cases)
+
+
+def dissect(check, log, least, remote, foreign, unread):
+    foreign = [(number, bytes.fromhex(payload)) for number, payload in foreign]
     with tempfile.TemporaryDirectory() as folder:
         rest, pcap = pathlib.Path(folder) / "rest.log", pathlib.Path(folder) / "bus.pcap"
         taken = without(log, foreign, rest)
         if foreign:
             check(taken == len(foreign), f"of {len(foreign)} frames of the judge {taken} are left out")
-        subprocess.run([sys.executable, HERE / "candump_to_pcap.py", rest, pcap], check=True)
+        to_pcap(rest, pcap)
         command = ["tshark", "-n", "-r", pcap, "-d", "can.subdissector,canopen"]
         told = subprocess.run(command, capture_output=True, text=True, check=True)
     lines = told.stdout.splitlines()
