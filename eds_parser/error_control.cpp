@@ -76,6 +76,7 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
     leave_alone(spec, name + "has no guard time, neither here nor in " + node.dictionary->file);
   } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off.
     leave_alone(spec, name + "is not guarded (`retry_factor: 0`)");
+    return {.period = Time{}, .retries = 0};
   } else {
     guards_ = true;
     uses_retry_factor_ = uses_retry_factor_ || !spec.retry_factor.given;

@@ -57,12 +57,23 @@ class NodeAuditor {
   }
 
   void advise_values(const Reaction& reaction) {
+    tell_fixed(reaction.fixed);
     if (reaction.remedy.empty()) return;
+    if (!node_.boot && out_.remedy.empty()) out_.remedy.emplace_back(boot_line);
     std::string line = "sdo: [";
     for (const std::string& entry : reaction.remedy) {
       line += (line.ends_with('[') ? "" : ", ") + entry;
     }
     out_.remedy.push_back(line + "]   # beside what stands there");
+  }
+
+  void tell_fixed(const std::vector<ObjectKey>& objects) {
+    if (objects.empty()) return;
+    std::string names;
+    for (const ObjectKey key : objects) names += (names.empty() ? "" : ", ") + to_string(key);
+    out_.besides.push_back("its EDS does not let " + names + " be changed so that " +
+                           (out_.drive ? "the drive stops" : "the outputs change") +
+                           ": only its power, or a hardware enable, stops it");
   }
 
   /// Handles a device that stays OPERATIONAL. CiA 401 applies error values after a failure, and not
@@ -71,15 +82,20 @@ class NodeAuditor {
     if (out_.state != ErrorState::operational) return;
     if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::untold;
     reaction.text += ", if it counts that as a failure: see the manual";
-    out_.remedy.emplace_back("error_behavior: {1: 0}   # leave OPERATIONAL");
+    if (values_.takes({0x1029, 1}, 0)) {
+      out_.remedy.emplace_back("error_behavior: {1: 0}   # leave OPERATIONAL");
+    } else {
+      out_.besides.emplace_back("its EDS does not let 1029:01 be changed to 0");
+    }
   }
 
   void advise_supervision() {
     SupervisionRemedy remedy = supervision_remedy(plan_, index_, values_);
-    const bool helpless = remedy.node.empty() && remedy.master.empty();
+    const bool helpless = remedy.node.empty() && remedy.master.empty() && remedy.removal.empty();
     out_.master_remedy = std::move(remedy.master);
     out_.remedy.insert(out_.remedy.end(), remedy.node.begin(), remedy.node.end());
     if (!remedy.why.empty()) out_.besides.push_back(remedy.why);
+    if (!remedy.removal.empty()) out_.besides.push_back(remedy.removal);
     if (helpless) {
       out_.besides.emplace_back(
           "it can watch neither heartbeat nor guarding: only its power, or a hardware enable, "

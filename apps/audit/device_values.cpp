@@ -1,6 +1,5 @@
 #include "apps/audit/device_values.hpp"
 
-#include <algorithm>
 #include <span>
 
 namespace takt {
@@ -20,11 +19,6 @@ bool writes(BootAction action) {
          action == enable_pdo;
 }
 
-/// Returns true for 0x1016 (except sub-index 0), 0x100C and 0x100D.
-bool is_supervision(ObjectKey key) {
-  return key.index == 0x100C || key.index == 0x100D || (key.index == 0x1016 && key.sub != 0);
-}
-
 bool is_writable(const DeviceObject& object) {
   return object.access != Access::ro && object.access != Access::constant;
 }
@@ -34,7 +28,7 @@ bool is_writable(const DeviceObject& object) {
 DeviceValues::DeviceValues(const NodePlan& node, const DeviceTable& device) {
   for (const DeviceObject& object : device.objects) {
     values_[object.key] = number_of(object.value);
-    if (is_supervision(object.key) && is_writable(object)) supervision_.push_back(object);
+    if (is_writable(object)) writable_[object.key] = {object.low_limit, object.high_limit};
   }
   if (!node.boot) return;
   for (const BootStep& step : node.boot_plan.steps) {
@@ -66,15 +60,15 @@ void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
 }
 
 void DeviceValues::missing(ObjectKey key) {
+  writable_.erase(key);
   if (values_.erase(key) != 0) note(to_string(key) + " stands in the EDS; the device has none");
 }
 
 bool DeviceValues::takes(ObjectKey key, std::int64_t value) const {
-  return std::ranges::any_of(supervision_, [&](const DeviceObject& object) {
-    const bool fits =
-        value >= object.low_limit.value_or(value) && value <= object.high_limit.value_or(value);
-    return object.key == key && fits;
-  });
+  const auto known = writable_.find(key);
+  if (known == writable_.end()) return false;
+  const Limits& limits = known->second;
+  return value >= limits.low.value_or(value) && value <= limits.high.value_or(value);
 }
 
 bool DeviceValues::has(std::uint16_t index) const {

@@ -27,9 +27,7 @@ class DeviceValues {
   std::optional<int> option(std::uint16_t index) const;
   /// Returns true if the device has at least one sub-index of this object.
   bool has(std::uint16_t index) const;
-  /// Returns true if by the EDS the object can be written and `value` is within its limits. This
-  /// works for the objects of the heartbeat consumer (0x1016) and of life guarding (0x100C,
-  /// 0x100D); returns false for all others.
+  /// Returns true if by the EDS the object can be written and `value` is within its limits.
   bool takes(ObjectKey key, std::int64_t value) const;
   const std::map<ObjectKey, std::uint64_t>& all() const noexcept { return values_; }
 
@@ -42,8 +40,14 @@ class DeviceValues {
   const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:
+  /// Limits of an object. An empty limit allows every value.
+  struct Limits {
+    std::optional<std::int64_t> low{};
+    std::optional<std::int64_t> high{};
+  };
+
   std::map<ObjectKey, std::uint64_t> values_;
-  std::vector<DeviceObject> supervision_;  // writable objects of heartbeat and life guarding
+  std::map<ObjectKey, Limits> writable_;
   std::vector<std::string> notes_;
 };
 

@@ -30,7 +30,7 @@ class Axis {
     const std::string tail = " (" + name(0x6007) + " = " + std::to_string(*code_) + ")";
     switch (*code_) {
       case 0:
-        return {Failsafe::goes_on, "does nothing: KEEPS its last set-point" + tail, remedy()};
+        return with_remedy({Failsafe::goes_on, "does nothing: KEEPS its last set-point" + tail});
       case 1:
         return {Failsafe::stops, "fault" + tail + braked(values_.option(at(0x605E)), "605E")};
       case 2:
@@ -38,7 +38,7 @@ class Axis {
       case 3:
         return {Failsafe::stops, "quick stop" + tail + braked(values_.option(at(0x605A)), "605A")};
       default:
-        return {Failsafe::untold, "as its manufacturer decided" + tail, remedy()};
+        return with_remedy({Failsafe::untold, "as its manufacturer decided" + tail});
     }
   }
 
@@ -47,7 +47,19 @@ class Axis {
     return static_cast<std::uint16_t>(index + next_axis * number_);
   }
   std::string name(unsigned index) const { return hex(at(index)).substr(2); }
-  std::vector<std::string> remedy() const { return {"{index: " + hex(at(0x6007)) + ", value: 3}"}; }
+
+  /// Adds the first reaction that the drive accepts: quick stop (3), fault (1), or no torque (2).
+  Reaction with_remedy(Reaction reaction) const {
+    const ObjectKey code{at(0x6007), 0};
+    for (const int value : {3, 1, 2}) {
+      if (!values_.takes(code, value)) continue;
+      reaction.remedy.push_back("{index: " + hex(code.index) + ", value: " + std::to_string(value) +
+                                "}");
+      return reaction;
+    }
+    reaction.fixed.push_back(code);
+    return reaction;
+  }
 
   const DeviceValues& values_;
   unsigned number_;
@@ -70,6 +82,7 @@ Reaction drive_reaction(const DeviceValues& values) {
       all.text += (n > 0 ? "; axis " + std::to_string(n + 1) + ": " : "") + found[n].text;
     }
     all.remedy.insert(all.remedy.end(), found[n].remedy.begin(), found[n].remedy.end());
+    all.fixed.insert(all.fixed.end(), found[n].fixed.begin(), found[n].fixed.end());
   }
   return all;
 }

@@ -57,7 +57,8 @@ class Outputs {
   }
 
   Reaction take() {
-    Reaction reaction{.verdict = verdict_, .text = {}, .remedy = std::move(remedy_)};
+    Reaction reaction{
+        .verdict = verdict_, .text = {}, .remedy = std::move(remedy_), .fixed = std::move(fixed_)};
     for (const Fate& fate : fates_) {
       reaction.text += (reaction.text.empty() ? "" : "; ") + to_string(fate.first);
       if (fate.last != fate.first.sub) reaction.text += ".." + hex(fate.last, 2).substr(2);
@@ -92,6 +93,10 @@ class Outputs {
     fate.text = taken == 0 ? "STAYS" + tail
                            : "STAYS but for its bits " + number_text(kind, taken) +
                                  ", they go to " + number_text(kind, *value & taken) + tail;
+    if (!values_.takes(mode_key, static_cast<std::int64_t>(kind.all))) {
+      fixed_.push_back(mode_key);
+      return;
+    }
     remedy_.push_back("{index: " + hex(kind.mode) +
                       ", sub_index: " + std::to_string(fate.first.sub) +
                       ", value: " + number_text(kind, kind.all) + "}");
@@ -101,6 +106,7 @@ class Outputs {
   Failsafe verdict_ = Failsafe::harmless;
   std::vector<Fate> fates_;
   std::vector<std::string> remedy_;
+  std::vector<ObjectKey> fixed_;
 };
 
 }  // namespace

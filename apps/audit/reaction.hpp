@@ -22,6 +22,8 @@ struct Reaction {
   Failsafe verdict = Failsafe::untold;
   std::string text{};
   std::vector<std::string> remedy{};  ///< entries of `sdo:` in the network file
+  /// Objects that would have to change, but by the EDS take no value that helps.
+  std::vector<ObjectKey> fixed{};
 };
 
 /// Returns the reaction of a drive, by the option codes of every axis: abort connection (0x6007),

@@ -1,9 +1,6 @@
 #include "apps/audit/supervision.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <optional>
 #include <string>
 
 namespace takt {
@@ -101,124 +98,6 @@ class Finder {
 Supervision supervision_of(const BusPlan& plan, std::size_t node_index,
                            const DeviceValues& values) {
   return Finder{plan, node_index, values}.run();
-}
-
-namespace {
-
-constexpr std::int64_t usual_heartbeat_ms = 100;
-constexpr int missed_heartbeats = 3;
-constexpr std::int64_t guard_ms = 100;
-constexpr std::int64_t life_time_factor = 3;
-
-/// Returns the entry of 0x1016 that the boot would write.
-std::int64_t consumer_entry(const BusPlan& plan) {
-  const std::int64_t ms = plan.master_heartbeat == Time{} ? usual_heartbeat_ms
-                                                          : plan.master_heartbeat / milliseconds{1};
-  return (std::int64_t{plan.master_id.value()} << 16) | (missed_heartbeats * ms);
-}
-
-/// Use of an entry of 0x1016, as the master sees it.
-enum class Entry : std::uint8_t { of_master, watches_nobody, of_another };
-
-Entry entry_of(const BusPlan& plan, const DeviceValues& values, std::uint8_t sub) {
-  const std::uint64_t entry = values.get({0x1016, sub}).value_or(0);
-  const std::uint64_t node = (entry >> 16) & 0xFF;
-  if (node == plan.master_id.value()) return Entry::of_master;
-  const bool watches = node != 0 && node <= 127 && (entry & 0xFFFF) != 0;
-  return watches ? Entry::of_another : Entry::watches_nobody;
-}
-
-std::uint8_t entries_of(const DeviceValues& values) {
-  const auto count = std::min<std::uint64_t>(values.get({0x1016, 0}).value_or(0), 127);
-  return static_cast<std::uint8_t>(count);
-}
-
-/// Returns the entry that the boot chooses: the one for the master, or else the first that watches
-/// nobody.
-std::optional<std::uint8_t> chosen_entry(const BusPlan& plan, const DeviceValues& values) {
-  std::optional<std::uint8_t> unused;
-  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
-    const Entry entry = entry_of(plan, values, sub);
-    if (entry == Entry::of_master) return sub;
-    if (entry == Entry::watches_nobody && !unused) unused = sub;
-  }
-  return unused;
-}
-
-/// Returns the first entry that watches nobody and that accepts the master's node-ID and time.
-std::optional<std::uint8_t> wide_entry(const BusPlan& plan, const DeviceValues& values) {
-  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
-    const bool unused = entry_of(plan, values, sub) == Entry::watches_nobody;
-    if (unused && values.takes({0x1016, sub}, consumer_entry(plan))) return sub;
-  }
-  return std::nullopt;
-}
-
-/// Returns true if the boot writes an entry of 0x1016. It does so with `heartbeat_consumer: true`,
-/// which is the default.
-bool boot_writes_consumer(const NodePlan& node) {
-  return std::ranges::any_of(node.boot_plan.steps, [](const BootStep& step) {
-    return step.object.index == 0x1016 && step.object.sub != 0;
-  });
-}
-
-std::string explicit_entry(const BusPlan& plan, std::uint8_t sub) {
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(),
-                "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # it watches the master",
-                unsigned{sub}, static_cast<unsigned>(consumer_entry(plan)));
-  return line.data();
-}
-
-void watch_guarding(const DeviceValues& values, SupervisionRemedy& remedy) {
-  if (values.takes({0x100C, 0}, guard_ms) && values.takes({0x100D, 0}, life_time_factor)) {
-    remedy.node.emplace_back("heartbeat_producer: 0");
-    remedy.node.emplace_back("guard_time: 100   # ms");
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
-  } else {
-    remedy.node.clear();
-  }
-}
-
-/// Adds the lines with which the device watches the heartbeat of the master. Returns false if no
-/// entry of 0x1016 can do that.
-bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
-                     SupervisionRemedy& remedy) {
-  const auto chosen = chosen_entry(plan, values);
-  const bool by_default = chosen && values.takes({0x1016, *chosen}, consumer_entry(plan));
-  const auto wide = by_default ? std::nullopt : wide_entry(plan, values);
-  if (!by_default && !wide) return false;
-  const bool silent = plan.master_heartbeat == Time{};
-  if (silent) remedy.master = "master: {heartbeat_producer: 100}   # ms";
-  if (wide) {
-    remedy.why = "its " + to_string(ObjectKey{0x1016, *chosen}) +
-                 " can't be written, or by the limits of its EDS does not hold the master's node "
-                 "id and a time, but another entry does: name that one, or correct the EDS";
-    remedy.node.push_back(explicit_entry(plan, *wide));
-  } else if (!silent && node.boot && !boot_writes_consumer(node)) {  // set to false
-    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
-  }
-  return true;
-}
-
-}  // namespace
-
-SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index,
-                                     const DeviceValues& values) {
-  const NodePlan& node = plan.nodes[node_index];
-  SupervisionRemedy remedy;
-  if (!node.boot) remedy.node.emplace_back("boot: true   # takt configures it");
-  if (watch_heartbeat(plan, node, values, remedy)) return remedy;
-  if (entries_of(values) != 0 && !chosen_entry(plan, values)) {
-    remedy.why =
-        "each entry of its 1016 watches another node: it can't watch the master's heartbeat";
-  } else if (values.has(0x1016)) {
-    remedy.why =
-        "its 1016 can't be written, or by the limits of its EDS does not hold the master's node id "
-        "and a time: it can't watch the master's heartbeat";
-  }
-  watch_guarding(values, remedy);
-  return remedy;
 }
 
 }  // namespace takt

@@ -26,13 +26,17 @@ struct Supervision {
 /// deadlines of RPDOs.
 Supervision supervision_of(const BusPlan& plan, std::size_t node_index, const DeviceValues& values);
 
+/// Line without which takt writes nothing to the device.
+inline constexpr const char* boot_line = "boot: true   # takt configures it";
+
 /// Lines for the network file that make a device notice the loss of the master. Lines that only
-/// repeat a default are left out. If both `node` and `master` are empty, no entry of the network
-/// file can make the device notice.
+/// repeat a default are left out. If `node`, `master` and `removal` are empty, no entry of the
+/// network file can make the device notice.
 struct SupervisionRemedy {
   std::vector<std::string> node{};  ///< lines below the node's name
   std::string master{};             ///< line for the master; empty if none is needed
-  std::string why{};  ///< why the device can't watch heartbeats although it has 0x1016
+  std::string removal{};  ///< entry of the network file that has to be removed; empty if none
+  std::string why{};      ///< why the device can't watch heartbeats although it has 0x1016
 };
 
 /// Finds the lines for a device that does not notice the loss of the master.
