@@ -10,11 +10,11 @@ namespace takt {
 
 void Progress::say(std::string_view text) {
   const std::chrono::duration<double> since = Clock::now() - start_;
-  print(fmt::format("{:6.2f} s  {}\n", since.count(), printable_lines(text)));
+  print(fmt::format("{:6.2f} s  {}\n", since.count(), text));
 }
 
-void Progress::print(const std::string& text) {
-  std::fputs(text.c_str(), stdout);  // fmt::print throws if stdout is closed
+void Progress::print(std::string_view text) {
+  std::fputs(printable_lines(text).c_str(), stdout);  // fmt::print throws if stdout is closed
   std::fflush(stdout);
 }
 

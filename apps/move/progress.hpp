@@ -13,12 +13,13 @@
 namespace takt {
 
 /// Prints lines about a running motion on stdout, each with the time since the start: every change
-/// of the state of an axis, and the positions a few times a second. Lines are lost if stdout is
-/// closed.
+/// of the state of an axis, and the positions a few times a second. Names and units come from the
+/// bus, so every line is made safe for a terminal. Lines are lost if stdout is closed.
 class Progress {
  public:
   void say(std::string_view text);
-  static void print(const std::string& text);
+  /// Prints lines that begin without the time.
+  static void print(std::string_view text);
   /// Prints the states that have changed since the last call, and the warnings and errors of taktd:
   /// at most one for each kind and node in two seconds.
   void states(AxisGroup& group);

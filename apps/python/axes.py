@@ -31,6 +31,7 @@ import math
 import os
 import random
 import signal
+import struct
 import sys
 import time
 
@@ -59,6 +60,8 @@ LAYOUT_TIME = 10.0  # seconds until the daemon has to be heard
 IMAGE_TIME = 1  # seconds between two images
 MOST_STALE_IMAGES = 50  # images in sequence without the PDOs of an axis
 MOST_CYCLES = 5  # The motion advances by so many cycles at most, so missed cycles are no jump.
+MOST_AHEAD = 16  # cycles between two images that follow each other
+MOST_STRANGE = 3  # So many images in sequence that follow each other are believed in any case.
 
 # The CiA 402 state machine: a state is seen in some bits of the statusword (0x6041). The controlword
 # (0x6040) leads one step further on the way to Operation enabled, or on the way back.
@@ -128,6 +131,7 @@ class Bus:
         self.complete = False  # The layout and an image have come in full.
         self.fresh = False  # An image has come in full since the last call of next_image().
         self.signals, self.values, self.stale = {}, {}, set()  # by place in the image
+        self.strange = []  # the newest images in sequence that do not follow self.image
         self.command = command_t()
         self.command.schema, self.command.sender = SCHEMA, "axes.py"
         self.command.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
@@ -149,24 +153,46 @@ class Bus:
         except ValueError:
             raise Failure("the daemon sends another layout_t than this program knows: run lcm-gen "
                           "with the types of the daemon", WRONG_USE) from None
+        except struct.error:
+            return  # It is incomplete.
         refuse_unknown_schema(layout.schema)
         if self.layout is None or identity(layout) != identity(self.layout):
             self.signals, self.values, self.stale, self.image = {}, {}, set(), None
+        for entry in layout.signals:
+            entry.node, entry.unit = printable(entry.node), printable(entry.unit)
         self.layout = layout  # A large layout comes in parts.
         self.signals.update(enumerate(layout.signals, layout.first_signal))
 
     def on_image(self, channel, data):
         try:
             image = image_t.decode(data)
-        except ValueError:
-            return  # It is of another schema; the layout says which one.
-        refuse_unknown_schema(image.schema)
+        except (ValueError, struct.error):
+            return  # It is of another schema, which the layout shows, or incomplete.
+        if not self.believes(image):
+            return
+        self.strange = []
         self.image = image  # A large image comes in parts, too.
         self.values.update(enumerate(image.values, image.first_signal))
         places = range(image.first_signal, image.first_signal + image.num_values)
         self.stale.difference_update(places)
-        self.stale.update(image.stale)
+        self.stale.update(self.signals.keys() & image.stale)
         self.fresh = image.part + 1 == image.parts
+
+    def believes(self, image):
+        """One forged or late image changes nothing. An image that does not follow the newest one
+        counts only as the third in sequence, so that a restart of the daemon is seen."""
+        if self.layout is None or image.schema != SCHEMA:
+            return False
+        if identity(image) == identity(self.layout):
+            if not 0 <= image.first_signal <= self.layout.total_signals - image.num_values:
+                return False
+            if self.image is None or follows(image, self.image):
+                return True
+        if self.strange and image.cycle == self.strange[-1].cycle:
+            return False  # It may be another part of the same image.
+        in_sequence = self.strange and follows(image, self.strange[-1])
+        self.strange = [*self.strange, image] if in_sequence else [image]
+        return len(self.strange) == MOST_STRANGE
 
     def on_signed(self, channel, data):
         envelope = self.envelopes.open(data)
@@ -209,7 +235,8 @@ class Bus:
         self.complete = True
 
     def next_image(self):
-        """Waits for the next image; returns the seconds by which the motion advances."""
+        """Waits for the next image; returns the seconds by which the motion advances. They are
+        more than 0 after any image, so that every time limit that is made of them ends."""
         last = self.image.cycle
         self.receive_until(lambda: self.fresh, IMAGE_TIME, Failure(f"no image for {IMAGE_TIME} s"))
         while self.receive(0):
@@ -217,7 +244,8 @@ class Bus:
         self.fresh = False
         if self.restarted():
             raise Failure("the daemon has restarted")
-        return min(self.image.cycle - last, MOST_CYCLES) * self.layout.period_ns * 1e-9
+        cycles = max(1, min(self.image.cycle - last, MOST_CYCLES))
+        return cycles * self.layout.period_ns * 1e-9
 
     def restarted(self):
         return identity(self.image) != identity(self.layout)
@@ -251,6 +279,19 @@ class Bus:
 def identity(message):
     """The run of the daemon and the order of the values: that of a layout is that of its images."""
     return message.session, message.hash if isinstance(message, layout_t) else message.layout_hash
+
+
+def follows(image, last):
+    """Whether an image is the next part of `last`, or begins a newer image of the same run."""
+    ahead = image.cycle - last.cycle
+    is_next_part = ahead == 0 and image.part == last.part + 1
+    begins = 0 < ahead <= MOST_AHEAD and image.part == 0
+    return identity(image) == identity(last) and (is_next_part or begins)
+
+
+def printable(text):
+    """Makes a text of the bus safe for a terminal: without control characters."""
+    return "".join(character if character.isprintable() else "?" for character in text)
 
 
 def refuse_unknown_schema(schema):

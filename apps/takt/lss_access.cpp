@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
+#include "apps/takt/lss_reply.hpp"
 #include "master/core/lss_runner.hpp"
 #include "master/linux/clock.hpp"
 #include "master/wire/lss.hpp"
@@ -59,12 +61,11 @@ std::expected<std::vector<LssResult>, LiveError> LssAccess::ask(
       std::move(request), longest(commands, std::chrono::milliseconds{options_.timeout_ms}));
   if (!reply) return std::unexpected{reply.error()};
   if (reply->good == 0 && reply->data.empty()) return std::unexpected{LiveError{reply->text, 1}};
-  std::vector<LssResult> results;
-  const auto bytes = std::as_bytes(std::span{reply->data});
-  for (std::size_t at = 0; at + lss_result_bytes <= bytes.size(); at += lss_result_bytes) {
-    results.push_back(unpack_lss_result(bytes.subspan(at).first<lss_result_bytes>()));
-  }
-  return results;
+  auto results = lss_results(std::as_bytes(std::span{reply->data}), commands);
+  if (results) return std::move(*results);
+  if (reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
+  return std::unexpected{
+      LiveError{"the daemon of bus '" + daemon_->status().bus + "' " + results.error(), 3}};
 }
 
 std::expected<std::vector<LssResult>, LiveError> LssAccess::talk(

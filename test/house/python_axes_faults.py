@@ -41,7 +41,7 @@ class Bus:
     def __init__(self, fault):
         self.fault, self.cycle, self.session, self.stale, self.silent = fault, 0, 5, [], False
         self.values, self.handlers, self.commands, self.held = [0x40, 0x40, 1000, -500, 0, 0, 0, 0], {}, [], {}
-        self.due, self.released = ["LAYOUT"], False
+        self.due, self.released, self.node_names = ["LAYOUT"], False, ("axis1", "axis2")
 
     def LCM(self):
         return self
@@ -73,6 +73,7 @@ class Bus:
             self.due.pop()
             made = layout(self.session, self.unit)
             made.schema = self.schema
+            for entry in made.signals: entry.node = self.node_names[entry.node_id - 1]
             self.handlers["LAYOUT"](None, made.encode())
             return 1
         self.cycle += 1
@@ -83,11 +84,14 @@ class Bus:
             self.values[STATUSWORD + axis] = NEXT.get((word, self.values[CONTROLWORD + axis]), word)
             if word == 0x27: self.values[POSITION + axis] = self.values[TARGET + axis]
         self.fault(self, self.cycle)
+        self.handlers["IMAGE"](None, self.image().encode())
+        return 1
+
+    def image(self):
         image = takt.image_t()
         image.schema, image.parts, image.session, image.layout_hash, image.cycle = 2, 1, self.session, 7, self.cycle
         image.values, image.num_values, image.stale, image.num_stale = self.values, 8, self.stale, len(self.stale)
-        self.handlers["IMAGE"](None, image.encode())
-        return 1
+        return image
 
 
 def run(fault=lambda bus, cycle: None, kind=Bus, options=()):
@@ -135,6 +139,25 @@ def trip(bus):
 
 def restart(bus):
     bus.session += 1
+
+
+def forge(**fields):
+    """Another program sends one image with these fields between two images of the bus."""
+    def fault(bus):
+        image = bus.image()
+        for name, value in fields.items():
+            setattr(image, name, value(image) if callable(value) else value)
+        bus.handlers["IMAGE"](None, image.encode())
+    return fault
+
+
+def changes_nothing(name, fault):
+    for cycle in (1, 100, 300, 1003):  # at the start, while it enables, in motion, while it disables
+        bus, code, told = run(at(cycle, fault))
+        targets = [command[TARGET] for command in bus.commands if TARGET in command]
+        check(f"{name} changes nothing at image {cycle}",
+              code == GOOD and steps(bus) < 20 and max(targets) == 2000 and bus.cycle < 1100,
+              (code, told, steps(bus), max(targets, default=None), bus.cycle))
 
 
 def interrupt(bus):
@@ -220,6 +243,21 @@ skip = at(300, lambda bus: setattr(bus, "cycle", bus.cycle + 200))
 bus, code, told = run(skip)
 check("missed cycles are no jump", code == GOOD and steps(bus) < 20, steps(bus))
 
+skip_back = at(300, lambda bus: setattr(bus, "cycle", bus.cycle - 200))
+bus, code, told = run(skip_back)
+check("nor are cycles that begin again", code == GOOD and steps(bus) < 20, (code, told, steps(bus)))
+for name, cycle in (("a negative cycle", -5), ("the lowest cycle", -2**63), ("a cycle of 2^62", 2**62), ("the highest cycle", 2**63 - 1),
+                    ("a cycle far ahead", lambda image: image.cycle + 400), ("an old cycle", lambda image: image.cycle - 50)):
+    changes_nothing(f"a forged image of {name}", forge(cycle=cycle))
+changes_nothing("a forged image of another session", forge(session=99))
+changes_nothing("a forged image of another layout", forge(layout_hash=99))
+changes_nothing("a forged image of another schema", forge(schema=3))
+changes_nothing("a forged image of places that do not exist", forge(first_signal=2**31 - 1))
+changes_nothing("a forged image of negative places", forge(first_signal=-1))
+changes_nothing("a forged part of an image", forge(parts=2, part=1, values=[0], num_values=1))
+changes_nothing("an image that was cut off", lambda bus: bus.handlers["IMAGE"](None, bus.image().encode()[:60]))
+changes_nothing("an image that claims to be longer", lambda bus: bus.handlers["IMAGE"](None, bus.image().encode()[:-4] + b"\x7f\xff\xff\xff"))
+
 bus = ends("a fault in motion ends it", "axis1 left Operation enabled", at(300, trip))
 is_disabled("and the other axis is disabled", bus, axes=[1])
 ends("an axis that stays in Fault ends it", "axis1 does not reach Operation enabled: it is in Fault",
@@ -244,6 +282,9 @@ is_disabled("and both axes are disabled then", bus)
 check("after they have slowed down", steps(bus) < 5 and bus.commands[-1][TARGET] > 1100, (steps(bus), bus.commands[-1]))
 ends("SIGTERM before the motion ends it", "stopped by SIGTERM", at(2, terminate))
 ends("a second signal ends it at once", "a second signal", lambda bus, cycle: terminate(bus) if cycle in (300, 310) else None)
+evil = type("BusOfEvilNames", (Bus,), {"unit": "fur\x1b[5mlong\u009b"})
+bus, code, told = run(kind=evil)
+check("control characters of the bus do not come to the terminal", "unit 'fur?[5mlong?'" in told, told)
 bus = ends("another schema is refused", "schema 3, this program schema 2", lambda bus, cycle: None, releases=False,
            code=WRONG_USE, kind=type("BusOfSchema3", (Bus,), {"schema": 3}))
 check("and nothing is commanded there", not bus.commands, bus.commands[:1])
