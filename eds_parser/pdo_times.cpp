@@ -30,9 +30,9 @@ class TimeJudge {
     for (const EffectivePdo& pdo : node_.pdos) {
       if (pdo.use != PdoUse::exchanged || pdo.synchronous() || pdo.on_request) continue;
       const SenderTimes times = times_of(pdo);
+      deadline(pdo, times);
       if (times.inhibit_us == 0) continue;
       timer(pdo, times);
-      deadline(pdo, times);
       frame(pdo, times);
     }
   }

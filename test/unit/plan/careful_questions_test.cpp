@@ -125,6 +125,17 @@ TEST_F(Careful, AnEventTimerBelowTheInhibitTimeIsAWarning) {
               Not(HasSubstr("[event-timer]")));
 }
 
+TEST_F(Careful, AnEventDeadlineBelowTheEventTimerIsAWarningWithoutAnInhibitTimeToo) {
+  EXPECT_THAT(of_drive(tpdo1("transmission: 255, event_timer: 50, event_deadline: 40")),
+              HasSubstr("`event_deadline` of TPDO1 of node `a` (40 ms) is shorter than the time "
+                        "between two of its frames (50 ms by its event timer): good frames count "
+                        "as missing"));
+  EXPECT_THAT(of_drive(tpdo1("transmission: 255, event_timer: 50, event_deadline: 50")),
+              Not(HasSubstr("[event-timer]")));
+  EXPECT_THAT(of_drive(tpdo1("transmission: 255, event_deadline: 40")),
+              Not(HasSubstr("[event-timer]")));
+}
+
 TEST_F(Careful, AnEventDeadlineBelowTheInhibitTimeIsAWarning) {
   EXPECT_THAT(
       of_drive(tpdo1("transmission: 255, event_timer: 100, inhibit_time: 1000, event_deadline: "
