@@ -23,6 +23,7 @@ std::optional<std::uint64_t> number_of(const ObjectDictionary& dictionary, Objec
 Findings check(const ObjectDictionary& dictionary) {
   Report report{dictionary.file};
   check_values(dictionary, report);
+  check_widths(dictionary, report);
   check_mandatory(dictionary, report);
   check_identity(dictionary, report);
   check_profile(dictionary, report);

@@ -7,6 +7,7 @@ namespace takt {
 
 /// The families of rules that check() runs. Each family has a file of its own.
 void check_values(const ObjectDictionary& dictionary, Report& report);
+void check_widths(const ObjectDictionary& dictionary, Report& report);
 void check_mandatory(const ObjectDictionary& dictionary, Report& report);
 void check_identity(const ObjectDictionary& dictionary, Report& report);
 void check_profile(const ObjectDictionary& dictionary, Report& report);

@@ -42,53 +42,6 @@ void check_limits(ObjectKey key, const SubObject& sub, Report& report) {
   }
 }
 
-/// Returns what an object of the communication profile can't do without its bits 16 to 31. The
-/// result is empty if it can do everything, or if this is unknown. CiA 301, 7.5.2.
-std::string_view function_of_high_bits(ObjectKey key) noexcept {
-  const auto in = [&](unsigned low, unsigned high) {
-    return key.index >= low && key.index <= high;
-  };
-  const bool is_entry = key.sub != 0;
-  switch (key.index) {
-    case 0x1005:
-      return "bit 30, by which the device makes SYNC";
-    case 0x1006:
-      return "SYNC periods of more than 65 ms";
-    case 0x1012:
-      return "bits 30 and 31, by which the device makes or takes TIME";
-    case 0x1014:
-      return "bit 31, which has to be set while the COB-ID of EMCY changes";
-    case 0x1010:
-      return is_entry ? "the signature \"save\": nothing can be stored" : "";
-    case 0x1011:
-      return is_entry ? "the signature \"load\": nothing can be restored" : "";
-    case 0x1016:
-      return is_entry ? "the node id in bits 16 to 23: the device can't watch the heartbeat of the "
-                        "master, or of any node"
-                      : "";
-    default:
-      break;
-  }
-  if ((in(0x1400, 0x15FF) || in(0x1800, 0x19FF)) && key.sub == 1) {
-    return "bit 31, by which the PDO is switched off and mapped anew";
-  }
-  const bool maps = (in(0x1600, 0x17FF) || in(0x1A00, 0x1BFF)) && is_entry;
-  return maps ? "the index of the object in bits 16 to 31: nothing can be mapped" : "";
-}
-
-/// Warns of a mistake of the tool that wrote the file: a 32-bit object with the limits of 16 bits.
-void check_width_of_limits(ObjectKey key, const SubObject& sub, Report& report) {
-  const auto high = integer_of(sub.high_limit);
-  const bool is_16_bits = high == 0xFFFF || high == 0x7FFF;
-  if (sub.type != DataType::unsigned32 || !is_16_bits || !sub.is_configurable()) return;
-  const std::string_view lost = function_of_high_bits(key);
-  if (lost.empty()) return;
-  report.warning(sub.pos, "limits-of-16-bits",
-                 section_name(key) + ": UNSIGNED32 with HighLimit " + number_text(*sub.high_limit) +
-                     ", that of 16 bits; lost is " + std::string{lost} +
-                     ". Correct HighLimit to 0xFFFFFFFF where the device takes more");
-}
-
 /// Returns true for objects whose sub 0 counts something that changes: stored errors, active
 /// entries.
 bool counts_at_run_time(std::uint16_t index) noexcept {
@@ -137,7 +90,6 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
     for (const auto& sub : object.subs) {
       const ObjectKey key{object.index, sub.sub};
       check_limits(key, sub, report);
-      check_width_of_limits(key, sub, report);
       if (sub.parameter_text.empty()) continue;
       if (parameter_values++ == 0) first_parameter_value = sub.parameter_pos;
     }

@@ -188,6 +188,8 @@ std::vector<Example> examples() {
       {"pdo-transmission-type", Kind::objects, "[1400sub2]\nDataType=5\nDefaultValue=253\n"},
       {"profile-object-advised", Kind::whole, "[1000]\nDataType=7\nDefaultValue=0x00020192\n"},
       {"profile-object-missing", Kind::whole, "[1000]\nDataType=7\nDefaultValue=0x00020192\n"},
+      {"range-of-16-bits", Kind::objects,
+       "[607A]\nDataType=4\nAccessType=rw\nLowLimit=-32768\nHighLimit=32767\n"},
       {"real-bit-pattern", Kind::objects, "[2000]\nDataType=0x0008\nDefaultValue=0x3F800000\n"},
       {"sdo-default-channel", Kind::objects,
        "[1200sub1]\nDataType=7\nDefaultValue=$NODEID+0x580\n"},

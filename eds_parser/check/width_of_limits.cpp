@@ -1,0 +1,116 @@
+#include <cstddef>
+#include <string>
+
+#include "eds_parser/check/rules.hpp"
+#include "eds_parser/integer_of.hpp"
+
+namespace takt {
+namespace {
+
+/// Returns what an object of the communication profile can't do without its bits 16 to 31. The
+/// result is empty if it can do everything, or if this is unknown. CiA 301, 7.5.2.
+std::string_view function_of_high_bits(ObjectKey key) noexcept {
+  const auto in = [&](unsigned low, unsigned high) {
+    return key.index >= low && key.index <= high;
+  };
+  const bool is_entry = key.sub != 0;
+  switch (key.index) {
+    case 0x1005:
+      return "bit 30, by which the device makes SYNC";
+    case 0x1006:
+      return "SYNC periods of more than 65 ms";
+    case 0x1012:
+      return "bits 30 and 31, by which the device makes or takes TIME";
+    case 0x1014:
+      return "bit 31, which has to be set while the COB-ID of EMCY changes";
+    case 0x1010:
+      return is_entry ? "the signature \"save\": nothing can be stored" : "";
+    case 0x1011:
+      return is_entry ? "the signature \"load\": nothing can be restored" : "";
+    case 0x1016:
+      return is_entry ? "the node id in bits 16 to 23: the device can't watch the heartbeat of the "
+                        "master, or of any node"
+                      : "";
+    default:
+      break;
+  }
+  const bool of_channel = key.sub == 1 || key.sub == 2;
+  if (in(0x1200, 0x12FF) && of_channel) {
+    return "bit 31, by which the SDO channel is switched off while its COB-IDs change";
+  }
+  if ((in(0x1400, 0x15FF) || in(0x1800, 0x19FF)) && key.sub == 1) {
+    return "bit 31, by which the PDO is switched off and mapped anew";
+  }
+  const bool maps = (in(0x1600, 0x17FF) || in(0x1A00, 0x1BFF)) && is_entry;
+  return maps ? "the index of the object in bits 16 to 31: nothing can be mapped" : "";
+}
+
+bool has_limits_of_16_bits(const SubObject& sub) {
+  const auto high = integer_of(sub.high_limit);
+  const bool is_32_bits = sub.type == DataType::unsigned32 || sub.type == DataType::integer32;
+  return is_32_bits && sub.is_configurable() && (high == 0xFFFF || high == 0x7FFF);
+}
+
+/// Returns for example "607Asub0 (-32768..32767)", or "6083sub0 (up to 65535)" if there is no
+/// LowLimit.
+std::string range_text(ObjectKey key, const SubObject& sub) {
+  const auto low = integer_of(sub.low_limit);
+  return section_name(key) + " (" + (low ? std::to_string(*low) + ".." : "up to ") +
+         std::to_string(integer_of(sub.high_limit).value_or(0)) + ")";
+}
+
+/// Finds a mistake of the tool that wrote the file: 32-bit objects with the limits of 16 bits.
+/// Objects of the communication profile get a finding each, the others one note together.
+class WidthOfLimits {
+ public:
+  explicit WidthOfLimits(Report& report) : report_{report} {}
+
+  void add(ObjectKey key, const SubObject& sub) {
+    if (!has_limits_of_16_bits(sub)) return;
+    const std::string_view lost = function_of_high_bits(key);
+    if (!lost.empty() && sub.type == DataType::unsigned32) return tell_lost(key, sub, lost);
+    if (count_++ == 0) first_ = sub.pos;
+    if (count_ > most_named) return;
+    names_ += (names_.empty() ? "" : ", ") + range_text(key, sub);
+  }
+
+  void tell_others() {
+    if (count_ == 0) return;
+    const bool one = count_ == 1;
+    const std::string more =
+        count_ > most_named ? " and " + std::to_string(count_ - most_named) + " more" : "";
+    report_.note(
+        first_, "range-of-16-bits",
+        (one ? "a 32-bit object has" : std::to_string(count_) + " 32-bit objects have") +
+            " the limits of 16 bits: " + names_ + more +
+            "; values outside are refused. Correct the limits where the device takes more");
+  }
+
+ private:
+  void tell_lost(ObjectKey key, const SubObject& sub, std::string_view lost) {
+    report_.warning(sub.pos, "limits-of-16-bits",
+                    section_name(key) + ": UNSIGNED32 with HighLimit " +
+                        std::to_string(integer_of(sub.high_limit).value_or(0)) +
+                        ", that of 16 bits; lost is " + std::string{lost} +
+                        ". Correct HighLimit to 0xFFFFFFFF where the device takes more");
+  }
+
+  static constexpr std::size_t most_named = 4;
+
+  Report& report_;
+  std::size_t count_ = 0;
+  SourcePos first_{};
+  std::string names_;
+};
+
+}  // namespace
+
+void check_widths(const ObjectDictionary& dictionary, Report& report) {
+  WidthOfLimits widths{report};
+  for (const auto& object : dictionary.objects) {
+    for (const auto& sub : object.subs) widths.add({object.index, sub.sub}, sub);
+  }
+  widths.tell_others();
+}
+
+}  // namespace takt
