@@ -18,12 +18,12 @@ namespace takt {
 namespace {
 
 /// Returns the verdict of `takt budget`. Prints a message if frames can be too late.
-bool fits_the_bus(const LoadedNetwork& network, const std::string& file) {
+bool fits_the_bus(const LoadedNetwork& network, const std::string& file, const char* severity) {
   if (bus_fits(network.plan)) return true;
   std::fprintf(stderr,
-               "taktd: in the worst case frames are too late on this bus: `takt budget %s` says "
+               "taktd: %sin the worst case frames are too late on this bus: `takt budget %s` says "
                "which, and the cheapest change with which they are not\n",
-               file.c_str());
+               severity, file.c_str());
   return false;
 }
 
@@ -50,8 +50,8 @@ int run(const DaemonOptions& options) {
       std::fprintf(stderr, "taktd: can't write to stdout: %s\n", std::strerror(errno));
       return static_cast<int>(Exit::refused);
     }
-    return static_cast<int>(fits_the_bus(network, options.network_file) ? Exit::good
-                                                                        : Exit::refused);
+    return static_cast<int>(fits_the_bus(network, options.network_file, "") ? Exit::good
+                                                                            : Exit::refused);
   }
   if (lacks_bus(options, network)) {
     std::fprintf(stderr,
@@ -60,6 +60,7 @@ int run(const DaemonOptions& options) {
                  options.network_file.c_str());
     return static_cast<int>(Exit::wrong_use);
   }
+  fits_the_bus(network, options.network_file, "warning: ");
   Daemon daemon{std::move(network), options};
   return static_cast<int>(daemon.run());
 }

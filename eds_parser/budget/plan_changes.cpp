@@ -108,6 +108,11 @@ std::string period_text(const BusPlan& plan, std::uint32_t period_us) {
          " us";
 }
 
+std::string services_text(const BusPlan& plan, std::uint16_t frames) {
+  return "`service_frames: " + std::to_string(frames) + "` instead of " +
+         std::to_string(plan.cycle.service_frames);
+}
+
 std::string bitrate_text(const BusPlan& plan, std::uint16_t kbit) {
   return std::to_string(kbit) + " kbit/s instead of " + std::to_string(plan.bitrate / 1000);
 }

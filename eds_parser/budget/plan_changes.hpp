@@ -28,6 +28,8 @@ std::uint32_t round_period(std::uint32_t period_us);
 
 /// Returns for example "SYNC every 2300 us instead of 2000 us".
 std::string period_text(const BusPlan& plan, std::uint32_t period_us);
+/// Returns for example "`service_frames: 8` instead of 16".
+std::string services_text(const BusPlan& plan, std::uint16_t frames);
 /// Returns for example "500 kbit/s instead of 250".
 std::string bitrate_text(const BusPlan& plan, std::uint16_t kbit);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "eds_parser/budget/combinations.hpp"
+#include "eds_parser/budget/fitting_services.hpp"
 #include "eds_parser/budget/plan_changes.hpp"
 
 namespace takt {
@@ -23,6 +24,7 @@ class Search {
       : plan_{plan}, base_{changes}, options_{options}, try_network_{try_network} {}
 
   std::vector<Suggestion> run() {
+    try_services();
     try_identifiers();
     try_inhibit_times();
     try_alternating();
@@ -65,6 +67,14 @@ class Search {
       if (fits(with(less))) pdos = std::move(less);
     }
     return pdos;
+  }
+
+  void try_services() {
+    const auto frames = fitting_service_frames(plan_, options_);
+    if (!frames || *frames == plan_.cycle.service_frames) return;
+    WhatIf changes = base_;
+    changes.service_frames = *frames;
+    add(services_text(plan_, *frames), std::move(changes));
   }
 
   void try_identifiers() {

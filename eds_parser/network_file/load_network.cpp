@@ -10,6 +10,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "eds_parser/budget/fitting_services.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/concise_dcf.hpp"
 #include "eds_parser/eds.hpp"
@@ -83,6 +84,7 @@ class Loader {
     }
     CompiledNetwork compiled = compile_network(spec, dictionaries, out_.findings, device_data);
     out_.plan = std::move(compiled.plan);
+    if (!spec.master.service_frames.given) lower_service_frames();
     out_.devices = std::move(compiled.devices);
     out_.realtime = spec.realtime;
     out_.lcm = spec.lcm;
@@ -98,6 +100,14 @@ class Loader {
  private:
   void error(SourcePos pos, std::string_view rule, std::string message) {
     out_.findings.push_back({path_.string(), pos, Severity::error, rule, std::move(message)});
+  }
+
+  /// Lowers the default of `service_frames` until everything fits the bus. The default stays if no
+  /// number is low enough.
+  void lower_service_frames() {
+    if (has_error(out_.findings)) return;
+    std::uint16_t& frames = out_.plan.cycle.service_frames;
+    frames = fitting_service_frames(out_.plan).value_or(frames);
   }
 
   static bool is_placeholder(const std::string& path) {

@@ -27,6 +27,7 @@ inline std::optional<BusPlan> changed(BusPlan plan, const WhatIf& changes) {
     }
   }
   compile(plan);
+  if (changes.service_frames) plan.cycle.service_frames = *changes.service_frames;
   return plan;
 }
 
