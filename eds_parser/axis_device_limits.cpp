@@ -45,6 +45,7 @@ bool AxisLimits::device_position() {
   for (const SignalIndex signal : positions_) {
     read_at_boot(entry, signal, DeviceBound::range, 1.0);
   }
+  add_offset(entry);
   return true;
 }
 
@@ -62,6 +63,7 @@ bool AxisLimits::device_velocity() {
     const double counts = std::abs(*unit->scale / table_.signal(signal).scale);
     read_at_boot(entry, signal, DeviceBound::rate, counts * cycle_seconds());
   }
+  add_offset(entry);
   for (const SignalIndex signal : velocities_) {
     read_at_boot(entry, signal, DeviceBound::size, 1.0);
   }
@@ -87,6 +89,7 @@ bool AxisLimits::device_acceleration() {
     if (!of_positions) break;
     read_at_boot(entry, signal, DeviceBound::bend, counts(signal) * cycle_seconds());
   }
+  add_offset(entry);
   for (const SignalIndex signal : velocities_) {
     if (!of_velocities) break;
     read_at_boot(entry, signal, DeviceBound::rate, counts(signal));

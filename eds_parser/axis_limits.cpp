@@ -16,7 +16,10 @@ namespace {
 
 /// Distance between the objects of two axes of a device (CiA 402).
 constexpr std::uint16_t axis_objects = 0x800;
-constexpr std::int64_t profile_position = 1;  // value of 6060
+
+/// The values of 6060 whose modes do not follow each position set-point (CiA 402-2). Profile
+/// position takes one by the controlword, the others take none.
+constexpr std::array<std::int64_t, 7> modes_without_set_points{1, 2, 3, 4, 6, 9, 10};
 /// Largest relative error of a `modulo` that a person has rounded, for example to 6.2832.
 constexpr double rounded_digits = 1e-4;
 
@@ -161,6 +164,14 @@ void AxisLimits::position(const Sourced<RangeSpec>& range) {
                   range.pos);
     entry.signals.push_back(signal);
   }
+  add_offset(entry);
+}
+
+/// The master checks the sum of the target and of the position offset, so that the limit also holds
+/// for the position offset.
+void AxisLimits::add_offset(LimitLine& entry) const {
+  const auto offset = output(0x60B0);
+  if (offset && !entry.signals.empty()) entry.signals.push_back(*offset);
 }
 
 void AxisLimits::magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos) {
@@ -214,6 +225,7 @@ void AxisLimits::acceleration(const Sourced<double>& limit) {
     table_.row(signal).bend = table_.raw_size(signal, *limit) * seconds * seconds;
     entry.signals.push_back(signal);
   }
+  add_offset(entry);
   for (const SignalIndex signal : velocities_) {
     if (!has_unit(signal, "acceleration", limit.pos)) continue;
     OutputLimit& row = table_.row(signal);
@@ -315,7 +327,9 @@ void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
     row.statusword = input(0x6041);
     row.mode = output(0x6060);
     row.mode_display = input(0x6061);
-    row.profile = !row.mode && configured_object(node_, object(0x6060)) == profile_position;
+    const auto mode = configured_object(node_, object(0x6060));
+    const auto& modes = modes_without_set_points;
+    row.profile = !row.mode && mode && std::ranges::find(modes, *mode) != modes.end();
   }
 }
 

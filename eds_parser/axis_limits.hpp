@@ -47,6 +47,7 @@ class AxisLimits {
   void read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound, double factor);
   double cycle_seconds() const;
 
+  void add_offset(LimitLine& entry) const;
   void magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos);
   void describe_position_rows(const AxisLimitsSpec& limits);
   using ObjectReader = std::optional<std::int64_t> (*)(const NodeSource& node, ObjectKey object);

@@ -51,7 +51,7 @@ std::string read_value(const LimitLine& line, std::int64_t value) {
 
 std::string limit_text(const BusPlan& plan, const Event& event) {
   const std::uint32_t index = event.detail >> 8U;
-  const auto kind = static_cast<LimitKind>(event.detail & 0xFFU);
+  const auto kind = static_cast<LimitKind>(event.detail & 0xFFU & ~held_set_point);
   if (index >= plan.layout.signals.size()) return "a command outside its limits";
   const Signal& signal = plan.layout.signals[index];
   const std::span bytes{event.bytes};
@@ -59,9 +59,17 @@ std::string limit_text(const BusPlan& plan, const Event& event) {
   const auto limit = std::bit_cast<float>(load_le<std::uint32_t>(bytes.subspan(4)));
   const std::string unit = unit_of(plan, static_cast<SignalIndex>(index), kind);
   const double commanded = raw_number(signal, event.value) * signal.scale + signal.offset;
-  return "command " + number(commanded, signal.unit) + " to " + signal.name + " (" +
-         to_string(signal.object) + ") is outside its limits: " + std::string{name(kind)} + " " +
-         number(double{measured}, unit) + ", limit " + number(double{limit}, unit) +
+  const std::string output = signal.name + " (" + to_string(signal.object) + ")";
+  const std::string limits = " is outside its limits: " + std::string{name(kind)} + " " +
+                             number(double{measured}, unit) + ", limit " +
+                             number(double{limit}, unit);
+  if ((event.detail & held_set_point) != 0) {
+    return "the set-point " + number(commanded, signal.unit) + " that " + output + " still has" +
+           limits +
+           "; the command that would make the axis follow it isn't sent, and the outputs of the "
+           "node take their fallback until a set-point is inside again";
+  }
+  return "command " + number(commanded, signal.unit) + " to " + output + limits +
          "; it isn't sent, and the outputs of the node take their fallback until a command is "
          "inside again";
 }

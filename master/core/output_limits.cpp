@@ -11,17 +11,10 @@ namespace takt {
 namespace {
 
 constexpr Time longest_gap = std::chrono::milliseconds{50};
-constexpr double fewest_cycles = 3;           // least number of cycles for longest_gap
-constexpr double from_actual_cycles = 1;      // cycles of a step that begins at the actual position
-constexpr std::int64_t profile_position = 1;  // value of 0x6060 and 0x6061
-constexpr double rounding = 1e-6;             // rounding errors of the arithmetic, in counts
-
-/// Statusword: Operation enabled. CiA 402-2, table of states.
-constexpr bool operation_enabled(std::int64_t statusword) noexcept {
-  return (statusword & 0x6F) == 0x27;
-}
-
-std::int64_t mode_of(std::int64_t raw) noexcept { return static_cast<std::int8_t>(raw); }
+constexpr double fewest_cycles = 3;       // least number of cycles for longest_gap
+constexpr double from_actual_cycles = 1;  // cycles of a step that begins at the actual position
+constexpr std::int64_t enable_operation = 0x0F;  // bits of the controlword
+constexpr double rounding = 1e-6;                // rounding errors of the arithmetic, in counts
 
 LimitBreach breach(LimitKind kind, double measured, double limit) noexcept {
   return {kind, static_cast<float>(measured), static_cast<float>(limit)};
@@ -34,7 +27,9 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       image_{image},
       inputs_{inputs},
       limits_{plan.limits.outputs},
+      axes_(limits_.size()),
       places_(plan.layout.signals.size(), no_place),
+      targets_(plan.layout.signals.size(), {no_place, no_place}),
       slots_(limits_.size()),
       held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
@@ -45,7 +40,12 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto place = static_cast<std::uint16_t>(i);
     places_[limits_[i].signal] = place;
-    if (limits_[i].mode) places_[*limits_[i].mode] = place;
+    axes_[i] = axis_outputs(plan.layout, limits_[i].signal);
+    for (const auto& signal : {axes_[i].controlword, axes_[i].offset, limits_[i].mode}) {
+      if (!signal) continue;
+      auto& targets = targets_[*signal];
+      (targets[0] == no_place ? targets[0] : targets[1]) = place;
+    }
     slots_[i] = fresh_slot(i);
   }
 }
@@ -130,20 +130,24 @@ std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
   return number(plan_.layout.signals[*feedback], image_.values[*feedback]);
 }
 
-bool OutputLimits::enabled(std::size_t place) const noexcept {
-  const auto statusword = limits_[place].statusword;
-  return !statusword || !inputs_.fresh(*statusword) ||
-         operation_enabled(image_.values[*statusword]);
+/// The set-point that the axis would follow, in counts of the limited output.
+double OutputLimits::set_point(std::size_t place, const AxisCommand& command) const noexcept {
+  const Signal& signal = signal_of(place);
+  const double target = number(signal, command.value);
+  const auto offset = axes_[place].offset;
+  if (!offset || !follows_each(place, command.mode)) return target;
+  const Signal& other = plan_.layout.signals[*offset];
+  return target + number(other, command.offset) * (other.scale / signal.scale);
 }
 
-/// The axis is in profile position mode, and the drive confirms this mode. Until then, the axis
-/// still follows each set-point.
-bool OutputLimits::in_profile(std::size_t place, std::int64_t mode) const noexcept {
-  const OutputLimit& limit = limits_[place];
-  const bool commanded = limit.mode ? mode_of(mode) == profile_position : limit.profile;
-  if (!limit.mode_display) return commanded;
-  const bool shown = mode_of(image_.values[*limit.mode_display]) == profile_position;
-  return limit.mode ? commanded && shown : shown;
+AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
+  const auto value = [&](std::optional<SignalIndex> signal) {
+    return signal ? image_.values[*signal] : 0;
+  };
+  return {.value = image_.values[limits_[place].signal],
+          .offset = value(axes_[place].offset),
+          .mode = value(limits_[place].mode),
+          .order = value(axes_[place].controlword)};
 }
 
 double OutputLimits::cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept {
@@ -224,22 +228,37 @@ bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexc
   const bool measured = limits_[place].step != OutputLimit::none ||
                         slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
   return measured && !slot.known && limits_[place].feedback &&
-         !inputs_.fresh(*limits_[place].feedback) && !in_profile(place, mode);
+         !inputs_.fresh(*limits_[place].feedback) && follows_each(place, mode);
 }
 
-std::optional<LimitBreach> OutputLimits::judge(std::size_t place, std::int64_t raw,
-                                               std::int64_t mode, Obeying obeying,
+/// The distance from the actual position; with `from_earlier` from the nearest of the last cycles.
+/// To be called only if there is an actual position.
+double OutputLimits::distance_from_actual(std::size_t place, double value,
+                                          bool from_earlier) const noexcept {
+  const Slot& slot = slots_[place];
+  double found = distance(place, actual(place).value_or(value), value);
+  for (std::size_t i = 0; from_earlier && i < slot.remembered; ++i) {
+    const double other = distance(place, slot.positions[i], value);
+    if (std::abs(other) < std::abs(found)) found = other;
+  }
+  return found;
+}
+
+std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisCommand& command,
+                                               Obeying obeying,
                                                std::uint64_t cycle) const noexcept {
   const Slot& slot = slots_[place];
-  const double value = number(signal_of(place), raw);
-  const bool profile = in_profile(place, mode);
+  const double value = set_point(place, command);
+  const bool each = follows_each(place, command.mode);
   const bool follows = obeying == Obeying::yes && enabled(place);
-  const bool from_last = slot.known && (profile || !slot.profile);
+  const bool rests = starts_from_actual(place, command.order);
+  const bool from_last = slot.known && !rests && (!each || !slot.idle);
   const bool from_actual = !follows || !from_last;
   if (const auto found = outside(place, value, from_actual)) return found;
-  if (profile) return std::nullopt;
+  if (!each) return std::nullopt;
   std::optional<LimitBreach> found;
   if (from_last) {
+    if (command.age == SetPointAge::held) return std::nullopt;
     const Way way{.distance = distance(place, slot.value, value),
                   .cycles = follows ? cycles_since(slot, cycle) : 1.0,
                   .at = value,
@@ -248,13 +267,29 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, std::int64_t r
     if (!found && follows) found = too_sharp(place, way);
     if (!found) return std::nullopt;
   }
-  if (!from_actual) return found;
-  const auto where = actual(place);
-  if (!where) return found;
-  return too_far(place, {.distance = distance(place, *where, value),
+  if (!from_actual || !actual(place)) return found;
+  const bool computed = command.age == SetPointAge::commanded;
+  const bool lags = rests && computed && (command.order & enable_operation) != enable_operation;
+  return too_far(place, {.distance = distance_from_actual(place, value, lags),
                          .cycles = from_actual_cycles,
                          .at = value,
                          .start = Start::standing});
+}
+
+void OutputLimits::remember() noexcept {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!limits_[i].feedback) continue;
+    Slot& slot = slots_[i];
+    const auto where = actual(i);
+    if (!where) {
+      slot.remembered = 0;
+      continue;
+    }
+    std::ranges::copy_backward(slot.positions.begin(), slot.positions.end() - 1,
+                               slot.positions.end());
+    slot.positions[0] = *where;
+    if (slot.remembered < cycles_remembered) ++slot.remembered;
+  }
 }
 
 void OutputLimits::set_refused(std::size_t place, bool refused) noexcept {
@@ -292,21 +327,32 @@ void OutputLimits::expire(std::uint64_t cycle) noexcept {
   }
 }
 
-void OutputLimits::admit(std::size_t place, std::int64_t raw, std::uint64_t cycle) noexcept {
+void OutputLimits::admit(std::size_t place, const AxisCommand& command,
+                         std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
   slot.news = true;
   // An event-driven frame is not sent again for the same value, so the command counts as sent.
-  if (!slot.known || number(signal_of(place), raw) != slot.value) return;
+  if (!slot.known || set_point(place, command) != slot.value) return;
   slot.cycle = cycle;
   slot.speed = 0;
   slot.gap = 1;
 }
 
 void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
-  const std::uint16_t place = places_[signal];
-  if (place == no_place || limits_[place].signal != signal) return;
+  for (const std::uint16_t place : targets_[signal]) {
+    if (place == no_place) continue;
+    if (axes_[place].controlword == signal) slots_[place].order = image_.values[signal];
+    if (axes_[place].offset == signal && slots_[place].known) note_sent(place, cycle);
+  }
+  if (places_[signal] == no_place) return;
+  note_sent(places_[signal], cycle);
+  slots_[places_[signal]].known = true;
+}
+
+void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
-  const double value = number(signal_of(place), image_.values[signal]);
+  const AxisCommand command = image_command(place);
+  const double value = set_point(place, command);
   if (!slot.known || slot.news || value != slot.value) {
     const double cycles = cycles_since(slot, cycle);
     const bool moves = slot.known && slot.news && enabled(place);
@@ -315,9 +361,8 @@ void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
     slot.value = value;
     slot.cycle = cycle;
   }
-  slot.known = true;
   slot.news = false;
-  slot.profile = in_profile(place, limits_[place].mode ? image_.values[*limits_[place].mode] : 0);
+  slot.idle = !follows_each(place, command.mode);
 }
 
 }  // namespace takt

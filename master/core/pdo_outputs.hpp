@@ -202,9 +202,27 @@ class PdoOutputs {
   Obeying obeying(SignalIndex signal) const noexcept;
   void judge_news(std::size_t place, std::span<const SetPoint> set_points,
                   OutputMoment moment) noexcept;
+  struct Newest {
+    std::int64_t value = 0;
+    bool news = false;  ///< a new command of this pack
+  };
+  Newest newest(std::optional<SignalIndex> signal, std::span<const SetPoint> set_points,
+                OutputMoment moment) const noexcept;
+  void admit_news(std::size_t place, std::span<const SetPoint> set_points,
+                  OutputMoment moment) noexcept;
+  bool awaits_sending(SignalIndex signal) const noexcept;
+  void take_back(SignalIndex signal, std::int64_t before) noexcept;
+  AxisCommand command_with(std::size_t place, SignalIndex signal,
+                           std::int64_t value) const noexcept;
+  bool suits_targets(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// The output that a refusal is reported for, and its raw value.
+  struct Cause {
+    SignalIndex signal = 0;
+    std::int64_t value = 0;
+  };
   /// Returns false if the command is outside its limits; the outputs of its node have then taken
   /// their fallback.
-  bool judge(std::size_t place, std::int64_t value, std::int64_t mode,
+  bool judge(std::size_t place, const AxisCommand& command, Cause cause,
              OutputMoment moment) noexcept;
   void drop_node(std::size_t node_index) noexcept;
   /// Ends the refusal of commands to an output, after the fallback of its node was sent.
