@@ -24,7 +24,12 @@ void drain(StagedPort& port) {
 
 VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& lcm,
                              const Clocks& clocks, sim::Random random)
-    : plan_{plan}, port_{port}, clocks_{clocks}, random_{random}, lcm_{lcm.join(socket_room)} {}
+    : plan_{plan},
+      port_{port},
+      clocks_{clocks},
+      random_{random},
+      lcm_{lcm.join(socket_room)},
+      transport_{lcm_, Channels{plan.name}.command} {}
 
 void VirtualDaemon::start() {
   session_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
@@ -33,7 +38,7 @@ void VirtualDaemon::start() {
   master_->attach(port_);
   master_->begin();
   bridge_ = std::make_unique<Bridge>(
-      *master_, lcm_, clocks_,
+      *master_, transport_, clocks_,
       BridgeOptions{.session = session_, .interface = "virtual", .realtime = "virtual"},
       [this](const Notice& notice) {
         if (hears_.notice) hears_.notice(notice);

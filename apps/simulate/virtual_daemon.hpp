@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "apps/simulate/rewriting_transport.hpp"
 #include "apps/simulate/stage.hpp"
 #include "apps/simulate/staged_port.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
@@ -45,6 +46,8 @@ class VirtualDaemon final : public Actor, private FrontGuest {
                 sim::Random random);
   void hear(Hears hears) { hears_ = std::move(hears); }
   void meddle(Meddle meddle) { meddle_ = std::move(meddle); }
+  /// For tests: changes each command before the front thread receives it.
+  void rewrite(RewritingTransport::Rewrite rewrite) { transport_.rewrite(std::move(rewrite)); }
 
   /// Starts a new process with a new session.
   void start();
@@ -88,6 +91,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   const Clocks& clocks_;  // clocks of the front thread
   sim::Random random_;
   VirtualEndpoint& lcm_;
+  RewritingTransport transport_;  // what the front thread sees of `lcm_`
   Hears hears_;
   Meddle meddle_;
   std::int64_t session_ = 0;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <takt/command_t.hpp>
 #include <takt/image_t.hpp>
 
 #include "eds_parser/table/bus_plan.hpp"
@@ -8,16 +9,21 @@
 
 namespace takt {
 
+/// Cycles as the front thread sees them.
+struct SeenCycles {
+  std::int64_t newest = 0;  ///< that of the newest image that it has received
+  std::int64_t now = 0;     ///< the one that has come meanwhile by the clock
+};
+
 /// Hooks with which a test breaks a run of the front thread, to see whether the judges find it.
 /// Empty functions break nothing.
 struct FrontMeddle {
-  /// Returns the time that the front thread reads from its clock. `newest` is the SYNC time of the
-  /// newest image that it has seen.
-  std::function<Time(Time now, Time newest)> clock{};
   /// Replaces steps of the round.
   std::function<void(FrontRound& round)> round{};
   /// Changes the plan of the daemon; the judges keep the real one.
   std::function<void(BusPlan& plan)> plan{};
+  /// Changes a command before the daemon judges it.
+  std::function<void(command_t& command, const SeenCycles& cycles)> command{};
   /// Returns the instance that a program uses. `own` is its random one.
   std::function<std::int64_t(unsigned program, std::int64_t own)> instance{};
   /// Returns false if the program shall ignore this image.

@@ -71,24 +71,6 @@ class Ear final : public sim::BusObserver {
   std::unique_ptr<CandumpLog> log_;
 };
 
-/// The clock of the front thread, which a test may change.
-class FrontClocks final : public Clocks {
- public:
-  FrontClocks(const VirtualClocks& clocks, const FrontMeddle& meddle)
-      : clocks_{clocks}, meddle_{meddle} {}
-  Time now() const noexcept override {
-    return meddle_.clock ? meddle_.clock(clocks_.now(), newest_) : clocks_.now();
-  }
-  Time wall_offset() const noexcept override { return clocks_.wall_offset(); }
-  /// Notes the SYNC time of the newest image.
-  void saw(Time sync) noexcept { newest_ = sync; }
-
- private:
-  const VirtualClocks& clocks_;
-  const FrontMeddle& meddle_;
-  Time newest_{};
-};
-
 class Run {
  public:
   Run(const LoadedNetwork& network, const SoakOptions& options)
@@ -105,11 +87,10 @@ class Run {
         stop_{plan_, world_, verdict_},
         ear_{plan_, options.candump, wire_},
         clocks_{world_},
-        front_clocks_{clocks_, options_.front},
         lcm_{world_, random_.fork(1)},
         port_{world_, port_options(plan_, options), stage_,
               [this](std::span<const Frame> frames, Time now) { wire_.sent(frames, now); }},
-        daemon_{daemon_plan_, port_, lcm_, front_clocks_, random_.fork(2)},
+        daemon_{daemon_plan_, port_, lcm_, clocks_, random_.fork(2)},
         forger_{plan_, lcm_,
                 [this](SignalIndex signal, std::int64_t value) { wire_.forged(signal, value); },
                 random_.fork(3)},
@@ -125,6 +106,10 @@ class Run {
                   .notice = [this](const Notice& notice) { tell(notice); },
                   .event = [this](const Event& event) { hear(event); }});
     daemon_.meddle(options_.front.round);
+    if (options_.front.command) {
+      daemon_.rewrite(
+          [this](command_t& command) { options_.front.command(command, seen_cycles()); });
+    }
     stage_.add(troubles_);
     stage_.add(daemon_);
     for (const auto& application : applications_) stage_.add(*application);
@@ -170,6 +155,10 @@ class Run {
     return std::make_unique<VirtualApplication>(plan_, lcm_, std::move(options),
                                                 random_.fork(100 + number));
   }
+  SeenCycles seen_cycles() const noexcept {
+    const auto newest = static_cast<std::int64_t>(cycle_);
+    return {.newest = newest, .now = newest + (world_.now() - sync_.newest) / plan_.cycle.period};
+  }
   void judge_command(const command_t& command, SentCommand sent) {
     sent.time_to_live = static_cast<std::uint32_t>(command.time_to_live);
     for (std::size_t i = 0; i < command.signals.size(); ++i) {
@@ -209,7 +198,6 @@ class Run {
   void judge_wait(const ImageView& image, Time now) {
     ++images_;
     cycle_ = image.cycle;
-    front_clocks_.saw(image.sync_time);
     const Time before = std::exchange(last_published_, image.publish_time);
     const Time away = before == Time{} ? never : image.publish_time - before;
     const bool was_away = away > plan_.cycle.period * 3 / 2;
@@ -302,7 +290,6 @@ class Run {
   StopJudge stop_;
   Ear ear_;
   VirtualClocks clocks_;
-  FrontClocks front_clocks_;
   VirtualLcm lcm_;
   Stage stage_;
   StagedPort port_;

@@ -32,11 +32,12 @@ TEST(FrontSoak, GivesTheSameRunForTheSameSeed) {
 /// Each run disables one safety function of takt, and a judge must report this.
 class FrontMeddled : public testing::Test {
  protected:
+  std::uint64_t first = 1;
   std::uint64_t seeds = 12;
 
   /// Returns the first invariant that one of the seeds breaks; empty if none does.
   std::string broken(const FrontMeddle& meddle) {
-    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
       const SoakOutcome outcome =
           soak_front(network, {.seed = seed, .duration = 20s, .front = meddle});
       if (!outcome.violation) continue;
@@ -128,6 +129,61 @@ TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
     round.next_image = [] { return Time{}; };
   };
   EXPECT_EQ(broken({.round = late}), "each wait of the front thread ends in time");
+}
+
+/// The daemon counts the age of a command up to the newest image instead of up to now, so commands
+/// do not age while images stay away.
+TEST_F(FrontMeddled, AgesEndAtTheNewestImage) {
+  const auto younger = [](command_t& command, const SeenCycles& cycles) {
+    command.cycle += cycles.now - cycles.newest;
+  };
+  EXPECT_EQ(broken({.command = younger}), "no output is older than its time to live");
+}
+
+/// A command that is computed from no image counts as computed from the newest one.
+TEST_F(FrontMeddled, ACommandFromNoCycleIsTaken) {
+  const auto from_none = [](command_t& command, const SeenCycles& cycles) {
+    if (command.cycle < 1) command.cycle = cycles.newest;
+  };
+  EXPECT_EQ(broken({.command = from_none}), "no output is older than its time to live");
+}
+
+/// A command that is computed from an image to come counts as computed from the newest one.
+TEST_F(FrontMeddled, ACommandFromTheFutureIsTaken) {
+  const auto from_future = [](command_t& command, const SeenCycles& cycles) {
+    if (command.cycle > cycles.now + 1) command.cycle = cycles.newest;
+  };
+  first = 20;
+  EXPECT_EQ(broken({.command = from_future}), "no output is older than its time to live");
+}
+
+/// The seeds that find these defects find nothing if the commands are only read.
+TEST_F(FrontMeddled, ReadingEachCommandBreaksNothing) {
+  seeds = 1;
+  for (const std::uint64_t seed : {1U, 3U, 20U}) {
+    first = seed;
+    std::int64_t read = 0;
+    EXPECT_EQ(broken({.command = [&](command_t&, const SeenCycles&) { ++read; }}), "") << what;
+    EXPECT_GT(read, 1000) << seed;
+  }
+}
+
+/// A command holds as long as it says, even for years: the network file does not cut it. The
+/// programs of the run ask for 8 cycles and more.
+TEST_F(FrontMeddled, TheTimeToLiveHasNoLimit) {
+  const auto limit = [](BusPlan& plan, std::uint32_t cycles) {
+    for (Signal& signal : plan.layout.signals) {
+      if (signal.output) signal.fallback_cycles = cycles;
+    }
+  };
+  const auto for_years = [](command_t& command, const SeenCycles&) {
+    command.time_to_live = 0x7FFF'FFFF;
+  };
+  limit(network.plan, 6);
+  EXPECT_EQ(broken({.command = for_years}), "") << what;
+  EXPECT_EQ(
+      broken({.plan = [&](BusPlan& plan) { limit(plan, 0x7FFF'FFFF); }, .command = for_years}),
+      "no output is older than its time to live");
 }
 
 /// A program ignores images that are older than the newest cycle that it has received.
