@@ -19,8 +19,12 @@ stay away, all axes are disabled in order and the program ends with a message. I
 Ctrl-C or SIGTERM, but first slows the motion down; a second signal ends it at once. However it ends,
 it releases its outputs, and the drives take the fallback of the network file.
 
-Exit codes: 0 the axes moved, 1 an axis did not follow or the motion did not come to its end, 2 wrong
-use, no axis to move or another schema, 3 no daemon heard.
+If another program holds an axis, the commands of this one are refused: it names the other program and
+ends. It first waits up to 2 s, because the daemon holds the axes of a program that has died until the
+time to live of its last command has run out.
+
+Exit codes: 0 the axes moved, 1 an axis did not follow, another program holds it, or the motion did not
+come to its end, 2 wrong use, no axis to move or another schema, 3 no daemon heard.
 
 If the bus has keys (share/doc/security.md): TAKT_KEYS=FILE, and TAKT_CHECK_IMAGES=true to believe
 only images that the daemon has signed.
@@ -36,7 +40,7 @@ import sys
 import time
 
 import lcm
-from takt import command_t, image_t, layout_t  # made by lcm-gen -p
+from takt import command_t, event_t, image_t, layout_t, status_t  # made by lcm-gen -p
 
 SCHEMA = 2  # of the LCM messages that this program knows
 GOOD, NOT_MOVED, WRONG_USE, NO_DAEMON = 0, 1, 2, 3  # exit codes
@@ -55,6 +59,8 @@ MOVE_TIME = 2.0  # seconds there and back
 
 SLOW_DOWN_TIME = 0.5  # seconds from full speed to standstill after a signal
 ENABLE_TIME = 30.0  # seconds until all axes have to be in Operation enabled
+HELD_TIME = 2.0  # seconds until another program has to give up the axes
+TAKEN_TIME = 0.5  # seconds in motion until it counts that another program has taken an axis
 DISABLE_TIME = 2.0  # seconds until all axes have to be disabled
 LAYOUT_TIME = 10.0  # seconds until the daemon has to be heard
 IMAGE_TIME = 1  # seconds between two images
@@ -132,18 +138,27 @@ class Bus:
         self.fresh = False  # An image has come in full since the last call of next_image().
         self.signals, self.values, self.stale = {}, {}, set()  # by place in the image
         self.strange = []  # the newest images in sequence that do not follow self.image
+        self.holders = {}  # {node id: name of the program that commands its outputs}
+        self.refusal = ""  # what the daemon says to commands without a key
         self.command = command_t()
-        self.command.schema, self.command.sender = SCHEMA, "axes.py"
+        self.command.schema = SCHEMA
+        self.command.sender = f"axes.py {os.getpid()}"  # The daemon shows it as the holder of nodes.
         self.command.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
         try:
             self.link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
         except RuntimeError as wrong:
             raise Failure(f"no connection to LCM: {wrong}", NO_DAEMON) from None
+        self.handlers = {
+            f"{self.name}_LAYOUT": self.on_layout,
+            f"{self.name}_IMAGE": self.on_image,
+            f"{self.name}_STATUS": self.on_status,
+            f"{self.name}_EVENT": self.on_event,
+        }
         if check_images:
             self.link.subscribe(f"{self.name}_SIGNED", self.on_signed)
         else:
-            self.link.subscribe(f"{self.name}_LAYOUT", self.on_layout)
-            self.link.subscribe(f"{self.name}_IMAGE", self.on_image)
+            for channel, handler in self.handlers.items():
+                self.link.subscribe(channel, handler)
 
     def on_layout(self, channel, data):
         if self.complete:
@@ -193,15 +208,33 @@ class Bus:
         in_sequence = self.strange and follows(image, self.strange[-1])
         self.strange = [*self.strange, image] if in_sequence else [image]
         return len(self.strange) == MOST_STRANGE
+    def on_status(self, channel, data):
+        try:
+            status = status_t.decode(data)
+        except (ValueError, struct.error):
+            return
+        if self.layout and status.session == self.layout.session:
+            self.holders.update((node.node_id, printable(node.holder)) for node in status.nodes)
+
+    def on_event(self, channel, data):
+        try:
+            event = event_t.decode(data)
+        except (ValueError, struct.error):
+            return
+        if event.kind == "envelope_refused" and f" {self.name}_COMMAND " in event.text:
+            self.refusal = printable(event.text)
 
     def on_signed(self, channel, data):
         envelope = self.envelopes.open(data)
-        if envelope is None:
-            return
-        if envelope.channel == f"{self.name}_LAYOUT":
-            self.on_layout(envelope.channel, envelope.data)
-        elif envelope.channel == f"{self.name}_IMAGE":
-            self.on_image(envelope.channel, envelope.data)
+        if envelope and envelope.channel in self.handlers:
+            self.handlers[envelope.channel](envelope.channel, envelope.data)
+
+    def holds(self, axis):
+        return self.holders.get(axis.node_id) == self.command.sender
+
+    def other_holder(self, axis):
+        """Returns the name of another program that holds the axis; empty if there is none."""
+        return "" if self.holds(axis) else self.holders.get(axis.node_id, "")
 
     def receive(self, seconds):
         """Handles one message; returns False if none came in time."""
@@ -305,6 +338,7 @@ class Axis:
     def __init__(self, name, places, position_signal, following_limit=None):
         self.name = name
         self.places = places  # {"statusword": place in the image, ...}
+        self.node_id = position_signal.node_id
         self.unit, self.scale = position_signal.unit, position_signal.scale
         if self.unit not in MOVES:
             raise Failure(f"{name} has the unit '{self.unit}'; this program knows distances only for "
@@ -396,11 +430,18 @@ def send_set_points(bus, axes):
     bus.send({place: value for axis in axes for place, value in axis.set_points().items()})
 
 
+def held_by_others(bus, axes):
+    """Returns a sentence for the axes that other programs hold; empty if there is none."""
+    return "; ".join(f"{axis.name} belongs to '{bus.other_holder(axis)}', and the commands of this "
+                     "program are refused" for axis in axes if bus.other_holder(axis))
+
+
 def enable(bus, axes, stop):
-    """Leads all axes to Operation enabled, each at its actual position."""
-    waited = 0.0
+    """Leads all axes to Operation enabled, each at its actual position, and holds them."""
+    waited, held = 0.0, 0.0
     while True:
-        waited += bus.next_image()
+        step = bus.next_image()
+        waited += step
         for axis in axes:
             axis.read(bus)
             if axis.stale_images == 0:  # Otherwise its last set-points are held.
@@ -409,7 +450,13 @@ def enable(bus, axes, stop):
         send_set_points(bus, axes)
         if stop.received():
             raise OrderedStop(f"stopped by {stop.name}")
-        waiting = [axis for axis in axes if axis.stale_images or not axis.is_enabled()]
+        held = held + step if held_by_others(bus, axes) else 0.0
+        if held > HELD_TIME:
+            raise Failure(held_by_others(bus, axes))
+        if waited > HELD_TIME and bus.refusal and not any(bus.holds(axis) for axis in axes):
+            raise Failure(f"{bus.refusal}; set TAKT_KEYS=FILE")
+        waiting = [axis for axis in axes
+                   if axis.stale_images or not axis.is_enabled() or not bus.holds(axis)]
         if not waiting:
             return
         if waited > ENABLE_TIME:
@@ -419,16 +466,21 @@ def enable(bus, axes, stop):
 def why_not_enabled(axis):
     if axis.is_silent():
         return f"no PDOs of {axis.name}"
+    if axis.is_enabled():
+        return f"the daemon does not show that this program holds {axis.name}"
     return f"{axis.name} does not reach Operation enabled: it is in {axis.state.name}"
 
 
 def move(bus, axes, seconds, stop):
     """Moves all axes there and back for so many seconds."""
-    elapsed, speed = 0.0, 1.0
+    elapsed, speed, held = 0.0, 1.0, 0.0
     while elapsed < seconds:
         step = bus.next_image()
         for axis in axes:
             axis.read(bus)
+        held = held + step if held_by_others(bus, axes) else 0.0
+        if held > TAKEN_TIME:
+            raise Failure(held_by_others(bus, axes))
         check_motion(axes)
         if stop.received():
             speed = max(0.0, speed - step / SLOW_DOWN_TIME)

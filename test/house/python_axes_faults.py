@@ -34,6 +34,16 @@ def layout(session, unit=""):
     return made
 
 
+def status(session, holders):
+    made = takt.status_t()
+    made.schema, made.session, made.num_nodes = 2, session, len(holders)
+    for number, holder in enumerate(holders, 1):
+        node = takt.node_status_t()
+        node.node_id, node.holder = number, holder
+        made.nodes.append(node)
+    return made
+
+
 class Bus:
     """In the place of module lcm; `fault(bus, cycle)` may change anything before an image."""
     unit, schema, most_cycles = "", 2, 5000
@@ -42,6 +52,7 @@ class Bus:
         self.fault, self.cycle, self.session, self.stale, self.silent = fault, 0, 5, [], False
         self.values, self.handlers, self.commands, self.held = [0x40, 0x40, 1000, -500, 0, 0, 0, 0], {}, [], {}
         self.due, self.released, self.node_names = ["LAYOUT"], False, ("axis1", "axis2")
+        self.sender, self.other = "", ""
 
     def LCM(self):
         return self
@@ -56,6 +67,7 @@ class Bus:
     def publish(self, channel, data):
         command = takt.command_t.decode(data)
         assert command.instance != 0, "a sender without an instance"
+        self.sender = command.sender
         if command.release:
             self.released = True
             return
@@ -84,6 +96,9 @@ class Bus:
             self.values[STATUSWORD + axis] = NEXT.get((word, self.values[CONTROLWORD + axis]), word)
             if word == 0x27: self.values[POSITION + axis] = self.values[TARGET + axis]
         self.fault(self, self.cycle)
+        if self.cycle % 50 == 0:
+            holders = ["", ""] if self.other == "nobody" else [self.other or self.sender, self.sender]
+            self.handlers["STATUS"](None, status(self.session, holders).encode())
         self.handlers["IMAGE"](None, self.image().encode())
         return 1
 
@@ -162,6 +177,25 @@ def changes_nothing(name, fault):
 
 def interrupt(bus):
     raise KeyboardInterrupt
+
+
+def another_holds(begin, end):
+    """Another program holds the first axis from one cycle to another."""
+    def fault(bus, cycle):
+        bus.other = "axes.py 0" if begin <= cycle < end else ""
+    return fault
+
+
+def refuse_envelope(bus):
+    event = takt.event_t()
+    event.kind, event.text = "envelope_refused", "a message on DEMO_COMMAND was refused: this bus has `keys`"
+    bus.handlers["EVENT"](None, event.encode())
+
+
+def without_key(bus, cycle):
+    bus.other = "nobody"
+    if cycle % 50 == 0:
+        refuse_envelope(bus)
 
 
 def die(bus):
@@ -262,6 +296,16 @@ bus = ends("a fault in motion ends it", "axis1 left Operation enabled", at(300, 
 is_disabled("and the other axis is disabled", bus, axes=[1])
 ends("an axis that stays in Fault ends it", "axis1 does not reach Operation enabled: it is in Fault",
      lambda bus, cycle: trip(bus) if cycle < 15100 else None, kind=type("Patient", (Bus,), {"most_cycles": 17000}))
+ends("an axis that another program holds is told with its name", "axis1 belongs to 'axes.py 0', and the commands of this "
+     "program are refused", another_holds(0, 10000))
+ends("and also where it is taken in motion", "axis1 belongs to 'axes.py 0'", another_holds(300, 10000))
+bus, code, told = run(another_holds(0, 800))
+check("an axis that becomes free within 2 s is moved", code == GOOD, told)
+ends("commands without the key that the bus has end it", "this bus has `keys`; set TAKT_KEYS=FILE", without_key)
+bus, code, told = run(at(50, refuse_envelope))
+check("a program whose commands are taken does not mind the refusal of another one", code == GOOD, told)
+bus, code, told = run(another_holds(300, 351))
+check("one forged status changes nothing", code == GOOD, told)
 ends("another session ends it", "restarted", at(300, restart), releases=False)
 ends("a node that is silent in motion ends it", "no PDOs of axis1", at(300, die))
 ends("a node that is silent at the end ends it", "no PDOs of axis1", at(1003, die))
@@ -320,7 +364,7 @@ def checks_images(name, forge):
         def subscribe(self, channel, handler):
             if channel == "DEMO_SIGNED":
                 self.signed = handler
-                self.handlers = {kind: lambda _, data, kind=kind: self.sign(f"DEMO_{kind}", data) for kind in ("LAYOUT", "IMAGE")}
+                self.handlers = {kind: lambda _, data, kind=kind: self.sign(f"DEMO_{kind}", data) for kind in ("LAYOUT", "IMAGE", "STATUS")}
             else:
                 self.unsigned = channel
             return channel
@@ -346,8 +390,8 @@ def checks_images(name, forge):
 
 
 def restarted(data):
-    """The same image or layout, but of another session: whoever believes it ends."""
-    kind = takt.image_t if data[:8] == takt.image_t().encode()[:8] else takt.layout_t
+    """The same message, but of another session: whoever believes it ends."""
+    kind = next(kind for kind in (takt.image_t, takt.layout_t, takt.status_t) if data[:8] == kind().encode()[:8])
     message = kind.decode(data)
     message.session += 1
     return message.encode()
