@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::int64_t quick_stop_command = 0x0002;
 constexpr std::int64_t disable_voltage_command = 0x0000;
-constexpr std::uint32_t fewest_cycles = 3;
 constexpr std::chrono::milliseconds default_time_to_live{50};
 
 enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
@@ -106,14 +105,14 @@ void apply_units(const NodeSource& node, Signal& signal) {
   signal.unit = unit->unit;
 }
 
-/// Returns the lifetime of commands in cycles. 0 means no limit.
+/// Returns the time to live of commands in cycles. 0 means no limit.
 std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period) {
-  if (timeout.after_cycles.given) return *timeout.after_cycles;
   const Time after =
       timeout.after.given ? std::chrono::milliseconds{*timeout.after} : Time{default_time_to_live};
-  if (after == Time{0}) return 0;
-  const auto cycles = static_cast<std::uint32_t>((after + period - Time{1}) / period);
-  return std::max(fewest_cycles, cycles);
+  const std::uint32_t cycles =
+      timeout.after_cycles.given ? *timeout.after_cycles
+                                 : static_cast<std::uint32_t>((after + period - Time{1}) / period);
+  return cycles == 0 ? 0 : std::max(fewest_fallback_cycles, cycles);
 }
 
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal) {

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "eds_parser/network_file/sections.hpp"
+#include "eds_parser/signal_rules.hpp"
 #include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/sim_names.hpp"
 
@@ -206,6 +207,15 @@ void warn_of_no_limit(const TimeoutSpec& timeout, NetworkReport& report) {
   }
 }
 
+void warn_of_short_limit(const TimeoutSpec& timeout, NetworkReport& report) {
+  const Sourced<std::uint32_t>& after = timeout.after_cycles;
+  if (!after.given || after.value == 0 || after.value >= fewest_fallback_cycles) return;
+  report.warning(after.pos, "short-time-to-live",
+                 "commands last for " + std::to_string(fewest_fallback_cycles) +
+                     " cycles at least: " + std::to_string(fewest_fallback_cycles) +
+                     " is used instead of " + std::to_string(after.value));
+}
+
 void read_timeout(MapReader& outer, NodeSpec& node) {
   const YamlNode* map = outer.take("on_timeout");
   if (map == nullptr) return;
@@ -224,6 +234,7 @@ void read_timeout(MapReader& outer, NodeSpec& node) {
                          "`after` (ms) and `after_cycles` say the same thing: keep one of them");
   }
   warn_of_no_limit(node.on_timeout, outer.report());
+  warn_of_short_limit(node.on_timeout, outer.report());
   reader.finish();
 }
 

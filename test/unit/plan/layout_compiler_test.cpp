@@ -204,10 +204,16 @@ TEST(Fallback, BeginsAfterMillisecondsOrCyclesButNotBothAndNotBeforeThreeCycles)
   EXPECT_EQ(cycles("after: 80"), 20U);
   EXPECT_EQ(cycles("after: 81"), 21U);
   EXPECT_EQ(cycles("after: 1"), 3U);
-  EXPECT_EQ(cycles("after_cycles: 2"), 2U);
+  EXPECT_EQ(cycles("after_cycles: 1"), 3U);
+  EXPECT_EQ(cycles("after_cycles: 2"), 3U);
+  EXPECT_EQ(cycles("after_cycles: 4"), 4U);
+  EXPECT_EQ(cycles("after_cycles: 0"), 0U) << "no limit";
   EXPECT_EQ(cycles("after: 0"), 0U) << "no limit";
   EXPECT_THAT(two_axes("  on_timeout: {after: 0}\n").complaints(),
               testing::Contains(HasSubstr("warning [no-time-to-live]")));
+  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 2}\n").said("short-time-to-live"),
+            "commands last for 3 cycles at least: 3 is used instead of 2\n");
+  EXPECT_EQ(two_axes("  on_timeout: {after_cycles: 3}\n").said("short-time-to-live"), "");
   EXPECT_THAT(two_axes("  on_timeout: {after: 8, after_cycles: 2}\n").complaints(),
               testing::Contains(HasSubstr("error [duplicate-key]")));
 }
