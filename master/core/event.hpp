@@ -118,7 +118,7 @@ enum class EventKind : std::uint8_t {
   sync_period,  ///< The period differs from that of the network file; value: measured period in ns.
   // outputs
   command_refused,  ///< value: signal, detail: RefusedBecause
-  fallback_begun,   ///< value: the signal whose command has outlived its time to live
+  fallback_begun,   ///< value: signal whose command has expired; bytes: pack_limit(), or 0
   fallback_ended,   ///< value: signal
   outputs_held,  ///< An RPDO is not sent because a signal lacks a commanded, safe or seeded value.
                  ///< value: RPDO number; detail: index of the signal whose actual position a

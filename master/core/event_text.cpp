@@ -4,6 +4,7 @@
 #include "eds_parser/table/tpdo_of.hpp"
 #include "master/core/boot_report.hpp"
 #include "master/core/bus_event_text.hpp"
+#include "master/core/command_limit.hpp"
 #include "master/core/firmware_text.hpp"
 #include "master/core/limit_text.hpp"
 #include "master/core/lss_command.hpp"
@@ -201,12 +202,16 @@ std::string node_line(const BusPlan& plan, const Event& event) {
   }
 }
 
-std::string within(const BusPlan& plan, std::int64_t signal) {
-  if (static_cast<std::size_t>(signal) >= plan.layout.signals.size()) return {};
-  const auto cycles = plan.layout.signals[static_cast<std::size_t>(signal)].fallback_cycles;
-  if (cycles == 0) return {};
-  return " within " + std::to_string(cycles * plan.cycle.period / std::chrono::milliseconds{1}) +
-         " ms (on_timeout: after)";
+std::string within(const BusPlan& plan, const Event& event) {
+  const auto signal = static_cast<std::size_t>(event.value);
+  if (signal >= plan.layout.signals.size()) return {};
+  const CommandLimit configured{.cycles = plan.layout.signals[signal].fallback_cycles};
+  const CommandLimit limit = unpack_limit(event.bytes).value_or(configured);
+  if (limit.cycles == 0) return {};
+  const auto time = limit.cycles * plan.cycle.period / std::chrono::milliseconds{1};
+  const bool own = limit.origin == LimitOrigin::command;
+  return " within " + std::to_string(time) + " ms (" +
+         (own ? "time_to_live of the command" : "on_timeout: after") + ")";
 }
 
 std::string signal_line(const BusPlan& plan, const Event& event) {
@@ -215,8 +220,7 @@ std::string signal_line(const BusPlan& plan, const Event& event) {
     case EventKind::command_refused:
       return "command to " + signal + " refused: " + std::string{reason(event.detail)};
     case EventKind::fallback_begun:
-      return "no fresh command for " + signal + within(plan, event.value) +
-             ": its fallback is sent";
+      return "no fresh command for " + signal + within(plan, event) + ": its fallback is sent";
     case EventKind::fallback_ended:
       return "fresh commands for " + signal + " again";
     default:

@@ -20,6 +20,7 @@ namespace {
 constexpr int most_images = 5;
 constexpr Time longest_wait = std::chrono::milliseconds{20};
 constexpr unsigned most_behind = 8;  // further images of a backlog go out without typed messages
+constexpr std::uint64_t not_yet = ~0ULL;
 
 }  // namespace
 
@@ -82,6 +83,7 @@ void Bridge::notice_gap() {
   const Time now = clocks_.now();
   if (!gap_.ran(now)) return;
   skip_images_ = true;
+  first_cycle_ = not_yet;
   if (!gap_.discards_requests(now)) return;
   ++gaps_;
   const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
@@ -165,6 +167,7 @@ void Bridge::publish_image(const ImageView& image, bool typed) {
   sync_to_lcm_.record(clocks_.now() - image.sync_time);
   cycle_ = image.cycle;
   sync_time_ = image.sync_time;
+  if (first_cycle_ == not_yet && sync_time_ >= gap_.end()) first_cycle_ = cycle_;
   if (guest_ != nullptr) guest_->see(image);
   marks_.assign(image.pdos.begin(), image.pdos.end());
   ++images_;
@@ -178,6 +181,7 @@ void Bridge::publish_outputs() {
 void Bridge::take_messages() {
   master_.status(snapshot_);
   transport_.serve([this](std::string_view channel, Bytes data) { on_message(channel, data); });
+  if (transport_.drained()) gap_.found_empty();
   publish_outputs();
 }
 
@@ -192,18 +196,25 @@ void Bridge::on_typed(std::string_view channel, Bytes data) {
   const auto command = typed_->command(channel, data);
   if (!command) return;
   if (!*command) return tell_damaged(std::string{channel}, command->error());
-  take_command(**command);
+  take_command(**command, typed_->node_of(channel));
 }
 
-void Bridge::take_command(const command_t& command) {
+void Bridge::take_command(const command_t& command, std::optional<std::size_t> only_node) {
   const Time now = clocks_.now();
-  if (gap_.discards_commands(now)) return commands_.discard();
-  take_at(command, now);
+  if (waited(command, now)) return commands_.discard();
+  take_at(command, now, only_node);
 }
 
-bool Bridge::take_at(const command_t& command, Time now) {
+bool Bridge::waited(const command_t& command, Time now) const noexcept {
+  if (gap_.discards_commands(now)) return true;
+  return command.cycle >= 1 && static_cast<std::uint64_t>(command.cycle) < first_cycle_;
+}
+
+bool Bridge::take_at(const command_t& command, Time now, std::optional<std::size_t> only_node) {
   if (!outputs_staged_) judged_ = now;
-  return commands_.take(command, {.cycle = cycle_at(now), .now = now, .nodes = snapshot_.nodes});
+  return commands_.take(
+      command,
+      {.cycle = cycle_at(now), .now = now, .nodes = snapshot_.nodes, .only_node = only_node});
 }
 
 void Bridge::on_command(Bytes data) {
@@ -220,7 +231,6 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command.instance = instance_;
   command.sender = sender;
   const Time now = clocks_.now();
-  command.cycle = static_cast<std::int64_t>(cycle_at(now));
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {
     command.signals.push_back(static_cast<std::int32_t>(signal));
@@ -230,6 +240,10 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
     commands_.discard();
     return false;
   }
+  // The cycle by the clock goes back by one if an image comes late, but commands must not.
+  const std::uint64_t cycle = cycle_at(now);
+  own_cycle_ = std::clamp(own_cycle_, cycle, cycle + 1);
+  command.cycle = static_cast<std::int64_t>(own_cycle_);
   const bool taken = take_at(command, now);
   publish_outputs();
   return taken;
@@ -286,9 +300,13 @@ void Bridge::tell_lost_events() {
                 " events lost: more came at once than there is room for"});
 }
 
-void Bridge::add_sender(const Event& event, Notice& notice) const {
+/// Adds what only the gateway knows: the limit that the last command had, and its sender.
+Notice Bridge::fallback_notice(Event event) const {
+  if (const auto limit = commands_.newest_limit(event.value)) event.bytes = pack_limit(*limit);
+  Notice notice = to_notice(master_.plan(), event);
   const std::string_view sender = commands_.last_holder(master_.plan().index_of(event.node));
   if (!sender.empty()) notice.text += "; its last sender was '" + std::string{sender} + "'";
+  return notice;
 }
 
 void Bridge::tell(const Event& event) {
@@ -302,9 +320,8 @@ void Bridge::tell(const Event& event) {
     for (const Notice& notice : outages_.take_rest(event.when)) send(notice);
   }
   if (!PdoOutages::concerns(event.kind)) {
-    Notice notice = to_notice(master_.plan(), event);
-    if (event.kind == EventKind::fallback_begun) add_sender(event, notice);
-    tell(std::move(notice));
+    tell(event.kind == EventKind::fallback_begun ? fallback_notice(event)
+                                                 : to_notice(master_.plan(), event));
   } else if (const auto notice = outages_.on_event(event)) {
     send(*notice);
   }

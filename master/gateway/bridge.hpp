@@ -101,7 +101,10 @@ class Bridge {
   void notice_gap();
   /// Returns the present cycle by the clock; this includes cycles whose images were not seen yet.
   std::uint64_t cycle_at(Time now) const noexcept;
-  bool take_at(const command_t& command, Time now);
+  bool take_at(const command_t& command, Time now, std::optional<std::size_t> only_node = {});
+  /// Returns true if the command came from the transports too soon after a gap, or was computed
+  /// from an image from before its end.
+  bool waited(const command_t& command, Time now) const noexcept;
   void publish_outputs();
   /// Returns why a request is too old to be executed; empty if it is not too old.
   std::string age_trouble(std::int64_t utime, Time now) const;
@@ -110,7 +113,7 @@ class Bridge {
   /// Events lost in the bus thread and on the way from it.
   std::uint64_t events_lost() const noexcept;
   void tell_lost_events();
-  void add_sender(const Event& event, Notice& notice) const;
+  Notice fallback_notice(Event event) const;
   void remember(const Event& event);
   void take_replies(const TimeBudget& budget);
   void take_reply(const Reply& reply);
@@ -119,7 +122,7 @@ class Bridge {
   void on_message(std::string_view channel, Bytes data);
   void on_command(Bytes data);
   void on_typed(std::string_view channel, Bytes data);
-  void take_command(const command_t& command);
+  void take_command(const command_t& command, std::optional<std::size_t> only_node = {});
   void on_request(Bytes data);
   void send(Notice notice);
   reply_t reply_to(const request_t& request) const;
@@ -189,13 +192,17 @@ class Bridge {
   FrontGap gap_;
   std::uint64_t gaps_ = 0;
   bool skip_images_ = false;  // images that waited during a gap are skipped
+  /// Commands count from this cycle on: that of the first image whose SYNC came after the newest
+  /// gap.
+  std::uint64_t first_cycle_ = 0;
   std::uint64_t images_ = 0;
   std::uint64_t events_lost_told_ = 0;
   bool outputs_staged_ = false;
   bool replies_left_ = false;    // the budget of this round ended before the replies
   bool transfers_left_ = false;  // steps of transfers are left over
   bool events_left_ = false;
-  std::int64_t instance_;  // instance of the daemon itself as a sender of commands
+  std::int64_t instance_;        // instance of the daemon itself as a sender of commands
+  std::uint64_t own_cycle_ = 0;  // cycle of the daemon's own newest command
 };
 
 }  // namespace takt

@@ -4,6 +4,12 @@
 #include "master/gateway/bridge.hpp"
 
 namespace takt {
+namespace {
+
+constexpr Time longest_wait = std::chrono::seconds{10};  // of a request on its way
+constexpr Time most_ahead = std::chrono::seconds{1};     // difference of the clocks of two machines
+
+}  // namespace
 
 void Bridge::serve_requests() {
   const TimeBudget budget{clock_, front_budget::requests};
@@ -55,16 +61,25 @@ void Bridge::on_request(Bytes data) {
 }
 
 std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
-  using std::chrono::microseconds;
-  if (gap_.discards_requests(now)) {
-    return "taktd did not run for " + std::to_string(gap_.length() / std::chrono::milliseconds{1}) +
+  const auto wall = [this](Time monotonic) {
+    const Time time = monotonic + clocks_.wall_offset();
+    return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+  };
+  const auto& [length, end] = gap_.newest_long();
+  const bool old = utime < wall(now - longest_wait);
+  const bool before_gap_ended = end != Time{0} && utime < wall(end);
+  if (gap_.discards_requests(now) || (before_gap_ended && !old)) {
+    return "taktd did not run for " + std::to_string(length / std::chrono::milliseconds{1}) +
            " ms, and this may have waited as long: ask again";
   }
-  const auto wall = std::chrono::duration_cast<microseconds>(now + clocks_.wall_offset()).count();
-  constexpr std::int64_t most = 10'000'000;
-  if (utime >= wall - most && utime <= wall + most) return {};
-  return "its time (utime) is more than 10 s away from the clock of taktd's machine: it waited for "
-         "long or comes from a log, or the clocks of two machines differ";
+  if (old) {
+    return "its time (utime) is more than 10 s away from the clock of taktd's machine: it waited "
+           "for long or comes from a log, or the clocks of two machines differ";
+  }
+  if (utime <= wall(now + most_ahead)) return {};
+  return "its time (utime) is more than 1 s ahead of the clock of taktd's machine: the clocks of "
+         "two "
+         "machines differ";
 }
 
 reply_t Bridge::reply_to(const request_t& request) const {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t longest_sender = 64;
 constexpr std::array<std::string_view, command_refusals> refusal_names{
-    "observing",  "schema",    "session", "sender",    "no_cycle", "future",
-    "bad_signal", "bad_value", "too_old", "not_ready", "held",     "waited"};
+    "observing", "schema",  "session",   "sender", "no_cycle", "future",   "bad_signal",
+    "bad_value", "too_old", "not_ready", "held",   "waited",   "overtaken"};
 
 std::uint32_t cycles_in(Time span, Time period) noexcept {
   if (period <= Time{0}) return 1;
@@ -23,6 +23,16 @@ std::uint32_t cycles_in(Time span, Time period) noexcept {
 
 std::string signal_text(const BusPlan& plan, const Signal& signal) {
   return plan.nodes[signal.node_index].name + "." + signal.name;
+}
+
+std::string too_old(const command_t& command, const CommandContext& context) {
+  return "it is too old: computed from cycle " + std::to_string(command.cycle) + ", now is cycle " +
+         std::to_string(context.cycle);
+}
+
+std::string overtaken(const command_t& command) {
+  return "it is older than the newest command of the node: computed from cycle " +
+         std::to_string(command.cycle);
 }
 
 bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
@@ -44,7 +54,8 @@ Commands::Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_o
       tell_{std::move(tell)},
       second_{cycles_in(std::chrono::seconds{1}, plan.cycle.period)},
       leases_{plan.nodes.size(), second_},
-      verdicts_(plan.nodes.size()) {}
+      verdicts_(plan.nodes.size()),
+      limits_(plan.layout.signals.size()) {}
 
 std::string_view name(CommandRefusal refusal) noexcept {
   return refusal_names[std::to_underlying(refusal)];
@@ -127,20 +138,23 @@ bool Commands::read_items(const command_t& command, const CommandContext& contex
                         std::to_string(command.values[i]) + ", does not fit its " +
                         std::to_string(signal.bits) + " bits");
     }
-    const Freshness left =
-        freshness({.computed_from = static_cast<std::uint64_t>(command.cycle),
-                   .now = context.cycle,
-                   .time_to_live = static_cast<std::uint32_t>(std::max(0, command.time_to_live)),
-                   .configured = signal.fallback_cycles,
-                   .most = second_});
+    const Freshness left = freshness_of(command, context.cycle, signal.fallback_cycles);
     if (!left.fresh) {
       return refuse({context, command, CommandRefusal::too_old, signal.node.value()},
-                    "it is too old: computed from cycle " + std::to_string(command.cycle) +
-                        ", now is cycle " + std::to_string(context.cycle));
+                    too_old(command, context));
     }
-    items_.push_back({static_cast<SignalIndex>(index), command.values[i], left.cycles});
+    items_.push_back({static_cast<SignalIndex>(index), command.values[i], left.cycles, left.limit});
   }
   return !items_.empty();
+}
+
+Freshness Commands::freshness_of(const command_t& command, std::uint64_t now,
+                                 std::uint32_t configured) const noexcept {
+  return freshness({.computed_from = static_cast<std::uint64_t>(command.cycle),
+                    .now = now,
+                    .time_to_live = static_cast<std::uint32_t>(std::max(0, command.time_to_live)),
+                    .configured = configured,
+                    .most = second_});
 }
 
 std::uint32_t Commands::lease_cycles(std::size_t node_index) const noexcept {
@@ -166,11 +180,19 @@ bool Commands::check_node(std::size_t node_index, const command_t& command,
                   "the node is not operational");
   }
   const Sender sender{.instance = command.instance, .name = command.sender};
-  if (!leases_.take(node_index, sender, context.cycle, lease_cycles(node_index))) {
-    return refuse({context, command, CommandRefusal::held, node},
-                  owned_text(node_index, command, context));
+  const LeaseTerm term{.now = context.cycle,
+                       .cycles = lease_cycles(node_index),
+                       .computed_from = static_cast<std::uint64_t>(command.cycle)};
+  switch (leases_.take(node_index, sender, term)) {
+    case LeaseVerdict::taken:
+      return true;
+    case LeaseVerdict::held:
+      return refuse({context, command, CommandRefusal::held, node},
+                    owned_text(node_index, command, context));
+    case LeaseVerdict::overtaken:
+      return refuse({context, command, CommandRefusal::overtaken, node}, overtaken(command));
   }
-  return true;
+  return false;
 }
 
 std::string Commands::owned_text(std::size_t node_index, const command_t& command,
@@ -183,15 +205,42 @@ std::string Commands::owned_text(std::size_t node_index, const command_t& comman
          " until it releases them or the time to live of its commands has run out";
 }
 
+/// Returns the shortest configured time to live of the node's outputs; 0 means no limit.
+std::uint32_t Commands::shortest_limit(std::size_t node) const noexcept {
+  std::uint32_t shortest = 0;
+  for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
+    const Signal& signal = plan_.layout.signals[i];
+    if (signal.node_index != node || signal.fallback_cycles == 0) continue;
+    shortest = shortest == 0 ? signal.fallback_cycles : std::min(shortest, signal.fallback_cycles);
+  }
+  return shortest;
+}
+
+/// A release is judged like a command: a copy of an old one must not stop the axes.
+bool Commands::release_node(std::size_t node, const command_t& command,
+                            const CommandContext& context) {
+  if (!leases_.holds(node, command.instance, context.cycle)) return false;
+  const std::uint8_t id = plan_.nodes[node].id.value();
+  if (!freshness_of(command, context.cycle, shortest_limit(node)).fresh) {
+    return refuse({context, command, CommandRefusal::too_old, id}, too_old(command, context));
+  }
+  const auto computed_from = static_cast<std::uint64_t>(command.cycle);
+  if (!leases_.release(node, context.cycle, computed_from)) {
+    return refuse({context, command, CommandRefusal::overtaken, id}, overtaken(command));
+  }
+  for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
+    if (plan_.layout.signals[i].node_index != node) continue;
+    set_output_(static_cast<SignalIndex>(i), 0, output_released);
+  }
+  return true;
+}
+
 bool Commands::release(const command_t& command, const CommandContext& context) {
   std::string nodes;
   for (std::size_t node = 0; node < plan_.nodes.size(); ++node) {
-    if (!leases_.release(node, command.instance, context.cycle)) continue;
+    if (context.only_node.value_or(node) != node) continue;
+    if (!release_node(node, command, context)) continue;
     nodes += (nodes.empty() ? "" : ", ") + plan_.nodes[node].name;
-    for (std::size_t i = plan_.layout.inputs; i < plan_.layout.signals.size(); ++i) {
-      if (plan_.layout.signals[i].node_index != node) continue;
-      set_output_(static_cast<SignalIndex>(i), 0, output_released);
-    }
   }
   if (nodes.empty()) return false;
   ++taken_;
@@ -204,10 +253,16 @@ bool Commands::release(const command_t& command, const CommandContext& context) 
   return true;
 }
 
+std::optional<CommandLimit> Commands::newest_limit(std::int64_t signal) const noexcept {
+  const auto index = static_cast<std::size_t>(signal);
+  return index < limits_.size() ? limits_[index] : std::nullopt;
+}
+
 bool Commands::take(const command_t& command, const CommandContext& context) {
   if (!check_message(command, context)) return false;
+  if (!check_cycle(command, context)) return false;
   if (command.release != 0) return release(command, context);
-  if (!check_cycle(command, context) || !read_items(command, context)) return false;
+  if (!read_items(command, context)) return false;
   std::ranges::fill(verdicts_, Verdict::unknown);
   bool any = false;
   for (const Item& item : items_) {
@@ -218,6 +273,7 @@ bool Commands::take(const command_t& command, const CommandContext& context) {
     }
     if (verdicts_[node] == Verdict::refused) continue;
     set_output_(item.signal, item.value, item.cycles);
+    limits_[item.signal] = item.limit;
     any = true;
   }
   if (any) ++taken_;

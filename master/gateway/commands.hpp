@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/core/command_limit.hpp"
 #include "master/core/node_status.hpp"
 #include "master/gateway/lease.hpp"
 #include "master/gateway/notice.hpp"
@@ -36,8 +38,9 @@ enum class CommandRefusal : std::uint8_t {
   not_ready,  ///< the node has not booted, or is not operational
   held,       ///< another sender holds the node
   waited,     ///< the command waited while the front thread stood still
+  overtaken,  ///< a command computed from a later cycle was accepted before
 };
-inline constexpr std::size_t command_refusals = 12;
+inline constexpr std::size_t command_refusals = 13;
 std::string_view name(CommandRefusal refusal) noexcept;  ///< "too_old"
 
 struct CommandsOptions {
@@ -50,6 +53,8 @@ struct CommandContext {
   std::uint64_t cycle = 0;  ///< present cycle by the clock; 0 before the first image
   Time now{};
   std::span<const NodeStatus> nodes;  ///< in the order of BusPlan::nodes
+  /// The node of the typed channel; a release on it reaches only this node.
+  std::optional<std::size_t> only_node{};
 };
 
 /// Turns command_t messages into set-points. A node takes either all or none of its values in a
@@ -74,6 +79,8 @@ class Commands {
   std::string_view last_holder(std::size_t node_index) const noexcept {
     return leases_.last_holder(node_index);
   }
+  /// Returns the limit of the newest accepted command to an output; std::nullopt before the first.
+  std::optional<CommandLimit> newest_limit(std::int64_t signal) const noexcept;
   /// Counts a message that was not examined because it may have waited for long.
   void discard() noexcept { count(CommandRefusal::waited); }
 
@@ -82,6 +89,7 @@ class Commands {
     SignalIndex signal = 0;
     std::int64_t value = 0;
     std::uint32_t cycles = 0;  ///< remaining cycles of its time to live; 0 means no limit
+    CommandLimit limit{};
   };
   enum class Verdict : std::uint8_t { unknown, accepted, refused };
 
@@ -92,6 +100,10 @@ class Commands {
   std::string owned_text(std::size_t node_index, const command_t& command,
                          const CommandContext& context) const;
   bool release(const command_t& command, const CommandContext& context);
+  bool release_node(std::size_t node, const command_t& command, const CommandContext& context);
+  Freshness freshness_of(const command_t& command, std::uint64_t now,
+                         std::uint32_t configured) const noexcept;
+  std::uint32_t shortest_limit(std::size_t node) const noexcept;
   std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
   /// The refused command, the reason and the node concerned.
   struct Refused {
@@ -110,8 +122,9 @@ class Commands {
   std::uint32_t second_;  // cycles in one second
   LeaseTable leases_;
   RateLimit told_{std::chrono::seconds{1}};
-  std::vector<Item> items_;        // items of the current message
-  std::vector<Verdict> verdicts_;  // per node, for the current message
+  std::vector<Item> items_;                          // items of the current message
+  std::vector<Verdict> verdicts_;                    // per node, for the current message
+  std::vector<std::optional<CommandLimit>> limits_;  // by signal: that of the newest command
   std::uint64_t taken_ = 0;
   std::array<std::uint64_t, command_refusals> refused_{};
 };

@@ -10,6 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time shortest_slack = 100ms;
 constexpr Time settling = 20ms;
+constexpr Time longest_backlog = 1s;
 constexpr Time request_gap = 1s;
 
 }  // namespace
@@ -20,10 +21,18 @@ bool FrontGap::ran(Time now) noexcept {
   const bool gap = last_ != never && now > std::max(due_, last_) + slack_;
   if (gap) {
     length_ = now - last_;
-    discard_until_ = now + settling;
+    end_ = now;
+    backlog_ = Backlog::possible;
+    if (length_ >= request_gap) newest_long_ = {.length = length_, .end = now};
   }
   last_ = now;
   return gap;
+}
+
+bool FrontGap::discards_commands(Time now) const noexcept {
+  if (end_ == Time{0}) return false;
+  const Time since = now - end_;
+  return since < settling || (backlog_ == Backlog::possible && since < longest_backlog);
 }
 
 bool FrontGap::discards_requests(Time now) const noexcept {

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "eds_parser/table/time.hpp"
 
 namespace takt {
@@ -14,22 +16,38 @@ class FrontGap {
   bool ran(Time now) noexcept;
   /// Notes that the thread may sleep until `due`.
   void sleeps_until(Time due) noexcept { due_ = due; }
+  /// Notes that the transports had no message left.
+  void found_empty() noexcept { backlog_ = Backlog::none; }
 
   /// Length of the newest gap, in which the front thread did not run.
   Time length() const noexcept { return length_; }
-  /// Returns true if commands that arrive now may have waited during the gap. The thread of a
-  /// transport needs a moment to hand over messages from the kernel's buffers.
-  bool discards_commands(Time now) const noexcept { return now < discard_until_; }
+  /// End of the newest gap; 0 if there was none.
+  Time end() const noexcept { return end_; }
+  /// Returns true if commands that arrive now may have waited during the gap: until the transports
+  /// were found empty, but at most for 1 s. The thread of a transport also needs a moment to hand
+  /// over messages from the kernel's buffers.
+  bool discards_commands(Time now) const noexcept;
   /// Returns true if requests that arrive now may have waited too long. Short gaps do not harm
   /// requests.
   bool discards_requests(Time now) const noexcept;
 
+  /// A gap that was long enough to harm requests.
+  struct LongGap {
+    Time length{};
+    Time end{};  ///< 0 if there was none
+  };
+  const LongGap& newest_long() const noexcept { return newest_long_; }
+
  private:
+  enum class Backlog : std::uint8_t { none, possible };
+
   Time slack_;
   Time last_{never};
   Time due_{};
   Time length_{};
-  Time discard_until_{};
+  Time end_{};
+  LongGap newest_long_;
+  Backlog backlog_ = Backlog::none;
 };
 
 }  // namespace takt

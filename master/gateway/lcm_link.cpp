@@ -158,6 +158,10 @@ void LcmLink::serve(const MessageHandler& handler) {
   if (fallback_) fallback_->serve(handler);
 }
 
+bool LcmLink::drained() const {
+  return (!main_ || main_->drained()) && (!fallback_ || fallback_->drained());
+}
+
 void LcmLink::watch(std::vector<pollfd>& descriptors) const {
   if (main_) main_->watch(descriptors);
   if (fallback_) fallback_->watch(descriptors);

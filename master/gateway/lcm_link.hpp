@@ -32,6 +32,7 @@ class LcmLink final : public Transport {
   bool wanted(std::string_view channel) const override;
   void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
+  bool drained() const override;
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
   /// The URL that other programs must set; empty while there is no connection.

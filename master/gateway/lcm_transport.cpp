@@ -41,8 +41,8 @@ void LcmTransport::serve(const MessageHandler& handler) {
   do {
     const int handled = lcm_handle_timeout(lcm_.get(), 0);
     if (handled < 0) good_ = false;
-    if (handled <= 0) break;
-  } while (budget.is_left());
+    drained_ = handled <= 0;
+  } while (!drained_ && budget.is_left());
   handler_ = nullptr;
 }
 

@@ -21,6 +21,7 @@ class LcmTransport final : public Transport {
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
+  bool drained() const override { return drained_; }
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return good_; }
   std::string url() const override { return url_; }
@@ -39,6 +40,7 @@ class LcmTransport final : public Transport {
   FrontClock clock_;
   const MessageHandler* handler_ = nullptr;  // set during serve()
   bool good_ = true;
+  bool drained_ = true;  // serve() found no further message
 };
 
 }  // namespace takt

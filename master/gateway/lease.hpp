@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "master/core/command_limit.hpp"
+
 namespace takt {
 
 /// Tells for how many cycles from cycle `now` on a command is valid. The shorter of the message's
@@ -13,6 +15,7 @@ namespace takt {
 struct Freshness {
   bool fresh = true;
   std::uint32_t cycles = 0;  ///< remaining cycles; 0 means no limit
+  CommandLimit limit{};      ///< the limit that applies, from the cycle of the image on
 };
 
 struct CommandAge {
@@ -32,18 +35,36 @@ struct Sender {
   std::string_view name;
 };
 
+/// Why a sender does not get a node.
+enum class LeaseVerdict : std::uint8_t {
+  taken,
+  held,       ///< another sender holds the node
+  overtaken,  ///< a command that was computed from a later cycle has been accepted before
+};
+
+/// The cycles of a command, and for how many cycles it is valid; 0 means no limit.
+struct LeaseTerm {
+  std::uint64_t now = 0;
+  std::uint32_t cycles = 0;
+  std::uint64_t computed_from = 0;
+};
+
 /// Tells who may command the outputs of each node. The first sender holds the node until the time
-/// to live of its newest command has expired or until it releases the node. Times count in cycles.
-/// Front thread.
+/// to live of its newest command has expired or until it releases the node. The commands of a node
+/// do not go back: none may be computed from an earlier cycle than the newest accepted one. Times
+/// count in cycles. Front thread.
 class LeaseTable {
  public:
   /// `unlimited` is the number of cycles for which a command without time to live holds its node.
   LeaseTable(std::size_t nodes, std::uint32_t unlimited);
 
-  /// Returns true if `sender` holds the node now. `cycles` is the time to live; 0 means none.
-  bool take(std::size_t node, const Sender& sender, std::uint64_t now, std::uint32_t cycles);
-  /// Returns true if the sender with this instance held the node; the node is then free.
-  bool release(std::size_t node, std::int64_t instance, std::uint64_t now) noexcept;
+  /// If the verdict is `taken`, `sender` holds the node now.
+  LeaseVerdict take(std::size_t node, const Sender& sender, const LeaseTerm& term);
+  /// Returns true if the sender with this instance holds the node.
+  bool holds(std::size_t node, std::int64_t instance, std::uint64_t now) const noexcept;
+  /// Frees a node that its holder gives up. Returns false if a later command has overtaken the
+  /// release.
+  bool release(std::size_t node, std::uint64_t now, std::uint64_t computed_from) noexcept;
   /// Name of the sender that holds the node; empty if nobody does.
   std::string_view holder(std::size_t node, std::uint64_t now) const noexcept;
   /// Name of the sender that holds the node or held it last; empty if nobody did so far.
@@ -53,8 +74,11 @@ class LeaseTable {
   struct Lease {
     std::int64_t instance = 0;
     std::string sender;
-    std::uint64_t end = 0;  // first cycle in which the node is free again
+    std::uint64_t end = 0;     // first cycle in which the node is free again
+    std::uint64_t newest = 0;  // cycle from which the newest command was computed
+    bool released = false;     // the newest command is a release
   };
+  static bool overtaken(const Lease& lease, std::int64_t instance, const LeaseTerm& term) noexcept;
   std::vector<Lease> leases_;
   std::uint32_t unlimited_;
 };

@@ -22,7 +22,9 @@ constexpr std::size_t most_heard = 64;
 constexpr std::size_t most_pending = 64;
 constexpr std::size_t longest_sender = 64;
 constexpr std::size_t longest_service = 32;
-constexpr Time remembered = 10s;   // time after the answer
+/// Time after the answer. It is longer than the 11 s for which a copy of a request can be accepted:
+/// from 1 s before its utime until 10 s after it.
+constexpr Time remembered = 12s;
 constexpr Time echo_limit = 50ms;  // time between the arrivals of one message by two ways
 
 bool same_asker(const request_t& a, const request_t& b) {

@@ -33,6 +33,7 @@ class SecuredTransport final : public Transport {
   bool wanted(std::string_view channel) const override { return inner_.wanted(channel); }
   void subscribe(const std::string& pattern) override { inner_.subscribe(pattern); }
   void serve(const MessageHandler& handler) override;
+  bool drained() const override { return inner_.drained(); }
   void watch(std::vector<pollfd>& descriptors) const override { inner_.watch(descriptors); }
   bool good() const override { return inner_.good(); }
   std::string url() const override { return inner_.url(); }

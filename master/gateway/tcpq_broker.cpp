@@ -166,6 +166,7 @@ void TcpqBroker::receive(Time now, const MessageHandler& handler) {
   const std::size_t count = clients_.size();
   if (turn_ >= count) turn_ = 0;
   const std::size_t first = turn_;
+  drained_ = false;
   for (std::size_t i = 0; i < count; ++i) {
     Client& client = *clients_[(first + i) % count];
     client.connection.flush();
@@ -174,6 +175,8 @@ void TcpqBroker::receive(Time now, const MessageHandler& handler) {
     turn_ = (first + i + 1) % count;
     if (!budget.is_left()) return;
   }
+  drained_ = std::ranges::all_of(clients_,
+                                 [](const auto& client) { return client->connection.drained(); });
 }
 
 void TcpqBroker::remove_closed() {

@@ -45,6 +45,7 @@ class TcpqBroker final : public Transport {
   bool wanted(std::string_view channel) const override;
   void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
+  bool drained() const override { return drained_; }
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
   std::string url() const override;
@@ -84,6 +85,7 @@ class TcpqBroker final : public Transport {
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
   std::size_t turn_ = 0;                          // index of the client served first
   Time displaced_ = -displacing_pause;            // when a connection that had asked last gave way
+  bool drained_ = true;  // the newest round has read everything from all clients
   ChannelPatterns own_;
   RateLimit told_{std::chrono::seconds{10}};
 };

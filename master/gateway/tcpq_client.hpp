@@ -25,6 +25,7 @@ class TcpqClient final : public Transport {
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   void subscribe(const std::string& pattern) override;
   void serve(const MessageHandler& handler) override;
+  bool drained() const override { return !connection_ || connection_->drained(); }
   void watch(std::vector<pollfd>& descriptors) const override;
   bool good() const override { return true; }
   std::string url() const override;

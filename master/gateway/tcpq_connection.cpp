@@ -58,6 +58,7 @@ void Connection::flush() noexcept {
 void Connection::receive(const std::function<void(const Message&)>& handler,
                          const TimeBudget& budget) {
   std::array<std::byte, 16384> chunk;
+  drained_ = false;
   // LCM's client sends a message in five small pieces without TCP_NODELAY. Each piece must be
   // acknowledged at once, or a command takes 40 ms. The kernel resets this option by itself.
   set_option(fd(), IPPROTO_TCP, TCP_QUICKACK, 1);
@@ -65,6 +66,7 @@ void Connection::receive(const std::function<void(const Message&)>& handler,
     const ssize_t size = ::recv(fd(), chunk.data(), chunk.size(), MSG_DONTWAIT);
     if (size <= 0) {
       closed_ = size == 0 || !would_wait(errno);
+      drained_ = true;
       return;
     }
     parser_.feed(std::span{chunk}.first(static_cast<std::size_t>(size)));

@@ -34,6 +34,8 @@ class Connection {
   /// Reads and hands over messages until nothing is left or the budget is used up. Each call makes
   /// progress, however small the budget is.
   void receive(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
+  /// Returns true if the last receive() found the end of what had arrived.
+  bool drained() const noexcept { return drained_; }
   /// Returns true if the last receive() read messages that it had no time to hand over.
   bool has_unhandled() const noexcept { return unhandled_; }
   /// Events for poll() in addition to POLLIN. Messages that wait here for the next round end its
@@ -53,6 +55,7 @@ class Connection {
   std::uint64_t lost_ = 0;
   std::uint64_t taken_ = 0;
   bool unhandled_ = false;
+  bool drained_ = true;
   bool closed_ = false;
 };
 

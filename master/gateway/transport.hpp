@@ -30,6 +30,9 @@ class Transport {
   virtual void subscribe(const std::string& pattern) = 0;
   /// Does the work that has become possible and hands over the messages that have arrived.
   virtual void serve(const MessageHandler& handler) = 0;
+  /// Returns false if the newest serve() has left messages that had arrived, because its time
+  /// budget has ended.
+  virtual bool drained() const { return true; }
   /// Adds the descriptors that poll() must watch to know when serve() has work.
   virtual void watch(std::vector<pollfd>& descriptors) const = 0;
   /// Returns false if the transport has failed for good and should be replaced.

@@ -190,6 +190,12 @@ std::optional<std::expected<command_t, DecodeFault>> TypedChannels::command(
   return decode(found->second, data);
 }
 
+std::optional<std::size_t> TypedChannels::node_of(std::string_view channel) const {
+  const auto found = commands_.find(channel);
+  if (found == commands_.end()) return {};
+  return found->second.message.node_index;
+}
+
 std::expected<command_t, DecodeFault> TypedChannels::decode(const Type& type, Bytes data) const {
   Taker from{data};
   const auto fingerprint = from.take<std::uint64_t>();

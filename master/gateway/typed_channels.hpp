@@ -29,6 +29,8 @@ class TypedChannels {
   /// Returns std::nullopt if the channel is not a command channel.
   std::optional<std::expected<command_t, DecodeFault>> command(std::string_view channel,
                                                                Bytes data) const;
+  /// Returns the index of the node of a command channel; std::nullopt for other channels.
+  std::optional<std::size_t> node_of(std::string_view channel) const;
 
   /// The command channels.
   static std::vector<std::string> heard(const BusPlan& plan);

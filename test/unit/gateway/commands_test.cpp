@@ -38,6 +38,14 @@ class CommandsTest : public testing::Test {
   bool take(const command_t& message, std::uint64_t cycle = 100) {
     return commands.take(message, {.cycle = cycle, .now = now, .nodes = nodes});
   }
+  /// A release that was computed from this cycle.
+  command_t release(std::int64_t cycle) {
+    command_t message = command({}, {});
+    message.release = 1;
+    message.cycle = cycle;
+    message.time_to_live = 0;
+    return message;
+  }
   bool told(const std::string& part) const {
     return !notices.empty() && notices.back().text.find(part) != std::string::npos;
   }
@@ -210,6 +218,78 @@ TEST_F(CommandsTest, ReleasedOutputsAreGivenUpAtOnce) {
   EXPECT_EQ(commands.holder(0, 101), "");
   EXPECT_TRUE(told("'move' has released the outputs of shoulder"));
   EXPECT_EQ(notices.back().weight, Weight::note);
+}
+
+TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
+  command_t fresh = command({1}, {0x0F});
+  EXPECT_TRUE(take(fresh));
+  fresh.cycle = 103;
+  EXPECT_TRUE(take(fresh, 103));
+
+  EXPECT_FALSE(take(release(102), 103)) << "a later command has overtaken it";
+  EXPECT_TRUE(
+      told("node 5 (shoulder): it is older than the newest command of the node: computed "
+           "from cycle 102"));
+  EXPECT_FALSE(take(release(0), 103));
+  EXPECT_TRUE(told("computed from cycle 0, which is none"));
+  EXPECT_FALSE(take(release(105), 103));
+  EXPECT_TRUE(told("it comes from the future"));
+
+  EXPECT_EQ(commands.holder(0, 103), "move");
+  EXPECT_EQ(last_time_to_live, 5U);
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::overtaken)], 1U);
+}
+
+TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
+  EXPECT_TRUE(take(command({1}, {0x0F})));
+  command_t end = release(100);
+  end.time_to_live = 3;
+
+  EXPECT_FALSE(take(end, 103));
+
+  EXPECT_TRUE(told("it is too old: computed from cycle 100, now is cycle 103"));
+  EXPECT_EQ(commands.holder(0, 103), "move");
+}
+
+TEST_F(CommandsTest, AReleaseOnTheChannelOfOneNodeReachesThisNodeOnly) {
+  EXPECT_TRUE(take(command({1, 3}, {0x0F, 1})));
+  CommandContext context{.cycle = 101, .now = now, .nodes = nodes, .only_node = 1};
+
+  EXPECT_TRUE(commands.take(release(101), context));
+
+  EXPECT_EQ(commands.holder(0, 101), "move");
+  EXPECT_EQ(commands.holder(1, 101), "");
+  EXPECT_TRUE(told("'move' has released the outputs of")) << notices.back().text;
+  EXPECT_FALSE(told("shoulder"));
+}
+
+TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
+  EXPECT_TRUE(take(command({1}, {1}), 101));
+  command_t newer = command({1}, {2});
+  newer.cycle = 101;
+  EXPECT_TRUE(take(newer, 102));
+
+  EXPECT_FALSE(take(command({1}, {1}), 102)) << "a copy of the first one, within its time to live";
+
+  EXPECT_EQ(outputs[1], 2);
+  EXPECT_TRUE(told("it is older than the newest command of the node: computed from cycle 100"));
+  for (int i = 0; i < 100; ++i) take(command({1}, {1}), 102);
+  EXPECT_EQ(notices.size(), 1U) << "at most one a second";
+  newer.values = {3};
+  EXPECT_TRUE(take(newer, 102)) << "twice in a cycle";
+  EXPECT_EQ(outputs[1], 3);
+}
+
+TEST_F(CommandsTest, TheLimitOfTheNewestCommandIsKnownForEachOutput) {
+  EXPECT_EQ(commands.newest_limit(1), std::nullopt);
+  EXPECT_TRUE(take(command({1}, {1}), 102));
+
+  ASSERT_TRUE(commands.newest_limit(1));
+  EXPECT_EQ(commands.newest_limit(1)->cycles, 5U);
+  EXPECT_EQ(commands.newest_limit(1)->origin, LimitOrigin::command);
+  EXPECT_EQ(commands.newest_limit(2), std::nullopt);
+  EXPECT_EQ(commands.newest_limit(-1), std::nullopt);
+  EXPECT_EQ(commands.newest_limit(99), std::nullopt);
 }
 
 TEST_F(CommandsTest, ControlCharactersOfASenderReachNoTerminal) {

@@ -1,6 +1,7 @@
 #include "master/gateway/front_gap.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <gtest/gtest.h>
 #include <utility>
 
@@ -26,11 +27,35 @@ TEST(FrontGap, CommandsAreDiscardedAfterAShortOneAndRequestsAfterASecond) {
   gap.ran(1s);
   EXPECT_TRUE(gap.ran(1200ms));
   EXPECT_EQ(gap.length(), 200ms);
+  gap.found_empty();
   EXPECT_TRUE(gap.discards_commands(1219ms));
   EXPECT_FALSE(gap.discards_requests(1219ms));
   EXPECT_FALSE(gap.discards_commands(1220ms));
   EXPECT_TRUE(gap.ran(3s));
   EXPECT_TRUE(gap.discards_requests(3s));
+}
+
+TEST(FrontGap, WhatWaitedIsDiscardedUntilTheTransportsAreEmptyButAtMostForASecond) {
+  FrontGap gap{2ms};
+  gap.ran(1s);
+  EXPECT_TRUE(gap.ran(9s));
+
+  EXPECT_TRUE(gap.discards_commands(9900ms));
+  EXPECT_TRUE(gap.discards_requests(9999ms));
+  EXPECT_FALSE(gap.discards_requests(10s));
+  gap.found_empty();
+  EXPECT_FALSE(gap.discards_requests(9900ms));
+}
+
+TEST(FrontGap, AShortGapDoesNotHideALongOne) {
+  FrontGap gap{2ms};
+  gap.ran(1s);
+  gap.ran(9s);
+  gap.ran(9500ms);
+
+  EXPECT_EQ(gap.length(), 500ms);
+  EXPECT_EQ(gap.newest_long().length, 8s);
+  EXPECT_EQ(gap.newest_long().end, 9s);
 }
 
 /// The messages that wait in the sockets of the front thread, and the messages that it has sent.
@@ -45,8 +70,13 @@ class Waiting final : public Transport {
   }
   void subscribe(const std::string&) override {}
   void serve(const MessageHandler& handler) override {
-    for (const auto& [channel, bytes] : std::exchange(waiting, {})) handler(channel, bytes);
+    for (std::size_t i = 0; i < budget && !waiting.empty(); ++i) {
+      const auto [channel, bytes] = waiting.front();
+      waiting.pop_front();
+      handler(channel, bytes);
+    }
   }
+  bool drained() const override { return waiting.empty(); }
   void watch(std::vector<pollfd>&) const override {}
   bool good() const override { return true; }
   std::string url() const override { return {}; }
@@ -58,7 +88,8 @@ class Waiting final : public Transport {
     waiting.emplace_back(channel, bytes);
   }
 
-  std::vector<std::pair<std::string, std::vector<std::byte>>> waiting;
+  std::size_t budget = 1000;  // messages in each round
+  std::deque<std::pair<std::string, std::vector<std::byte>>> waiting;
   std::vector<std::int64_t> images;
   std::vector<std::string> replies;
   std::vector<transfer_state_t> transfers;
@@ -66,7 +97,8 @@ class Waiting final : public Transport {
 
 class StoppedDaemon : public testing::Test {
  protected:
-  StoppedDaemon() {
+  explicit StoppedDaemon(std::uint32_t fallback_cycles = 5)
+      : rig{test::axes({.nodes = 1, .period = 4ms, .fallback_cycles = fallback_cycles})} {
     EXPECT_TRUE(rig.boot());
     for (int i = 0; i < 5; ++i) cycle();
   }
@@ -89,7 +121,20 @@ class StoppedDaemon : public testing::Test {
     return made;
   }
 
-  test::Rig rig{test::axes({.nodes = 1, .period = 4ms, .fallback_cycles = 5})};
+  std::uint64_t refused(CommandRefusal reason) const {
+    return bridge.refusals()[std::to_underlying(reason)];
+  }
+  request_t request(std::int64_t id) {
+    request_t made{};
+    made.schema = message_schema;
+    made.service = "emcy_history";
+    made.node_id = 1;
+    made.id = id;
+    made.utime = clocks.now() / std::chrono::microseconds{1};
+    return made;
+  }
+
+  test::Rig rig;
   test::RigClocks clocks{rig};
   Waiting lcm;
   std::vector<std::string> told;
@@ -118,6 +163,117 @@ TEST_F(StoppedDaemon, ActsOnNoCommandThatWaited) {
   EXPECT_EQ(bridge.commands_taken(), 1U);
   EXPECT_EQ(bridge.commands_refused(), 20U);
   EXPECT_EQ(std::ranges::count(told, "front_gap"), 1);
+}
+
+TEST_F(StoppedDaemon, DiscardsEverythingThatWaitedHoweverLongTheBacklogIs) {
+  for (int i = 0; i < 500; ++i) lcm.arrive(bridge.channels().command, command(15));
+  lcm.arrive(bridge.channels().request, request(77));
+  lcm.budget = 10;
+  rig.world->advance_to(rig.world->now() + 6s);
+  for (int i = 0; i < 60; ++i) cycle();  // the backlog lasts for 51 rounds, which are 204 ms
+
+  EXPECT_EQ(refused(CommandRefusal::waited), 500U);
+  EXPECT_EQ(bridge.commands_refused(), 500U);
+  ASSERT_EQ(lcm.replies.size(), 1U);
+  EXPECT_NE(lcm.replies[0].find("did not run for 6"), std::string::npos) << lcm.replies[0];
+  lcm.arrive(bridge.channels().command, command(6));
+  cycle();
+  EXPECT_EQ(bridge.commands_taken(), 1U);
+}
+
+TEST_F(StoppedDaemon, RefusesARequestFromBeforeTheEndOfALongGapWheneverItArrives) {
+  request_t waited = request(1);
+  rig.world->advance_to(rig.world->now() + 6s);
+  for (int i = 0; i < 500; ++i) cycle();
+  lcm.arrive(bridge.channels().request, waited);
+  cycle();
+  lcm.arrive(bridge.channels().request, request(2));
+  cycle();
+
+  ASSERT_EQ(lcm.replies.size(), 2U);
+  EXPECT_NE(lcm.replies[0].find("did not run for 6"), std::string::npos) << lcm.replies[0];
+  EXPECT_EQ(lcm.replies[1], "");
+}
+
+/// A bus whose commands last for 4 s.
+class LongLived : public StoppedDaemon {
+ protected:
+  LongLived() : StoppedDaemon{1000} {}
+};
+
+TEST_F(LongLived, CommandsFromImagesOfBeforeAGapAreDiscardedWheneverTheyArrive) {
+  command_t late = command(15);
+  late.time_to_live = 0;
+  rig.world->advance_to(rig.world->now() + 300ms);
+  for (int i = 0; i < 20; ++i) cycle();  // 80 ms: the transports were empty for long
+  lcm.arrive(bridge.channels().command, late);
+  cycle();
+
+  EXPECT_EQ(bridge.commands_taken(), 0U);
+  EXPECT_EQ(refused(CommandRefusal::waited), 1U);
+  lcm.arrive(bridge.channels().command, command(6));
+  cycle();
+  EXPECT_EQ(bridge.commands_taken(), 1U);
+}
+
+TEST_F(LongLived, ACopyOfAnOlderCommandChangesNothing) {
+  const command_t first = command(1);
+  lcm.arrive(bridge.channels().command, first);
+  for (int i = 0; i < 2; ++i) cycle();
+  lcm.arrive(bridge.channels().command, command(2));
+  cycle();
+  lcm.arrive(bridge.channels().command, first);
+  cycle();
+
+  EXPECT_EQ(bridge.commands_taken(), 2U);
+  EXPECT_EQ(refused(CommandRefusal::overtaken), 1U);
+}
+
+TEST_F(LongLived, TheWarningNamesTheTimeToLiveOfTheCommandIfItWasTheShorterOne) {
+  lcm.arrive(bridge.channels().command, command(6));
+  for (int i = 0; i < 20; ++i) cycle();
+
+  EXPECT_NE(fallback.find("within 20 ms (time_to_live of the command): its fallback is sent"),
+            std::string::npos)
+      << fallback;
+}
+
+/// A bus on which nothing limits how long commands last.
+class Unlimited : public StoppedDaemon {
+ protected:
+  Unlimited() : StoppedDaemon{0} {}
+};
+
+TEST_F(Unlimited, TheWarningNamesTheTimeToLiveOfTheCommandIfNoneIsConfigured) {
+  lcm.arrive(bridge.channels().command, command(6));
+  for (int i = 0; i < 20; ++i) cycle();
+
+  EXPECT_NE(fallback.find("within 20 ms (time_to_live of the command)"), std::string::npos)
+      << fallback;
+}
+
+TEST_F(StoppedDaemon, RefusesARequestFromMoreThanASecondInTheFuture) {
+  request_t future = request(1);
+  future.utime += 1'100'000;
+  lcm.arrive(bridge.channels().request, future);
+  cycle();
+  future.id = 2;
+  future.utime -= 200'000;
+  lcm.arrive(bridge.channels().request, future);
+  cycle();
+  future.id = 3;
+  future.utime = INT64_MAX;
+  lcm.arrive(bridge.channels().request, future);
+  future.id = 4;
+  future.utime = INT64_MIN;
+  lcm.arrive(bridge.channels().request, future);
+  cycle();
+
+  ASSERT_EQ(lcm.replies.size(), 4U);
+  EXPECT_NE(lcm.replies[0].find("more than 1 s ahead"), std::string::npos) << lcm.replies[0];
+  EXPECT_EQ(lcm.replies[1], "") << "the clocks of two machines differ a little";
+  EXPECT_NE(lcm.replies[2].find("more than 1 s ahead"), std::string::npos) << lcm.replies[2];
+  EXPECT_NE(lcm.replies[3].find("more than 10 s away"), std::string::npos) << lcm.replies[3];
 }
 
 TEST_F(StoppedDaemon, JudgesAgeByTheClockWhereOnlyItsFrontStoodStillForAMoment) {

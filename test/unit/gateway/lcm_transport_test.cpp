@@ -22,10 +22,13 @@ TEST(LcmTransport, AFloodOfMessagesEndsTheRoundWithItsBudgetAndLosesNothing) {
     const int before = heard;
     transport->serve([&](std::string_view, std::span<const std::byte>) { ++heard; });
     most = std::max(most, heard - before);
+    EXPECT_FALSE(transport->drained()) << "the budget has ended first";
   }
 
   EXPECT_EQ(heard, 60);
   EXPECT_LE(most, 5) << "500 us at 100 us a message";
+  transport->serve([](std::string_view, std::span<const std::byte>) {});
+  EXPECT_TRUE(transport->drained());
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace takt {
+
+/// Where the time to live of a command comes from.
+enum class LimitOrigin : std::uint8_t {
+  configured = 1,  ///< `on_timeout` of the network file
+  command = 2,     ///< time_to_live of the message, which was shorter
+};
+
+/// The time to live that applied to the last command of an output.
+struct CommandLimit {
+  std::uint32_t cycles = 0;  ///< 0 means no limit
+  LimitOrigin origin = LimitOrigin::configured;
+};
+
+/// Writes a limit into Event::bytes of `fallback_begun`.
+constexpr std::array<std::uint8_t, 8> pack_limit(const CommandLimit& limit) noexcept {
+  const auto byte = [&](unsigned i) { return static_cast<std::uint8_t>(limit.cycles >> 8 * i); };
+  return {byte(0), byte(1), byte(2), byte(3), static_cast<std::uint8_t>(limit.origin)};
+}
+
+/// Reads what pack_limit() has written. Returns std::nullopt if the event has no limit; the limit
+/// of the network file then applies.
+constexpr std::optional<CommandLimit> unpack_limit(
+    const std::array<std::uint8_t, 8>& bytes) noexcept {
+  const auto origin = static_cast<LimitOrigin>(bytes[4]);
+  if (origin != LimitOrigin::configured && origin != LimitOrigin::command) return {};
+  std::uint32_t cycles = 0;
+  for (unsigned i = 0; i < 4; ++i) cycles |= std::uint32_t{bytes[i]} << 8 * i;
+  return CommandLimit{.cycles = cycles, .origin = origin};
+}
+
+}  // namespace takt
