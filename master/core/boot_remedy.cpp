@@ -5,6 +5,7 @@
 #include "master/core/report_text.hpp"
 #include "master/core/request.hpp"
 #include "master/wire/sdo_abort.hpp"
+#include "master/wire/sdo_codec.hpp"
 
 namespace takt {
 namespace {
@@ -153,14 +154,28 @@ std::string against_long_answer(const BootStep& step, const BootFailure& failure
          " bytes: remove it from the network file";
 }
 
-/// For a server that answers late, or with another object than the requested one.
+/// For an answer with fewer bytes than its command specifier needs. CiA 301, 7.2.4.3.1 demands
+/// eight bytes.
+std::string against_short_answer(const BootFailure& failure) {
+  Frame frame;
+  frame.length = failure.received_size;
+  frame.data = failure.received;
+  if (frame.length == 0 || frame.length >= sdo_answer_bytes(frame)) return {};
+  return "the device answers with " + std::to_string(int{frame.length}) +
+         " bytes instead of 8, so that a part of the answer is missing: its SDO server is faulty. "
+         "Look for other firmware, or for whatever cuts the frames on their way";
+}
+
+/// For a server that answers late, with too few bytes, or with another object than the requested
+/// one.
 std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
   if (failure.late > node.sdo_timeout && node.sdo_timeout > Time{}) {
     return "the device answers after " + time_text(failure.late) + ": raise `sdo_timeout_ms` of " +
            "this node, which is " + time_text(node.sdo_timeout) + " now";
   }
-  if (failure.answered == ObjectKey{}) return {};
-  return "the device answers with " + to_string(failure.answered) + " where " +
+  if (const std::string cut = against_short_answer(failure); !cut.empty()) return cut;
+  if (!failure.answered) return {};
+  return "the device answers with " + to_string(*failure.answered) + " where " +
          to_string(failure.object) +
          " was asked for: its SDO server is faulty (look for other firmware), or a second SDO "
          "client talks to it at the same time (stop other masters and tools)";

@@ -239,7 +239,7 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .running = running_,
               .elapsed = now - began_,
               .late = client.lateness(),
-              .answered = transfer ? client.answered().value_or(ObjectKey{}) : ObjectKey{}};
+              .answered = transfer ? client.answered() : std::nullopt};
   for (std::size_t i = 0; i < failure_.value.size() && i < failure_.value_size; ++i) {
     failure_.value[i] = static_cast<std::uint8_t>(value[i]);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include "eds_parser/table/boot_plan.hpp"
@@ -58,7 +59,8 @@ struct BootFailure {
   Time elapsed{};          ///< time since the boot began
   Time late{};  ///< longest time until the answer to a request that had timed out; 0 means that no
                 ///< such answer came
-  ObjectKey answered{};  ///< object of an answer that did not fit the request; index 0 means none
+  /// Object of an answer that did not fit the request.
+  std::optional<ObjectKey> answered{};
 };
 
 /// Kind of an event. It defines the meaning of Event::value, Event::detail and Event::bytes.

@@ -9,35 +9,66 @@
 
 namespace takt {
 
-/// Measures how late an SDO server answers requests that have timed out. This distinguishes a slow
-/// server from one that does not answer.
-class LateAnswers {
- public:
-  /// The request for `object`, which was sent at `sent`, has timed out.
-  void timed_out(ObjectKey object, Time sent) noexcept {
-    if (count_ == open_.size()) forget(0);
-    open_[count_++] = {object, sent};
+/// A request of the client, as the answer to it shows it.
+struct SdoQuestion {
+  SdoAnswer answer = SdoAnswer::upload_initiate;  ///< command specifier of the answer
+  bool toggle = false;                            ///< toggle bit of the answer; segments only
+  ObjectKey object;
+
+  /// The frame is an answer to this request. Segments carry no object. An abort for the object
+  /// answers every request.
+  bool is_answered_by(const Frame& frame) const noexcept {
+    const SdoAnswer kind = sdo_answer(frame);
+    if (kind == SdoAnswer::abort) return sdo_object(frame) == object;
+    if (kind != answer) return false;
+    const bool segment = kind == SdoAnswer::upload_segment || kind == SdoAnswer::download_segment;
+    return segment ? sdo_toggle(frame) == toggle : sdo_object(frame) == object;
   }
 
-  /// Takes an answer of the server. Returns true if it answers one of the requests that have timed
-  /// out, whatever request is under way now.
-  bool take(const Frame& frame, Time now) noexcept {
-    const SdoAnswer kind = sdo_answer(frame);
-    const bool has_object = kind == SdoAnswer::upload_initiate ||
-                            kind == SdoAnswer::download_initiate || kind == SdoAnswer::abort;
-    if (!has_object || frame.length < 4) return false;
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (open_[i].object != sdo_object(frame)) continue;
-      longest_ = std::max(longest_, now - open_[i].sent);
-      forget(i);
-      return true;
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(answer, toggle, object);
+  }
+};
+
+/// Measures how late an SDO server answers requests that have timed out. This distinguishes a slow
+/// server from one that does not answer. If a request is repeated, the first answer may belong to
+/// the repetition. Its lateness counts only when one more answer comes, because then the first one
+/// belonged to the request that had timed out.
+class LateAnswers {
+ public:
+  /// Whether a frame also fits the request that is under way.
+  enum class Fits : std::uint8_t { only_earlier, request_under_way };
+
+  /// The request, which was sent at `sent`, has timed out.
+  void timed_out(const SdoQuestion& request, Time sent) noexcept {
+    if (count_ == open_.size()) forget(0);
+    open_[count_++] = {.request = request, .sent = sent};
+  }
+
+  /// Takes a whole frame of the server. Returns true if it answers one of the requests that have
+  /// timed out, and not the request that is under way.
+  bool take(const Frame& frame, Time now, Fits fits) noexcept {
+    const std::size_t at = find(frame, 0);
+    if (at == count_) return false;
+    if (fits == Fits::request_under_way) {
+      if (open_[at].assumed == Time{}) open_[at].assumed = now - open_[at].sent;
+      return false;
     }
-    return false;
+    const Time assumed = open_[at].assumed;
+    longest_ = std::max(longest_, assumed != Time{} ? assumed : now - open_[at].sent);
+    forget(at);
+    const std::size_t next = find(frame, at);
+    // The answers are one behind the requests, so this one belongs to the next request.
+    if (assumed != Time{} && next != count_) open_[next].assumed = now - open_[next].sent;
+    return true;
   }
 
   /// The longest time from a request that had timed out to its answer; 0 means that no such answer
   /// has come.
   Time longest() const noexcept { return longest_; }
+  /// The server was reset and will not answer the earlier requests.
+  void forget_requests() noexcept { count_ = 0; }
   void reset() noexcept {
     count_ = 0;
     longest_ = Time{};
@@ -51,14 +82,22 @@ class LateAnswers {
 
  private:
   struct Open {
-    ObjectKey object;
+    SdoQuestion request;
     Time sent{};
+    /// Lateness of the frame that answers either this request or its repetition; 0 means none.
+    Time assumed{};
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(object, sent);
+      state(request, sent, assumed);
     }
   };
+
+  /// The first request from `begin` that the frame answers; count_ if there is none.
+  std::size_t find(const Frame& frame, std::size_t begin) const noexcept {
+    while (begin < count_ && !open_[begin].request.is_answered_by(frame)) ++begin;
+    return begin;
+  }
 
   void forget(std::size_t at) noexcept {
     std::copy(open_.begin() + static_cast<std::ptrdiff_t>(at) + 1,

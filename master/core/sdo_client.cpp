@@ -105,6 +105,7 @@ void SdoClient::drop() noexcept {
   to_send_.reset();
   result_.reset();
   no_block_.reset();
+  late_.forget_requests();
 }
 
 std::optional<SdoResult> SdoClient::take_result() noexcept {
@@ -153,13 +154,41 @@ void SdoClient::frame_sent(const Frame& frame, Time now) noexcept {
   if (from_block && state_ == State::block_upload) block_upload_.sent();
   if (from_block && state_ == State::block_download) block_download_.sent();
   if (state_ == State::idle) return;
-  if (in_initiate()) asked_at_ = now;
   if (state_ == State::falling_back) {
     block_unheard_ = true;
     return begin_plain(uploads_ ? State::upload_initiate : State::download_initiate);
   }
   last_sent_ = frame;
+  asked_at_ = now;
+  unfit_ = false;
   deadline_ = now + patience();
+}
+
+/// The request that was sent last in a transfer without blocks.
+SdoQuestion SdoClient::question() const noexcept {
+  SdoQuestion out{.toggle = toggle_, .object = object_};
+  if (in_initiate()) {
+    out.answer = uploads_ ? SdoAnswer::upload_initiate : SdoAnswer::download_initiate;
+  } else {
+    out.answer = uploads_ ? SdoAnswer::upload_segment : SdoAnswer::download_segment;
+  }
+  return out;
+}
+
+/// Looks whether the frame answers a request that has timed out.
+void SdoClient::note_late(const Frame& frame, Time now) noexcept {
+  late_now_ = false;
+  // Segments of a block carry a number where other frames have their command specifier.
+  if (state_ == State::block_upload || frame.length < sdo_answer_bytes(frame)) return;
+  const bool fits = asks_plainly() && !to_send_ && question().is_answered_by(frame);
+  late_now_ = late_.take(
+      frame, now, fits ? LateAnswers::Fits::request_under_way : LateAnswers::Fits::only_earlier);
+}
+
+/// Gives up a transfer because the server does not answer within the time-out.
+void SdoClient::give_up_late() noexcept {
+  if (asks_plainly()) late_.timed_out(question(), asked_at_);
+  abort(SdoFault::timeout, abort_code::timeout);
 }
 
 Time SdoClient::patience() const noexcept {
@@ -175,8 +204,9 @@ void SdoClient::on_silence() noexcept {
     state_ = State::falling_back;
     return;
   }
-  if (in_initiate()) late_.timed_out(object_, asked_at_);
-  abort(SdoFault::timeout, abort_code::timeout);
+  // Nothing came but the answer that was ignored, so that answer was meant.
+  if (unfit_) return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+  give_up_late();
 }
 
 void SdoClient::finish(SdoResult result) noexcept {
@@ -215,10 +245,14 @@ bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
-  late_now_ = late_.take(frame, now);
+  note_late(frame, now);
   // While a request waits to be sent, every answer belongs to an earlier one.
   if (state_ == State::idle || state_ == State::settling) return;
-  if (to_send_ || !is_whole(frame)) return;
+  if (to_send_) return;
+  if (!is_whole(frame)) {
+    last_received_ = frame;  // for reports
+    return;
+  }
   if (state_ == State::block_upload || state_ == State::block_download) return on_block(frame, now);
   if (late_segments_ && in_initiate() && sdo_object(frame) != object_) return;
   switch (sdo_answer(frame)) {

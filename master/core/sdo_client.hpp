@@ -143,6 +143,12 @@ class SdoClient {
   void frame_sent(const Frame& frame, Time now) noexcept;
   Time patience() const noexcept;
   void on_silence() noexcept;
+  SdoQuestion question() const noexcept;
+  bool asks_plainly() const noexcept {
+    return in_initiate() || state_ == State::upload_segments || state_ == State::download_segments;
+  }
+  void give_up_late() noexcept;
+  void note_late(const Frame& frame, Time now) noexcept;
   void finish(SdoResult result) noexcept;
   void abort(SdoFault fault, std::uint32_t code) noexcept;
   void on_abort(const Frame& frame, Time now) noexcept;
@@ -155,6 +161,7 @@ class SdoClient {
   bool is_of_earlier_block(const Frame& frame) const noexcept;
   void on_wrong_answer(const Frame& frame) noexcept;
   void on_other_object(const Frame& frame) noexcept;
+  void on_wrong_toggle() noexcept;
   void on_upload_initiate(const Frame& frame) noexcept;
   void on_upload_segment(const Frame& frame) noexcept;
   void on_download_confirmed(const Frame& frame) noexcept;
@@ -192,8 +199,9 @@ class SdoClient {
   LateAnswers late_;
   /// The previous transfer was given up, but not because of a protocol error.
   bool late_possible_ = false;
-  bool late_now_ = false;              ///< the newest frame answers a request that has timed out
-  Time asked_at_{};                    ///< when the newest transfer was requested
+  bool late_now_ = false;  ///< the newest frame answers a request that has timed out
+  bool unfit_ = false;     ///< an answer to the newest request was ignored because it does not fit
+  Time asked_at_{};        ///< when the newest frame was sent
   std::optional<ObjectKey> answered_;  ///< object of an answer that did not fit the request
   Frame previous_answer_;              ///< the last answer of the previous transfer
   Frame last_sent_;

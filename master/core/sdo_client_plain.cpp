@@ -7,11 +7,14 @@ namespace takt {
 
 /// Aborts the transfer because of an answer that does not fit the request. An answer that may
 /// belong to an earlier request is ignored: the answer to a transfer that was given up may come
-/// late, and CAN sometimes repeats a frame.
+/// late, and CAN sometimes repeats a frame. If nothing else comes until the time-out, the transfer
+/// is aborted because of that answer.
 void SdoClient::on_wrong_answer(const Frame& frame) noexcept {
-  if (late_possible_ || frame == previous_answer_ || frame == last_received_) return;
+  if (late_now_) return;
+  const bool earlier = late_possible_ || frame == previous_answer_ || frame == last_received_;
   last_received_ = frame;
-  abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+  if (!earlier) return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
+  unfit_ = true;
 }
 
 /// Notes the answer for an object that neither this request nor an earlier one has asked for.
@@ -23,7 +26,7 @@ void SdoClient::on_other_object(const Frame& frame) noexcept {
 
 void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
   const SdoInitiate begin = decode_initiate(frame);
-  if (begin.object != object_) return on_other_object(frame);
+  if (in_initiate() && begin.object != object_) return on_other_object(frame);
   if (state_ != State::upload_initiate) return on_wrong_answer(frame);
   heard(frame);
   if (begin.expedited) {
@@ -38,16 +41,18 @@ void SdoClient::on_upload_initiate(const Frame& frame) noexcept {
   to_send_ = upload_segment_request(channel_.request, toggle_);
 }
 
+/// A late segment of an earlier try has the wrong toggle bit, and the segment before it may have
+/// been late too. Then the server is too slow, and the bytes that it has sent are of no use.
+void SdoClient::on_wrong_toggle() noexcept {
+  if (late_now_) return give_up_late();
+  abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
+}
+
 void SdoClient::on_upload_segment(const Frame& frame) noexcept {
-  if (in_initiate()) return on_wrong_answer(frame);
+  if (state_ != State::upload_segments) return on_wrong_answer(frame);
   last_received_ = frame;
-  if (state_ != State::upload_segments) {
-    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
-  }
   const SdoSegment part = decode_segment(frame);
-  if (part.toggle != toggle_) {
-    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
-  }
+  if (part.toggle != toggle_) return on_wrong_toggle();
   if (!take_bytes(part.payload())) return;
   if (announced_ && done_ > *announced_) {
     return abort(SdoFault::aborted_by_master, abort_code::length_too_high);
@@ -71,7 +76,7 @@ bool SdoClient::take_bytes(std::span<const std::uint8_t> bytes) noexcept {
 }
 
 void SdoClient::on_download_confirmed(const Frame& frame) noexcept {
-  if (sdo_object(frame) != object_) return on_other_object(frame);
+  if (in_initiate() && sdo_object(frame) != object_) return on_other_object(frame);
   if (state_ != State::download_initiate) return on_wrong_answer(frame);
   heard(frame);
   if (!value_.empty() && value_.size() <= 4) return finish({.size = value_.size()});
@@ -87,14 +92,9 @@ void SdoClient::send_segment() noexcept {
 }
 
 void SdoClient::on_download_segment_confirmed(const Frame& frame) noexcept {
-  if (in_initiate()) return on_wrong_answer(frame);
+  if (state_ != State::download_segments) return on_wrong_answer(frame);
   last_received_ = frame;
-  if (state_ != State::download_segments) {
-    return abort(SdoFault::aborted_by_master, abort_code::command_unknown);
-  }
-  if (sdo_toggle(frame) != toggle_) {
-    return abort(SdoFault::aborted_by_master, abort_code::toggle_not_alternated);
-  }
+  if (sdo_toggle(frame) != toggle_) return on_wrong_toggle();
   if (last_segment_sent_) return finish({.size = done_});
   toggle_ = !toggle_;
   send_segment();

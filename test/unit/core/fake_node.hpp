@@ -36,8 +36,9 @@ struct FakeNode {
   Time heartbeat_period{};
   std::uint8_t state = 0x7F;
 
-  std::function<void(Frame&)> tamper;  // changes SDO answers
-  bool answers_in_turn = false;        // answers one request after another, `latency` each
+  std::function<void(Frame&)> tamper;       // changes SDO answers
+  std::function<bool(const Frame&)> loses;  // SDO answers that do not reach the bus
+  bool answers_in_turn = false;             // answers one request after another, `latency` each
   Time busy_until{};
 
   std::vector<ObjectKey> writes;
@@ -94,6 +95,7 @@ struct FakeNode {
     }
     frame.id = CobId::base(0x580U + id);
     if (tamper) tamper(frame);
+    if (loses && loses(frame)) return;
     busy_until = (answers_in_turn ? std::max(busy_until, now) : now) + latency;
     if (!mute_sdo) sending.push_back({busy_until, frame});
   }
@@ -122,6 +124,10 @@ struct FakeNode {
       return answer(now, out);
     }
     if (d[0] == 0x60 || d[0] == 0x70) return next_segment(now, d[0] == 0x70);
+    if ((d[0] & 0xE3) == 0x21) return answer(now, rx({0x60, d[1], d[2], d[3]}));
+    if ((d[0] & 0xE0) == 0x00) {
+      return answer(now, rx({static_cast<std::uint8_t>(0x20 | (d[0] & 0x10))}));
+    }
     if ((d[0] & 0xE3) == 0x23) {
       writes.push_back(key);
       if (write_aborts.contains(key)) return abort(write_aborts[key]);

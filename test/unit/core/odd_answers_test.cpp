@@ -109,6 +109,94 @@ TEST_F(OddAnswers, AToggleBitThatStandsStillIsTheCauseThatIsTold) {
       << text;
 }
 
+TEST_F(OddAnswers, ALostAnswerBeforeASilentObjectIsNotTakenForSlowness) {
+  prepare = [](FakeNode& node) {
+    node.loses = [first = true](const Frame& frame) mutable {
+      if (frame.data[1] != 0x18) return false;
+      if (frame.data[3] == 4) return true;  // this object never answers
+      return frame.data[3] == 2 && std::exchange(first, false);
+    };
+  };
+  boot(identity_steps(), 5s);
+  EXPECT_EQ(failure().fault, SdoFault::timeout);
+  EXPECT_EQ(failure().letter, 'O');
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  EXPECT_EQ(text.find("raise `sdo_timeout_ms`"), std::string::npos) << text;
+}
+
+TEST_F(OddAnswers, FramesWithTooFewBytesAreNamed) {
+  prepare = [](FakeNode& node) {
+    node.tamper = [](Frame& frame) {
+      if (frame.data[1] == 0x18) frame.length = 4;
+    };
+  };
+  boot(identity_steps(), 5s);
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  EXPECT_NE(text.find("the device answers with 4 bytes instead of 8"), std::string::npos) << text;
+  EXPECT_NE(text.find("585  43 18 10 01, then"), std::string::npos) << text;
+  EXPECT_EQ(text.find("raise"), std::string::npos) << text;
+}
+
+TEST_F(OddAnswers, AnAnswerForObjectZeroIsNoSilence) {
+  prepare = [](FakeNode& node) {
+    node.tamper = [](Frame& frame) {
+      if (frame.data[1] == 0x18) frame.data[1] = frame.data[2] = frame.data[3] = 0;
+    };
+  };
+  boot(identity_steps(), 5s);
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  EXPECT_NE(text.find("the device answers with 0000:00 where 1018:01 was asked for"),
+            std::string::npos)
+      << text;
+}
+
+/// Makes steps that read a value of 26 bytes.
+Steps long_value_steps(BootAction action) {
+  Steps steps;
+  FakeNode::Bytes text(26, std::byte{'a'});
+  if (action == BootAction::expect) text.back() = std::byte{'b'};
+  steps.object(action, 'J', {0x2200, 0}, text);
+  return steps;
+}
+
+TEST_F(OddAnswers, SegmentsThatComeLateAreToldAsLate) {
+  prepare = [](FakeNode& node) {
+    node.objects[{0x2200, 0}] = FakeNode::Bytes(26, std::byte{'a'});
+    node.tamper = [&node](Frame& frame) {  // the time-out is 100 ms
+      node.latency = (frame.data[0] & 0xE0) == 0 ? 180ms : 1ms;
+    };
+  };
+  boot(long_value_steps(BootAction::expect), 5s);
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  EXPECT_NE(text.find("the device answers after 180 ms: raise `sdo_timeout_ms`"), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("toggle"), std::string::npos) << text;
+}
+
+TEST_F(OddAnswers, AnInitiateInAnswerToASegmentIsNoSilence) {
+  for (const std::uint8_t command : {std::uint8_t{0x43}, std::uint8_t{0x60}}) {
+    for (const BootAction action : {BootAction::expect, BootAction::write}) {
+      NetworkRig rig;
+      rig.add(5, long_value_steps(action).plan);
+      rig.device().objects[{0x2200, 0}] = FakeNode::Bytes(26, std::byte{'a'});
+      if (action == BootAction::write) rig.device().read_aborts[{0x2200, 0}] = 0x06010001;
+      rig.device().tamper = [command](Frame& frame) {
+        const bool segment = (frame.data[0] & 0xE0) == 0x00 || (frame.data[0] & 0xE0) == 0x20;
+        if (segment) frame = rx({command});
+      };
+      rig.start();
+      rig.run(90ms);  // less than one time-out
+      const Event* event = rig.find(EventKind::boot_failed);
+      ASSERT_NE(event, nullptr) << int{command};
+      EXPECT_EQ(event->failure.fault, SdoFault::aborted_by_master);
+      const std::string text = describe(rig.plan, *event);
+      EXPECT_NE(text.find("the answer has a command specifier that does not belong"),
+                std::string::npos)
+          << text;
+    }
+  }
+}
+
 TEST_F(OddAnswers, AFrameThatCanRepeatsIsNoWrongAnswer) {
   prepare = [](FakeNode& node) {
     node.objects[{0x2000, 0}] = bytes({1});
