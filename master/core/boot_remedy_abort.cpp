@@ -1,5 +1,7 @@
 #include "master/core/boot_remedy_abort.hpp"
 
+#include <algorithm>
+
 #include "master/core/boot_remedy_keys.hpp"
 #include "master/core/report_text.hpp"
 #include "master/wire/bytes.hpp"
@@ -117,11 +119,39 @@ std::string against_rare_abort(const BootFailure& failure) {
   }
 }
 
-}  // namespace
+/// The boot has reset the node before the step that failed.
+bool was_reset(const NodePlan& node, const BootFailure& failure) {
+  const auto& steps = node.boot_plan.steps;
+  const auto before = std::min<std::size_t>(failure.step, steps.size());
+  return std::any_of(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(before),
+                     [](const BootStep& step) {
+                       return step.action == BootAction::nmt && is_reset(step.command);
+                     });
+}
 
-std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+/// For a write that was refused twice, each time after the command PRE-OPERATIONAL. Only a
+/// heartbeat shows the NMT state of the device for sure.
+std::string against_self_start(const BootFailure& failure) {
+  const bool certain = failure.node_state == NmtState::operational;
+  return "the device refuses " + to_string(failure.object) +
+         " because of its state, although it was sent to PRE-OPERATIONAL (NMT 0x80) twice: it " +
+         (certain ? "leaves" : "probably leaves") +
+         " PRE-OPERATIONAL by itself. Switch its automatic start off (set bit 2 of its 0x1F80, or "
+         "use the tool of its maker), or stop whoever starts it";
+}
+
+/// For an object that the device refuses in its present state.
+std::string against_state(const NodePlan& node, const BootFailure& failure) {
+  return to_string(failure.object) + " can't be " + (failure.downloading ? "written" : "read") +
+         " in the present state of the device: disable the drive" +
+         (was_reset(node, failure) ? " or leave local control"
+                                   : ", leave local control, or let the boot reset it (`reset: "
+                                     "communication`, or `reset: node`)");
+}
+
+std::string against_refusal(const NodePlan& node, const BootStep& step,
+                            const BootFailure& failure) {
   const std::string object = to_string(failure.object);
-  const std::string verb = failure.downloading ? "written" : "read";
   if (failure.downloading && is_mapping_entry(step.object)) {
     return against_refused_mapping(step, failure);
   }
@@ -160,9 +190,7 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
     case abort_code::cannot_store:
     case abort_code::local_control:
     case abort_code::device_state:
-      return object + " can't be " + verb +
-             " in the present state of the device: disable the drive, leave local control, or let "
-             "the boot reset it (`reset: communication`, or `reset: node`)";
+      return against_state(node, failure);
     case abort_code::hardware_error:
       return "the device reports a hardware error: power it off and on; if that does not help, its "
              "storage may be worn";
@@ -170,6 +198,16 @@ std::string against_abort(const NodePlan& node, const BootStep& step, const Boot
       return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
              " in the manual of the device";
   }
+}
+
+}  // namespace
+
+std::string against_abort(const NodePlan& node, const BootStep& step, const BootFailure& failure) {
+  const std::string text = against_refusal(node, step, failure);
+  // In PRE-OPERATIONAL, the NMT state is not the cause.
+  if (!failure.preop_again || failure.node_state == NmtState::preoperational) return text;
+  const std::string self_start = against_self_start(failure);
+  return failure.node_state == NmtState::operational ? self_start : self_start + ". Else: " + text;
 }
 
 }  // namespace takt

@@ -165,7 +165,7 @@ void BootRunner::enter(Time now) noexcept {
   if (skips(step)) return next();
   attempts_ = 0;
   received_ = 0;
-  bootup_in_step_ = heartbeat_in_step_ = false;
+  bootup_in_step_ = heartbeat_in_step_ = preop_again_ = false;
   deadline_ = wait_until_ = now + step.timeout;
   begin(step);
 }

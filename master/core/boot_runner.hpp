@@ -17,8 +17,9 @@
 namespace takt {
 
 /// Runs the BootPlan of one node over its SDO client, as an interpreter of the steps. Uploads
-/// without an answer are repeated, downloads never. Every wait has a deadline. Bus thread only. CiA
-/// 302-2.
+/// without an answer are repeated, downloads are not. A write that the device refuses because of
+/// its state is sent a second time in PRE-OPERATIONAL. Every wait has a deadline. Bus thread only.
+/// CiA 302-2.
 class BootRunner {
  public:
   enum class State : std::uint8_t { idle, running, done, failed };
@@ -126,6 +127,7 @@ class BootRunner {
   bool skips(const BootStep& step) const noexcept;
   static bool asks(const BootStep& step) noexcept;
   bool needs_preop() const noexcept;
+  bool retries_in_preop(std::uint32_t abort_code) noexcept;
   // Runs one part of a step. Returns false if the runner has to wait.
   bool proceed(Time now, SdoClient& client) noexcept;
   bool begin_transfer(Time now, SdoClient& client) noexcept;
@@ -171,6 +173,7 @@ class BootRunner {
   bool identifies_ = false;      // From::identity, until the identity is right
   bool preoperational_ = false;  // the node was commanded to or reports PRE-OPERATIONAL, and has
                                  // reported no other state since
+  bool preop_again_ = false;     // PRE-OPERATIONAL was sent a second time for this step
   bool took_out_ = false;        // the boot has taken the node out of OPERATIONAL
   bool wrote_ = false;
   std::uint16_t left_alone_ = 0;

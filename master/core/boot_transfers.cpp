@@ -51,6 +51,18 @@ bool BootRunner::needs_preop() const noexcept {
   return phase_ == Phase::download_next || heard_ == NmtState::stopped;
 }
 
+/// A device may start itself after the command PRE-OPERATIONAL, and then refuse a write because of
+/// its state. A write that was refused may be repeated: it is sent once more, after a second
+/// command.
+bool BootRunner::retries_in_preop(std::uint32_t abort_code) noexcept {
+  if (current().action == BootAction::download_program || preop_again_) return false;
+  if (abort_code != abort_code::device_state || !preoperational_) return false;
+  preop_again_ = true;
+  preoperational_ = false;
+  phase_ = Phase::download_next;
+  return true;
+}
+
 void BootRunner::on_result(const SdoResult& result, Time now, SdoClient& client) noexcept {
   if (phase_ == Phase::download) return on_downloaded(result, now, client);
   received_ = result.fault == SdoFault::none ? result.size : 0;
@@ -188,6 +200,7 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
   // A write is never repeated. If its answer does not come, or the device calls the write
   // redundant, reading the object back tells whether the write has worked.
   const bool refused = result.fault == SdoFault::aborted_by_device;
+  if (refused && retries_in_preop(result.abort_code)) return;
   if (refused && may_be_missing(step, result.abort_code)) return next();
   if (!refused && step.may_restart) return next();  // the device restarts instead of answering
   if (step.action == BootAction::download_program) return fail(result, now, client);
@@ -239,7 +252,8 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .running = running_,
               .elapsed = now - began_,
               .late = client.lateness(),
-              .answered = transfer ? client.answered() : std::nullopt};
+              .answered = transfer ? client.answered() : std::nullopt,
+              .preop_again = preop_again_ && result.abort_code == abort_code::device_state};
   for (std::size_t i = 0; i < failure_.value.size() && i < failure_.value_size; ++i) {
     failure_.value[i] = static_cast<std::uint8_t>(value[i]);
   }

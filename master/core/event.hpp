@@ -61,6 +61,9 @@ struct BootFailure {
                 ///< such answer came
   /// Object of an answer that did not fit the request.
   std::optional<ObjectKey> answered{};
+  /// The node was sent to PRE-OPERATIONAL twice for the step, and refused the write both times
+  /// because of its state.
+  bool preop_again = false;
 };
 
 /// Kind of an event. It defines the meaning of Event::value, Event::detail and Event::bytes.

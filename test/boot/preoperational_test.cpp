@@ -111,6 +111,59 @@ TEST(Preoperational, WithoutStartNodesWhoStartedItselfIsStartedAgain) {
   EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
 }
 
+/// Starts node 5 just before it receives a write, as a device that starts by itself does.
+struct SelfStart final : sim::BusObserver {
+  SelfStart(Plant& started, int number) : plant{started}, times{number} {
+    plant.world.observe(this);
+  }
+  void on_wire(const sim::WireFrame& seen) noexcept override {
+    plant.wire.on_wire(seen);
+    if (seen.result != sim::WireResult::sent || seen.frame.id != CobId::base(0x605)) return;
+    if (!is_write(seen.frame) || times == 0) return;
+    --times;
+    plant.device(5).on_frame(nmt(0x01), plant.world.now());
+  }
+
+  Plant& plant;
+  int times;
+};
+
+TEST(Preoperational, DeviceThatStartsItselfAfterTheCommandIsConfiguredInOneBoot) {
+  Plant plant{valve("heartbeat_producer: 100"), {always(preop_only)}};
+  SelfStart once{plant, 1};
+  plant.run(3s);
+  EXPECT_EQ(plant.count(EventKind::boot_failed), 0) << plant.text_of(EventKind::boot_failed);
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+  EXPECT_EQ(commands(plant), (std::vector<std::uint8_t>{0x82, 0x80, 0x80, 0x01}));
+  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
+}
+
+TEST(Preoperational, DeviceThatNeverStaysInItIsNamed) {
+  Plant plant{valve("heartbeat_producer: 100"), {always(preop_only)}};
+  SelfStart always_again{plant, 1000};
+  for (int i = 0; i < 100 && plant.count(EventKind::boot_failed) == 0; ++i) plant.run(10ms);
+  const std::string text = plant.text_of(EventKind::boot_failed);
+  EXPECT_NE(text.find("0800 0022"), std::string::npos) << text;
+  EXPECT_NE(text.find("leaves PRE-OPERATIONAL by itself"), std::string::npos) << text;
+  EXPECT_EQ(text.find("let the boot reset it"), std::string::npos) << text;
+  EXPECT_EQ(std::ranges::count(commands(plant), 0x80), 2);
+}
+
+TEST(Preoperational, RefusalInItIsNotExplainedByTheNmtState) {
+  sim::Fault refusal = always(refuse_write);
+  refusal.object = ObjectKey{0x2000, 0};
+  refusal.abort_code = 0x0800'0022;
+  sim::Fault beats = always(override_value);
+  beats.object = ObjectKey{0x1017, 0};
+  beats.value = {std::byte{5}, std::byte{0}};  // ms
+  Plant plant{valve(differs), {refusal, beats}};
+  for (int i = 0; i < 100 && plant.count(EventKind::boot_failed) == 0; ++i) plant.run(10ms);
+  const std::string text = plant.text_of(EventKind::boot_failed);
+  EXPECT_NE(text.find("disable the drive or leave local control"), std::string::npos) << text;
+  EXPECT_EQ(text.find("by itself"), std::string::npos) << text;
+  EXPECT_EQ(text.find("let the boot reset it"), std::string::npos) << text;
+}
+
 TEST(Preoperational, AStoppedNodeIsAskedInPreoperational) {
   sim::Fault beats = always(override_value);
   beats.object = ObjectKey{0x1017, 0};
