@@ -23,6 +23,11 @@ namespace {
 using Value = std::vector<std::byte>;
 
 constexpr std::size_t most_file_bytes = 16 << 20;
+/// Without a daemon there is no network file, so nothing else gives a time-out.
+constexpr std::chrono::milliseconds direct_timeout{1000};
+/// How long a daemon may take for a request with the time-out of the node, which this program does
+/// not know. A node with a longer time-out needs --timeout.
+constexpr std::chrono::milliseconds longest_wait_for_daemon = std::chrono::seconds{30};
 
 struct SdoOptions {
   LiveOptions live;
@@ -32,7 +37,7 @@ struct SdoOptions {
   std::string type;
   std::string value;
   std::string file;
-  int timeout_ms = 1000;
+  int timeout_ms = 0;  ///< 0 means that of the node
   std::size_t limit = most_file_bytes;
 };
 
@@ -71,7 +76,8 @@ std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
                                        2}};
     }
     access.node_ = id->value();
-    access.direct_.emplace(options.bus, *id, std::chrono::milliseconds{options.timeout_ms});
+    const std::chrono::milliseconds given{options.timeout_ms};
+    access.direct_.emplace(options.bus, *id, given.count() == 0 ? direct_timeout : given);
     return access;
   }
   auto daemon = DaemonClient::find(options.live);
@@ -95,8 +101,10 @@ std::expected<reply_t, LiveError> SdoAccess::ask(const char* service, ObjectKey 
   request.size = static_cast<std::int32_t>(value.size());
   for (const std::byte byte : value) request.data.push_back(std::to_integer<std::uint8_t>(byte));
   // The daemon may serve other requests first, and each segment may take up to the time-out.
-  auto reply = daemon_->ask(std::move(request),
-                            std::chrono::milliseconds{timeout_ms_} * 10 + std::chrono::seconds{2});
+  const std::chrono::milliseconds given{timeout_ms_};
+  auto reply =
+      daemon_->ask(std::move(request), given.count() == 0 ? longest_wait_for_daemon
+                                                          : given * 10 + std::chrono::seconds{2});
   if (reply && reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
   return reply;
 }
@@ -229,7 +237,8 @@ CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
   verb->add_option("OBJ", options->object, "6041, 1018:1; index and sub-index in hex")->required();
   verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
       ->type_name("IFACE");
-  add_number(*verb, "--timeout", options->timeout_ms, "longest silence of the device, ms")
+  add_number(*verb, "--timeout", options->timeout_ms,
+             "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
   add_live_options(*verb, options->live);

@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "master/core/node_status.hpp"
+#include "master/gateway/lcm_client.hpp"
+#include "master/gateway/messages.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/frame_channel.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/patience.hpp"
 
 namespace takt::test {
 namespace {
@@ -50,6 +54,27 @@ TEST_F(ToolsAndDaemon, SdoReadsAndWritesANodeByItsName) {
   const Ended refused = takt({"sdo", "write", "elbow", "1000", "u32", "0"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.output.find("0x06010002"), std::string::npos) << refused.output;
+}
+
+TEST_F(ToolsAndDaemon, SdoLeavesTheTimeOutToTheNodeUnlessOneIsGiven) {
+  auto lcm = LcmClient::open(daemon_.lcm_url(), {".*_STATUS", ".*_REQUEST"}).value();
+  std::vector<std::int32_t> timeouts;
+  int statuses = 0;
+  const auto take = [&](std::string_view channel, std::span<const std::byte> data) {
+    statuses += channel.ends_with("_STATUS");
+    if (!channel.ends_with("_REQUEST")) return;
+    if (const auto request = decode<request_t>(data)) timeouts.push_back(request->timeout_ms);
+  };
+  const Time until = monotonic_now() + patience;
+  while (statuses == 0 && monotonic_now() < until) lcm.serve(take, monotonic_now() + seconds{1});
+
+  EXPECT_EQ(takt({"sdo", "read", "elbow", "6081", "u32"}).exit_code, 0);
+  EXPECT_EQ(takt({"sdo", "read", "elbow", "6081", "u32", "--timeout", "20000"}).exit_code, 0);
+
+  while (timeouts.size() < 2 && monotonic_now() < until) {
+    lcm.serve(take, monotonic_now() + seconds{1});
+  }
+  EXPECT_EQ(timeouts, (std::vector<std::int32_t>{0, 20000}));
 }
 
 TEST_F(ToolsAndDaemon, NmtStopsAndStartsANodeByItsName) {
