@@ -186,6 +186,8 @@ void BootRunner::write_cob_id() noexcept {
 
 void BootRunner::on_written() noexcept {
   wrote_ = true;
+  // The device has refused this write before the second command, so it had started itself.
+  took_out_ = took_out_ || preop_again_;
   if (is_cob_id(current().object) && to_write_.size() == 4) {
     cob_id_object_ = current().object;
     cob_id_ = load_le<std::uint32_t>(to_write_);

@@ -138,6 +138,23 @@ TEST(Preoperational, DeviceThatStartsItselfAfterTheCommandIsConfiguredInOneBoot)
   EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
 }
 
+TEST(Preoperational, WithoutStartNodesARefusedWriteShowsWhoStartedItself) {
+  Plant plant{valve("", "start_nodes: false"), {always(preop_only)}};
+  SelfStart once{plant, 1};
+  plant.run(3s);
+  EXPECT_EQ(plant.count(EventKind::boot_failed), 0) << plant.text_of(EventKind::boot_failed);
+  EXPECT_EQ(commands(plant), (std::vector<std::uint8_t>{0x82, 0x80, 0x80, 0x01}));
+  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
+}
+
+TEST(Preoperational, WithoutStartNodesADeviceWhoseStateIsUnknownStaysInIt) {
+  Plant plant{valve("", "start_nodes: false"), {always(self_start), always(preop_only)}};
+  plant.run(3s);
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+  EXPECT_EQ(commands(plant), (std::vector<std::uint8_t>{0x82, 0x80}));
+  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::preoperational);
+}
+
 TEST(Preoperational, DeviceThatNeverStaysInItIsNamed) {
   Plant plant{valve("heartbeat_producer: 100"), {always(preop_only)}};
   SelfStart always_again{plant, 1000};
