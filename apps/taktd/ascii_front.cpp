@@ -14,8 +14,9 @@ AsciiFront::AsciiFront(const BusPlan& plan)
                },
            .send = [this](int client, const std::string& line) { server_->send(client, line); }}} {}
 
-std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(const std::string& where,
-                                                                         const BusPlan& plan) {
+std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(
+    const std::string& where, const BusPlan& plan,
+    std::function<void(const std::string& sentence)> warn) {
   std::unique_ptr<AsciiFront> front{new AsciiFront{plan}};
   AsciiGateway& gateway = front->gateway_;
   auto server = AsciiServer::listen(
@@ -28,7 +29,8 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(const s
            },
        .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
        .gone = [&gateway](int client) { gateway.disconnect(client); },
-       .owed = [&gateway](int client) { return gateway.owes(client); }});
+       .owed = [&gateway](int client) { return gateway.owes(client); },
+       .warn = std::move(warn)});
   if (!server) return std::unexpected{server.error()};
   front->server_ = std::move(*server);
   return front;

@@ -1,5 +1,6 @@
 #pragma once
 #include <expected>
+#include <functional>
 #include <memory>
 #include <poll.h>
 #include <string>
@@ -16,10 +17,11 @@ namespace takt {
 /// front thread.
 class AsciiFront {
  public:
-  /// Listens on `unix:PATH` or `tcp:PORT`. `plan` must outlive the AsciiFront. The error is a
-  /// sentence for the user.
-  static std::expected<std::unique_ptr<AsciiFront>, std::string> open(const std::string& where,
-                                                                      const BusPlan& plan);
+  /// Listens on `unix:PATH` or `tcp:PORT`. `plan` must outlive the AsciiFront. `warn`
+  /// receives troubles of the socket later on. The error is a sentence for the user.
+  static std::expected<std::unique_ptr<AsciiFront>, std::string> open(
+      const std::string& where, const BusPlan& plan,
+      std::function<void(const std::string& sentence)> warn);
   AsciiFront(const AsciiFront&) = delete;
   AsciiFront& operator=(const AsciiFront&) = delete;
 

@@ -39,7 +39,9 @@ std::optional<Exit> Daemon::open() {
     return Exit::wrong_use;
   }
   if (!options_.gateway.empty()) {
-    auto gateway = AsciiFront::open(options_.gateway, network_.plan);
+    auto gateway = AsciiFront::open(options_.gateway, network_.plan, [this](const auto& sentence) {
+      reporter_.say(Weight::warning, sentence);
+    });
     if (!gateway) {
       reporter_.say(Weight::error, gateway.error());
       return Exit::wrong_use;
@@ -67,9 +69,13 @@ std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
   const std::vector<std::string> guarded = heard;
   heard.push_back(channels.status);  // shows another master
   heard.push_back(channel_name(network_.plan.name, "SECURED"));
+  const bool by_environment = lcm_url_is_from_environment(options_.lcm_url, network_.lcm.url);
+  const LcmLink::Hub hub = network_.lcm.broker && options_.lcm_url.empty() ? LcmLink::Hub::own
+                           : by_environment ? LcmLink::Hub::by_environment
+                                            : LcmLink::Hub::named;
   link_ = std::make_unique<LcmLink>(
-      std::move(url), network_.lcm.broker && options_.lcm_url.empty(), std::move(heard),
-      [this](const std::string& sentence) { reporter_.say(Weight::note, sentence); });
+      std::move(url), hub, std::move(heard),
+      [this](Weight weight, const std::string& sentence) { reporter_.say(weight, sentence); });
   if (const auto trouble = open_keys(guarded)) return trouble;
   return look_for_master();
 }

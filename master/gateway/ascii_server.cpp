@@ -12,6 +12,7 @@
 
 #include "master/gateway/ascii_command.hpp"
 #include "master/gateway/tcp_loopback.hpp"
+#include "master/linux/left_socket.hpp"
 #include "master/linux/unix_address.hpp"
 
 namespace takt {
@@ -19,18 +20,6 @@ namespace {
 
 std::unexpected<std::string> failed(const std::string& where, int error) {
   return std::unexpected{"--gateway " + where + ": " + std::strerror(error)};
-}
-
-/// Removes the socket that a dead daemon has left behind. A socket in use, or a file of another
-/// kind, stays; the function then returns false.
-bool make_room(const sockaddr_un& address) noexcept {
-  struct stat status{};
-  if (::stat(address.sun_path, &status) != 0) return errno == ENOENT;
-  if (!S_ISSOCK(status.st_mode)) return false;
-  const FileDescriptor probe{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  if (::connect(probe.get(), generic, sizeof address) == 0 || errno != ECONNREFUSED) return false;
-  return ::unlink(address.sun_path) == 0;
 }
 
 }  // namespace
@@ -54,7 +43,7 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_uni
   if (!address) {
     return std::unexpected{"--gateway unix:" + path + ": a path has 1 to 107 characters"};
   }
-  if (!make_room(*address)) return failed("unix:" + path, EADDRINUSE);
+  if (!remove_left_socket(*address)) return failed("unix:" + path, EADDRINUSE);
   FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
   const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
   if (!socket || ::bind(socket.get(), generic, sizeof *address) != 0 ||
@@ -82,10 +71,15 @@ AsciiServer::~AsciiServer() {
 }
 
 void AsciiServer::accept_clients() {
-  for (std::size_t i = 0; i < most_clients; ++i) {
+  const Time now = clock_();
+  for (std::size_t i = 0; i < most_clients && !accept_pause_.active(now); ++i) {
     FileDescriptor socket{
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
-    if (!socket) return;
+    if (!socket) {
+      const auto why = accept_pause_.failed(errno, now);
+      if (why) handler_.warn("CiA 309-3 gateway: " + *why);
+      return;
+    }
     if (clients_.size() == most_clients && !displace_silent()) continue;
     auto client = std::make_unique<Client>();
     client->id = next_id_++;
@@ -251,7 +245,9 @@ void AsciiServer::remove_closed() {
 
 /// For lines that wait for the next round, POLLOUT ends the wait.
 void AsciiServer::watch(std::vector<pollfd>& descriptors) const {
-  descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  if (!accept_pause_.active(clock_())) {
+    descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  }
   for (const auto& client : clients_) {
     const bool out = client->unhandled || !client->unsent.empty();
     const int events = (client->ended ? 0 : POLLIN) | (out ? POLLOUT : 0);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "master/gateway/accept_pause.hpp"
 #include "master/gateway/time_budget.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
@@ -37,6 +38,8 @@ class AsciiServer {
     /// Returns true if an answer is due: a client that has ended its writing side stays until it
     /// has the answer.
     std::function<bool(int client)> owed;
+    /// For the user, about a trouble of the server itself. At most once in 10 s.
+    std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
   };
 
   /// `where` is `unix:PATH` or `tcp:PORT` (port 0 selects any free port). The error is a sentence.
@@ -99,6 +102,7 @@ class AsciiServer {
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first
   std::size_t turn_ = 0;                          // index of the client served first
   int next_id_ = 1;
+  AcceptPause accept_pause_;
 };
 
 }  // namespace takt

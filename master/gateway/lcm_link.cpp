@@ -14,6 +14,10 @@ namespace {
 constexpr std::chrono::seconds retry_pause{5};
 constexpr std::chrono::milliseconds hub_answer_limit{200};
 
+constexpr const char* by_environment =
+    ". LCM_DEFAULT_URL names it: the program that serves this port sees and can change every "
+    "message. --lcm-url or `lcm: {url: ...}` names it without this warning";
+
 std::string port_is_taken(std::uint16_t port) {
   const std::string number = std::to_string(port);
   return "port " + number +
@@ -25,9 +29,9 @@ std::string port_is_taken(std::uint16_t port) {
 
 }  // namespace
 
-LcmLink::LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say)
-    : url_{std::move(url)}, broker_{broker}, say_{std::move(say)}, patterns_{std::move(patterns)} {
-  if (broker_) {
+LcmLink::LcmLink(LcmUrl url, Hub hub, std::vector<std::string> patterns, Say say)
+    : url_{std::move(url)}, hub_{hub}, say_{std::move(say)}, patterns_{std::move(patterns)} {
+  if (hub_ == Hub::own) {
     begin_hub();
   } else if (url_.scheme == "tcpq") {
     open_tcpq(url_);
@@ -36,27 +40,35 @@ LcmLink::LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say
   }
 }
 
-/// With `broker: true`, the daemon serves its own hub or has none.
+/// With Hub::own (`broker: true`), the daemon serves its own hub or has none.
 void LcmLink::begin_hub() {
   next_try_ = std::chrono::steady_clock::now() + retry_pause;
   const std::uint16_t port = url_.scheme == "tcpq" ? url_.port : tcpq::default_port;
-  if (!serve_hub(port)) tell_once("LCM: " + port_is_taken(port));
+  if (!serve_hub(port)) warn_once("LCM: " + port_is_taken(port));
 }
 
 void LcmLink::try_again() {
   if (std::chrono::steady_clock::now() < next_try_) return;
-  return broker_ ? begin_hub() : begin_lcm();
+  return hub_ == Hub::own ? begin_hub() : begin_lcm();
 }
 
-void LcmLink::tell_once(const std::string& sentence) {
-  if (std::exchange(told_, sentence) != sentence) say_(sentence);
+void LcmLink::warn_once(const std::string& sentence) {
+  if (std::exchange(told_, sentence) != sentence) say_(Weight::warning, sentence);
+}
+
+std::expected<std::unique_ptr<TcpqBroker>, int> LcmLink::listen(std::uint16_t port) {
+  const auto say = [this](Weight weight) {
+    return [this, weight](const std::string& sentence) { say_(weight, sentence); };
+  };
+  return TcpqBroker::listen(port, {.say = say(Weight::note), .warn = say(Weight::warning)});
 }
 
 bool LcmLink::serve_hub(std::uint16_t port) {
-  auto hub = TcpqBroker::listen(port, {.say = say_});
+  auto hub = listen(port);
   if (!hub) return false;
-  say_("LCM: serving the tcpq protocol by myself; other programs: export LCM_DEFAULT_URL=" +
-       (*hub)->url());
+  say_(Weight::note,
+       "LCM: serving the tcpq protocol by myself; other programs: export LCM_DEFAULT_URL=" +
+           (*hub)->url());
   use(std::move(*hub));
   return true;
 }
@@ -66,8 +78,12 @@ void LcmLink::open_tcpq(const LcmUrl& url) {
   const bool answers = tcpq_server_answers(url.address, url.port, hub_answer_limit);
   if (!answers && local && serve_hub(url.port)) return;
   auto client = std::make_unique<TcpqClient>(url.address, url.port);
-  say_(answers ? "LCM: using the hub at " + client->url()
-               : "LCM: no hub answers at " + client->url() + "; trying again and again");
+  const bool chosen = hub_ == Hub::named;
+  say_(answers && chosen ? Weight::note : Weight::warning,
+       "LCM: " +
+           (answers ? "using the hub at " + client->url()
+                    : "no hub answers at " + client->url() + "; trying again and again") +
+           (chosen ? "" : by_environment));
   use(std::move(client));
 }
 
@@ -96,7 +112,7 @@ void LcmLink::begin_lcm() {
         promise.set_value(std::move(lcm));
       });
   if (!thread) {
-    return tell_once(std::string{"LCM: no thread can be created to open it: "} +
+    return warn_once(std::string{"LCM: no thread can be created to open it: "} +
                      std::strerror(thread.error()) + "; trying again and again");
   }
   thread->detach();
@@ -108,27 +124,28 @@ void LcmLink::finish_lcm() {
   next_try_ = std::chrono::steady_clock::now() + retry_pause;
   std::unique_ptr<LcmTransport> lcm = opening_.get();
   if (!lcm) return fall_back("LCM's own test of " + url_.text + " failed");
-  say_("LCM: " + url_.text +
-       (url_.text.find("ttl=0") != std::string::npos ? " (this host only)" : ""));
+  say_(Weight::note, "LCM: " + url_.text +
+                         (url_.text.find("ttl=0") != std::string::npos ? " (this host only)" : ""));
   main_ = std::move(lcm);
 }
 
 void LcmLink::fall_back(const std::string& why) {
   if (fallback_) return;
-  auto hub = TcpqBroker::listen(tcpq::default_port, {.say = say_});
+  auto hub = listen(tcpq::default_port);
   if (hub) {
     fallback_ = std::move(*hub);
   } else if (hub.error() == EADDRINUSE) {
-    return tell_once("LCM: " + why + "; " + port_is_taken(tcpq::default_port));
+    return warn_once("LCM: " + why + "; " + port_is_taken(tcpq::default_port));
   } else {
-    return tell_once("LCM: " + why +
+    return warn_once("LCM: " + why +
                      "; a hub on loopback is not possible either: " + std::strerror(hub.error()));
   }
   for (const std::string& pattern : patterns_) fallback_->subscribe(pattern);
-  say_("LCM: " + why +
-       ". Serving LCM's tcpq protocol on loopback instead; other programs: export "
-       "LCM_DEFAULT_URL=" +
-       fallback_->url());
+  say_(Weight::note,
+       "LCM: " + why +
+           ". Serving LCM's tcpq protocol on loopback instead; other programs: export "
+           "LCM_DEFAULT_URL=" +
+           fallback_->url());
 }
 
 bool LcmLink::publish(const std::string& channel, std::span<const std::byte> data) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <cstdint>
 #include <expected>
 #include <functional>
 #include <future>
@@ -11,9 +12,12 @@
 #include "eds_parser/table/run_options.hpp"
 #include "master/gateway/lcm_transport.hpp"
 #include "master/gateway/lcm_url.hpp"
+#include "master/gateway/notice.hpp"
 #include "master/gateway/transport.hpp"
 
 namespace takt {
+
+class TcpqBroker;
 
 /// The connection of the daemon to LCM by whatever way the machine allows: LCM's multicast, the
 /// tcpq:// hub that the URL names, or a hub of its own. The link retries a connection that fails
@@ -22,11 +26,18 @@ namespace takt {
 /// Front thread.
 class LcmLink final : public Transport {
  public:
-  using Say = std::function<void(const std::string& sentence)>;
+  using Say = std::function<void(Weight weight, const std::string& sentence)>;
+
+  /// Whose hub the daemon uses, if the URL is one of tcpq.
+  enum class Hub : std::uint8_t {
+    own,             ///< only its own one
+    named,           ///< the one that the command line or the network file names
+    by_environment,  ///< the one that LCM_DEFAULT_URL names; a warning tells so
+  };
 
   /// `say` receives what users must know: which URL to set, or what is missing. All `patterns` are
   /// subscribed from the start.
-  LcmLink(LcmUrl url, bool broker, std::vector<std::string> patterns, Say say);
+  LcmLink(LcmUrl url, Hub hub, std::vector<std::string> patterns, Say say);
 
   bool publish(const std::string& channel, std::span<const std::byte> data) override;
   bool wanted(std::string_view channel) const override;
@@ -41,16 +52,17 @@ class LcmLink final : public Transport {
  private:
   void open_tcpq(const LcmUrl& url);
   void begin_hub();
+  std::expected<std::unique_ptr<TcpqBroker>, int> listen(std::uint16_t port);
   bool serve_hub(std::uint16_t port);
   void try_again();
-  void tell_once(const std::string& sentence);
+  void warn_once(const std::string& sentence);
   void begin_lcm();
   void finish_lcm();
   void fall_back(const std::string& why);
   void use(std::unique_ptr<Transport> transport);
 
   LcmUrl url_;
-  bool broker_;
+  Hub hub_;
   Say say_;
   std::string told_;  // the newest sentence that each retry would repeat
   std::vector<std::string> patterns_;

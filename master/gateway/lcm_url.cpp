@@ -11,11 +11,15 @@
 
 namespace takt {
 
+bool lcm_url_is_from_environment(const std::string& chosen, const std::string& configured) {
+  const char* const environment = std::getenv("LCM_DEFAULT_URL");
+  return chosen.empty() && configured.empty() && environment != nullptr && *environment != '\0';
+}
+
 std::string choose_lcm_url(const std::string& chosen, const std::string& configured) {
   if (!chosen.empty()) return chosen;
   if (!configured.empty()) return configured;
-  const char* const environment = std::getenv("LCM_DEFAULT_URL");
-  if (environment != nullptr && *environment != '\0') return environment;
+  if (lcm_url_is_from_environment(chosen, configured)) return std::getenv("LCM_DEFAULT_URL");
   return std::string{lcm_default_url};
 }
 

@@ -1,6 +1,7 @@
 #include "master/gateway/tcpq_broker.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <sys/socket.h>
 #include <utility>
 
@@ -60,10 +61,14 @@ void TcpqBroker::close(Client& client, const std::string& why) {
 }
 
 void TcpqBroker::accept_clients(Time now) {
-  for (int i = 0; i < most_accepts; ++i) {
+  for (int i = 0; i < most_accepts && !accept_pause_.active(now); ++i) {
     FileDescriptor socket{
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
-    if (!socket) return;
+    if (!socket) {
+      const auto why = accept_pause_.failed(errno, now);
+      if (why) options_.warn("LCM hub: " + *why);
+      return;
+    }
     if (clients_.size() == most_clients && !make_room(now)) continue;
     clients_.push_back(std::make_unique<Client>(
         Client{.connection = {std::move(socket), tcpq::magic_server, tcpq::magic_client},
@@ -193,7 +198,9 @@ void TcpqBroker::serve(const MessageHandler& handler) {
 }
 
 void TcpqBroker::watch(std::vector<pollfd>& descriptors) const {
-  descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  if (!accept_pause_.active(options_.clock())) {
+    descriptors.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+  }
   for (const auto& client : clients_) {
     const int events = POLLIN | client->connection.other_reason_to_wake();
     descriptors.push_back(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "master/gateway/accept_pause.hpp"
 #include "master/gateway/channel_patterns.hpp"
 #include "master/gateway/rate_limit.hpp"
 #include "master/gateway/tcpq_connection.hpp"
@@ -35,6 +36,8 @@ class TcpqBroker final : public Transport {
     FrontClock clock = monotonic_now;
     /// Receives the reason for closing a connection, at most once in 10 s for the same reason.
     std::function<void(const std::string& sentence)> say = [](const std::string&) {};
+    /// Receives a trouble that the user should remove, at most once in 10 s.
+    std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
   };
 
   /// Port 0 selects any free port. The error is an errno; EADDRINUSE means that the port is taken.
@@ -88,6 +91,7 @@ class TcpqBroker final : public Transport {
   bool drained_ = true;  // the newest round has read everything from all clients
   ChannelPatterns own_;
   RateLimit told_{std::chrono::seconds{10}};
+  AcceptPause accept_pause_;
 };
 
 }  // namespace takt

@@ -15,6 +15,7 @@
 
 #include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
+#include "master/linux/left_socket.hpp"
 #include "master/linux/message_batch.hpp"
 #include "master/linux/start_thread.hpp"
 #include "master/linux/unix_address.hpp"
@@ -26,6 +27,7 @@ namespace {
 constexpr std::size_t max_clients = 64;
 constexpr std::size_t batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
+constexpr int most_takeovers = 25;  // so many times, a program may find the path taken at its start
 constexpr int most_batches = 4096;  // most batches of one client that hand_over() forwards
 
 struct Client {
@@ -41,18 +43,15 @@ void enlarge_send_buffer(int fd) noexcept {
   }
 }
 
-/// Removes only a socket. Anything else at the path stays, and bind() then reports that the address
-/// is in use.
-void remove_socket(const char* path) noexcept {
-  struct stat found{};
-  if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path);
-}
-
 /// Describes why bind() or listen() failed.
 std::string refusal(const std::string& path, int error) {
   struct stat found{};
-  if (error != EADDRINUSE || lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) {
+  if (error != EADDRINUSE || lstat(path.c_str(), &found) != 0) {
     return std::string{"cannot listen: "} + std::strerror(error);
+  }
+  if (S_ISSOCK(found.st_mode)) {
+    return "another program listens there, which is no bus of takt; the bus needs a path of its "
+           "own";
   }
   return "there is something else of this name already, which is left alone; the bus needs a path "
          "of its own";
@@ -72,6 +71,9 @@ class UnixBusHub::Impl {
 
   /// Returns false if another process hosts. The error is that of listening.
   std::expected<bool, int> try_to_host();
+  /// The same, but waits for a host that has just been killed: the kernel may release its lock
+  /// before it closes its socket.
+  std::expected<bool, int> host_or_join();
   /// The error says why the thread could not be created.
   std::expected<void, int> start() {
     auto thread = start_thread([this] { run(); });
@@ -104,9 +106,14 @@ class UnixBusHub::Impl {
 std::expected<bool, int> UnixBusHub::Impl::try_to_host() {
   if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) return false;
   FileDescriptor listener{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  remove_socket(address_.sun_path);  // left by a host that has ended: this process holds the lock
   const auto* address = reinterpret_cast<const sockaddr*>(&address_);
-  if (!listener || bind(listener.get(), address, sizeof address_) != 0 ||
+  // This process holds the lock, so that no other bus of takt listens there.
+  if (!listener || !remove_left_socket(address_)) {
+    const int error = listener ? EADDRINUSE : errno;
+    flock(lock_.get(), LOCK_UN);
+    return std::unexpected{error};
+  }
+  if (bind(listener.get(), address, sizeof address_) != 0 ||
       listen(listener.get(), static_cast<int>(max_clients)) != 0) {
     const int error = errno;
     flock(lock_.get(), LOCK_UN);
@@ -115,6 +122,15 @@ std::expected<bool, int> UnixBusHub::Impl::try_to_host() {
   listener_ = std::move(listener);
   hosting_.store(true, std::memory_order_relaxed);
   return true;
+}
+
+std::expected<bool, int> UnixBusHub::Impl::host_or_join() {
+  auto hosts = try_to_host();
+  for (int i = 0; i < most_takeovers && !hosts && hosts.error() == EADDRINUSE; ++i) {
+    if (stopping(takeover_poll_ms)) break;
+    hosts = try_to_host();
+  }
+  return hosts;
 }
 
 bool UnixBusHub::Impl::stopping(int timeout_ms) {
@@ -126,7 +142,8 @@ void UnixBusHub::Impl::run() {
   pthread_setname_np(pthread_self(), "takt-hub");
   while (!hosting()) {
     if (stopping(takeover_poll_ms)) return;
-    if (!try_to_host()) return;
+    const auto hosts = try_to_host();
+    if (!hosts && hosts.error() != EADDRINUSE) return;
   }
   serve();
   hand_over();
@@ -233,7 +250,7 @@ std::expected<UnixBusHub, BusError> UnixBusHub::join(const std::string& path) {
   FileDescriptor stop{eventfd(0, EFD_CLOEXEC)};
   if (!stop) return refuse_with("eventfd", errno);
   auto impl = std::make_unique<Impl>(std::move(lock), std::move(stop), *address);
-  if (const auto hosts = impl->try_to_host(); !hosts) {
+  if (const auto hosts = impl->host_or_join(); !hosts) {
     if (is_new) unlink(lock_path.c_str());
     return refuse(refusal(path, hosts.error()), hosts.error());
   }

@@ -11,6 +11,7 @@
 
 #include "master/linux/unix_address.hpp"
 #include "test/support/folder.hpp"
+#include "test/support/no_descriptor_left.hpp"
 #include "test/support/step_clock.hpp"
 
 namespace takt {
@@ -24,7 +25,8 @@ class AsciiServerTest : public testing::Test {
             .old_line = [this](int, std::string_view line) { old_lines.emplace_back(line); },
             .too_long = [this](int) { ++too_long; },
             .gone = [this](int client) { gone.push_back(client); },
-            .owed = [this](int) { return owed; }};
+            .owed = [this](int) { return owed; },
+            .warn = [this](const std::string& sentence) { warnings.push_back(sentence); }};
   }
   void listen() {
     auto opened = AsciiServer::listen("unix:" + path_, handler(), clock);
@@ -40,6 +42,12 @@ class AsciiServerTest : public testing::Test {
     }
     serve();
     return socket;
+  }
+  /// Returns the number of descriptors that wake the server.
+  std::size_t watched() const {
+    std::vector<pollfd> descriptors;
+    server->watch(descriptors);
+    return descriptors.size();
   }
   /// Waits for something to do, then does it.
   void serve() {
@@ -64,6 +72,7 @@ class AsciiServerTest : public testing::Test {
   std::unique_ptr<AsciiServer> server;
   std::vector<std::string> old_lines;
   std::vector<std::string> lines;
+  std::vector<std::string> warnings;
   std::vector<int> connected;
   std::vector<int> gone;
   int too_long = 0;
@@ -278,6 +287,51 @@ TEST_F(AsciiServerTest, TakesThePlaceOfADeadDaemonOnly) {
   std::ofstream{path_} << "a file of somebody";
   EXPECT_FALSE(AsciiServer::listen("unix:" + path_, handler()));
   EXPECT_TRUE(std::filesystem::exists(path_));
+}
+
+TEST_F(AsciiServerTest, WithoutADescriptorLeftTheWaitingConnectionDoesNotWakeItForAWhile) {
+  listen();
+  const FileDescriptor waiting{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const auto address = unix_address(path_);
+  const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
+  ASSERT_EQ(::connect(waiting.get(), generic, sizeof *address), 0);
+  {
+    const test::NoDescriptorLeft none;
+    for (int i = 0; i < 50; ++i) {  // 5 s
+      EXPECT_EQ(watched(), 1U);
+      server->serve();
+      EXPECT_EQ(watched(), 0U);
+      clock.pass(AcceptPause::length);
+    }
+    EXPECT_EQ(warnings.size(), 1U);
+    clock.pass(AcceptPause::sentence_pause);
+    server->serve();
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_TRUE(warnings[0].starts_with(
+        "CiA 309-3 gateway: new connections wait: Too many open files; end some programs"))
+        << warnings[0];
+  }
+  EXPECT_TRUE(connected.empty());
+
+  clock.pass(AcceptPause::length);
+  serve();
+
+  EXPECT_EQ(connected.size(), 1U) << "the connection has waited";
+}
+
+TEST_F(AsciiServerTest, LeavesTheSocketOfAnotherProgramAloneWhateverItsType) {
+  for (const int type : {SOCK_STREAM, SOCK_SEQPACKET, SOCK_DGRAM}) {
+    const std::string path = path_ + std::to_string(type);
+    const FileDescriptor other{::socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
+    const auto address = unix_address(path);
+    const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
+    ASSERT_EQ(::bind(other.get(), generic, sizeof *address), 0);
+    ASSERT_EQ(type == SOCK_DGRAM ? 0 : ::listen(other.get(), 1), 0);
+
+    EXPECT_FALSE(AsciiServer::listen("unix:" + path, handler()));
+    const FileDescriptor client{::socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
+    EXPECT_EQ(::connect(client.get(), generic, sizeof *address), 0) << "it still answers";
+  }
 }
 
 TEST_F(AsciiServerTest, ListensOnLoopbackWhenAskedTo) {

@@ -8,9 +8,11 @@
 namespace takt {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 /// A port on loopback that belongs to another program, which uses tcpq.
 class LcmLinkTest : public testing::Test {
@@ -26,7 +28,9 @@ class LcmLinkTest : public testing::Test {
     }
   }
   LcmLink::Say say() {
-    return [this](const std::string& sentence) { said.push_back(sentence); };
+    return [this](Weight weight, const std::string& sentence) {
+      said.push_back(std::string{name(weight)} + ": " + sentence);
+    };
   }
 
   std::unique_ptr<TcpqBroker> other = TcpqBroker::listen(0).value();
@@ -34,23 +38,36 @@ class LcmLinkTest : public testing::Test {
 };
 
 TEST_F(LcmLinkTest, IsNobodysClientWhereItsOwnHubFindsThePortTaken) {
-  LcmLink link{url(), true, {"LIFT_COMMAND"}, say()};
+  LcmLink link{url(), LcmLink::Hub::own, {"LIFT_COMMAND"}, say()};
 
   serve(link);
 
   EXPECT_EQ(other->clients(), 0U);
   EXPECT_THAT(link.url(), IsEmpty());
-  EXPECT_THAT(said, ElementsAre(HasSubstr(" is taken by another program")));
+  EXPECT_THAT(
+      said, ElementsAre(AllOf(StartsWith("warning: "), HasSubstr(" is taken by another program"))));
   EXPECT_FALSE(link.publish("LIFT_IMAGE", {}));
 }
 
 TEST_F(LcmLinkTest, IsTheClientOfTheHubThatTheUrlNames) {
-  LcmLink link{url(), false, {"LIFT_COMMAND"}, say()};
+  LcmLink link{url(), LcmLink::Hub::named, {"LIFT_COMMAND"}, say()};
 
   serve(link);
 
   EXPECT_EQ(link.url(), other->url());
   EXPECT_GE(other->clients(), 1U);
+  EXPECT_THAT(said, ElementsAre("warning: LCM: no hub answers at " + other->url() +
+                                "; trying again and again"));
+}
+
+TEST_F(LcmLinkTest, WarnsOfAHubThatOnlyTheEnvironmentNames) {
+  LcmLink link{url(), LcmLink::Hub::by_environment, {"LIFT_COMMAND"}, say()};
+
+  serve(link);
+
+  EXPECT_EQ(link.url(), other->url());
+  EXPECT_THAT(said, ElementsAre(AllOf(StartsWith("warning: LCM: "),
+                                      HasSubstr(". LCM_DEFAULT_URL names it: the program"))));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "master/gateway/tcpq_broker.hpp"
 #include "master/gateway/tcpq_parser.hpp"
+#include "test/support/no_descriptor_left.hpp"
 #include "test/support/step_clock.hpp"
 
 namespace takt {
@@ -70,8 +71,9 @@ class TcpqLimits : public testing::Test {
  protected:
   std::unique_ptr<TcpqBroker> make(Time step) {
     clock = test::StepClock{step};
-    return TcpqBroker::listen(
-               0, {.clock = clock, .say = [this](const std::string& s) { told.push_back(s); }})
+    return TcpqBroker::listen(0, {.clock = clock,
+                                  .say = [this](const std::string& s) { told.push_back(s); },
+                                  .warn = [this](const std::string& s) { warnings.push_back(s); }})
         .value();
   }
   /// Serves until `done` returns true. On loopback, data arrives at once or a moment later.
@@ -89,6 +91,7 @@ class TcpqLimits : public testing::Test {
 
   test::StepClock clock{0us};
   std::vector<std::string> told;
+  std::vector<std::string> warnings;
 };
 
 TEST_F(TcpqLimits, AFloodOfMessagesEndsTheRoundWithItsBudgetAndLosesNothing) {
@@ -358,6 +361,36 @@ TEST_F(TcpqLimits, AChannelNameThatLcmDoesNotHaveEndsTheConnection) {
   peer.open().publish(std::string(64, 'x'));
 
   EXPECT_TRUE(serve_until(*broker, [&] { return !told.empty() && broker->clients() == 0; }));
+}
+
+TEST_F(TcpqLimits, WithoutADescriptorLeftTheWaitingConnectionDoesNotWakeTheHubForAWhile) {
+  const auto broker = make(50us);
+  const auto watched = [&] {
+    std::vector<pollfd> descriptors;
+    broker->watch(descriptors);
+    return descriptors.size();
+  };
+  Peer waiting{broker->port()};
+  {
+    const test::NoDescriptorLeft none;
+    while (watched() == 1) broker->serve(ignore);  // until the connection has come
+    for (int i = 0; i < 50; ++i) {                 // 5 s
+      clock.pass(AcceptPause::length);
+      EXPECT_EQ(watched(), 1U);
+      broker->serve(ignore);
+      EXPECT_EQ(watched(), 0U);
+    }
+    EXPECT_EQ(warnings.size(), 1U);
+    clock.pass(AcceptPause::sentence_pause);
+    broker->serve(ignore);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_TRUE(warnings[0].starts_with("LCM hub: new connections wait: Too many open files"))
+        << warnings[0];
+  }
+
+  clock.pass(AcceptPause::length);
+  waiting.open();
+  EXPECT_TRUE(serve_until(*broker, [&] { return broker->clients() == 1; }));
 }
 
 }  // namespace

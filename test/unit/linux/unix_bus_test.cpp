@@ -104,10 +104,31 @@ TEST_F(UnixBus, LeavesAFileAloneThatIsNoSocket) {
 
 TEST_F(UnixBus, TakesThePlaceOfASocketThatItsHostHasLeft) {
   const auto address = unix_address(path_);
-  const FileDescriptor left{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
+  FileDescriptor left{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
   ASSERT_EQ(bind(left.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
+  left.reset();
 
   EXPECT_TRUE(UnixBusPort::open({.path = path_}));
+}
+
+TEST_F(UnixBus, LeavesTheSocketOfAnotherProgramAlone) {
+  const auto address = unix_address(path_);
+  const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
+  for (const int type : {SOCK_STREAM, SOCK_SEQPACKET}) {
+    std::filesystem::remove(path_);
+    const FileDescriptor other{socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
+    ASSERT_EQ(bind(other.get(), generic, sizeof *address), 0);
+    ASSERT_EQ(listen(other.get(), 64), 0);
+
+    const auto opened = UnixBusPort::open({.path = path_});
+
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().message, "unix:" + path_ +
+                                          ": another program listens there, which is no bus of "
+                                          "takt; the bus needs a path of its own");
+    const FileDescriptor client{socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
+    EXPECT_EQ(connect(client.get(), generic, sizeof *address), 0) << "it still answers";
+  }
 }
 
 TEST_F(UnixBus, CarriesAFrameUnchangedToTheOthersButNotToItsSender) {
