@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time shortest_listening = 150ms;
+constexpr Time shortest_listening = 1100ms;  // most masters have a heartbeat of a second or less
 constexpr Time longest_listening = 1500ms;
 constexpr Time status_is_alive = 5s;
 constexpr std::size_t longest_name = 64;  // bytes of a foreign name that are shown in a sentence

@@ -26,7 +26,7 @@ class OtherMaster {
               StatusCounts status = StatusCounts::as_refusal);
 
   /// Returns how long to listen for frames: 1.5 times the producer time of this master's heartbeat,
-  /// limited to 150 ms .. 1.5 s. This assumes that the other master has the same producer time.
+  /// limited to 1.1 s .. 1.5 s. This assumes that the other master has the same producer time.
   Time listening_time() const noexcept;
 
   void on_frame(const Frame& frame);

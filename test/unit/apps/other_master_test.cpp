@@ -123,10 +123,16 @@ TEST_F(OtherMasterTest, ShowsAForeignInterfaceWithoutControlCharactersAndCutToSi
   EXPECT_LT(other.refusal()->size(), 300U);
 }
 
+TEST_F(OtherMasterTest, IsListenedForAtLeastASecondWhateverTheHeartbeatOfThisOneIs) {
+  for (const Time heartbeat : {0ms, 100ms, 400ms}) {
+    plan.master_heartbeat = heartbeat;
+    EXPECT_EQ(other.listening_time(), 1100ms);
+  }
+}
+
 TEST_F(OtherMasterTest, IsListenedForLongerThanItsHeartbeatTakesAndNotForEver) {
-  EXPECT_EQ(other.listening_time(), 600ms);
-  plan.master_heartbeat = 0ms;
-  EXPECT_EQ(other.listening_time(), 150ms);
+  plan.master_heartbeat = 900ms;
+  EXPECT_EQ(other.listening_time(), 1350ms);
   plan.master_heartbeat = 60s;
   EXPECT_EQ(other.listening_time(), 1500ms);
 }
