@@ -6,6 +6,7 @@
 
 #include "apps/doctor/checkup.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "master/gateway/lcm_url.hpp"
@@ -79,7 +80,7 @@ void print_json(const std::vector<Remark>& remarks) {
                    {"command", remark.command}});
   }
   const nlohmann::json document{{"remarks", std::move(all)}};
-  std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::puts(json_text(document, 1).c_str());
 }
 
 int run(const DoctorOptions& options) {

@@ -20,6 +20,7 @@
 #include "apps/frame_text/trace_line.hpp"
 #include "apps/frame_text/value_text.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
@@ -131,7 +132,7 @@ class Printer {
     out["service"] = meaning.service;
     if (meaning.node != 0) out["node"] = meaning.node;
     out["text"] = meaning.text;
-    fmt::print("{}\n", out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(out));
   }
 
   const Options& options_;

@@ -12,6 +12,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/json_text.hpp"
 #include "master/gateway/emcy_log.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/names.hpp"
@@ -114,7 +115,7 @@ int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only
                                       {"node_id", event->node_id},
                                       {"node", event->node},
                                       {"text", event->text}};
-            std::puts(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+            std::puts(json_text(line).c_str());
           } else {
             std::printf("%s  %s\n", clock_text(event->utime).c_str(),
                         printable_lines(event->text).c_str());
@@ -141,7 +142,7 @@ int run(const EmcyOptions& options) {
     nlohmann::json all = nlohmann::json::array();
     for (const Told& one : *told) all.push_back(to_json(one));
     const nlohmann::json document{{"bus", daemon->status().bus}, {"emcys", std::move(all)}};
-    std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::puts(json_text(document, 1).c_str());
   } else if (!options.live.json) {
     for (const Told& one : *told) print(one);
   }

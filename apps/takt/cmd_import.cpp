@@ -9,6 +9,7 @@
 #include "apps/import/import_report.hpp"
 #include "apps/import/nodelist.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
@@ -56,7 +57,7 @@ void print_json(const Options& options, const ImportReport& report) {
                                         {"keys", std::move(keys)},
                                         {"unasked", report.unasked},
                                         {"findings", std::move(others)}};
-  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(document, 2));
 }
 
 struct Imported {

@@ -10,6 +10,7 @@
 
 #include "apps/known_words/known_words.hpp"
 #include "apps/takt/commands.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/lss_selection.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "master/linux/frame_witness.hpp"
@@ -30,7 +31,7 @@ std::string check_range(const std::string& text) {
 
 int failed(const LiveError& error) { return complain(error.sentence, error.code); }
 
-void put(const nlohmann::json& json) { std::puts(json.dump(1).c_str()); }
+void put(const nlohmann::json& json) { std::puts(json_text(json, 1).c_str()); }
 
 int print_devices(const LssOptions& options, const std::vector<LssAddress>& devices) {
   nlohmann::json list = nlohmann::json::array();

@@ -8,6 +8,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "master/wire/parameter_channel.hpp"
 
@@ -59,10 +60,9 @@ int print(const ParamOptions& options, std::uint16_t address, const channel::Ans
                     1);
   }
   if (options.live.json) {
-    std::puts(nlohmann::json{
-        {"parameter", options.parameter}, {"address", address}, {"value", answer.value}}
-                  .dump()
-                  .c_str());
+    const nlohmann::json line{
+        {"parameter", options.parameter}, {"address", address}, {"value", answer.value}};
+    std::puts(json_text(line).c_str());
   } else if (options.value.empty()) {
     std::printf("%u\n", answer.value);
   }

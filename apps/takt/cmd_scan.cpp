@@ -9,6 +9,7 @@
 #include "apps/scan/bus_scan.hpp"
 #include "apps/takt/commands.hpp"
 #include "apps/takt/interrupt.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
@@ -168,7 +169,7 @@ int run(const ScanOptions& options) {
     nlohmann::json all = nlohmann::json::array();
     for (const Found& found : nodes) all.push_back(to_json(found));
     const nlohmann::json document{{"bus", options.bus}, {"nodes", std::move(all)}};
-    std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::puts(json_text(document, 1).c_str());
   } else if (!nodes.empty()) {
     print(nodes, !options.folders.empty());
   }

@@ -9,6 +9,7 @@
 #include "apps/takt/daemon_client.hpp"
 #include "apps/takt/file_transfer.hpp"
 #include "apps/takt/interrupt.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/sdo_direct.hpp"
 #include "apps/takt/text_file.hpp"
 #include "apps/takt/transfer_progress.hpp"
@@ -167,7 +168,7 @@ int read(const SdoOptions& options) {
     const nlohmann::json json{{"node", access->node()},   {"index", object->index},
                               {"sub", object->sub},       {"size", value->size()},
                               {"data", hex_text(*value)}, {"text", text}};
-    std::puts(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::puts(json_text(json).c_str());
   } else {
     std::puts(printable_lines(text).c_str());
   }

@@ -7,6 +7,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/pdo_table.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
@@ -130,7 +131,7 @@ void print_json(const std::vector<const BusView*>& buses) {
     if (bus->pdos()) all.back()["pdos"] = pdos_json(*bus->pdos());
   }
   const nlohmann::json document{{"buses", std::move(all)}};
-  std::puts(document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::puts(json_text(document, 1).c_str());
 }
 
 int run(const StatusOptions& all) {

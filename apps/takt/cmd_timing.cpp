@@ -8,6 +8,7 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
 #include "apps/takt/image_delay.hpp"
+#include "apps/takt/json_text.hpp"
 #include "apps/takt/timing_table.hpp"
 #include "master/gateway/names.hpp"
 #include "master/gateway/printable_text.hpp"
@@ -29,8 +30,8 @@ void print(const std::string& bus, const timing_t& timing, const TimingOptions& 
   if (options.live.json) {
     nlohmann::json document = timing_json(timing);
     document["bus"] = bus;
-    const int indent = options.follow ? -1 : 1;
-    std::puts(document.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    const int indent = options.follow ? one_line : 1;
+    std::puts(json_text(document, indent).c_str());
   } else {
     std::printf("%s at cycle %lld, the last second\n", bus.c_str(),
                 static_cast<long long>(timing.cycle));
