@@ -138,9 +138,10 @@ class NetworkCompiler {
           compile_axes(bus.nodes[i], out_.devices[i], *nodes_[i].node.spec, report_);
     }
     const auto& written = spec_.master.stop_timeout_ms;
+    const Time derived = std::max(waits::stop_timeout_for(longest_stopping_time(bus)),
+                                  stop_cycles * bus.cycle.period);
     bus.stop_timeout = written.given ? milliseconds(*written)
-                                     : std::max(waits::stop_timeout_for(longest_stopping_time(bus)),
-                                                stop_cycles * bus.cycle.period);
+                                     : Time{std::chrono::ceil<std::chrono::milliseconds>(derived)};
     judge_stop(bus, spec_, report_);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace takt {
 
@@ -15,8 +16,12 @@ class AxisMemory {
   /// while it charges its intermediate circuit.
   static constexpr std::uint8_t standing_cycles = 100;
 
+  /// Returns true if a TPDO with the statusword has come since the previous call. `frames` counts
+  /// its frames.
+  bool news(std::uint32_t frames) noexcept { return std::exchange(frames_, frames) != frames; }
   /// Call this once a cycle. `statusword` is the one that was received by PDO; it is empty unless
-  /// it is fresh. `controlword` is the one that PDOs command; it is empty if they command nothing.
+  /// news() is true. `controlword` is the one that PDOs command; it is empty if they command
+  /// nothing.
   void look(std::optional<std::int64_t> statusword,
             std::optional<std::int64_t> controlword) noexcept;
   /// Takes a statusword that was read by SDO.
@@ -33,6 +38,10 @@ class AxisMemory {
   /// Notes that the node reports OPERATIONAL although this master has not booted it.
   void note_operational() noexcept { operational_ = true; }
 
+  /// No enabling controlword can be on its way, or in force without an answer to it.
+  bool quiet() const noexcept {
+    return word_ == ServiceWord::harmless && quiet_ >= settling_cycles;
+  }
   /// The axis was seen disabled, and nothing could enable it since.
   bool disabled() const noexcept { return disabled_; }
   /// The node has reported OPERATIONAL although this master has not booted it.
@@ -40,7 +49,7 @@ class AxisMemory {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(disabled_, word_, operational_, quiet_);
+    state(disabled_, word_, operational_, quiet_, frames_);
   }
 
  private:
@@ -54,7 +63,8 @@ class AxisMemory {
   bool disabled_ = false;
   ServiceWord word_ = ServiceWord::harmless;
   bool operational_ = false;
-  std::uint8_t quiet_ = 0;  ///< Cycles without an enabling word, at most standing_cycles.
+  std::uint8_t quiet_ = 0;    ///< Cycles without an enabling word, at most standing_cycles.
+  std::uint32_t frames_ = 0;  ///< see news()
 };
 
 }  // namespace takt

@@ -11,6 +11,7 @@ constexpr Time silent_after = std::chrono::milliseconds{500};
 
 void Standstill::rest(Time now, bool within) noexcept {
   if (!within || !resting_) since_ = now;
+  samples_ = within ? samples_ + 1 : 0;
   resting_ = within;
   last_ = now;
   measured_ = true;
@@ -19,26 +20,43 @@ void Standstill::rest(Time now, bool within) noexcept {
 void Standstill::take(Time now, const AxisSample& sample) noexcept {
   if (sample.velocity) {
     velocity_ = *sample.velocity;
+    velocity_at_ = from_ = now;
     by_position_ = false;
-    return rest(now, std::abs(velocity_) <= velocity_window_);
-  }
-  if (!sample.position) return;
-  by_position_ = true;
-  if (position_at_ == Time{}) {
-    anchor_ = position_ = *sample.position;
-    position_at_ = now;
+    rest(now, std::abs(velocity_) <= velocity_window_);
+    if (sample.position) set_anchor(now, *sample.position);
     return;
   }
-  if (now > position_at_) {
-    const double seconds = std::chrono::duration<double>(now - position_at_).count();
-    velocity_ =
-        static_cast<std::int64_t>(static_cast<double>(*sample.position - position_) / seconds);
+  if (!sample.position) return;
+  // The velocity that the drive reports takes precedence while it is new.
+  if (velocity_at_ && now - *velocity_at_ < standstill_time) {
+    return set_anchor(now, *sample.position);
   }
-  position_ = *sample.position;
+  take_position(now, *sample.position);
+}
+
+void Standstill::set_anchor(Time now, std::int64_t position) noexcept {
+  anchor_ = position_ = position;
+  position_at_ = anchor_at_ = now;
+}
+
+void Standstill::take_position(Time now, std::int64_t position) noexcept {
+  by_position_ = true;
+  if (!position_at_) {
+    samples_ = 1;
+    return set_anchor(now, position);
+  }
+  if (now > *position_at_) {
+    const double seconds = std::chrono::duration<double>(now - *position_at_).count();
+    velocity_ = static_cast<std::int64_t>(static_cast<double>(position - position_) / seconds);
+  }
+  position_ = position;
   position_at_ = now;
-  const bool within = std::abs(position_ - anchor_) <= position_window_;
-  if (!within) anchor_ = position_;
+  from_ = anchor_at_;
+  const bool within = std::abs(position - anchor_) <= position_window_;
   rest(now, within);
+  if (within) return;
+  set_anchor(now, position);
+  samples_ = 1;
 }
 
 namespace {
@@ -63,6 +81,7 @@ AxisState first_state(AxisPrior prior) noexcept {
 void AxisStop::begin(Time now, AxisPrior prior) noexcept {
   state_ = first_state(prior);
   prior_ = prior;
+  commanded_ = false;
   entered_ = answered_ = now;
 }
 
@@ -70,7 +89,8 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
 ///
 ///   state     seen                                     next
 ///   unseen    it is enabled                            braking
-///   unseen    it is disabled                           exempt
+///   unseen    it is disabled, no command before        exempt
+///   unseen    it is disabled after a command           as braking: it may have been enabled
 ///   asked, rested: as unseen
 ///   braking   enabled, certainly at standstill         standing
 ///   braking   disabled                                 settling
@@ -78,7 +98,7 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
 ///   standing  disabled                                 stopped
 ///   standing  enabled, moves again                     braking
 ///   settling  disabled, certainly at standstill        stopped
-///   settling  disabled, moves after the grace          dropped
+///   settling  disabled, a value after the grace moves  dropped
 ///   settling  enabled again                            braking
 ///   braking   the time is over: see cut()              cut
 AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
@@ -108,11 +128,10 @@ AxisState AxisStop::next(AxisState state, Seen seen) noexcept {
   return state;
 }
 
-AxisStop::Seen AxisStop::judge(Time now) const noexcept {
+AxisStop::Seen AxisStop::judge() const noexcept {
   if (powered_) return standstill_.certain() ? Seen::standing : Seen::powered;
   if (standstill_.certain()) return Seen::off_rest;
-  const bool graced = state_ == AxisState::settling && now - entered_ <= settling_grace;
-  return standstill_.moves() && !graced ? Seen::off_move : Seen::off;
+  return standstill_.moves_after(entered_, settling_grace) ? Seen::off_move : Seen::off;
 }
 
 void AxisStop::go(AxisState state, Time now) noexcept {
@@ -134,7 +153,8 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   // An axis leaves `standing` only if its newest value lies outside the window; a value inside is
   // enough to stay, even if the standstill is not certain again.
   if (state_ == AxisState::standing && powered_ && !standstill_.moves()) return;
-  go(next(state_, judge(now)), now);
+  const bool in_doubt = state_ == AxisState::unseen && commanded_;
+  go(next(in_doubt ? AxisState::braking : state_, judge()), now);
 }
 
 void AxisStop::cut() noexcept {

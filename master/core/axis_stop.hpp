@@ -42,8 +42,8 @@ enum class AxisVerdict : std::uint8_t {
   refused,  ///< The node answers, but refuses the read of the statusword.
 };
 
-/// What was read of an axis since the last call. An empty value is not new, or not reliable. The
-/// values are those of the device, without units.
+/// What was read of an axis since the last call. A value is empty unless a frame has brought it
+/// since then. The values are those of the device, without units.
 struct AxisSample {
   std::optional<std::int64_t> statusword;
   std::optional<std::int64_t> velocity;  ///< 0x606C
@@ -52,12 +52,15 @@ struct AxisSample {
   bool empty() const noexcept { return !statusword && !velocity && !position; }
 };
 
-/// Judges whether an axis moves, by 0x606C or, without it, by differences of 0x6064. Standstill is
-/// certain when the value has stayed within a window for `standstill_time`.
+/// Judges whether an axis moves, by 0x606C or, while no value of it comes, by differences of
+/// 0x6064. Standstill is certain when `enough_samples` values or more have stayed within a window
+/// for `standstill_time` or longer.
 class Standstill {
  public:
   /// Shortest rest that counts as certain standstill.
   static constexpr Time standstill_time = std::chrono::milliseconds{50};
+  /// Fewest values that show a standstill.
+  static constexpr std::uint32_t enough_samples = 3;
 
   explicit Standstill(const AxisPlan& plan) noexcept
       : velocity_window_{plan.velocity_window}, position_window_{plan.position_window} {}
@@ -65,9 +68,16 @@ class Standstill {
   /// Takes a new sample.
   void take(Time now, const AxisSample& sample) noexcept;
   /// The value has stayed within the window for long enough.
-  bool certain() const noexcept { return resting_ && last_ - since_ >= standstill_time; }
+  bool certain() const noexcept {
+    return resting_ && samples_ >= enough_samples && last_ - since_ >= standstill_time;
+  }
   /// The newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
+  /// As moves(), for a value that is newer than `start` by more than `grace`. A difference of
+  /// positions must lie behind `start` as a whole.
+  bool moves_after(Time start, Time grace) const noexcept {
+    return moves() && from_ >= start && last_ - start > grace;
+  }
   /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
   std::int64_t velocity() const noexcept { return velocity_; }
   /// The newest velocity comes from differences of 0x6064.
@@ -75,15 +85,21 @@ class Standstill {
 
  private:
   void rest(Time now, bool within) noexcept;
+  void take_position(Time now, std::int64_t position) noexcept;
+  void set_anchor(Time now, std::int64_t position) noexcept;
 
   std::int64_t velocity_window_;
   std::int64_t position_window_;  ///< largest distance in standstill_time that counts as standstill
   std::int64_t velocity_ = 0;
   std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
+  Time anchor_at_{};
   std::int64_t position_ = 0;
-  Time position_at_{};
-  Time since_{};  ///< start of the current rest
-  Time last_{};   ///< The time of the newest value.
+  std::optional<Time> position_at_;
+  std::optional<Time> velocity_at_;  ///< The time of the newest 0x606C.
+  Time from_{};  ///< The beginning of the time in which the newest value was measured.
+  std::uint32_t samples_ = 0;  ///< Successive values within the window, with the anchor.
+  Time since_{};               ///< start of the current rest
+  Time last_{};                ///< The time of the newest value.
   bool measured_ = false;
   bool resting_ = false;
   bool by_position_ = false;
@@ -97,7 +113,8 @@ class AxisStop {
   static constexpr std::int64_t quick_stop_word = 0x0002;
   /// Controlword of the command "disable voltage".
   static constexpr std::int64_t disable_voltage_word = 0x0000;
-  /// An axis that disables itself at the end of its ramp may show a velocity for this long.
+  /// An axis that disables itself at the end of its ramp may show a velocity for this long, and
+  /// until the next value comes.
   static constexpr Time settling_grace = std::chrono::milliseconds{40};
 
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
@@ -105,6 +122,9 @@ class AxisStop {
 
   /// Begins the stop of this axis.
   void begin(Time now, AxisPrior prior) noexcept;
+  /// Notes that a controlword that may change the state of the axis may have reached it. If the
+  /// next statusword shows that the axis is disabled, it may have been enabled before.
+  void note_command() noexcept { commanded_ = true; }
   /// Takes a new sample and advances the stop.
   void step(Time now, const AxisSample& sample) noexcept;
   /// The time in which the axis can come to standstill is over.
@@ -161,13 +181,14 @@ class AxisStop {
     off_move,  ///< The axis is disabled and moves.
   };
   static AxisState next(AxisState state, Seen seen) noexcept;
-  Seen judge(Time now) const noexcept;
+  Seen judge() const noexcept;
   void go(AxisState state, Time now) noexcept;
 
   Standstill standstill_;
   AxisState state_ = AxisState::unseen;
   AxisPrior prior_ = AxisPrior::exposed;
   std::uint32_t refusal_ = 0;  ///< The abort code of the newest refused read; 0 means none.
+  bool commanded_ = false;     ///< see note_command()
   bool powered_ = true;
   bool disabled_seen_ = false;  ///< The axis was seen disabled during this stop.
   Time entered_{};

@@ -29,12 +29,13 @@ std::optional<StopAxis> axis_of(const BusPlan& plan, std::uint8_t node_index, st
     const auto index = static_cast<std::uint16_t>(base + number * axis_step);
     return find(plan.layout, node_index, index, output);
   };
-  const StopAxis axis{.node_index = node_index,
-                      .number = number,
-                      .controlword = at(0x6040, true),
-                      .statusword = at(0x6041, false),
-                      .velocity = at(0x606C, false),
-                      .position = at(0x6064, false)};
+  StopAxis axis{.node_index = node_index,
+                .number = number,
+                .controlword = at(0x6040, true),
+                .statusword = at(0x6041, false),
+                .velocity = at(0x606C, false),
+                .position = at(0x6064, false)};
+  if (axis.statusword) axis.word_row = plan.layout.signals[*axis.statusword].row;
   const NodePlan& node = plan.nodes[node_index];
   const bool planned = std::ranges::find(node.axes, number, &AxisPlan::number) != node.axes.end();
   if (axis.controlword || (node.boot && (axis.statusword || planned))) return axis;
@@ -81,6 +82,9 @@ OrderedStop::OrderedStop(const BusPlan& plan)
   for (const StopAxis& axis : axes_) {
     plans_.push_back(plan_of(plan.nodes[axis.node_index], axis.number));
     stops_.emplace_back(plans_.back());
+    sources_.push_back({.word = AxisSource{plan, axis.statusword},
+                        .velocity = AxisSource{plan, axis.velocity},
+                        .position = AxisSource{plan, axis.position}});
   }
 }
 
@@ -92,9 +96,13 @@ void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes, std::uint8_
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     stops_[i] = AxisStop{plans_[i]};
     answers_[i] = {};
+    sources_[i].word.begin();
+    sources_[i].velocity.begin();
+    sources_[i].position.begin();
     const AxisPrior prior =
         prior_of(nodes[axes_[i].node_index], i < memory.size() ? memory[i] : AxisMemory{});
     stops_[i].begin(now, reaches(i) ? prior : AxisPrior::untouched);
+    if (i < memory.size() && !memory[i].quiet()) stops_[i].note_command();
   }
 }
 
@@ -114,21 +122,21 @@ void OrderedStop::take(std::size_t axis, const AxisSample& sample) noexcept {
   if (sample.position) answers_[axis].position = sample.position;
 }
 
-/// Collects the samples: values of received PDOs that are not stale, otherwise values that were
-/// read by SDO.
+/// Collects the samples: the values of TPDOs that have come since the previous step, and values
+/// that were read by SDO.
 void OrderedStop::look(Time now, const StopView& view) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const StopAxis& axis = axes_[i];
     AxisSample sample = std::exchange(answers_[i], AxisSample{});
-    const auto read = [&](std::optional<SignalIndex> signal, std::optional<std::int64_t>& value) {
-      if (!signal || !view.exchanging[axis.node_index]) return;
-      const bool stale = (view.stale[*signal / 64U] >> (*signal % 64U) & 1U) != 0;
-      if (!stale) value = view.values[*signal];
+    const bool exchanging = view.exchanging[axes_[i].node_index];
+    const auto read = [&](AxisSource& source, std::optional<std::int64_t>& value) {
+      const auto received = source.take(now, view.received);
+      if (received && exchanging) value = received;
     };
-    read(axis.statusword, sample.statusword);
-    read(axis.velocity, sample.velocity);
-    read(axis.position, sample.position);
+    read(sources_[i].word, sample.statusword);
+    read(sources_[i].velocity, sample.velocity);
+    read(sources_[i].position, sample.position);
     stops_[i].step(now, sample);
+    if (axes_[i].controlword && exchanging) stops_[i].note_command();
   }
 }
 
@@ -237,13 +245,12 @@ void OrderedStop::step(Time now, const StopView& view) noexcept {
 
 std::optional<std::int64_t> OrderedStop::controlword(std::size_t axis) const noexcept {
   if (!reaches(axis)) return std::nullopt;
-  const AxisState state = stops_[axis].state();
   switch (stage_) {
     case StopStage::fallback:
       // If only one node is stopped, its outputs take no fallback, and its application continues.
       if (node_index_ != every_node) return stops_[axis].controlword();
-      // The declared fallback may disable the axis, but an axis that moves must not be disabled.
-      if (!stops_[axis].seen() || state == AxisState::exempt) return std::nullopt;
+      // The declared fallback may disable the axis, but an axis that may move must not be disabled.
+      if (stops_[axis].confirmed()) return std::nullopt;
       return stops_[axis].controlword();
     case StopStage::quick_stop:
       return stops_[axis].controlword();

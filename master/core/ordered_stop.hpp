@@ -9,6 +9,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/waits.hpp"
 #include "master/core/axis_memory.hpp"
+#include "master/core/axis_source.hpp"
 #include "master/core/axis_stop.hpp"
 #include "master/core/node_status.hpp"
 
@@ -42,13 +43,13 @@ struct StopAxis {
   std::optional<SignalIndex> statusword;
   std::optional<SignalIndex> velocity;
   std::optional<SignalIndex> position;
+  std::uint16_t word_row = PdoTable::no_row;  ///< TPDO of the statusword
 };
 
 /// Input of the ordered stop in one cycle.
 struct StopView {
-  std::span<const std::int64_t> values;  ///< values of the image
-  std::span<const std::uint64_t> stale;  ///< stale signals of the image, one bit for each
-  std::span<const bool> exchanging;      ///< by node index: its PDOs are exchanged
+  ReceivedValues received;
+  std::span<const bool> exchanging;  ///< by node index: its PDOs are exchanged
   std::span<const NodeStatus> nodes;
   /// Every device is disarmed, as far as that is possible.
   bool disarmed = false;
@@ -115,6 +116,14 @@ class OrderedStop {
   bool nothing_to_stop() const noexcept;
   /// The axes are at rest, or their time is over.
   bool axes_done() const noexcept { return stage_ > StopStage::disable; }
+  /// No TPDO brings the statusword of this axis often enough: it has to be read by SDO.
+  bool needs_word(std::size_t axis, Time now) const noexcept {
+    return !sources_[axis].word.serves(now);
+  }
+  /// No TPDO brings the velocity or the position of this axis often enough.
+  bool needs_motion(std::size_t axis, Time now) const noexcept {
+    return !sources_[axis].velocity.serves(now) && !sources_[axis].position.serves(now);
+  }
   /// The controlword that this axis has to receive now; std::nullopt leaves the commanded one.
   std::optional<std::int64_t> controlword(std::size_t axis) const noexcept;
 
@@ -131,10 +140,18 @@ class OrderedStop {
   void enter(StopStage stage) noexcept;
   void leave_axes(StopStage stage) noexcept;
 
+  /// The TPDOs that bring the values of one axis.
+  struct Sources {
+    AxisSource word;
+    AxisSource velocity;
+    AxisSource position;
+  };
+
   waits::StopLimits limits_;
   std::vector<StopAxis> axes_;
   std::vector<AxisPlan> plans_;
   std::vector<AxisStop> stops_;
+  std::vector<Sources> sources_;
   std::vector<AxisSample> answers_;  // values that were read by SDO since the last step
   StopStage stage_ = StopStage::running;
   Time begun_{};

@@ -17,6 +17,7 @@ class PdoExchange {
   PdoExchange& operator=(const PdoExchange&) = delete;
 
   PdoInputs& inputs() noexcept { return inputs_; }
+  const PdoInputs& inputs() const noexcept { return inputs_; }
   PdoOutputs& outputs() noexcept { return outputs_; }
   const WorkingImage& image() const noexcept { return image_; }
 

@@ -49,6 +49,10 @@ class PdoOutputs {
   /// Makes the frames that are due, in the order of the table. They are valid until the next call.
   /// `set_points` holds one set-point for each output signal.
   std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// A value has changed and is not sent yet, for example because of an inhibit time.
+  bool pending() const noexcept {
+    return std::ranges::any_of(rows_, [](const Row& r) { return r.open && r.ready && r.pending; });
+  }
   /// Selects frames if not all packed ones fit into `bits`: all synchronous frames, because they
   /// belong together, and as many of the others as fit; these take turns. Returns an empty span if
   /// the synchronous frames alone do not fit. The span is valid until the next pack().

@@ -86,7 +86,10 @@ void StopRequests::add_jobs(const BusPlan& plan, std::uint8_t node_index) {
 }
 
 void StopRequests::begin() noexcept {
-  for (Poll& poll : polls_) poll = {.waiting = poll.waiting};
+  for (std::size_t i = 0; i < polls_.size(); ++i) {
+    const bool by_position = axes_[i].position && !axes_[i].velocity;
+    polls_[i] = {.waiting = polls_[i].waiting, .by_position = by_position};
+  }
   std::ranges::fill(failed_, std::uint8_t{0});
   next_job_ = answered_ = turn_ = 0;
 }
@@ -112,7 +115,7 @@ bool StopRequests::read_next(std::size_t axis, bool needs_word, bool needs_motio
   Poll& poll = polls_[axis];
   if (!needs_word && !needs_motion) return false;
   poll.word_next = needs_word && (!needs_motion || !poll.word_next);
-  const Word motion = poll.no_velocity ? Word::position : Word::velocity;
+  const Word motion = poll.by_position ? Word::position : Word::velocity;
   ask(axis, poll.word_next ? Word::status : motion);
   return true;
 }
@@ -135,8 +138,8 @@ bool StopRequests::due_of_axis(std::size_t axis, Time now, const OrderedStop& st
     ask(axis, Word::control, *word);
     return true;
   }
-  const bool moves_unseen = !exchanging || (!of.velocity && !of.position);
-  return read_next(axis, !exchanging || !of.statusword, moves_unseen);
+  return read_next(axis, !exchanging || stop.needs_word(axis, now),
+                   !exchanging || stop.needs_motion(axis, now));
 }
 
 /// The device is armed: its boot has reached the step that arms it, even if it failed later, or
@@ -220,7 +223,8 @@ void StopRequests::take_fault(std::size_t axis, Word word, const Reply& reply,
   Poll& poll = polls_[axis];
   if (word == Word::device_type) poll.type = TypeQuery::answered;
   if (reply.fault != SdoFault::aborted_by_device) return;
-  if (word == Word::velocity) poll.no_velocity = true;
+  if (word == Word::velocity) poll.by_position = true;
+  if (word == Word::position) poll.by_position = false;
   if (word != Word::status) return;
   stop.take_refusal(axis, reply.abort_code);
   if (reply.abort_code != abort_code::no_object) return;

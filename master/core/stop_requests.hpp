@@ -63,7 +63,7 @@ class StopRequests {
   enum class TypeQuery : std::uint8_t { not_needed, due, answered };
   struct Poll {
     bool waiting = false;      // the axis waits for an answer
-    bool no_velocity = false;  // the device has no 0x606C
+    bool by_position = false;  // 0x6064 is read, not 0x606C
     bool word_next = false;    // the newest read was that of the statusword
     TypeQuery type = TypeQuery::not_needed;
     std::int64_t writing = -1;  // controlword that is being written by SDO; -1 means none

@@ -257,6 +257,8 @@ void BusLoop<P, N>::send_outputs() noexcept {
   if (follower_.arrived()) return;  // SYNC came early: these outputs belong to the next cycle.
   port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
   if (options_.observe || outputs_rest()) return;
+  // A master in NMT Stopped sends no RPDOs, except for fallbacks that an inhibit time holds back.
+  if (silent() && !pdos_.outputs().pending()) return;
   const Time now = port_.now();
   const SetPointFrame& commands = newest_set_points();
   const OutputMoment moment{.cycle = clock_.cycle(), .now = now};

@@ -35,10 +35,9 @@ void BusLoop<P, N>::stop_drives_after_loss() noexcept {
       const StopAxis& axis = stop_.axes()[i];
       if (!axis.controlword || stops_in_order(i)) continue;
       if (network_.demands_quick_stop(axis.node_index)) {
-        const bool disabled =
-            axis.statusword && OrderedStop::disabled(pdos_.image().values[*axis.statusword]);
-        pdos_.outputs().force(*axis.controlword, disabled ? OrderedStop::disable_voltage_word
-                                                          : OrderedStop::quick_stop_word);
+        pdos_.outputs().force(*axis.controlword, memory_[i].disabled()
+                                                     ? OrderedStop::disable_voltage_word
+                                                     : OrderedStop::quick_stop_word);
         quick_stopped_[i] = 1;
       } else if (quick_stopped_[i] != 0) {
         pdos_.outputs().release(*axis.controlword);
@@ -50,8 +49,9 @@ void BusLoop<P, N>::stop_drives_after_loss() noexcept {
 
 template <Port P, class N>
 StopView BusLoop<P, N>::stop_view() const noexcept {
-  return {.values = pdos_.image().values,
-          .stale = pdos_.image().stale,
+  return {.received = {.values = pdos_.image().values,
+                       .stale = pdos_.image().stale,
+                       .marks = pdos_.inputs().marks()},
           .exchanging = exchanging_,
           .nodes = network_.nodes(),
           .disarmed = options_.observe || stop_requests_.disarmed(),
@@ -107,7 +107,9 @@ void BusLoop<P, N>::remember_axes() noexcept {
     const WorkingImage& image = pdos_.image();
     std::optional<std::int64_t> statusword;
     const bool heard = axis.statusword && exchanging_[axis.node_index];
-    if (heard && !image.is_stale(*axis.statusword)) statusword = image.values[*axis.statusword];
+    if (heard && memory_[i].news(pdos_.inputs().marks()[axis.word_row].received)) {
+      statusword = image.values[*axis.statusword];
+    }
     std::optional<std::int64_t> controlword;
     if (axis.controlword && pdos_.outputs().known(*axis.controlword)) {
       controlword = image.values[*axis.controlword];
@@ -224,7 +226,8 @@ template <Port P, class N>
 void BusLoop<P, N>::follow_own_state() noexcept {
   if constexpr (requires { network_.own_state(); }) {
     const auto target = halt_target();
-    if (options_.observe || stop_.stage() != StopStage::running || !target || halt_is_over()) return;
+    if (options_.observe || stop_.stage() != StopStage::running || !target || halt_is_over())
+      return;
     const Time now = port_.now();
     if (halt_.stage() == StopStage::running) begin_halt(now, *target);
     step_halt(now);

@@ -196,6 +196,21 @@ TEST_F(NmtStopOfAxes, OfTheMasterIsAnsweredWhenItsAxesAreStopped) {
   expect_answer_after_the_stop(NmtCommand::stop, 127);
 }
 
+TEST_F(NmtStopOfAxes, OfTheMasterEndsItsPdos) {
+  order(NmtCommand::stop, 127);
+  command_for(200, 0x000F);
+  rig.recorder.frames.clear();
+  command_for(100, 0x000F);
+  EXPECT_TRUE(rig.recorder.with(first_words).empty());
+  EXPECT_TRUE(rig.recorder.with(second_words).empty());
+  EXPECT_TRUE(rig.recorder.with(0x080).empty());
+
+  order(NmtCommand::start, 127);
+  command_for(20, 0x000F);
+  ASSERT_FALSE(rig.recorder.with(first_words).empty());
+  EXPECT_EQ(rig.recorder.with(first_words).back().frame.data[0], 0x0F);
+}
+
 TEST_F(NmtStopOfAxes, SaysWhereAnAxisWasNotConfirmed) {
   rig.world->power(2_node, false);
   for (const std::uint8_t node :

@@ -129,5 +129,12 @@ TEST(AxisMemory, TakesStatuswordsBySdo) {
   EXPECT_FALSE(axis.disabled());
 }
 
+TEST(AxisMemory, HearsEachFrameOnce) {
+  AxisMemory axis;
+  EXPECT_TRUE(axis.news(1));
+  EXPECT_FALSE(axis.news(1));
+  EXPECT_TRUE(axis.news(2));
+}
+
 }  // namespace
 }  // namespace takt
