@@ -77,6 +77,28 @@ TEST(Limits, OfPositionTurnWithTheSignAndShiftWithTheOffset) {
   EXPECT_EQ(only(net).high, 4.0);
 }
 
+TEST(Limits, OfPositionNameThePositionOffsetBecauseTheSumIsChecked) {
+  const std::string eds = tiny_eds() + entry("60B0", "Position offset", 4, "rww", "0", true);
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}, {index: 0x60B0}]}}\n"
+      "    units: {position: {scale: 0.001, unit: rad}}\n"
+      "    limits: {position: [-1, 1]}\n",
+      eds);
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  ASSERT_FALSE(net.plan.limits.lines.empty());
+  EXPECT_EQ(net.plan.limits.lines[0].kind, LimitKind::position);
+  EXPECT_EQ(net.plan.limits.lines[0].signals.size(), 2U);
+}
+
+TEST(Limits, CountNoStepWhereTheFileSetsAModeWithoutSetPoints) {
+  for (const auto& [mode, profile] : {std::pair{"3", true}, {"8", false}, {"7", false}}) {
+    const Compiled net = drive(
+        "    limits: {step: 0.01}\n    sdo: [{index: 0x6060, value: " + std::string{mode} + "}]\n");
+    EXPECT_EQ(only(net).profile, profile) << mode;
+  }
+}
+
 TEST(Limits, OfVelocityBoundTheTargetVelocityAndItsChange) {
   const Compiled net = drive("    limits: {velocity: 2.0, acceleration: 20}\n", "{index: 0x60FF}");
   EXPECT_THAT(net.complaints(), IsEmpty());
