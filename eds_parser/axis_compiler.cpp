@@ -209,10 +209,10 @@ void tell_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec
   report.note(spec.pos, "standstill",
               "drive " + axis_name(node, axis) +
                   " has no velocity threshold (606F) and no velocity limit (607F, 6080): the "
-                  "ordered stop takes " +
+                  "ordered stop treats up to " +
                   std::to_string(axis.velocity_window) +
-                  " raw units of 606C for standstill; write `limits: {velocity: ...}`, of which a "
-                  "thousandth counts then");
+                  " raw units of 606C as standstill; write `limits: {velocity: ...}`, and a "
+                  "thousandth of this limit applies instead");
 }
 
 }  // namespace
@@ -249,8 +249,8 @@ void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& rep
       if (axis.quick_stop_option == 0) {
         report.warning(pos, "stop-time",
                        "drive " + axis_name(node, axis) +
-                           " coasts in an ordered stop (605A:00 is 0): it is never seen at "
-                           "standstill before it is disabled, and taktd ends with exit code 6; "
+                           " coasts in an ordered stop (605A:00 is 0): taktd never sees the drive "
+                           "at standstill before it disables the drive, and ends with exit code 6; "
                            "write `sdo: [{index: 0x605A, value: 2}]` for a ramp");
       }
       if (axis.stopping_time <= given) continue;
@@ -259,16 +259,16 @@ void judge_stop(const BusPlan& plan, const NetworkSpec& spec, NetworkReport& rep
       const std::string ramp =
           hex(static_cast<std::uint16_t>(axis.ramp_object + axis.number * axis_step)).substr(2);
       const bool possible = needed <= std::chrono::seconds{60};
-      report.warning(pos, "stop-time",
-                     "drive " + axis_name(node, axis) + " needs " +
-                         seconds_text(axis.stopping_time) +
-                         " to stop from its velocity limit (607F, 6080, `limits:`) along " + ramp +
-                         ":00; the ordered stop gives it " + seconds_text(given) +
-                         ", then it is disabled while it moves. " +
-                         (possible ? "Write `master: {stop_timeout: " + std::to_string(ms * 100) +
-                                         "}`, or a steeper ramp"
-                                   : "Write a steeper ramp") +
-                         " (`sdo: [{index: 0x" + ramp + ", value: ...}]`)");
+      report.warning(
+          pos, "stop-time",
+          "drive " + axis_name(node, axis) + " needs " + seconds_text(axis.stopping_time) +
+              " to stop from its velocity limit (607F, 6080, `limits:`) along the ramp " + ramp +
+              ":00; the ordered stop waits " + seconds_text(given) +
+              " and then disables the drive while it moves. " +
+              (possible ? "Write `master: {stop_timeout: " + std::to_string(ms * 100) +
+                              "}`, or a steeper ramp"
+                        : "Write a steeper ramp") +
+              " (`sdo: [{index: 0x" + ramp + ", value: ...}]`)");
     }
   }
 }

@@ -128,11 +128,12 @@ std::string AxisLimits::unit_of(LimitKind kind) const {
 bool AxisLimits::has_unit(SignalIndex index, std::string_view kind, SourcePos pos) {
   const Signal& signal = table_.signal(index);
   if (!signal.unit.empty() || signal.scale != 1.0 || signal.offset != 0.0) return true;
-  report_.error(pos, "limits",
-                "`" + std::string{kind} + "` in `limits` of " + owner() + ": " + signal.name +
-                    " (" + to_string(signal.object) +
-                    ") has no unit, so it would count in raw counts: give it one under `units:` "
-                    "(`{scale: 1, unit: counts}` if counts are meant)");
+  report_.error(
+      pos, "limits",
+      "`" + std::string{kind} + "` in `limits` of " + owner() + ": " + signal.name + " (" +
+          to_string(signal.object) +
+          ") has no unit, so the limit would apply to raw counts: write a unit under `units:` "
+          "(`{scale: 1, unit: counts}` if counts are meant)");
   return false;
 }
 
@@ -143,10 +144,11 @@ bool AxisLimits::follows_position(LimitKind kind) const {
 }
 
 void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
-  report_.warning(pos, "limits",
-                  "`" + std::string{name(kind)} + "` of " + owner() + " is in " + unit_of(kind) +
-                      ", positions are in " + table_.signal(positions_[0]).unit +
-                      ": it can't be compared with position set-points; `step` limits those");
+  report_.warning(
+      pos, "limits",
+      "`" + std::string{name(kind)} + "` of " + owner() + " is in " + unit_of(kind) +
+          ", but positions are in " + table_.signal(positions_[0]).unit +
+          ": takt can't compare this limit with position set-points; use `step` to limit them");
 }
 
 void AxisLimits::position(const Sourced<RangeSpec>& range) {
@@ -303,12 +305,12 @@ void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
   const ObjectKey key = object(0x607B);
   std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
                      " counts of " + table_.signal(positions_[0]).name + ", ";
-  text += of_drive > 0 ? "and " + to_string(key) + " (position range limit) turns over after " +
+  text += of_drive > 0 ? "but " + to_string(key) + " (position range limit) wraps after " +
                              std::to_string(std::llround(of_drive))
-                       : "and nothing sets " + to_string(key) + " (position range limit)";
-  text += ": a drive that doesn't turn over there goes back a whole turn at once";
+                       : "but nothing sets " + to_string(key) + " (position range limit)";
+  text += ": a drive that doesn't wrap at `modulo` moves back a whole turn at once";
   if (node_.dictionary->find({key.index, 2}) == nullptr) {
-    return report_.note(modulo.pos, "limits", text + "; its device file has no such object");
+    return report_.note(modulo.pos, "limits", text + "; the device file does not have this object");
   }
   report_.warning(modulo.pos, "limits",
                   text + ". Write " + to_string(ObjectKey{key.index, 1}) + " and " +
@@ -345,9 +347,9 @@ void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
     return report_.warning(
         limit->pos, "limits",
         "limits of " + owner() + " hold its set-points back until " + to_string(object(0x6064)) +
-            " has come once, and " + name + " brings it only by event (transmission " +
-            std::to_string(tpdo->transmission) + " without `event_timer`): an axis that stands " +
-            "still may never send it. Give " + name +
+            " has arrived once, but " + name + " sends it only by event (transmission " +
+            std::to_string(tpdo->transmission) + " without `event_timer`): an axis at standstill " +
+            "may never send it. Give " + name +
             " an `event_timer`, or make it synchronous (`transmission: 1`)");
   }
 }

@@ -81,21 +81,21 @@ class BootCompiler {
     const Time longest = guarded ? context_.guard.life_time() : context_.heartbeat_timeout;
     BootStep& step = steps_.wait(BootAction::await_alive,
                                  std::max<Time>(longest, std::chrono::milliseconds{100}),
-                                 guarded ? 'F' : 'E', "is it OPERATIONAL? Then it is left so");
+                                 guarded ? 'F' : 'E', "no reset if the node is OPERATIONAL");
     step.guarded = guarded;
     return steps_.size() - 1;
   }
 
   void await_bootup() {
     steps_.wait(BootAction::await_bootup, std::min(longest_bootup_wait, context_.boot_timeout), 'B',
-                "boot-up message; a node that sends none is probed next");
+                "boot-up message; without it the master probes the node next");
     pause(tweaks_.pause_after_bootup_ms, "after the boot-up message");
   }
 
   void pause(std::uint32_t ms, const std::string& when) {
     if (ms == 0) return;
     steps_.wait(BootAction::pause, std::chrono::milliseconds{ms}, 'J',
-                "pause " + when + ", as " + node_.node.data->name + " needs it");
+                "pause " + when + ", which " + node_.node.data->name + " requires");
   }
 
   void probe() {
@@ -124,7 +124,9 @@ class BootCompiler {
     expect({0x1018, 3}, *spec_.revision_number, 'N', "revision number");
     expect({0x1018, 4}, *spec_.serial_number, 'O', "serial number");
     if (*spec_.serial_number == 0 && steps_.has({0x1018, 4})) {
-      steps_.integer(BootAction::read_serial, {0x1018, 4}, 0, "serial number, to know it again")
+      steps_
+          .integer(BootAction::read_serial, {0x1018, 4}, 0,
+                   "serial number, to recognise the device later")
           .value.clear();
     }
     firmware();
@@ -137,7 +139,7 @@ class BootCompiler {
     if (!plan || !steps_.has(plan->object)) return;
     steps_
         .integer(BootAction::read_firmware, plan->object, 0,
-                 "firmware, taken for " + to_string(plan->assumed))
+                 "firmware; until then takt assumes " + to_string(plan->assumed))
         .value.clear();
   }
 
@@ -191,7 +193,7 @@ class BootCompiler {
       read.push_back(object);
       steps_
           .integer(BootAction::read_limit, object, 0,
-                   "limit of the drive, where the network file has none")
+                   "limit of the drive; the network file sets none")
           .value.clear();
     };
     for (const DeviceLimit& limit : context_.limits) {

@@ -47,8 +47,8 @@ class ErrorControl : BootPart {
     if (!entry) {
       report.warning(spec.heartbeat_consumer.pos.line != 0 ? spec.heartbeat_consumer.pos : spec.pos,
                      "heartbeat-consumer",
-                     "node `" + spec.name + "`: each entry of 0x1016 of " + dictionary.file +
-                         " watches another node: the device will not watch the master");
+                     "node `" + spec.name + "`: all entries of 0x1016 in " + dictionary.file +
+                         " watch other nodes, so the device will not watch the master");
       return;
     }
     const ObjectKey key{0x1016, *entry};
@@ -100,26 +100,27 @@ class ErrorControl : BootPart {
                     "guard time " + std::to_string(ms) + " ms", 2);
     } else if (spec.guard_time.given) {
       report.note(spec.guard_time.pos, "guard-object",
-                  "the master guards node `" + spec.name + "`, which is not told how often: " +
-                      dictionary.file + " has no 100C:00 that can be written");
+                  "the master guards node `" + spec.name + "`, but can't write the guard time: " +
+                      dictionary.file + " has no writable 100C:00");
     }
     if (!spec.life_time_factor.given) return;
     if (!steps.writable({0x100D, 0})) return no_life_guarding();
     steps.integer(BootAction::write_if_differs, {0x100D, 0}, *spec.life_time_factor,
                   *spec.life_time_factor == 0
                       ? "no life guarding"
-                      : "the device misses the master after " +
+                      : "the device reports loss of the master after " +
                             std::to_string(ms * *spec.life_time_factor) + " ms",
                   1);
   }
 
   void no_life_guarding() const {
     const std::string lacks =
-        "100D:00, which " + dictionary.file + " does not have or can't change";
+        "100D:00, which " + dictionary.file + " does not have as a writable object";
     if (*spec.life_time_factor == 0) {
-      return report.note(
-          spec.life_time_factor.pos, "guarding",
-          "node `" + spec.name + "` needs no `life_time_factor: 0`: it would go to " + lacks);
+      return report.note(spec.life_time_factor.pos, "guarding",
+                         "node `" + spec.name +
+                             "` does not need `life_time_factor: 0`: takt would write it to " +
+                             lacks);
     }
     report.warning(spec.life_time_factor.pos, "guard-object",
                    "`life_time_factor` of node `" + spec.name + "` needs " + lacks +
@@ -140,7 +141,7 @@ class Emergency : BootPart {
       const std::int64_t value = *wanted;
       const std::string text = "EMCY on " + hex(static_cast<std::uint32_t>(value), 3);
       steps.integer(BootAction::compare, id, value, text);
-      const std::size_t skip = steps.skip_if_same("EMCY has its identifier");
+      const std::size_t skip = steps.skip_if_same("EMCY already has this COB-ID");
       if (has_off_bit()) steps.integer(BootAction::disable_pdo, id, 0, "EMCY off").value.clear();
       steps.integer(BootAction::enable_pdo, id, value, text);
       steps.land(skip);

@@ -28,7 +28,7 @@ class ProgramSteps {
     check.unread_letter = 'G';
     check.running_letter = 'H';
     if (node_.program.empty()) return;
-    const std::size_t skip = steps_.skip_if_same(text + " is there");
+    const std::size_t skip = steps_.skip_if_same(text + " is installed");
     update(text);
     steps_.land(skip);
   }
@@ -107,7 +107,7 @@ void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& repor
     if (node.software_file.given) {
       report.error(node.software_file.pos, "missing-key",
                    "`software_file` of node `" + node.name +
-                       "` needs `software_version`, the value that 1F56:01 has when it runs");
+                       "` needs `software_version`, the value of 1F56:01 while this program runs");
     }
     return;
   }

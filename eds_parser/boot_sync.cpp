@@ -46,7 +46,7 @@ class SyncSteps : BootPart {
       if (context.sync_overflow != 0 && !steps.has(key)) {
         report.warning(spec.pos, "sync-counter",
                        "node `" + spec.name + "` has no " + to_string(key) +
-                           ": it may report each SYNC with a counter as a length error");
+                           ": the device may report each SYNC with a counter as a length error");
       }
       return;
     }
@@ -54,7 +54,7 @@ class SyncSteps : BootPart {
                                     ? "SYNC without counter"
                                     : "SYNC counter 1.." + std::to_string(context.sync_overflow);
     steps.integer(BootAction::compare, key, context.sync_overflow, purpose, 1);
-    const std::size_t skip = steps.skip_if_same("SYNC counter is right");
+    const std::size_t skip = steps.skip_if_same("SYNC counter needs no change");
     if (steps.writable({0x1006, 0})) {
       steps.integer(BootAction::write, {0x1006, 0}, 0, "period 0, so that 1019 may change");
     }
@@ -78,7 +78,7 @@ void append_time(const BootPart& part) {
   part.steps.integer(BootAction::write_if_differs, key, id, text, 4).mask = 0x3FFF'FFFF;
   const bool consumes = (value & 0x8000'0000) != 0;
   part.steps.integer(BootAction::write_if_differs, key, value,
-                     text + (consumes ? ", the device takes it" : ""), 4);
+                     text + (consumes ? ", consumed by the device" : ""), 4);
 }
 
 }  // namespace takt

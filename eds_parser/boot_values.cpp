@@ -184,11 +184,11 @@ class ValueSteps {
     const double us = seconds * 1e6;
     if (std::abs(us - context_.sync_period_us) < 0.5) return;
     report_.warning(value.pos, "interpolation-period",
-                    "node `" + spec_.name + "`: " + to_string(value.object) + " makes " +
+                    "node `" + spec_.name + "`: " + to_string(value.object) + " sets " +
                         std::to_string(static_cast<std::int64_t>(std::llround(us))) +
-                        " us, the SYNC period is " + std::to_string(context_.sync_period_us) +
-                        " us: in cyclic synchronous modes the axis will not move evenly (leave "
-                        "the entry out and takt sets it)");
+                        " us, but the SYNC period is " + std::to_string(context_.sync_period_us) +
+                        " us: in cyclic synchronous modes the axis will not move evenly (without "
+                        "this entry takt sets the right value)");
   }
 
   /// Writes a value of the device data. A value of the network file or of a DCF takes precedence.
@@ -198,9 +198,9 @@ class ValueSteps {
     if (sub == nullptr || !steps_.writable(edit.object)) {
       report_.warning(spec_.pos, "device-data",
                       "node `" + spec_.name + "`: " + to_string(edit.object) + ", which " +
-                          data_->name + " needs written, " +
-                          (sub == nullptr ? "is not in " : "can only be read by ") +
-                          dictionary_.file + data_->cite(edit.fact));
+                          data_->name + " requires takt to write, " +
+                          (sub == nullptr ? "is not in " : "is read-only in ") + dictionary_.file +
+                          data_->cite(edit.fact));
       return;
     }
     const SdoSpec sdo{
@@ -219,7 +219,8 @@ class ValueSteps {
       if (dictionary_.find(sdo.object) == nullptr) missing(sdo);
       report_.note(sdo.pos, "pdo-by-sdo",
                    to_string(sdo.object) + " of node `" + spec_.name +
-                       "` is taken into the PDO's configuration; `tpdo:`/`rpdo:` say it plainer");
+                       "` becomes part of the PDO configuration; `tpdo:` or `rpdo:` is the clearer "
+                       "place for it");
       return;
     }
     const SubObject* sub = dictionary_.find(sdo.object);
@@ -243,9 +244,10 @@ class ValueSteps {
     const auto* us = std::get_if<std::int64_t>(&sdo.value);
     if (!context_.sync || us == nullptr || *us == 0 || *us == context_.sync_period_us) return;
     report_.warning(sdo.pos, "sync-period",
-                    "node `" + spec_.name + "` is told a SYNC period of " + std::to_string(*us) +
-                        " us, it is " + std::to_string(context_.sync_period_us) +
-                        " us: it may take SYNC for lost (leave the entry out and takt sets it)");
+                    "node `" + spec_.name + "` gets a SYNC period of " + std::to_string(*us) +
+                        " us, but the period is " + std::to_string(context_.sync_period_us) +
+                        " us: the device may report loss of SYNC (without this entry takt sets the "
+                        "right value)");
   }
 
   /// Writes an object that is not in the EDS. A concise DCF may contain such objects.
@@ -253,7 +255,7 @@ class ValueSteps {
     report_.warning(sdo.pos, "no-such-object",
                     "node `" + spec_.name + "`: " + to_string(sdo.object) +
                         " of the concise DCF is not in " + dictionary_.file +
-                        "; it is written all the same");
+                        "; takt writes it nevertheless");
     steps_.bytes(BootAction::write, sdo.object, value, "sdo: " + to_string(sdo.object));
   }
 
@@ -306,8 +308,8 @@ class ValueSteps {
     if (!sdo.quoted || std::holds_alternative<std::string>(sdo.value)) return;
     report_.note(sdo.value_pos, "quoted-number",
                  "`sdo` of node `" + spec_.name + "`: " + label(dictionary_, sdo.object) + " (" +
-                     std::string{name(sub.type)} + ") takes the number in the quotes, " +
-                     *sdo.quoted + "; write it without them");
+                     std::string{name(sub.type)} + ") gets the number in the quotes, " +
+                     *sdo.quoted + "; write the number without quotes");
   }
 
   /// Returns a range as text: `-128..127, or 0x80..0xFF as bits`.

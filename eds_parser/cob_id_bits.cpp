@@ -12,8 +12,9 @@ constexpr std::uint32_t highest_base = 0x7FF;
 void judge_rtr_bit(const PdoSpec& spec, bool is_tpdo, const std::string& cob_id,
                    NetworkReport& report) {
   if (!is_tpdo) {
-    report.warning(spec.cob_id.pos, "cob-id",
-                   cob_id + " has bit 30 set, which means nothing for an RPDO: it is left out");
+    report.warning(
+        spec.cob_id.pos, "cob-id",
+        cob_id + " has bit 30 set, which has no meaning for an RPDO: takt ignores the bit");
   } else if (*spec.poll_ms != 0 || *spec.poll_syncs != 0) {
     report.error(spec.cob_id.pos, "cob-id",
                  cob_id +
@@ -22,7 +23,8 @@ void judge_rtr_bit(const PdoSpec& spec, bool is_tpdo, const std::string& cob_id,
   } else {
     report.note(
         spec.cob_id.pos, "cob-id",
-        cob_id + " has bit 30 set (no remote requests): that bit stays as the device has it");
+        cob_id +
+            " has bit 30 set (no remote requests): takt leaves this bit as it is in the device");
   }
 }
 
@@ -36,8 +38,8 @@ FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string&
   const std::string cob_id = "`cob_id` " + hex(raw) + " of " + owner;
   if ((raw & off_bit) != 0) {
     report.warning(spec.cob_id.pos, "cob-id",
-                   cob_id + " has bit 31 set: the PDO is switched off, as by `enabled: false`; " +
-                       hex(raw & ~off_bit, 3) + " would have it on");
+                   cob_id + " has bit 31 set: the PDO is switched off, as with `enabled: false`; " +
+                       hex(raw & ~off_bit, 3) + " switches the PDO on");
     return {.off = true, .id = {}};
   }
   if (!extended && id > highest_base) {
@@ -50,7 +52,7 @@ FileCobId read_cob_id_bits(const PdoSpec& spec, bool is_tpdo, const std::string&
   if (extended && id <= highest_base) {
     report.warning(spec.cob_id.pos, "cob-id",
                    cob_id + " has bit 29 set: this is the 29-bit identifier " + hex(id, 8) +
-                       ", on the wire another one than " + hex(id, 3));
+                       ", which is another identifier on the bus than " + hex(id, 3));
   }
   if ((raw & no_rtr_bit) != 0) judge_rtr_bit(spec, is_tpdo, cob_id, report);
   return {.off = false, .id = extended ? CobId::extended(id) : CobId::base(id)};

@@ -109,11 +109,13 @@ class CobIdAssigner {
     receiver.use = PdoUse::linked;
     used_[pdo.cob_id] = sender;
     const bool stated = receiver.origin == CobIdOrigin::device_file;
-    report_.note(pdo.cob_id_pos, "linked",
-                 fed.text() + " is fed by " + sender.text() + " (both " + to_string(pdo.cob_id) +
-                     (stated ? ", as " + fed.node->dictionary->file + " has it" : "") +
-                     "); the master does not send it" +
-                     (stated ? ". With `cob_id: auto` for it under `rpdo:` the master would" : ""));
+    report_.note(
+        pdo.cob_id_pos, "linked",
+        fed.text() + " receives " + sender.text() + " (both " + to_string(pdo.cob_id) +
+            (stated ? ", which " + fed.node->dictionary->file + " sets" : "") +
+            "); the master does not send this RPDO" +
+            (stated ? ". Write `cob_id: auto` for it under `rpdo:` if the master shall send it"
+                    : ""));
   }
 
   void claim_of_device(NodePdos& node, EffectivePdo& pdo) {
@@ -148,7 +150,7 @@ class CobIdAssigner {
   void tell_clash(const User& user, const User& other, std::uint32_t free) {
     report_.error(other.pdo->cob_id_pos, "cob-id-clash",
                   "`cob_id` " + to_string(other.pdo->cob_id) + " of " + other.text() +
-                      " is that of " + user.text() + " in " + user.node->dictionary->file +
+                      " is also used by " + user.text() + " in " + user.node->dictionary->file +
                       ": write `cob_id: auto` for one of them (" + user.text() + " would get " +
                       hex(free, 3) + ")");
   }
@@ -168,14 +170,14 @@ class CobIdAssigner {
     }
     const std::string text = user.text() + " has COB-ID " + to_string(was) + " in " +
                              node.node.dictionary->file + ", which " +
-                             (other == nullptr ? service : "is " + other->text()) +
-                             "; it becomes " + to_string(id);
+                             (other == nullptr ? service : "is used by " + other->text()) +
+                             "; takt uses " + to_string(id);
     const bool cut =
         other != nullptr && other->node != &node.node && other->pdo->is_tpdo != pdo.is_tpdo;
     if (cut) {
       report_.warning(pdo.cob_id_pos, "cob-id-moved",
                       text +
-                          ". If the two devices are to talk to each other by this id, write "
+                          ". If the two devices shall exchange data with this id, write "
                           "`cob_id: " +
                           to_string(was) +
                           "` for both PDOs; if not, `cob_id: " + "auto` for this one");

@@ -32,7 +32,7 @@ std::expected<std::vector<ConciseEntry>, std::string> decode_concise_dcf(
     std::span<const std::byte> bytes) {
   std::vector<ConciseEntry> entries;
   if (bytes.empty()) return entries;
-  if (bytes.size() < 4) return std::unexpected{"is shorter than its number of entries"};
+  if (bytes.size() < 4) return std::unexpected{"lacks its number of entries (4 bytes)"};
   const std::uint32_t count = number(bytes.first(4));
   bytes = bytes.subspan(4);
   for (std::uint32_t i = 1; i <= count; ++i) {

@@ -115,9 +115,9 @@ class CycleCompiler {
     const TimeBudget budget = time_budget(plan_);
     if (!budget.next_sync) {
       report_.warning(period_pos(), "no-time-budget",
-                      frames + " leave an application no time in a period of " +
+                      frames + " leave no time for an application in a period of " +
                           std::to_string(us(cycle_.period)) +
-                          " us: what it computes from SYNC k acts at SYNC k+2");
+                          " us: what the application computes from SYNC k acts at SYNC k+2");
     }
   }
 
@@ -140,10 +140,10 @@ class CycleCompiler {
       report_.warning(
           spec_.master.sync_window_us.given ? spec_.master.sync_window_us.pos : node.node.spec->pos,
           "sync-window",
-          "node `" + node.node.spec->name + "` takes synchronous RPDOs until " +
-              std::to_string(window) + " us after SYNC (0x1007); the outputs go out " + "between " +
-              std::to_string(us(cycle_.output_deadline)) + " and " + std::to_string(us(sent)) +
-              " us");
+          "node `" + node.node.spec->name + "` accepts synchronous RPDOs until " +
+              std::to_string(window) + " us after SYNC (0x1007), but the outputs go out " +
+              "between " + std::to_string(us(cycle_.output_deadline)) + " and " +
+              std::to_string(us(sent)) + " us");
     }
   }
 

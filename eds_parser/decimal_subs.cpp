@@ -87,12 +87,12 @@ void mark_decimal_subs(IniFile& file, Report& report) {
     if (!subs.is_decimal()) continue;
     for (auto* section : subs.sections) section->has_decimal_sub = true;
     if (!report.wants("decimal-sub-index")) continue;
-    report.warning(subs.sections.front()->pos, "decimal-sub-index",
-                   "the sub-indices of [" +
-                       std::string{subs.sections.front()->name.substr(0, index_digits)} +
-                       "] were read as decimal, " +
-                       (subs.beyond_ff ? "they go beyond FF" : "as others of the file are") +
-                       "; CiA 306 writes them in hexadecimal, other tools take sub10 for 16");
+    report.warning(
+        subs.sections.front()->pos, "decimal-sub-index",
+        "the sub-indices of [" + std::string{subs.sections.front()->name.substr(0, index_digits)} +
+            "] were read as decimal, " +
+            (subs.beyond_ff ? "because some exceed FF" : "as in other sections of the file") +
+            "; CiA 306 writes sub-indices in hexadecimal, other tools read sub10 as 16");
   }
 }
 

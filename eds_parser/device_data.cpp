@@ -50,7 +50,7 @@ const DeviceData* by_name(std::span<const DeviceData> entries, const NodeSpec& n
   for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string{name};
   report.error(node.device.pos, "unknown-value",
                "`device: " + node.device->substr(0, 60) + "` of node `" + node.name +
-                   "` is no entry of the device data; there is " + list +
+                   "` is not an entry of the device data; the entries are " + list +
                    did_you_mean(*node.device, known));
   return nullptr;
 }
@@ -115,13 +115,13 @@ std::optional<FirmwarePlan> firmware_plan(const DeviceData& data,
   if (data.sync.own_tpdos_from) {
     plan.rules.push_back({.from = data.sync.own_tpdos_from,
                           .below = {},
-                          .text = "a SYNC of its own triggers its TPDOs"});
+                          .text = "a SYNC that the device sends triggers its own TPDOs"});
   }
   for (const ObjectEdit& edit : data.objects) {
     if (!edit.from && !edit.below) continue;
     const std::string name = edit.whole ? hex(edit.object.index).substr(2) : to_string(edit.object);
     const std::string what =
-        edit.access ? "these objects have another access: " : "these objects are missing: ";
+        edit.access ? "these objects have a different access: " : "these objects are missing: ";
     const auto same = std::ranges::find_if(plan.rules, [&](const FirmwareRule& rule) {
       return rule.from == edit.from && rule.below == edit.below && rule.text.starts_with(what);
     });

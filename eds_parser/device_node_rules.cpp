@@ -24,7 +24,7 @@ class NodeJudge {
     if (!spec_.id.given || ids.contains(*spec_.id)) return;
     report_.error(spec_.id.pos, "device-data",
                   "node `" + spec_.name + "` can't have node id " + std::to_string(*spec_.id) +
-                      " as " + data_.name + ", only " + list_of({ids}) +
+                      " as " + data_.name + ", which allows only " + list_of({ids}) +
                       data_.cite(data_.node_ids.fact));
   }
 
@@ -47,12 +47,15 @@ class NodeJudge {
     const std::uint32_t kept = rule.kept(ms);
     if (kept == ms) return;
     const std::string text = what + " is " + std::to_string(ms) + " ms; " + data_.name +
-                             " counts in " + std::to_string(rule.multiple_of_ms) + " ms and ";
+                             " counts in steps of " + std::to_string(rule.multiple_of_ms) +
+                             " ms and ";
     if (kept == 0) {
-      report_.error(pos, "device-data", text + "takes it for 0, none" + data_.cite(rule.fact));
+      report_.error(pos, "device-data",
+                    text + "rounds this time down to 0, which means off" + data_.cite(rule.fact));
     } else {
       report_.warning(pos, "device-data",
-                      text + "keeps " + std::to_string(kept) + " ms" + data_.cite(rule.fact));
+                      text + "rounds this time down to " + std::to_string(kept) + " ms" +
+                          data_.cite(rule.fact));
     }
   }
 
@@ -65,7 +68,7 @@ class NodeJudge {
     const bool whole_wanted = *wanted == ResetPolicy::node;
     if (whole == whole_wanted || *spec_.reset == ResetPolicy::none) return;
     report_.warning(spec_.reset.pos, "device-data",
-                    "node `" + spec_.name + "` is better reset by `reset: " +
+                    "node `" + spec_.name + "` should be reset with `reset: " +
                         (whole_wanted ? "node" : "communication") + '`' +
                         data_.cite(data_.boot.fact));
   }

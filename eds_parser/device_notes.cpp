@@ -23,7 +23,7 @@ std::string rule_text(const PdoRule& rule) {
   add(rule.without_timer, "no event timer");
   add(rule.without_rtr, "no remote requests");
   add(rule.no_more_entries, "no more objects than its default mapping has");
-  add(rule.no_gaps, "only together with the one before");
+  add(rule.no_gaps, "only together with the PDO before");
   add(rule.function == PdoFunction::parameter_channel, "the parameter channel");
   return numbers_text(rule) + text;
 }
@@ -78,10 +78,11 @@ std::vector<std::string> device_notes(const NodePdos& node) {
                     " by default");
   }
   if (data.timer.meaning == TimerMeaning::additional) {
-    notes.emplace_back("event timers send besides changes, which do not shift them");
+    notes.emplace_back(
+        "event timers send in addition to changes; a change does not restart the timer");
   }
   if (data.timer.meaning == TimerMeaning::alone) {
-    notes.emplace_back("with an event timer, changes send nothing");
+    notes.emplace_back("with an event timer, a change sends no PDO");
   }
   for (const SdoServerFact& server : data.sdo_servers) {
     notes.push_back("SDO channel " + std::to_string(server.index - 0x1200 + 1) + " on " +

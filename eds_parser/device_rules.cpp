@@ -77,7 +77,8 @@ class Judge {
     if (rule.types.empty() || std::ranges::any_of(rule.types, takes)) return;
     report_.error(pos_of(pdo, &PdoSpec::transmission, 2), "device-data",
                   label(pdo) + " can't have transmission type " + std::to_string(pdo.transmission) +
-                      " on " + data_.name + ", only " + list_of(rule.types) + source(rule.fact));
+                      " on " + data_.name + ", which allows only " + list_of(rule.types) +
+                      source(rule.fact));
   }
 
   void timer(const EffectivePdo& pdo, const PdoRule& rule) {
@@ -133,7 +134,7 @@ class Judge {
     report_.warning(pos_of(pdo, &PdoSpec::transmission, 2), "device-data",
                     label(pdo) + " of transmission type " + std::to_string(pdo.transmission) +
                         " is sent only as the answer to " + rpdo +
-                        ", which is off: it never comes. Switch " + rpdo + " on" +
+                        ", which is off, so the device never sends it. Switch " + rpdo + " on" +
                         other_type(rule) + source(rule.fact));
   }
 
@@ -207,15 +208,15 @@ class Judge {
     if (firmware && *firmware >= needed) return;
     if (!firmware) {
       report_.warning(*request, "device-data",
-                      what + ": that needs firmware " + to_string(needed) +
-                          " or newer; say which one it has with `firmware:`" +
+                      what + ": this needs firmware " + to_string(needed) +
+                          " or newer; write the version of the device under `firmware:`" +
                           source(data_.sync.fact));
       return;
     }
     report_.error(*request, "device-data",
                   what + ": " + data_.name + " with firmware " + to_string(*firmware) +
-                      " does not send it then, that begins with " + to_string(needed) +
-                      source(data_.sync.fact));
+                      " does not send the TPDO in this case; the oldest firmware that does is " +
+                      to_string(needed) + source(data_.sync.fact));
   }
 
   /// Returns the identifier in 0x1005, on which the device receives SYNC.
@@ -234,7 +235,7 @@ class Judge {
                   what + " on " + hex(static_cast<std::uint32_t>(*sent), 3) +
                       ", but receives it on " +
                       hex(static_cast<std::uint32_t>(received_sync()), 3) + ": " + data_.name +
-                      " does not send it then" + source(data_.sync.fact));
+                      " does not send the TPDO in this case" + source(data_.sync.fact));
   }
 
   const NodePdos& node_;

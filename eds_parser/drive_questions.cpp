@@ -75,10 +75,10 @@ void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
   }
   if (drives < 2 || first == nullptr) return;
   report.warning(first->pos, "on-loss",
-                 "nothing says what the other drives do when one of " + names +
-                     " is lost: they would go on. Write `on_loss: quick_stop` for them (the "
+                 "the file does not say what the other drives do when one of " + names +
+                     " is lost: they would continue. Write `on_loss: quick_stop` for them (the "
                      "drives of its group stop; without `group` all drives), or `on_loss: report` "
-                     "where they are to go on");
+                     "if they shall continue");
 }
 
 constexpr std::uint16_t axis_step = 0x800;
@@ -139,10 +139,10 @@ void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> node
   if (names.empty()) return;
   if (!missing.empty()) missing = " (not in the device file of " + missing + ")";
   report.warning(lost.on_loss.pos, "on-loss",
-                 "when node `" + lost.name + "` is lost, NMT stop goes to " + names +
-                     " at once, without a quick stop of the master: a drive that moves reacts by "
-                     "its 0x6007" +
-                     missing + ", which is not known to be 3 (quick stop). Write " +
+                 "when node `" + lost.name + "` is lost, the master sends NMT stop to " + names +
+                     " at once, without a quick stop: a moving drive reacts as its 0x6007 says" +
+                     missing +
+                     ", and takt does not know whether this object is 3 (quick stop). Write " +
                      written_as_quick_stop(writable) + "`on_loss: quick_stop`");
 }
 

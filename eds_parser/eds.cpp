@@ -60,7 +60,8 @@ class EdsReader {
     result.readable = !dictionary.objects.empty();
     if (!result.readable) {
       report_.error(file_start, "not-an-eds",
-                    "there is no section of an object, [1000] for example: this is no EDS or DCF");
+                    "the file has no section of an object, for example [1000]: the file is not an "
+                    "EDS or DCF");
     }
     return result;
   }
@@ -86,9 +87,10 @@ class EdsReader {
   void place(const SectionName& name, std::uint32_t at) {
     const auto& section = file_.sections[at];
     if (name.prefixed) {
-      report_.warning(section.pos, "section-name-form",
-                      "section " + quoted(section.name) +
-                          " is read as that of an object; CiA 306 writes the index without 0x");
+      report_.warning(
+          section.pos, "section-name-form",
+          "section " + quoted(section.name) +
+              " is read as the section of an object; CiA 306 writes the index without 0x");
     }
     if (name.leading_zero) {
       report_.note(
@@ -160,7 +162,7 @@ class EdsReader {
     if (!report_.wants("duplicate-section")) return;
     report_.warning(second.pos, "duplicate-section",
                     "section " + quoted(second.name) + " appears again; the first one, line " +
-                        std::to_string(first.pos.line) + ", counts");
+                        std::to_string(first.pos.line) + ", applies");
   }
 
   void tell_unknown(const IniSection& section) {
@@ -209,7 +211,7 @@ class EdsReader {
     if (section == nullptr) return;
     if (!supported) {
       report_.note(section->pos, "channels-unsupported",
-                   "[DynamicChannels] of a device whose DynamicChannelsSupported is 0");
+                   "the file has [DynamicChannels], but DynamicChannelsSupported is 0");
     }
     dictionary.channels = read_dynamic_channels(entries(section), section->pos, values, report_);
   }

@@ -65,8 +65,8 @@ class ChannelReader {
     if (byte_width(channel.type) != 0) return true;
     report_.warning(entry.pos(), "channel-type",
                     quoted(entry.value) +
-                        " is no data type of a network variable (a number or BOOLEAN); the segment "
-                        "was left out");
+                        " is not a data type of a network variable (a number or BOOLEAN); the "
+                        "segment was left out");
     return false;
   }
 
@@ -83,13 +83,14 @@ class ChannelReader {
     }
     report_.warning(
         entry.pos(), "channel-direction",
-        quoted(entry.value) + " is none of ro, wo, rw, rwr, rww; the segment was left out");
+        quoted(entry.value) + " is not one of ro, wo, rw, rwr, rww; the segment was left out");
     return false;
   }
 
   bool read_range(DynamicChannel& channel, const IniEntry& entry) {
     const auto dash = entry.value.find('-');
-    if (dash == std::string_view::npos) return wrong_range(entry, "is not as 0xA080-0xA0BF");
+    if (dash == std::string_view::npos)
+      return wrong_range(entry, "is not of the form 0xA080-0xA0BF");
     const auto first =
         values_.read_count(trim(entry.value.substr(0, dash)), 0xFFFF, entry.key, entry.pos());
     const auto last =

@@ -145,7 +145,7 @@ void ObjectLists::check_place(ObjectList list, std::uint16_t index, const IniEnt
   const bool manufacturer = index >= 0x2000 && index < 0x6000;
   if (manufacturer == (list == ObjectList::manufacturer) || !report_.wants("wrong-list")) return;
   report_.warning(entry.pos(), "wrong-list",
-                  "object " + hex(index) + " belongs into [" +
+                  "object " + hex(index) + " belongs in [" +
                       (manufacturer          ? "ManufacturerObjects"
                        : is_mandatory(index) ? "MandatoryObjects"
                                              : "OptionalObjects") +

@@ -173,7 +173,7 @@ bool ObjectReader::expand(Object& object, const ObjectFields& fields, const IniS
   if (!parts.subs.empty()) {
     report_.warning(pos, "compact-and-sections",
                     section_text(section) +
-                        " has CompactSubObj and sections of sub-objects; the sections count");
+                        " has CompactSubObj and sections of sub-objects; the sections apply");
   } else if (const auto at = fields.pos(Keyword::sub_number, section.pos);
              values_.read_count(fields.text(Keyword::sub_number), 0xFF, "SubNumber", at)
                  .value_or(0) != 0) {
@@ -272,7 +272,7 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
     if (wanted != DataType::unknown && wanted != sub.type && sub.type != DataType::unknown) {
       report_.warning(pos, "standard-type",
                       to_string(key) + ": DataType is " + std::string{name(sub.type)} +
-                          ", CiA 301 says " + std::string{name(wanted)});
+                          ", but CiA 301 requires " + std::string{name(wanted)});
     }
     return;
   }
@@ -284,7 +284,7 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
                   section_text(section) + " has no DataType; " +
                       (sub.type == DataType::unknown
                            ? "the object is kept without a type"
-                           : "taken for " + std::string{name(sub.type)} + ", as CiA 301 has it"));
+                           : "taken for " + std::string{name(sub.type)} + ", as in CiA 301"));
 }
 
 Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,

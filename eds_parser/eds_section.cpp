@@ -241,8 +241,8 @@ void check_entry_count(const IniEntry& count, std::size_t found, std::string_vie
                  to_utf8(count.key) + " of [" + to_utf8(section) + "] is " + quoted(count.value) +
                      ", but " +
                      (found == 0   ? "there are no entries"
-                      : found == 1 ? "1 is there; it was read"
-                                   : std::to_string(found) + " are there; all were read"));
+                      : found == 1 ? "1 entry exists; it was read"
+                                   : std::to_string(found) + " entries exist; all were read"));
 }
 
 Keyword classify_key(std::string_view key) noexcept {
@@ -268,7 +268,7 @@ ObjectFields::ObjectFields(const IniEntries& entries, std::string_view section, 
       const auto entry = spot.entry_in(text_);
       report.warning(entry.pos(), "duplicate-key",
                      "key " + quoted(entry.key) + " of [" + to_utf8(section) +
-                         "] repeated with another value; the first one counts, " +
+                         "] is repeated with another value; the first one applies, " +
                          quoted(first->value_in(text_)));
     }
   }

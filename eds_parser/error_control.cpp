@@ -70,10 +70,13 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
   } else if (!*spec_.master.heartbeat_consumer) {
     leave_alone(spec, name + "is not watched (`heartbeat_consumer: false` of `master`)");
   } else if (producer_ms(node) != 0) {
-    leave_alone(spec, name + "has a heartbeat, and with it it does not answer guarding (CiA 301)",
-                "; `heartbeat_producer: 0` would switch to guarding");
+    leave_alone(
+        spec,
+        name + "has a heartbeat, and with a heartbeat a node does not answer guarding (CiA 301)",
+        "; `heartbeat_producer: 0` would switch to guarding");
   } else if (ms <= 0 || ms > 0xFFFF) {
-    leave_alone(spec, name + "has no guard time, neither here nor in " + node.dictionary->file);
+    leave_alone(spec, name + "has no guard time, neither in the network file nor in " +
+                          node.dictionary->file);
   } else if (retries == 0) {  // CiA 302-2, 0x1F81: a factor of 0 switches guarding off.
     leave_alone(spec, name + "is not guarded (`retry_factor: 0`)");
     return {.period = Time{}, .retries = 0};
@@ -87,9 +90,10 @@ GuardPlan ErrorControl::guard(const NodeSource& node) {
 
 void ErrorControl::tell_unused_retry_factor() const {
   if (!spec_.retry_factor.given || *spec_.retry_factor == 0 || uses_retry_factor_) return;
-  report_.note(spec_.retry_factor.pos, "guarding",
-               std::string{"`retry_factor` of `options` is left alone: "} +
-                   (guards_ ? "each node that is guarded has its own" : "no node is guarded"));
+  report_.note(
+      spec_.retry_factor.pos, "guarding",
+      std::string{"`retry_factor` of `options` has no effect: "} +
+          (guards_ ? "each guarded node has its own `retry_factor`" : "no node is guarded"));
 }
 
 /// Reports settings that ask for guarding of a node that is not guarded. Settings of 0 ask for no
@@ -98,7 +102,7 @@ void ErrorControl::leave_alone(const NodeSpec& spec, const std::string& why,
                                const std::string& remedy) const {
   const auto tell = [&](const auto& key, const std::string& word) {
     if (!key.given || *key == 0) return;
-    report_.note(key.pos, "guarding", why + ": `" + word + "` is left alone" + remedy);
+    report_.note(key.pos, "guarding", why + ": `" + word + "` has no effect" + remedy);
   };
   tell(spec.guard_time, "guard_time");
   tell(spec.life_time_factor, "life_time_factor");
@@ -110,9 +114,8 @@ void check_keep_alive(const NodeSpec& spec, const NodePlan& node, NetworkReport&
   if (*spec.reset != ResetPolicy::keep_alive || !node.boot || shows_life) return;
   report.error(spec.reset.pos, "keep-alive",
                "node `" + spec.name +
-                   "` is to be kept running, but shows its state neither by "
-                   "heartbeat nor by guarding: give it `heartbeat_producer` or `guard_time`, or "
-                   "write `reset: none`");
+                   "` shall be kept running, but shows its state neither by heartbeat nor by "
+                   "guarding: write `heartbeat_producer`, `guard_time` or `reset: none`");
 }
 
 }  // namespace takt

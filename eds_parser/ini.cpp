@@ -146,7 +146,7 @@ class Reader {
       read_header(rest);
     } else if (rest.front() == '#') {
       report_.note(here(rest), "hash-comment",
-                   "'#' does not start a comment in CiA 306, taken as one; use ';'");
+                   "'#' does not start a comment in CiA 306, but was read as one; use ';'");
     } else {
       leave_out("no-equals", "neither [section] nor key=value", rest);
     }
@@ -272,7 +272,7 @@ IniFile read_ini(std::string_view text, Report& report) {
   const auto encoding = encoding_of(text);
   if (encoding != Encoding::bytes) {
     report.warning({1, 1}, "utf-16",
-                   "the file is UTF-16, CiA 306 asks for ASCII; it was converted");
+                   "the file is UTF-16, but CiA 306 requires ASCII; the text was converted");
     file.recoded =
         std::make_unique<std::string>(utf16_to_utf8(text, encoding == Encoding::utf16_be));
     text = *file.recoded;

@@ -57,7 +57,8 @@ class Proposal {
     const auto low = configured_object(node_, object(0x607D, 1));
     const auto high = configured_object(node_, object(0x607D, 2));
     if (!signal || table_.signal(*signal).unit.empty()) return words("give positions a unit first");
-    if (!low || !high || !plausible_range(*low, *high)) return words("the travel of the machine");
+    if (!low || !high || !plausible_range(*low, *high))
+      return words("enter the travel of the machine");
     const Signal& what = table_.signal(*signal);
     double first = static_cast<double>(*low) * what.scale + what.offset;
     double last = static_cast<double>(*high) * what.scale + what.offset;
@@ -68,7 +69,7 @@ class Proposal {
 
   void quantity(LimitKind kind, std::array<std::uint16_t, 2> indices,
                 const std::optional<UnitSpec>& unit) {
-    if (!unit) return words("give it a unit first, then what the machine stands");
+    if (!unit) return words("give it a unit first, then enter what the machine withstands");
     for (const std::uint16_t index : indices) {
       const auto value = configured_object(node_, object(index));
       if (!value || !plausible_size(*value)) continue;
@@ -77,7 +78,7 @@ class Proposal {
       line_.because = to_string(object(index));
       return;
     }
-    words("what the machine stands");
+    words("enter what the machine withstands");
   }
 
   /// Proposes the distance that the axis travels in one cycle at its velocity limit.
@@ -90,7 +91,7 @@ class Proposal {
       line_.because = "velocity in one cycle";
       return;
     }
-    words("the way in one cycle at full speed");
+    words("enter the distance in one cycle at full speed");
   }
 
   LimitLine& line_;

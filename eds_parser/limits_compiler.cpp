@@ -62,8 +62,8 @@ class LimitsCompiler {
     if (place && axes.empty() && every_output_is_mapped(nodes_[index])) {
       report_.error(*place, "limits",
                     "no RPDO of node `" + source.spec->name +
-                        "` carries a set-point of a drive (607A, 60FF, 6071 ...): the limits of "
-                        "other outputs stand under `objects: [{index: ..., min: ..., max: ...}]`");
+                        "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits "
+                        "of other outputs under `objects: [{index: ..., min: ..., max: ...}]`");
     }
     for (const std::uint8_t axis : axes) {
       AxisLimitsSpec own = limits.all;
@@ -109,7 +109,7 @@ class LimitsCompiler {
     if (!signal) {
       report_.error(limit.pos, "limits",
                     "`limits` of node `" + plan_.nodes[node_index].name + "`: no RPDO carries " +
-                        to_string(limit.object) + ", so nothing of it is commanded");
+                        to_string(limit.object) + ", so no command can contain this object");
       return;
     }
     const auto bound = [](const Sourced<double>& value) {

@@ -49,15 +49,15 @@ std::optional<LssPlan> compile_lss(const NodeSpec& node, const ObjectDictionary&
   if (lss.known[1] == 0) {
     report.error(node.lss.pos, "lss",
                  "LSS finds node `" + node.name + "` by its identity, and " + dictionary.file +
-                     " has no product code in 1018:02: write `vendor_id` and `product_code`, "
-                     "better `serial_number` as well");
+                     " has no product code in 1018:02: write `vendor_id` and `product_code`, and "
+                     "preferably `serial_number`");
   }
   for (const NodePlan& other : others) {
     if (!other.lss || !may_be_same(*other.lss, lss)) continue;
     report.warning(node.lss.pos, "lss",
                    "LSS can't tell nodes `" + other.name + "` and `" + node.name +
                        "` apart: the device with the lower serial number becomes `" + other.name +
-                       "`; `serial_number` says which is which");
+                       "`; write `serial_number` to identify each device");
   }
   return lss;
 }

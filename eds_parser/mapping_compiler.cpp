@@ -101,8 +101,8 @@ class MappingCompiler {
     if (pdo_.is_tpdo ? reads : writes) return true;
     error(wanted, "wrong-direction",
           "object " + named(wanted) +
-              (pdo_.is_tpdo ? " can only be written: it belongs into an RPDO (master to device)"
-                            : " can only be read: it belongs into a TPDO (device to master)"));
+              (pdo_.is_tpdo ? " can only be written: it belongs in an RPDO (master to device)"
+                            : " can only be read: it belongs in a TPDO (device to master)"));
     return false;
   }
 
@@ -122,7 +122,7 @@ class MappingCompiler {
     if (bits == 0) {
       error(wanted, "no-width",
             "object " + named(wanted) + " has no fixed width (" + std::string{name(sub.type)} +
-                "): say `bits:`");
+                "): write `bits:`");
       return false;
     }
     const bool boolean_byte = sub.type == DataType::boolean && bits == 8;
@@ -167,7 +167,7 @@ std::vector<EffectiveEntry> compile_mapping(const NodeSource& node, const Effect
           spec.pos, "mapped-twice",
           pdo.label() + " of node `" + node.spec->name + "` maps " +
               label(*node.dictionary, spec.object) + " twice: " +
-              (pdo.is_tpdo ? "the second is an input of its own" : "both get the same value") +
+              (pdo.is_tpdo ? "the second one is a separate input" : "both get the same value") +
               "; is one of them meant for another object?");
     }
     entry->bit_offset = static_cast<std::uint8_t>(std::min(bits, 64U));

@@ -346,7 +346,7 @@ void ModuleSections::tell_overlap(const Fill& fill, ObjectDictionary& dictionary
   report.warning(find(fill.index, dictionary)->pos, "module-sub-objects",
                  "object " + hex(fill.index) + " is described up to sub-index " +
                      std::to_string(fill.described) + ", the connected modules bring " +
-                     std::to_string(fill.sub) + "; those of the same number were taken for one");
+                     std::to_string(fill.sub) + "; sub-objects of the same number were merged");
 }
 
 }  // namespace takt

@@ -84,7 +84,7 @@ class DispatchingList {
   /// Returns the text of an `sdo:` entry with which `sender` sends the object under its own index.
   /// Uses up a free place of the list.
   std::string proposal(ObjectKey object, NodeId sender) {
-    if (free_.empty()) return "it has no free place either";
+    if (free_.empty()) return "the list has no free entry either";
     const std::uint32_t low =
         std::uint32_t{object.index} << 16 | std::uint32_t{object.sub} << 8 | sender.value();
     const std::uint32_t high = 1U << 24 | std::uint32_t{object.index} << 8 | object.sub;
@@ -177,9 +177,10 @@ void check_dispatching(const NodeSource& node, const EffectivePdo& pdo, NodeId m
   };
   DispatchingList list{node};
   if (!list.exists()) {
-    return error(pdo.pos, node.dictionary->file +
-                              " has no object dispatching list (0x1FD0..0x1FFF), so the device "
-                              "takes nothing by source address; `mpdo: dam` writes its objects");
+    return error(pdo.pos,
+                 node.dictionary->file +
+                     " has no object dispatching list (0x1FD0..0x1FFF), so the device accepts no "
+                     "MPDO by source address; write its objects with `mpdo: dam`");
   }
   std::vector<ObjectKey> senders;
   for (const EffectiveEntry& entry : pdo.mapping) {

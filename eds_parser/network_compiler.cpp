@@ -199,7 +199,7 @@ class NetworkCompiler {
     report_.error(node.pos, "name",
                   "`" + node.name + "` and `" + first->second->name + "` (line " +
                       std::to_string(first->second->pos.line) +
-                      ") would share their LCM channels: names differ by more than case");
+                      ") would share their LCM channels: names have to differ by more than case");
   }
 
   Time longest_reboot_delay(const NodeSpec& spec, Time first) {
@@ -208,7 +208,7 @@ class NetworkCompiler {
     if (spec.reboot_delay_max_ms.given && longest < first) {
       report_.error(spec.reboot_delay_max_ms.pos, "range",
                     "`reboot_delay_max_ms` of node `" + spec.name +
-                        "` is shorter than its `reboot_delay_ms`, with which the pauses begin");
+                        "` is shorter than its `reboot_delay_ms`, which is the first pause");
     }
     return std::max(first, longest);
   }
@@ -242,8 +242,8 @@ class NetworkCompiler {
     if (!spec.profile.given && is_drive_by_objects(dictionary)) {
       report_.note(spec.pos, "profile",
                    "node `" + spec.name + "`: " + dictionary.file +
-                       " gives 1000:00 no value; with 6040:00 and 6041:00 it is taken for a drive "
-                       "(`profile: none` if it is none)");
+                       " has no value for 1000:00; because of 6040:00 and 6041:00 takt treats the "
+                       "device as a drive (write `profile: none` if it is not a drive)");
     }
     check_fallback(source.node, node.cia402, report_);
     check_sdo_channel(source.node, report_);
@@ -307,8 +307,8 @@ class NetworkCompiler {
     for (const std::uint16_t rate : rates)
       list += (list.empty() ? "" : ", ") + std::to_string(rate);
     report_.warning(node.spec->pos, "bit-rate",
-                    "node `" + node.spec->name + "` knows " + list + " kbit/s by " +
-                        node.dictionary->file + "; the bus runs at " + std::to_string(kbit));
+                    "node `" + node.spec->name + "` supports " + list + " kbit/s according to " +
+                        node.dictionary->file + ", but the bus runs at " + std::to_string(kbit));
   }
 
   void add_boot(std::size_t index) {

@@ -31,7 +31,8 @@ class NetworkReport {
     if (findings_.size() < max_findings) {
       findings_.push_back({file_, pos, severity, rule, std::move(message)});
     } else if (findings_.size() == max_findings) {
-      findings_.push_back({file_, pos, Severity::error, "too-many", "and more; mend these first"});
+      findings_.push_back({file_, pos, Severity::error, "too-many",
+                           "there are more findings; correct these first"});
     }
   }
 

@@ -67,8 +67,9 @@ std::optional<std::uint32_t> read_code(const ObjectFields& fields, const CodeKey
   if (!code) return values.read_count(text, key.highest, key.name, pos);
   const auto bare = without_comment(text);
   if (report.wants("type-word")) {
-    report.warning(pos, "type-word",
-                   quoted(bare) + " was read as " + hex(*code) + "; CiA 306 has the number here");
+    report.warning(
+        pos, "type-word",
+        quoted(bare) + " was read as " + hex(*code) + "; CiA 306 requires the number here");
   }
   if (bare.size() != text.size()) {
     report.warning(pos, "inline-comment",

@@ -59,7 +59,7 @@ class PdoCompiler {
     }
     report_.note(node_.spec->pos, "pdo-left-out",
                  list + " of node `" + node_.spec->name + "`: valid in " + node_.dictionary->file +
-                     ", but nothing is mapped; not part of the image");
+                     ", but without mapped objects; not part of the image");
   }
 
  private:
@@ -159,7 +159,7 @@ class PdoCompiler {
     } else if (pdo.bits > 64) {
       leave_out("maps " + std::to_string(pdo.bits) + " bits, more than 64");
     } else if (std::ranges::any_of(pdo.mapping, [](const auto& e) { return e.bits == 0; })) {
-      leave_out("maps an entry of no bits");
+      leave_out("maps an entry of 0 bits");
     }
   }
 
@@ -236,14 +236,14 @@ class PdoCompiler {
     const bool asked = pdo.poll_ms != 0 || pdo.poll_syncs != 0;
     if (asked && pdo.is_tpdo && pdo.synchronous()) {
       report_.warning(spec.pos, "transmission-type",
-                      label(pdo) + " is polled, but of type " + std::to_string(pdo.transmission) +
-                          ": few devices answer remote requests but for types 252..255");
+                      label(pdo) + " is polled, but has type " + std::to_string(pdo.transmission) +
+                          ": few devices answer remote requests for types other than 252..255");
     }
     if (!asked && on_remote_request(pdo.transmission)) {
       report_.note(spec.pos, "not-polled",
                    label(pdo) + " has type " + std::to_string(pdo.transmission) +
-                       " and is sent on remote request only: nothing asks for it but requests "
-                       "(`poll_ms:` or `poll_syncs:` would)");
+                       " and is sent on remote request only: the master polls it only when an "
+                       "application requests it (or with `poll_ms:` or `poll_syncs:`)");
     }
   }
 
@@ -253,7 +253,7 @@ class PdoCompiler {
     pdo.bits = 64;
     if (pdo.transmission < 254) {
       report_.error(spec.transmission.given ? spec.transmission.pos : spec.pos, "transmission-type",
-                    label(pdo) + " is multiplexed: `transmission` 254 or 255, by event");
+                    label(pdo) + " is multiplexed: write `transmission` 254 or 255 (by event)");
     }
   }
 
@@ -278,8 +278,8 @@ class PdoCompiler {
         fixed += (fixed.empty() ? "" : ", ") + takt::label(*node_.dictionary, entry.object);
       }
       report_.error(spec.mapping.pos, "fixed-mapping",
-                    label(pdo) + " can't be mapped anew, the device fixes it " +
-                        (fixed.empty() ? "empty" : "to: " + fixed));
+                    label(pdo) + " can't be remapped, it is fixed in the device " +
+                        (fixed.empty() ? "without objects" : "to: " + fixed));
     }
     const Object* record = node_.dictionary->find(pdo.mapping_index());
     const std::size_t places =
@@ -305,7 +305,7 @@ class PdoCompiler {
     } else if (pdo.mapping.empty() && (!spec.mapping.given || spec.mapping->empty())) {
       report_.error(spec.mapping.given ? spec.mapping.pos : spec.pos, "maps-nothing",
                     label(pdo) +
-                        " maps nothing: list what it carries under `mapping:`, or switch "
+                        " maps no objects: list them under `mapping:`, or switch "
                         "it off with `enabled: false`");
     }
     if (!spec.transmission.given && !usable_type(pdo)) {
@@ -372,7 +372,7 @@ void check_pairs(const NodeSource& node, std::span<const EffectivePdo> pdos,
     report.error(pdo.pos, "request-pair",
                  pdo.label() + " of node `" + node.spec->name + "` is sent on request, but TPDO" +
                      std::to_string(pdo.number) + ", which answers it, is off or maps nothing: " +
-                     "name it too, `tpdo: {" + std::to_string(pdo.number) + ": {request: true}}`");
+                     "write it too, `tpdo: {" + std::to_string(pdo.number) + ": {request: true}}`");
   }
 }
 

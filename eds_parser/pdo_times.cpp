@@ -59,8 +59,9 @@ class TimeJudge {
     const std::string inhibit = time_text(times.inhibit_us);
     report_.warning(pos(pdo, &PdoSpec::event_timer), "event-timer",
                     "the event timer of " + label(pdo) + " (" + time_text(times.timer_us) +
-                        ") is shorter than its inhibit time (" + inhibit + "): it is sent every " +
-                        inhibit + ". Write `event_timer` of at least " +
+                        ") is shorter than its inhibit time (" + inhibit +
+                        "): the device sends the PDO every " + inhibit +
+                        ". Write `event_timer` of at least " +
                         std::to_string((times.inhibit_us + 999) / 1000) +
                         " (ms), or a shorter `inhibit_time` (in 100 us)");
   }
@@ -82,12 +83,13 @@ class TimeJudge {
     const auto longest = static_cast<std::uint64_t>(
         std::chrono::ceil<std::chrono::microseconds>(wire_time(bits, bitrate_)).count());
     if (times.inhibit_us >= longest) return;
-    report_.warning(pos(pdo, &PdoSpec::inhibit_time), "inhibit-time",
-                    "the inhibit time of " + label(pdo) + " (" + time_text(times.inhibit_us) +
-                        ") is shorter than its frame (up to " + time_text(longest) + " at " +
-                        std::to_string(bitrate_ / 1000) +
-                        " kbit/s): it can fill the bus. It counts from the first try to send, so "
-                        "write more than the longest wait for the bus, or 0 for none");
+    report_.warning(
+        pos(pdo, &PdoSpec::inhibit_time), "inhibit-time",
+        "the inhibit time of " + label(pdo) + " (" + time_text(times.inhibit_us) +
+            ") is shorter than its frame (up to " + time_text(longest) + " at " +
+            std::to_string(bitrate_ / 1000) +
+            " kbit/s): the PDO can fill the bus. The inhibit time runs from the first attempt to "
+            "send, so write more than the longest wait for the bus, or 0 for no inhibit time");
   }
 
   const NodePdos& node_;

@@ -173,12 +173,13 @@ void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
   const std::string start = "`sdo_channel` of node `" + node.spec->name + "`: ";
   const std::string& file = node.dictionary->file;
   if (servers.first() == 0) {
-    report.warning(wanted.pos, "no-sdo-server",
-                   start + file +
-                       " has no SDO server besides the first (no 0x1201 to 0x127F), so the device "
-                       "may keep silent on " +
-                       request +
-                       "; leave `sdo_channel` out, or name the device file in which it has one");
+    report.warning(
+        wanted.pos, "no-sdo-server",
+        start + file +
+            " has no SDO server besides the first (no 0x1201 to 0x127F), so the device may not "
+            "answer on " +
+            request +
+            "; leave `sdo_channel` out, or name a device file that contains such a server");
     return;
   }
   const std::string object = hex(servers.first(), 4);
@@ -187,7 +188,7 @@ void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
       start + "no SDO server of " + file + " is on " + request + " and " +
           to_string(wanted->answer) + " (" + servers.list() +
           "); correct `sdo_channel`, or leave it out and switch the server on by `sdo` (" + object +
-          ":01 and 02) for the device to keep (`store_configuration`)");
+          ":01 and 02) and store it in the device (`store_configuration`)");
 }
 
 }  // namespace takt

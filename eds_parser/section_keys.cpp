@@ -19,7 +19,7 @@ const IniEntry* SectionKeys::get(std::string_view key) const {
     } else if (found->value != entry.value) {
       report_.warning(entry.pos(), "duplicate-key",
                       "key " + quoted(entry.key) +
-                          " repeated with another value; the first one counts, " +
+                          " is repeated with another value; the first one applies, " +
                           quoted(found->value));
     }
   }

@@ -82,8 +82,8 @@ class ServiceIdCollector {
                            channel + " is on: " + clash + switched_off_by(node, server));
     }
     report_.warning(server.pos, "cob-id-clash",
-                    channel + " may be on" + server.doubt +
-                        ", and then the two would meet: " + clash + switched_off_by(node, server));
+                    channel + " may be on" + server.doubt + ", and then the two would collide: " +
+                        clash + switched_off_by(node, server));
   }
 
   static std::string switched_off_by(const NodeSource& node, const SdoServer& server) {

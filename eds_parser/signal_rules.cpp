@@ -157,8 +157,8 @@ void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report) 
   if (fallback.given && needs_drive && !cia402) {
     report.error(fallback.pos, "fallback",
                  "node `" + node.spec->name +
-                     "` is no CiA 402 drive and knows no quick stop or "
-                     "disable: use hold, zero or safe (`profile: cia402` makes it a drive)");
+                     "` is not a CiA 402 drive and has no quick stop or disable: write hold, zero "
+                     "or safe (`profile: cia402` makes the node a drive)");
   }
   if (fallback.given && *fallback == FallbackPolicy::safe && node.spec->safe_values.empty()) {
     report.error(fallback.pos, "fallback",

@@ -16,8 +16,8 @@ void check_producer(const NodeSource& node, SourcePos pos, NetworkReport& report
       continue;
     }
     report.error(pos, "sync-source",
-                 "node `" + node.spec->name + "` can't make SYNC: by " + node.dictionary->file +
-                     " it has no " + to_string(key) + " that can be written");
+                 "node `" + node.spec->name + "` can't produce SYNC: " + node.dictionary->file +
+                     " does not have " + to_string(key) + " as a writable object");
     return;
   }
 }
@@ -48,7 +48,8 @@ void compile_sync_source(const NetworkSpec& spec, const std::vector<NodePdos>& n
   const std::string hint = did_you_mean(*source, names);
   report.error(source.pos, "sync-source",
                "`sync_source: " + *source + "`: there is no such node" + hint +
-                   (hint.empty() ? "; a" : " A") + " device outside of this file is `external`");
+                   (hint.empty() ? "; a" : " A") +
+                   " device outside of this file has the name `external`");
 }
 
 }  // namespace takt

@@ -29,7 +29,7 @@ constexpr QuirkText quirk_texts[] = {
     {NumberQuirk::suffix, Severity::warning, "number-suffix",
      "suffix of a programming language was left out; drop it"},
     {NumberQuirk::node_id_not_first, Severity::warning, "nodeid-not-first",
-     "$NODEID must come first by CiA 306, other tools drop it here; write $NODEID+number"},
+     "CiA 306 requires $NODEID as the first term, other tools drop it here; write $NODEID+number"},
     {NumberQuirk::node_id_no_dollar, Severity::warning, "nodeid-without-dollar",
      "NODEID was taken for $NODEID; write $NODEID+number"},
     {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",

@@ -57,7 +57,7 @@ class Combinations {
       auto longer = longer_inhibits(plan_, factor);
       if (longer.empty()) break;
       const std::string text =
-          "inhibit times of " + std::to_string(factor) + " times as long for " + names_of(longer);
+          "inhibit times " + std::to_string(factor) + " times as long for " + names_of(longer);
       ladder.levels.push_back({.text = text, .changes = {.pdos = std::move(longer)}});
     }
     return ladder;
@@ -69,7 +69,7 @@ class Combinations {
       auto changes = by_turns(plan_, count);
       if (changes.pdos.empty()) break;
       const std::string text =
-          "every second SYNC, by turns (SYNC with counter), for " + names_of(changes.pdos);
+          "every second SYNC, alternately (SYNC with counter), for " + names_of(changes.pdos);
       ladder.levels.push_back({.text = text, .changes = std::move(changes)});
     }
     return ladder;

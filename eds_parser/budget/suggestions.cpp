@@ -111,7 +111,7 @@ class Search {
       auto changes = base_;
       merge(changes, turns);
       if (!fits(changes)) continue;
-      return add("every second SYNC, by turns (SYNC with counter), for " + names_of(turns.pdos),
+      return add("every second SYNC, alternately (SYNC with counter), for " + names_of(turns.pdos),
                  std::move(changes));
     }
   }

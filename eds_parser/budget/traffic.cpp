@@ -304,12 +304,12 @@ class TrafficCollector {
       if (frame.period_assumed) append(free, frame.name);
     }
     assume(
-        "no inhibit time, so counted once a cycle, though the device may send as often as values "
-        "change: ",
+        "no inhibit time: counted once per cycle, although the device may send at every change of "
+        "a value: ",
         free);
     assume(
-        "no inhibit time, so counted by the event timer, though the device may send in between as "
-        "values change: ",
+        "no inhibit time: counted once per event timer, although the device may also send at every "
+        "change of a value: ",
         by_timer_);
   }
 

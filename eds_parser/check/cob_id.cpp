@@ -199,13 +199,13 @@ void check_bits(const CobIdEntry& entry, Report& report) {
   if (!entry.extended() && (entry.constant & 0x1FFF'F800) != 0) {
     report.warning(entry.pos, "cob-id-bits",
                    start(entry) + hex(entry.constant, 8) +
-                       " has bits above 11, but bit 29 (extended frame) is clear");
+                       " has bits 11 to 28 in use, but bit 29 (extended frame) is clear");
   }
   if (entry.extended() && entry.id() <= 0x7FF) {
     report.warning(entry.pos, "cob-id-extended",
                    start(entry) + written(entry) +
                        " has bit 29 set: this is the 29-bit identifier " + id_text(entry) +
-                       ", though 11 bits would do; clear bit 29 for a base frame");
+                       ", although 11 bits are enough; clear bit 29 for a base frame");
   }
 }
 
@@ -213,7 +213,7 @@ void check_remote_of_rpdo(const CobIdEntry& entry, Report& report) {
   if (!entry.is_rpdo() || (entry.constant & no_remote_flag) == 0) return;
   report.note(entry.pos, "pdo-rtr-of-rpdo",
               start(entry) + written(entry) +
-                  " has bit 30 set (no remote requests), which means nothing for an RPDO");
+                  " has bit 30 set (no remote requests), which has no meaning for an RPDO");
 }
 
 /// Warns of bit 30 of EMCY, which is reserved. CiA 301, 7.5.2.17.
@@ -266,7 +266,8 @@ void check_default_channel(const ObjectDictionary& dictionary, const CobIdEntry&
   if (entry.constant >= first && entry.constant <= last) return;
   report.warning(entry.pos, "sdo-default-channel",
                  start(entry) + (entry.relative ? "$NODEID+" : "") + hex(entry.constant, 3) +
-                     " is not that of the default SDO channel, $NODEID+" + hex(base, 3));
+                     " differs from the COB-ID of the default SDO channel, $NODEID+" +
+                     hex(base, 3));
 }
 
 /// Checks the SDO servers 0x1200..0x127F and the clients 0x1280..0x12FF.

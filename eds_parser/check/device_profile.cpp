@@ -125,7 +125,7 @@ class ProfileCheck {
     const auto claimed = number_of(dictionary_, key);
     if (!has(0x6502)) {
       return advise(place(device_type_), {0x6502, "supported drive modes"},
-                    "which modes the drive has is not known, and their objects are not checked");
+                    "takt does not know the modes of the drive and does not check their objects");
     }
     if (!claimed) return;
     for (const auto& mode : modes) {
@@ -133,7 +133,7 @@ class ProfileCheck {
     }
     if ((*claimed & modes_of_a_cycle) != 0 && !has(0x60C2)) {
       advise(place(key), {0x60C2, "interpolation time period"},
-             "the drive can't be told the cycle of its modes ip, csp, csv, cst");
+             "the drive can't receive the cycle time of its modes ip, csp, csv, cst");
     }
   }
 

@@ -21,11 +21,12 @@ void check_dummy(const ObjectDictionary& dictionary, const Entry& entry, Report&
   const bool usable = type >= 1 && type <= 7 && entry.mapped.key.sub == 0;
   if (!usable) {
     report.error(entry.pos, "pdo-dummy",
-                 start(entry) + " is no data type that can fill a gap (0001 to 0007, sub 0)");
+                 start(entry) + " is not a data type that can fill a gap (0001 to 0007, sub 0)");
     return;
   }
   if (entry.is_tpdo) {
-    report.warning(entry.pos, "pdo-dummy", start(entry) + ": a dummy in a TPDO is not foreseen");
+    report.warning(entry.pos, "pdo-dummy",
+                   start(entry) + ": CiA 301 has dummy entries for RPDOs only");
   } else if (!dictionary.dummy_usage[type]) {
     report.warning(entry.pos, "pdo-dummy",
                    start(entry) + ": [DummyUsage] does not allow this dummy");
@@ -77,7 +78,8 @@ void check_entry(const ObjectDictionary& dictionary, const Entry& entry, Report&
     report.warning(entry.pos, "pdo-entry-length",
                    start(entry) + " is " + std::string{name(sub->type)} + " of " +
                        std::to_string(width) + " bits, the entry says " +
-                       std::to_string(entry.mapped.bits) + "; on the bus the entry counts");
+                       std::to_string(entry.mapped.bits) +
+                       "; on the bus the length of the entry applies");
   }
 }
 
@@ -107,10 +109,10 @@ void check_gap(const ObjectDictionary& dictionary, const PdoDescription& pdo, Re
     if (number_of(dictionary, key).value_or(0) == 0) {
       if (!missing) missing = key.sub;
     } else if (missing) {
-      return report.error(dictionary.find(key)->value_pos(), "pdo-mapping-gap",
-                          section_name(key) + " has a value, but " +
-                              section_name({key.index, *missing}) +
-                              " before it has none; the places of all behind are unknown");
+      return report.error(
+          dictionary.find(key)->value_pos(), "pdo-mapping-gap",
+          section_name(key) + " has a value, but " + section_name({key.index, *missing}) +
+              " before it has no value; the positions of all later entries are unknown");
     }
   }
 }
@@ -138,7 +140,7 @@ void check_mapping(const ObjectDictionary& dictionary, const PdoDescription& pdo
   if (pdo.mapping_count) {
     report.error(last, "pdo-too-long", text);
   } else {
-    report.note(last, "pdo-too-long", text + "; how many are active is not said in sub 0");
+    report.note(last, "pdo-too-long", text + "; sub 0 does not say how many objects are active");
   }
 }
 

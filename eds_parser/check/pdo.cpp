@@ -52,7 +52,7 @@ void check_inhibit_use(const ObjectDictionary& dictionary, const PdoDescription&
   const unsigned type = *pdo.transmission_type;
   if (type > 240 && !is_on_request(type)) return;
   report.note(pos_of(dictionary, inhibit), "pdo-inhibit-unused",
-              section_name(inhibit) + ": the inhibit time has no effect beside transmission type " +
+              section_name(inhibit) + ": the inhibit time has no effect with transmission type " +
                   std::to_string(type) + what_sends(type));
 }
 
@@ -66,14 +66,14 @@ void check_times(const ObjectDictionary& dictionary, const PdoDescription& pdo, 
   const unsigned type = pdo.transmission_type.value_or(0);
   if ((type >= 1 && type <= 240) || is_on_request(type)) {
     report.note(pos_of(dictionary, timer), "pdo-event-timer-unused",
-                section_name(timer) + ": the event timer has no effect beside transmission type " +
+                section_name(timer) + ": the event timer has no effect with transmission type " +
                     std::to_string(type) + what_sends(type));
   } else if (pdo.inhibit_time_us > pdo.event_timer_ms * 1000U) {
     report.warning(pos_of(dictionary, inhibit), "pdo-inhibit-too-long",
                    section_name(inhibit) + ": the inhibit time of " +
                        std::to_string(pdo.inhibit_time_us / 100) + " x 100 us is longer than " +
                        "the event timer of " + std::to_string(pdo.event_timer_ms) +
-                       " ms, which cannot be kept");
+                       " ms, so the device can't keep the event timer");
   }
 }
 
@@ -98,7 +98,7 @@ void check_partners(const ObjectDictionary& dictionary, Report& report) {
     if (dictionary.find(partner) != nullptr) continue;
     report.warning(object.pos, "pdo-half",
                    hex(object.index) + " has no " + (mapping ? "communication" : "mapping") +
-                       " record " + hex(partner) + "; this is no complete PDO");
+                       " record " + hex(partner) + ", so the PDO is incomplete");
   }
 }
 
@@ -113,7 +113,8 @@ void check_number(const ObjectDictionary& dictionary, bool is_tpdo, std::size_t 
   report.warning(pos, "pdo-count",
                  std::string{is_tpdo ? "NrOfTXPDO" : "NrOfRXPDO"} +
                      (pos == device.pos ? " is missing" : " is " + std::to_string(said)) +
-                     ", but " + std::to_string(found) + " are described; the records count");
+                     ", but " + std::to_string(found) +
+                     " are described; takt uses the described PDOs");
 }
 
 void check_granularity(const ObjectDictionary& dictionary, Report& report) {
@@ -122,7 +123,8 @@ void check_granularity(const ObjectDictionary& dictionary, Report& report) {
   if (record == nullptr) return;
   report.warning(dictionary.device.granularity_pos, "granularity",
                  "Granularity 0 says that the mapping of PDOs is fixed, but " +
-                     to_string(ObjectKey{record->index, 0}) + " can be written; the records count");
+                     to_string(ObjectKey{record->index, 0}) +
+                     " can be written; takt follows the record");
 }
 
 }  // namespace

@@ -76,9 +76,9 @@ void check_bit_rate(const ObjectDictionary& dictionary, Report& report) {
   if (said == 0 || rates.empty() || std::ranges::binary_search(rates, said)) return;
   std::string known;
   for (const auto rate : rates) known += (known.empty() ? "" : ", ") + std::to_string(rate);
-  report.warning(
-      dictionary.commissioning.baudrate_pos, "baudrate-unsupported",
-      "Baudrate is " + std::to_string(said) + " kbit/s; by [DeviceInfo] the device has " + known);
+  report.warning(dictionary.commissioning.baudrate_pos, "baudrate-unsupported",
+                 "Baudrate is " + std::to_string(said) +
+                     " kbit/s; according to [DeviceInfo] the device has " + known);
 }
 
 }  // namespace
@@ -98,13 +98,14 @@ void check_values(const ObjectDictionary& dictionary, Report& report) {
   check_bit_rate(dictionary, report);
   if (!dictionary.is_dcf && parameter_values != 0) {
     report.note(first_parameter_value, "parameter-value-in-eds",
-                "an EDS has no ParameterValue, only a DCF; " + std::to_string(parameter_values) +
-                    " were read as values; takt writes them at boot if the file is named .dcf");
+                "ParameterValue belongs in a DCF, not in an EDS; takt read " +
+                    std::to_string(parameter_values) +
+                    " of them as values and writes them at boot only if the file is named .dcf");
   }
   if (dictionary.is_dcf && !dictionary.commissioning.node_id) {
     const auto& section = dictionary.commissioning.pos;
     report.warning(section.line == 0 ? SourcePos{1, 1} : section, "dcf-without-node-id",
-                   "a DCF says its NodeID in [DeviceComissioning]; this one has none of 1..127");
+                   "this DCF has no NodeID of 1..127 in [DeviceComissioning]");
   }
 }
 

@@ -83,7 +83,7 @@ class WidthOfLimits {
         first_, "range-of-16-bits",
         (one ? "a 32-bit object has" : std::to_string(count_) + " 32-bit objects have") +
             " the limits of 16 bits: " + names_ + more +
-            "; values outside are refused. Correct the limits where the device takes more");
+            "; takt refuses values outside them. Correct the limits if the device accepts more");
   }
 
  private:
@@ -91,8 +91,8 @@ class WidthOfLimits {
     report_.warning(sub.pos, "limits-of-16-bits",
                     section_name(key) + ": UNSIGNED32 with HighLimit " +
                         std::to_string(integer_of(sub.high_limit).value_or(0)) +
-                        ", that of 16 bits; lost is " + std::string{lost} +
-                        ". Correct HighLimit to 0xFFFFFFFF where the device takes more");
+                        ", the limit of 16 bits; it excludes " + std::string{lost} +
+                        ". Correct HighLimit to 0xFFFFFFFF if the device accepts more");
   }
 
   static constexpr std::size_t most_named = 4;

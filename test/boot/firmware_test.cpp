@@ -30,7 +30,8 @@ TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsToldWithWhatFollows) {
   EXPECT_EQ(plant.count(EventKind::firmware_differs), 1);
   EXPECT_EQ(plant.text_of(EventKind::firmware_differs),
             "node 5 'conveyor': its firmware is 14.03.00 (1018:03), the plan takes it for "
-            "16.00.00: it is not so that a SYNC of its own triggers its TPDOs; these objects are "
+            "16.00.00: it is not so that a SYNC that the device sends triggers its own TPDOs; "
+            "these objects are "
             "missing: 1403, 1603, 1803, 1A03. Write `firmware: \"14.03.00\"` for it, and read "
             "`takt plan`");
 }
@@ -41,7 +42,9 @@ TEST(FirmwareOfADevice, ThatIsNewerIsToldAsWell) {
   plant.run(5s);
 
   const std::string text = plant.text_of(EventKind::firmware_differs);
-  EXPECT_NE(text.find(": a SYNC of its own triggers its TPDOs. Write"), std::string::npos) << text;
+  EXPECT_NE(text.find(": a SYNC that the device sends triggers its own TPDOs. Write"),
+            std::string::npos)
+      << text;
 }
 
 TEST(FirmwareOfADevice, ThatIsAsPlannedIsNotWorthAWord) {

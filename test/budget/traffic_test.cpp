@@ -47,10 +47,10 @@ TEST(BudgetTraffic, WhatAnEventTimerSendsIsNotCountedOnceACycle) {
 
   EXPECT_FALSE(frame_of(traffic, "TPDO1 n1").period_assumed);
   EXPECT_EQ(frame_of(traffic, "TPDO1 n1").limit, 1ms);
-  EXPECT_THAT(traffic.assumptions, Each(Not(HasSubstr("once a cycle"))));
-  EXPECT_THAT(traffic.assumptions, Contains("no inhibit time, so counted by the event timer, "
-                                            "though the device may send in between as values "
-                                            "change: TPDO1 n1"));
+  EXPECT_THAT(traffic.assumptions, Each(Not(HasSubstr("once per cycle"))));
+  EXPECT_THAT(traffic.assumptions,
+              Contains("no inhibit time: counted once per event timer, although the device may "
+                       "also send at every change of a value: TPDO1 n1"));
 }
 
 TEST(BudgetTraffic, TypesOnRequestAreSentAsOftenAsTheMasterAsks) {

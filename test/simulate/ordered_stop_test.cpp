@@ -93,10 +93,9 @@ TEST(OrderedStopOfABus, WarnsWithBothNumbersWhereTheTimeIsTooShort) {
       machine(folder, {.master = ", stop_timeout: 5000",
                        .sdo = "{index: 0x607F, value: 600000}, {index: 0x6085, value: 100000}"});
 
-  EXPECT_TRUE(
-      warns(network,
-            "drive `z` needs 6.0 s to stop from its velocity limit (607F, 6080, `limits:`) along "
-            "6085:00; the ordered stop gives it 4.0 s"));
+  EXPECT_TRUE(warns(network,
+                    "drive `z` needs 6.0 s to stop from its velocity limit (607F, 6080, `limits:`) "
+                    "along the ramp 6085:00; the ordered stop waits 4.0 s"));
   EXPECT_TRUE(warns(network, "Write `master: {stop_timeout: 9400}`, or a steeper ramp"));
 }
 

@@ -43,7 +43,7 @@ TEST(CheckPdo, AnInhibitTimeLongerThanTheEventTimerIsTold) {
   EXPECT_EQ(finding->pos, (SourcePos{line_of(15), 14}));
   EXPECT_EQ(finding->message,
             "1800sub3: the inhibit time of 1001 x 100 us is longer than the event timer of 100 ms, "
-            "which cannot be kept");
+            "so the device can't keep the event timer");
   for (const auto& good : {Record{.inhibit = 1000, .timer = 100}, Record{.inhibit = 1001},
                            Record{.index = "1400", .inhibit = 1001, .timer = 100},
                            Record{.type = 1, .inhibit = 1001, .timer = 100}}) {

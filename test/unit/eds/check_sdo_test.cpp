@@ -44,7 +44,7 @@ TEST(CheckSdo, TheDefaultChannelFollowsFromTheNodeId) {
   EXPECT_EQ(find(findings, "sdo-default-channel")->severity, Severity::warning);
   EXPECT_EQ(find(findings, "sdo-default-channel")->pos, (SourcePos{line_of(5), 14}));
   EXPECT_EQ(find(findings, "sdo-default-channel")->message,
-            "1200sub1: COB-ID $NODEID+0x580 is not that of the default SDO channel, "
+            "1200sub1: COB-ID $NODEID+0x580 differs from the COB-ID of the default SDO channel, "
             "$NODEID+0x600");
 }
 

@@ -140,7 +140,7 @@ TEST(Check, TellsAnExtendedFrameWhoseIdFits11Bits) {
   EXPECT_EQ(
       told("$NODEID+0x20000180"),
       "warning: 1800sub1: COB-ID $NODEID+0x20000180 has bit 29 set: this is the 29-bit "
-      "identifier $NODEID+0x00000180, though 11 bits would do; clear bit 29 for a base frame");
+      "identifier $NODEID+0x00000180, although 11 bits are enough; clear bit 29 for a base frame");
   EXPECT_NE(told("0x60000185"), "");
   EXPECT_NE(told("0x200007FF"), "");
   EXPECT_EQ(told("0x20000800"), "");
@@ -182,8 +182,8 @@ TEST(Check, Bit30IsToldOfRpdosOnly) {
   ASSERT_TRUE(has(findings, "pdo-rtr-of-rpdo"));
   EXPECT_EQ(find(findings, "pdo-rtr-of-rpdo")->severity, Severity::note);
   EXPECT_EQ(find(findings, "pdo-rtr-of-rpdo")->message,
-            "1400sub1: COB-ID $NODEID+0x40000200 has bit 30 set (no remote requests), which means "
-            "nothing for an RPDO");
+            "1400sub1: COB-ID $NODEID+0x40000200 has bit 30 set (no remote requests), which has no "
+            "meaning for an RPDO");
   EXPECT_FALSE(has(rpdo("0x60400010", "$NODEID+0x200"), "pdo-rtr-of-rpdo"));
   EXPECT_FALSE(has(rpdo("0x60400010", "$NODEID+0xC0000200"), "pdo-rtr-of-rpdo"));  // off
   EXPECT_FALSE(has(tpdo("0x60410010", "$NODEID+0x40000180"), "pdo-rtr-of-rpdo"));
@@ -262,8 +262,8 @@ TEST(Check, TellsABitRateThatTheDeviceHasNot) {
   };
 
   EXPECT_EQ(told("BaudRate_500=1\nBaudRate_125=1\nBaudRate_250=0\n", "250"),
-            "t.dcf:7:10: warning: Baudrate is 250 kbit/s; by [DeviceInfo] the device has 125, 500 "
-            "[baudrate-unsupported]");
+            "t.dcf:7:10: warning: Baudrate is 250 kbit/s; according to [DeviceInfo] the device has "
+            "125, 500 [baudrate-unsupported]");
   EXPECT_EQ(told("BaudRate_500=1\n", "500"), "");
   EXPECT_EQ(told("BaudRate_500=1\n", "500000"), "") << "taken for bit/s";
   EXPECT_EQ(told("", "250"), "") << "the file says nothing of them";

@@ -233,9 +233,9 @@ TEST(Eds, TheThreeMandatoryObjectsBelongIntoTheirList) {
   };
 
   for (const auto* index : {"0x1000", "0x1001", "0x1018"}) {
-    EXPECT_TRUE(said(index).ends_with("belongs into [MandatoryObjects]")) << said(index);
+    EXPECT_TRUE(said(index).ends_with("belongs in [MandatoryObjects]")) << said(index);
   }
-  EXPECT_TRUE(said("0x1008").ends_with("belongs into [OptionalObjects]"));
+  EXPECT_TRUE(said("0x1008").ends_with("belongs in [OptionalObjects]"));
 }
 
 TEST(Eds, ListsOnlySayWhereAnObjectBelongs) {

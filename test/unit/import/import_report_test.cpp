@@ -41,7 +41,7 @@ TEST_F(Import, AnObjectTwiceInAListOrInAPdoIsSuspiciousAndRuns) {
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "arm.tpdo.1.mapping[2]").fate, KeyFate::suspicious);
-  EXPECT_THAT(key(bus, "arm.tpdo.1.mapping[2]").why, HasSubstr("an input of its own"));
+  EXPECT_THAT(key(bus, "arm.tpdo.1.mapping[2]").why, HasSubstr("a separate input"));
   EXPECT_EQ(key(bus, "arm.rpdo.1.mapping[2]").fate, KeyFate::suspicious);
   EXPECT_THAT(key(bus, "arm.rpdo.1.mapping[2]").why, HasSubstr("both get the same value"));
   EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::suspicious);
@@ -125,7 +125,7 @@ TEST_F(Import, TellsADeviceThatIsToldAnotherSyncPeriod) {
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
-  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("10000 us, it is 20000 us"));
+  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("10000 us, but the period is 20000 us"));
   EXPECT_EQ(key(bus, "leg.sdo[1]").fate, KeyFate::used);
   EXPECT_EQ(key(bus, "neck.sdo[1]").fate, KeyFate::used);
 }
@@ -266,7 +266,7 @@ TEST_F(Import, TellsAnInterpolationPeriodThatIsNotTheCycle) {
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "arm.sdo[1]").fate, KeyFate::suspicious);
-  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("makes 50000 us, the SYNC period is 10000"));
+  EXPECT_THAT(key(bus, "arm.sdo[1]").why, HasSubstr("sets 50000 us, but the SYNC period is 10000"));
   EXPECT_EQ(key(bus, "arm.sdo[2]").fate, KeyFate::used);
 }
 
@@ -304,7 +304,7 @@ TEST_F(Import, GuardingThatTheDeviceCannotTakeIsSuspicious) {
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "arm.guard_time").fate, KeyFate::used);
-  EXPECT_THAT(key(bus, "arm.guard_time").why, HasSubstr("has no 100C:00"));
+  EXPECT_THAT(key(bus, "arm.guard_time").why, HasSubstr("has no writable 100C:00"));
   EXPECT_EQ(key(bus, "arm.life_time_factor").fate, KeyFate::suspicious);
   EXPECT_THAT(key(bus, "arm.life_time_factor").why, HasSubstr("will not watch the master"));
   EXPECT_EQ(key(bus, "arm.retry_factor").fate, KeyFate::used);
@@ -328,7 +328,7 @@ TEST_F(Import, Bit30OfATpdoStaysAsTheDeviceHasIt) {
 
   EXPECT_TRUE(bus.usable);
   EXPECT_EQ(key(bus, "arm.tpdo.1.cob_id").fate, KeyFate::suspicious);
-  EXPECT_THAT(key(bus, "arm.tpdo.1.cob_id").why, HasSubstr("stays as the device has it"));
+  EXPECT_THAT(key(bus, "arm.tpdo.1.cob_id").why, HasSubstr("takt leaves this bit"));
 }
 
 TEST_F(Import, WhyAMasterNeedsNoEmcyInhibitTime) {
@@ -356,9 +356,9 @@ TEST_F(Import, TheRetryFactorOfAllIsUsedOnlyWhereANodeIsGuardedByIt) {
   };
 
   EXPECT_THAT(fate(""),
-              HasSubstr("ignored: `retry_factor` of `options` is left alone: no node is"));
+              HasSubstr("ignored: `retry_factor` of `options` has no effect: no node is"));
   EXPECT_THAT(fate(", heartbeat_producer: 0, guard_time: 100, retry_factor: 2"),
-              HasSubstr("ignored: `retry_factor` of `options` is left alone: each node that is"));
+              HasSubstr("ignored: `retry_factor` of `options` has no effect: each guarded node"));
   EXPECT_EQ(fate(", heartbeat_producer: 0, guard_time: 100"),
             "used: silence that is accepted, in guard times");
 }

@@ -32,7 +32,7 @@ TEST(BootCompiler, TextInQuotesIsTextForAStringAndANumberForTheRest) {
       ElementsAre("write if differs 2008:00 0x3231", "write if differs 6081:00 0x00000010"));
   EXPECT_THAT(
       net.said("quoted-number"),
-      HasSubstr("6081:00 Profile velocity (UNSIGNED32) takes the number in the quotes, 0x10"));
+      HasSubstr("6081:00 Profile velocity (UNSIGNED32) gets the number in the quotes, 0x10"));
   EXPECT_THAT(wrong.said("out-of-range"), HasSubstr("takes a number"));
   EXPECT_THAT(plain.said("out-of-range"), HasSubstr("takes text in quotes"));
 }

@@ -81,7 +81,7 @@ TEST(BootOfDcf, AConsumerEntryOfADcfThatWatchesAnotherNodeStays) {
   const auto full = compile(arm(), dcf, "tiny.dcf");
   EXPECT_THAT(steps(full), testing::Contains("write if differs 1016:01 0x000300C8"));
   EXPECT_THAT(steps(full), testing::Not(testing::Contains(HasSubstr("0x007F012C"))));
-  EXPECT_THAT(full.said("heartbeat-consumer"), HasSubstr("each entry of 0x1016"));
+  EXPECT_THAT(full.said("heartbeat-consumer"), HasSubstr("all entries of 0x1016"));
 
   const auto room =
       compile(arm(), dcf + test::entry("1016sub2", "entry", 7, "rw", "0"), "tiny.dcf");

@@ -74,7 +74,7 @@ TEST_F(Careful, SeveralDrivesWithoutADecisionOnTheLossOfOneAreAWarning) {
                    drive + ", node_id: 1" + keys + "}\n  b: {" + drive + ", node_id: 2" + keys +
                    "}\n");
   };
-  EXPECT_THAT(two(""), AllOf(HasSubstr("when one of `a`, `b` is lost: they would go on. Write "
+  EXPECT_THAT(two(""), AllOf(HasSubstr("when one of `a`, `b` is lost: they would continue. Write "
                                        "`on_loss: quick_stop`"),
                              HasSubstr("[on-loss]")));
   EXPECT_THAT(two(", on_loss: report"), Not(HasSubstr("[on-loss]")));
@@ -89,18 +89,19 @@ TEST_F(Careful, NmtStopOfADriveThatMakesNoQuickStopByItselfIsAWarning) {
                    ", node_id: 2, group: z, " + of_b + "}\n");
   };
   const std::string stops = "sdo: [{index: 0x6007, value: 3}]";
-  EXPECT_THAT(two("on_loss: stop_group", "on_loss: report"),
-              AllOf(HasSubstr("when node `a` is lost, NMT stop goes to `a`, `b` at once"),
-                    HasSubstr("Write `sdo: [{index: 0x6007, value: 3}]`, or `on_loss: quick_stop`"),
-                    HasSubstr("[on-loss]")));
+  EXPECT_THAT(
+      two("on_loss: stop_group", "on_loss: report"),
+      AllOf(HasSubstr("when node `a` is lost, the master sends NMT stop to `a`, `b` at once"),
+            HasSubstr("Write `sdo: [{index: 0x6007, value: 3}]`, or `on_loss: quick_stop`"),
+            HasSubstr("[on-loss]")));
   EXPECT_THAT(two("on_loss: stop_group", "on_loss: report"), Not(HasSubstr("device file of")));
   EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report"),
-              HasSubstr("NMT stop goes to `b` at once"));
+              HasSubstr("sends NMT stop to `b` at once"));
   EXPECT_THAT(two("on_loss: stop_group, " + stops, "on_loss: report, " + stops),
               Not(HasSubstr("[on-loss]")));
   EXPECT_THAT(two("on_loss: stop_node, " + stops, "on_loss: report"), Not(HasSubstr("[on-loss]")));
   EXPECT_THAT(two("on_loss: stop_node", "on_loss: report"),
-              HasSubstr("NMT stop goes to `a` at once"));
+              HasSubstr("sends NMT stop to `a` at once"));
   EXPECT_THAT(two("on_loss: quick_stop", "on_loss: report"), Not(HasSubstr("[on-loss]")));
 }
 
@@ -116,7 +117,7 @@ TEST_F(Careful, ATpdoMayBeLateByItsInhibitTime) {
 TEST_F(Careful, AnEventTimerBelowTheInhibitTimeIsAWarning) {
   EXPECT_THAT(of_drive(tpdo1("transmission: 255, event_timer: 50, inhibit_time: 1000")),
               AllOf(HasSubstr("the event timer of TPDO1 of node `a` (50 ms) is shorter than its "
-                              "inhibit time (100 ms): it is sent every 100 ms. Write "
+                              "inhibit time (100 ms): the device sends the PDO every 100 ms. Write "
                               "`event_timer` of at least 100 (ms)"),
                     HasSubstr("[event-timer]")));
   EXPECT_THAT(of_drive(tpdo1("transmission: 255, event_timer: 100, inhibit_time: 1000")),
@@ -162,9 +163,11 @@ TEST_F(Careful, AnExplicitCobIdThatAnotherTpdoHasIsAnError) {
   const std::string told = told_of(
       std::string{"bus: {name: lift}\nmaster: {sync_period: 10000}\nnodes:\n  a: {"} + drive +
       ", node_id: 1}\n  b: {" + drive + ", node_id: 2, tpdo: {1: {cob_id: 0x181}}}\n");
-  EXPECT_THAT(told, AllOf(HasSubstr("error: `cob_id` 0x181 of TPDO1 of node `b` is that of TPDO1 "
-                                    "of node `a` in "),
-                          HasSubstr("[cob-id-clash]"), Not(HasSubstr("[cob-id-moved]"))));
+  EXPECT_THAT(
+      told,
+      AllOf(HasSubstr(
+                "error: `cob_id` 0x181 of TPDO1 of node `b` is also used by TPDO1 of node `a` in "),
+            HasSubstr("[cob-id-clash]"), Not(HasSubstr("[cob-id-moved]"))));
   EXPECT_EQ(told.find("error"), told.rfind("error")) << "one cause, one error: " << told;
 }
 

@@ -47,7 +47,7 @@ TEST(DeviceDataDiff, ShowsRulesThatOnlyRefuse) {
   const std::string text = diff("node_ids: {range: [1, 63]}\ntpdo: [{no_gaps: true}]");
 
   EXPECT_THAT(text, AllOf(HasSubstr("+    node ids 1..63\n"),
-                          HasSubstr("+    TPDOs: only together with the one before\n")));
+                          HasSubstr("+    TPDOs: only together with the PDO before\n")));
   EXPECT_THAT(text, Not(HasSubstr("boot of node"))) << "not a frame differs";
 }
 

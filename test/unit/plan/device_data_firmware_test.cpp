@@ -14,7 +14,7 @@ TEST(DeviceDataFirmware, RefusesALenzeBeforeFirmware16AsProducerOfItsOwnSync) {
       "tpdo: {1: {transmission: 1}}, sdo: [{index: 0x1005, value: 0x40000080}], ";
 
   const auto old = lenze8400(producer + "firmware: \"15.02\"");
-  EXPECT_NE(old.said("device-data").find("firmware 15.02.00 does not send it then"),
+  EXPECT_NE(old.said("device-data").find("firmware 15.02.00 does not send the TPDO in this case"),
             std::string::npos);
   EXPECT_TRUE(has_error(old.findings));
   EXPECT_TRUE(

@@ -58,17 +58,18 @@ TEST(DeviceDataHeartbeat, OfTheDeviceIsPlannedAsItKeepsIt) {
   EXPECT_THAT(steps[0].value, ElementsAre(byte(100), byte(0)));
   EXPECT_EQ(net.plan.nodes[0].heartbeat_period, 100ms);
   EXPECT_EQ(net.plan.nodes[0].heartbeat_timeout, 300ms);
-  EXPECT_THAT(net.said("device-data"),
-              HasSubstr("`heartbeat_producer` of node `arm` is 104 ms; Lenze 9400 counts in 5 ms "
-                        "and keeps 100 ms: the times of 0x1016 and 0x1017"));
+  EXPECT_THAT(
+      net.said("device-data"),
+      HasSubstr("`heartbeat_producer` of node `arm` is 104 ms; Lenze 9400 counts in steps of 5 ms "
+                "and rounds this time down to 100 ms: the times of 0x1016 and 0x1017"));
   EXPECT_FALSE(has_error(net.findings));
 }
 
 TEST(DeviceDataHeartbeat, ThatTheDeviceTakesForNoneIsRefused) {
   const auto net = drive(", heartbeat_producer: 4");
 
-  EXPECT_THAT(net.said("device-data"), HasSubstr("is 4 ms; Lenze 9400 counts in 5 ms and takes it "
-                                                 "for 0, none"));
+  EXPECT_THAT(net.said("device-data"), HasSubstr("is 4 ms; Lenze 9400 counts in steps of 5 ms and "
+                                                 "rounds this time down to 0, which means off"));
   EXPECT_TRUE(has_error(net.findings));
   EXPECT_EQ(drive(", heartbeat_producer: 0").said("device-data"), "");
 }
@@ -79,7 +80,8 @@ TEST(DeviceDataHeartbeat, OfAnSdoEntryIsJudgedToo) {
   };
 
   EXPECT_THAT(said("index: 0x1016, sub_index: 1", "0x00090067"),
-              HasSubstr("1016:01 is 103 ms; Lenze 9400 counts in 5 ms and keeps 100 ms"));
+              HasSubstr("1016:01 is 103 ms; Lenze 9400 counts in steps of 5 ms and rounds this "
+                        "time down to 100 ms"));
   EXPECT_THAT(said("index: 0x1017", "7"), HasSubstr("1017:00 is 7 ms"));
   EXPECT_EQ(said("index: 0x1016, sub_index: 1", "0x00090064"), "");
   EXPECT_EQ(said("index: 0x2000", "7"), "");

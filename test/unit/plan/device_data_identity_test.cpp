@@ -66,8 +66,8 @@ TEST(DeviceDataIdentity, LimitsTheNodeIdToThatOfItsSwitches) {
 
   EXPECT_EQ(said("63", "0x11400"), "");
   EXPECT_THAT(said("64", "0x11400"),
-              HasSubstr("node `terminals` can't have node id 64 as Beckhoff bus terminals, only "
-                        "1..63: its switches set no other address (beckhoff_io.yaml:"));
+              HasSubstr("node `terminals` can't have node id 64 as Beckhoff bus terminals, which "
+                        "allows only 1..63: its switches set no other address (beckhoff_io.yaml:"));
   EXPECT_EQ(said("99", "0x22301"), "");
   EXPECT_THAT(said("100", "0x22301"), HasSubstr("only 1..99: its two rotary switches"));
 }
@@ -81,8 +81,9 @@ TEST(DeviceDataIdentity, OfABootRomHasOneNodeId) {
   };
 
   EXPECT_EQ(said("125"), "");
-  EXPECT_THAT(said("5"),
-              HasSubstr("can't have node id 5 as NXP LPC boot ROM, only 125: the boot ROM"));
+  EXPECT_THAT(
+      said("5"),
+      HasSubstr("can't have node id 5 as NXP LPC boot ROM, which allows only 125: the boot ROM"));
 }
 
 TEST(DeviceDataIdentity, OfNodeIdsNeedsItsRange) {

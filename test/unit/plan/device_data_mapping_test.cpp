@@ -58,11 +58,12 @@ TEST(DeviceDataMapping, OfALenzeControllerIsUsedWithoutGaps) {
 }
 
 TEST(DeviceDataMapping, OfALenzeControllerIsSaidByThePlan) {
-  EXPECT_THAT(controller("").plan.nodes.at(0).device_notes,
-              ElementsAre("TPDOs: no more objects than its default mapping has, only together "
-                          "with the one before",
-                          "RPDOs: no more objects than its default mapping has, only together "
-                          "with the one before"));
+  EXPECT_THAT(
+      controller("").plan.nodes.at(0).device_notes,
+      ElementsAre(
+          "TPDOs: no more objects than its default mapping has, only together with the PDO before",
+          "RPDOs: no more objects than its default mapping has, only together with the PDO "
+          "before"));
 }
 
 }  // namespace

@@ -103,10 +103,11 @@ TEST(DeviceDataPdos, KnowsTheBufferStateOfATechnosoftDriveAndItsInhibitTime) {
 TEST(DeviceDataPdos, ATpdoOfADrv28ThatOnlyAnswersAnRpdoWhichIsOffIsAWarning) {
   const auto net = drv28("tpdo: {2: {transmission: 255}}, rpdo: {2: {enabled: false}}");
   const std::string said = net.said("device-data");
-  EXPECT_NE(said.find("TPDO2 of node `pump` of transmission type 255 is sent only as the answer to "
-                      "RPDO2, which is off: it never comes. Switch RPDO2 on, or write "
-                      "`transmission: 254` (on change)"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find("TPDO2 of node `pump` of transmission type 255 is sent only as the answer to "
+                "RPDO2, which is off, so the device never sends it. Switch RPDO2 on, or write "
+                "`transmission: 254` (on change)"),
+      std::string::npos)
       << said;
 }
 

@@ -52,7 +52,7 @@ const Refusal refusals[] = {
      "an RPDO can't be polled"},
     {"lenze8400",
      "firmware: \"15.99\", tpdo: {1: {transmission: 0}}, sdo: [{index: 0x1005, value: 0x40000080}]",
-     "firmware 15.99.00 does not send it then", "from version 16.00.00 on"},
+     "firmware 15.99.00 does not send the TPDO in this case", "from version 16.00.00 on"},
     {"lenze8400",
      "firmware: \"16\", tpdo: {1: {transmission: 240}}, sdo: [{index: 0x1005, value: 0x40000080}, "
      "{index: 0x5E8F, value: 0x81}]",
@@ -130,7 +130,9 @@ std::string printed_plan(const std::string& demo) {
 TEST(FamilyRules, AreInThePlanOfEachDemo) {
   const std::string lenze = printed_plan("lenze8400");
   EXPECT_THAT(lenze, HasSubstr("TPDO1..4: types 0..240, 252, 253, 254, 255"));
-  EXPECT_THAT(lenze, HasSubstr("event timers send besides changes, which do not shift them"));
+  EXPECT_THAT(
+      lenze,
+      HasSubstr("event timers send in addition to changes; a change does not restart the timer"));
   EXPECT_THAT(lenze, HasSubstr("firmware 16.00.00"));
 
   const std::string terminals = printed_plan("beckhoff");
@@ -143,7 +145,7 @@ TEST(FamilyRules, AreInThePlanOfEachDemo) {
                               "channel"));
   EXPECT_THAT(pump, HasSubstr("TPDO2..4: types 1..240, 254, 255, no remote requests"));
   EXPECT_THAT(pump, HasSubstr("inhibit times in 1 ms, at least 50 ms, 500 ms by default"));
-  EXPECT_THAT(pump, HasSubstr("with an event timer, changes send nothing"));
+  EXPECT_THAT(pump, HasSubstr("with an event timer, a change sends no PDO"));
 }
 
 }  // namespace

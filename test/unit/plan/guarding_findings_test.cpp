@@ -32,7 +32,7 @@ TEST(GuardingFindings, EachKeyIsLeftAloneBesideAHeartbeat) {
   const std::string said = compile(network(guarding), with_guarding()).said("guarding");
 
   for (const auto* key : {"`guard_time`", "`life_time_factor`", "`retry_factor`"}) {
-    EXPECT_THAT(said, HasSubstr("(CiA 301): " + std::string{key} + " is left alone"));
+    EXPECT_THAT(said, HasSubstr("(CiA 301): " + std::string{key} + " has no effect"));
   }
 }
 
@@ -43,12 +43,14 @@ TEST(GuardingFindings, WhyANodeIsNotGuarded) {
   };
 
   EXPECT_THAT(said(off + "life_time_factor: 3"),
-              HasSubstr("no guard time, neither here nor in tiny.eds: `life_time_factor` is left"));
+              HasSubstr("no guard time, neither in the network file nor in tiny.eds: "
+                        "`life_time_factor` has no effect"));
   EXPECT_THAT(said(off + "guard_time: 100, retry_factor: 0"),
-              HasSubstr("(`retry_factor: 0`): `guard_time` is left alone"));
+              HasSubstr("(`retry_factor: 0`): `guard_time` has no effect"));
   EXPECT_THAT(said(off + guarding, "heartbeat_consumer: false"),
-              HasSubstr("(`heartbeat_consumer: false` of `master`): `guard_time` is left alone"));
-  EXPECT_THAT(said("boot: false, " + guarding), HasSubstr("(`boot: false`): `guard_time` is left"));
+              HasSubstr("(`heartbeat_consumer: false` of `master`): `guard_time` has no effect"));
+  EXPECT_THAT(said("boot: false, " + guarding),
+              HasSubstr("(`boot: false`): `guard_time` has no effect"));
   EXPECT_EQ(said(off + "guard_time: 0, life_time_factor: 0"), "");
 }
 
@@ -62,7 +64,7 @@ TEST(GuardingFindings, ADeviceWithoutTheObjectsIsTold) {
   const auto net = compile(network("heartbeat_producer: 0, " + guarding));
 
   EXPECT_EQ(net.plan.nodes.at(0).guard.retries, 2);
-  EXPECT_THAT(net.said("guard-object"), HasSubstr("tiny.eds has no 100C:00"));
+  EXPECT_THAT(net.said("guard-object"), HasSubstr("tiny.eds has no writable 100C:00"));
   EXPECT_THAT(net.said("guard-object"), HasSubstr("needs 100D:00, which tiny.eds does not have"));
   EXPECT_EQ(complaints_of("guard-object", net), 1) << "the device that does not watch the master";
 }
@@ -71,7 +73,7 @@ TEST(GuardingFindings, AFactorOfNoneNeedsNoObject) {
   const auto net = compile(network("heartbeat_producer: 0, guard_time: 200, life_time_factor: 0"));
 
   EXPECT_EQ(complaints_of("guarding", net) + complaints_of("guard-object", net), 0);
-  EXPECT_THAT(net.said("guarding"), HasSubstr("needs no `life_time_factor: 0`"));
+  EXPECT_THAT(net.said("guarding"), HasSubstr("does not need `life_time_factor: 0`"));
 }
 
 }  // namespace

@@ -228,7 +228,7 @@ TEST(Fallback, ANodeThatIsNoDriveHoldsAfterTheSameTime) {
 
 TEST(Fallback, WhatANodeCanNotDoIsAnError) {
   const auto quick = two_axes("  profile: none\n  on_timeout: {fallback: quick_stop}\n");
-  EXPECT_THAT(quick.said("fallback"), HasSubstr("is no CiA 402 drive"));
+  EXPECT_THAT(quick.said("fallback"), HasSubstr("is not a CiA 402 drive"));
 
   const auto safe = two_axes("  on_timeout: {fallback: safe}\n");
   EXPECT_THAT(safe.said("fallback"), HasSubstr("needs `safe_values"));

@@ -212,8 +212,9 @@ TEST(Limits, AreNamedWithTheirSourceByThePlan) {
 
 TEST(Limits, AreProposedWhereThereAreNone) {
   const Compiled net = drive("    limits: {velocity: 2}\n");
-  EXPECT_THAT(text_of(net), AllOf(HasSubstr("proposal: `position: ...` (the travel of the machine"),
-                                  HasSubstr("proposal: `step: 0.004` (velocity in one cycle)")));
+  EXPECT_THAT(text_of(net),
+              AllOf(HasSubstr("proposal: `position: ...` (enter the travel of the machine"),
+                    HasSubstr("proposal: `step: 0.004` (velocity in one cycle)")));
   EXPECT_THAT(text_of(drive("")), HasSubstr("proposal: `velocity: 10` (6081:00)"));
 }
 
@@ -235,11 +236,11 @@ TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
                     HasSubstr("nothing sets 607B:00 (position range limit)"),
                     HasSubstr("Write 607B:01 and 607B:02 under `sdo:`")));
   EXPECT_THAT(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 9999}]\n", range_limit),
-              HasSubstr("and 607B:00 (position range limit) turns over after 10000"));
+              HasSubstr("but 607B:00 (position range limit) wraps after 10000"));
   EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3599}]\n", range_limit), "");
   EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3600}]\n", range_limit), "")
       << "a rounded number";
-  EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("has no such object")));
+  EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("does not have this object")));
 }
 
 /// Compiles a limited axis whose actual position comes in TPDO2 with these keys.
@@ -257,12 +258,13 @@ std::string start_of(const std::string& tpdo, const std::string& limits) {
 
 TEST(Limits, ThatWaitForAPositionThatComesByEventAloneHaveAWarning) {
   for (const char* const limits : {"step: 0.01", "velocity: 2.0", "acceleration: 20"}) {
-    EXPECT_THAT(start_of("transmission: 255", limits),
-                AllOf(HasSubstr("limits of node `arm` hold its set-points back until 6064:00 has "
-                                "come once"),
-                      HasSubstr("TPDO2 brings it only by event (transmission 255 without "
-                                "`event_timer`)"),
-                      HasSubstr("Give TPDO2 an `event_timer`, or make it synchronous")));
+    EXPECT_THAT(
+        start_of("transmission: 255", limits),
+        AllOf(HasSubstr(
+                  "limits of node `arm` hold its set-points back until 6064:00 has arrived once"),
+              HasSubstr("TPDO2 sends it only by event (transmission 255 without "
+                        "`event_timer`)"),
+              HasSubstr("Give TPDO2 an `event_timer`, or make it synchronous")));
   }
   EXPECT_THAT(start_of("transmission: 254", "step: 0.01"), HasSubstr("(transmission 254 without"));
   EXPECT_EQ(start_of("transmission: 255, event_timer: 100", "step: 0.01"), "");

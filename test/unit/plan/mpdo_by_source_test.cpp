@@ -98,7 +98,8 @@ TEST(MpdoBySource, ProposesAPlaceForEachObjectAsLongAsThereIsOne) {
   const std::string said = net.said("dispatching-list");
   EXPECT_THAT(said, HasSubstr("sub_index: 1, value: 0x016081006081007F"));
   EXPECT_THAT(said, HasSubstr("sub_index: 2, value: 0x01607A00607A007F"));
-  EXPECT_THAT(said, HasSubstr("takes 60FF:00 from the master, node 127: it has no free place"));
+  EXPECT_THAT(said,
+              HasSubstr("takes 60FF:00 from the master, node 127: the list has no free entry"));
 }
 
 TEST(MpdoBySource, NeedsADispatchingList) {

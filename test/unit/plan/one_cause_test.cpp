@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"value: 1000", "vlue: 1000", "did you mean `value`"},
         Mistake{"{index: 0x606C}", "{indx: 0x606C}", "did you mean `index`"},
         Mistake{"takt_drive402.eds", "takt_drive403.eds", "not found"},
-        Mistake{"/share/eds/takt_drive402.eds", "/README.md", "this is no EDS or DCF"},
+        Mistake{"/share/eds/takt_drive402.eds", "/README.md", "the file is not an EDS or DCF"},
         Mistake{"node_id: 5", "node_id: five", "`node_id`"},
         Mistake{"node_id: 5", "node_id: 200", "1..127"},
         Mistake{"node_id: 5", "node_id: 127", "is the master's"},

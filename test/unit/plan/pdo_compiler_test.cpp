@@ -77,7 +77,7 @@ TEST(PdoCompiler, ReportsEveryBadMappingAtItsPlace) {
                                     "14:3 error [dummy]", "15:3 error [not-mappable]"));
   EXPECT_THAT(net.said("no-such-object"), HasSubstr("did you mean 0x6064 Position actual value?"));
   EXPECT_THAT(net.said("no-such-object"), HasSubstr("0x6041 Statusword has sub-index 00"));
-  EXPECT_THAT(net.said("wrong-direction"), HasSubstr("belongs into a TPDO (device to master)"));
+  EXPECT_THAT(net.said("wrong-direction"), HasSubstr("belongs in a TPDO (device to master)"));
   EXPECT_THAT(net.said("not-mappable"), HasSubstr("PDOMapping=0"));
   EXPECT_THAT(net.said("wrong-width"), HasSubstr("16 bits wide, not 8"));
 }
@@ -130,7 +130,7 @@ TEST(PdoCompiler, AMappingThatIsFixedEmptyIsSaidToBeEmpty) {
       test::tiny_objects() + test::pdo(true, 1, "$NODEID+0x180", 1, {}, "const");
 
   EXPECT_THAT(compile(arm("tpdo: {1: {mapping: [{index: 0x6064}]}}"), eds).said("fixed-mapping"),
-              HasSubstr("can't be mapped anew, the device fixes it empty\n"));
+              HasSubstr("can't be remapped, it is fixed in the device without objects\n"));
 }
 
 // The EDS files of EPOS4 and Roboteq have this granularity.
@@ -218,8 +218,8 @@ TEST(CobIds, AbsoluteIdsOfAnEdsThatClashBecomeNodeRelativeWithANote) {
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
   EXPECT_EQ(net.plan.pdos.tpdos.at(1).cob_id, CobId::base(0x182));
   EXPECT_THAT(net.said("cob-id-moved"),
-              HasSubstr("TPDO1 of node `b` has COB-ID 0x181 in tiny.eds, which is TPDO1 of node "
-                        "`a`; it becomes 0x182"));
+              HasSubstr("TPDO1 of node `b` has COB-ID 0x181 in tiny.eds, which is used by TPDO1 of "
+                        "node `a`; takt uses 0x182"));
 }
 
 TEST(CobIds, TwoUsersOfOneIdAreAnError) {
@@ -268,7 +268,7 @@ TEST(CobIds, AnRpdoWithTheIdOfATpdoIsFedByThatDevice) {
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_EQ(net.plan.pdos.rpdos.size(), 1U);
   EXPECT_EQ(net.plan.pdos.rpdos.at(0).node, 1_node);
-  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a`"));
+  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
 }
 
 /// The RPDO1 of each device receives TPDO1 of node 1.
@@ -288,9 +288,9 @@ TEST(CobIds, ALinkThatOnlyTheEdsStatesIsKept) {
   EXPECT_TRUE(net.plan.pdos.rpdos.empty());
   EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
   EXPECT_THAT(net.said("linked"),
-              testing::AllOf(HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a` (both 0x181, "
-                                       "as tiny.eds has it); the master does not send it"),
-                             HasSubstr("RPDO1 of node `c` is fed by TPDO1 of node `a`")));
+              testing::AllOf(HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a` (both 0x181, "
+                                       "which tiny.eds sets); the master does not send this RPDO"),
+                             HasSubstr("RPDO1 of node `c` receives TPDO1 of node `a`")));
 }
 
 TEST(CobIds, ALinkOfTheEdsThatTheNetworkFileCutsIsAWarningWithItsRemedy) {
@@ -330,8 +330,8 @@ TEST(CobIds, AnIdOfTheNetworkFileAndOneOfAnEdsMakeALinkToo) {
 
   EXPECT_THAT(net.complaints(), IsEmpty());
   EXPECT_THAT(net.said("linked"),
-              testing::AllOf(HasSubstr("RPDO1 of node `b` is fed by TPDO1 of node `a` (both 0x202"),
-                             HasSubstr("RPDO1 of node `c` is fed by TPDO1 of node `b`")));
+              testing::AllOf(HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a` (both 0x202"),
+                             HasSubstr("RPDO1 of node `c` receives TPDO1 of node `b`")));
 }
 
 TEST(CobIds, RestrictedRangesAreThoseOfTable40) {

@@ -110,8 +110,9 @@ TEST(SdoServers, OneThatOnlyTheDeviceDataHaveOnIsAWarning) {
     EXPECT_THAT(said, HasSubstr("the SDO channel 2 (0x1201) of node `pump` may be on: parameter "
                                 "channel 2 listens on 0x640"));
     EXPECT_THAT(said, HasSubstr("(lenze8400.yaml:"));
-    EXPECT_THAT(said, HasSubstr("and then the two would meet: 0x641 is in the SDO channel of node "
-                                "`fan` (0x641, 0x5C1)"));
+    EXPECT_THAT(said,
+                HasSubstr("and then the two would collide: 0x641 is in the SDO channel of node "
+                          "`fan` (0x641, 0x5C1)"));
     EXPECT_THAT(said, HasSubstr(there ? "`sdo: [{index: 0x1201, sub_index: 1, value: 0x80000000}]`"
                                       : "switch it off in the device (bit 31 of 1201:01)"));
     EXPECT_TRUE(std::ranges::none_of(net.findings, [](const Finding& finding) {

@@ -60,7 +60,7 @@ TEST(StoppingTime, IsThatOfTheMotorsSpeedBehindItsGear) {
   EXPECT_EQ(network.plan.stop_timeout, 30s) << "62.5 s would be needed";
   EXPECT_NE(network.said("stop-time")
                 .find("drive `z` needs 40.0 s to stop from its velocity limit (607F, 6080, "
-                      "`limits:`) along 6085:00; the ordered stop gives it 24.0 s"),
+                      "`limits:`) along the ramp 6085:00; the ordered stop waits 24.0 s"),
             std::string::npos)
       << network.said("stop-time");
 }
@@ -82,7 +82,7 @@ TEST(StoppingTime, IsAlongTheSlowDownRampWhereTheOptionCodeSaysSo) {
     EXPECT_EQ(axis(network).stopping_time, 6s) << option;
     EXPECT_NE(network.said("stop-time")
                   .find("needs 6.0 s to stop from its velocity limit (607F, 6080, `limits:`) along "
-                        "6084:00; the ordered stop gives it 4.0 s"),
+                        "the ramp 6084:00; the ordered stop waits 4.0 s"),
               std::string::npos)
         << network.said("stop-time");
   }

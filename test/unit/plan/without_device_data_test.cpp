@@ -98,7 +98,7 @@ TEST(WithoutDeviceData, AFileWithoutDeviceTypeIsOfADriveByItsObjects) {
 
   EXPECT_TRUE(drive.plan.nodes.at(0).cia402);
   EXPECT_EQ(drive.devices.at(0).model, "drive402");
-  EXPECT_THAT(drive.said("profile"), testing::HasSubstr("gives 1000:00 no value"));
+  EXPECT_THAT(drive.said("profile"), testing::HasSubstr("has no value for 1000:00"));
   EXPECT_FALSE(stated.plan.nodes.at(0).cia402);
   EXPECT_FALSE(denied.plan.nodes.at(0).cia402);
   EXPECT_EQ(denied.said("profile"), "");

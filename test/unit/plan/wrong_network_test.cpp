@@ -126,7 +126,7 @@ TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
 
   const std::string text = told_of("nodes: {a: {node_id: 1, dcf: noise.eds}}\n");
 
-  EXPECT_THAT(text, HasSubstr("this is no EDS or DCF"));
+  EXPECT_THAT(text, HasSubstr("the file is not an EDS or DCF"));
   EXPECT_LE(std::ranges::count(text, '\n'), 3);
 }
 
@@ -193,15 +193,16 @@ TEST_F(WrongNetwork, TheHighBitsOfACobIdAreExplained) {
   EXPECT_THAT(tpdo("cob_id: 0x80000181"), AllOf(HasSubstr("net.yaml:6:24: warning"),
                                                 HasSubstr("bit 31 set: the PDO is switched "
                                                           "off"),
-                                                HasSubstr("0x181 would have it on")));
-  EXPECT_THAT(tpdo("cob_id: 0x40000181"),
-              AllOf(HasSubstr("net.yaml:6:24: note"), HasSubstr("stays as the device has it")));
+                                                HasSubstr("0x181 switches the PDO on")));
+  EXPECT_THAT(
+      tpdo("cob_id: 0x40000181"),
+      AllOf(HasSubstr("net.yaml:6:24: note"), HasSubstr("leaves this bit as it is in the device")));
   EXPECT_THAT(tpdo("cob_id: 0x40000181, poll_ms: 100, transmission: 253"),
               AllOf(HasSubstr("net.yaml:6:24: error"), HasSubstr("clear the bit")));
   EXPECT_THAT(tpdo("cob_id: 0x20000181"),
               AllOf(HasSubstr("net.yaml:6:24: warning"), HasSubstr("identifier 0x00000181")));
   EXPECT_THAT(of_axis("    rpdo: {1: {cob_id: 0x40000201}}\n"),
-              AllOf(HasSubstr("net.yaml:6:24: warning"), HasSubstr("nothing for an RPDO")));
+              AllOf(HasSubstr("net.yaml:6:24: warning"), HasSubstr("no meaning for an RPDO")));
 }
 
 }  // namespace
