@@ -35,7 +35,7 @@ void apply(const PdoChange& change, NodeSpec& node) {
 }
 
 std::string no_node(const NetworkSpec& spec, const std::string& name) {
-  std::string text = "no node `" + name + "` to change; there is";
+  std::string text = "there is no node `" + name + "` to change; the nodes are";
   for (const auto& node : spec.nodes) text += ' ' + node.name;
   return text;
 }

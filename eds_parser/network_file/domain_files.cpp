@@ -24,8 +24,8 @@ class Reader {
     if (!files.upload.empty()) {
       tell(files, Severity::note, "upload-file",
            "UploadFile " + takt::quoted(files.upload) +
-               " names where a tool puts what it reads; taktd reads no file from a device "
-               "(`takt sdo upload` does)");
+               " is the file for what a tool reads from the device; taktd reads no files from "
+               "devices (use `takt sdo upload`)");
     }
     if (!files.download.empty() && is_for_boot(files)) load(files);
   }
@@ -44,15 +44,15 @@ class Reader {
         sub->access == Access::constant) {
       tell(files, Severity::warning, "download-file",
            "DownloadFile " + takt::quoted(files.download) +
-               " of an object that is no DOMAIN that can be written; it was left out");
+               " belongs to an object that is not a writable DOMAIN; it was left out");
       return false;
     }
     const auto index = files.key.index;
     if (index >= first_program_object && index <= last_program_object) {
       tell(files, Severity::note, "download-file",
            "DownloadFile " + takt::quoted(files.download) +
-               " is a program: `software_file` with `software_version` loads it where the device "
-               "has another one");
+               " is a program: write `software_file` with `software_version`, and takt loads it if "
+               "the device has another version");
       return false;
     }
     return true;
@@ -70,8 +70,9 @@ class Reader {
     std::error_code failed;
     const std::string what = "DownloadFile " + takt::quoted(files.download);
     if (name.is_absolute()) {
-      return tell(files, Severity::error, "no-file",
-                  what + " is an absolute path: put the file beside the DCF and name it alone");
+      return tell(
+          files, Severity::error, "no-file",
+          what + " is an absolute path: put the file beside the DCF and write only its name");
     }
     if (!fs::is_regular_file(path, failed)) {
       return tell(files, Severity::error, "no-file",

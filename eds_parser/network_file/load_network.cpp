@@ -49,7 +49,7 @@ std::string why_unreadable(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) return "is a folder; name the network file (YAML) in it";
   if (!fs::exists(status)) return "there is no such file";
-  if (!fs::is_regular_file(status)) return "is no regular file";
+  if (!fs::is_regular_file(status)) return "is not a regular file";
   return "can't be read: no permission";
 }
 
@@ -118,10 +118,10 @@ class Loader {
   /// network file instead.
   void note_placeholder(const NetworkSpec& spec) {
     if (!spec.dcf_path.given || !is_placeholder(*spec.dcf_path)) return;
-    out_.findings.push_back({path_.string(), spec.dcf_path.pos, Severity::note, "placeholder",
-                             "`dcf_path` " + *spec.dcf_path +
-                                 " is a placeholder of another build: files are looked for beside "
-                                 "this one"});
+    out_.findings.push_back(
+        {path_.string(), spec.dcf_path.pos, Severity::note, "placeholder",
+         "`dcf_path` " + *spec.dcf_path +
+             " is a placeholder of another build system: takt looks for files beside this file"});
   }
 
   /// Turns `@BUS_CONFIG_PATH@/x.eds` into `x.eds`.
@@ -168,8 +168,8 @@ class Loader {
     if (!entries) {
       return error(node.configuration_file.pos, "concise-dcf",
                    "`" + *node.configuration_file + "` " + entries.error() +
-                       ": `configuration_file` takes a concise DCF (0x1F22); a DCF in text goes to "
-                       "`dcf`");
+                       ": `configuration_file` needs a concise DCF (0x1F22); write a DCF in text "
+                       "under `dcf`");
     }
     std::vector<SdoSpec> values;
     for (const ConciseEntry& entry : *entries) values.push_back(sdo_of(entry, node));
@@ -229,7 +229,7 @@ class Loader {
       if (fs::is_directory(path, ignored)) {
         what = "is a folder: name the EDS or DCF file in it; looked for ";
       } else if (fs::exists(path, ignored)) {
-        what = "is no regular file; looked for ";
+        what = "is not a regular file; looked for ";
       }
     }
     error(node.dcf.pos, "no-device-file",
@@ -284,7 +284,7 @@ class Loader {
              " in this device file" +
              (listed_only >= torn_from ? "; " + std::to_string(listed_only) +
                                              " objects that it lists have no section: "
-                                             "is it cut off?"
+                                             "is the file cut off?"
                                        : "") +
              "; `takt eds check " + (id ? "--node " + std::to_string(id->value()) + ' ' : "") +
              path.string() + "` lists them"});

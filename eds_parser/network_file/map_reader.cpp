@@ -29,7 +29,7 @@ bool is_scalar(const YamlNode& node, std::string_view key, std::string_view expe
                NetworkReport& report) {
   if (node.kind == YamlNode::Kind::scalar) return true;
   report.error(node.pos, "wrong-type",
-               "`" + std::string{key} + "` is " + std::string{expected} + ", this is " +
+               "`" + std::string{key} + "` has to be " + std::string{expected} + ", but this is " +
                    (node.kind == YamlNode::Kind::null ? "empty" : std::string{name(node.kind)}));
   return false;
 }
@@ -74,7 +74,7 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view 
   if (!value) {
     report.error(node.pos, "not-a-number",
                  "`" + std::string{key} + "`: " + quote(node.text) +
-                     " is no whole number; expected " + range_text(range) + ", decimal or 0x");
+                     " is not a whole number; expected " + range_text(range) + ", decimal or 0x");
     return {};
   }
   if (*value < range.low || *value > range.high) {
@@ -99,7 +99,7 @@ std::optional<double> read_number(const YamlNode& node, std::string_view key,
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
       looks_octal(text)) {
     report.error(node.pos, "not-a-number",
-                 "`" + std::string{key} + "`: " + quote(node.text) + " is no number");
+                 "`" + std::string{key} + "`: " + quote(node.text) + " is not a number");
     return {};
   }
   return value;
@@ -115,13 +115,13 @@ std::optional<bool> read_bool(const YamlNode& node, std::string_view key, Networ
     if (node.quoted) {
       report.warning(node.pos, "quoted",
                      "`" + std::string{key} + "`: " + quote(node.text) +
-                         " in quotes is taken for false; generators of other masters take any "
-                         "text for true: write it without quotes");
+                         " in quotes is read as false; generators of other masters read any text "
+                         "as true: write the word without quotes");
     }
     return false;
   }
   report.error(node.pos, "wrong-type",
-               "`" + std::string{key} + "` is true or false, not " + quote(node.text));
+               "`" + std::string{key} + "` has to be true or false, not " + quote(node.text));
   return {};
 }
 
@@ -138,8 +138,9 @@ std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
 MapReader::MapReader(const YamlNode& node, std::string what, NetworkReport& report)
     : node_{node}, what_{std::move(what)}, report_{report} {
   if (node.kind == YamlNode::Kind::map || node.kind == YamlNode::Kind::null) return;
-  report.error(node.pos, "wrong-type",
-               what_ + " is a map (`key: value`), this is " + std::string{name(node.kind)});
+  report.error(
+      node.pos, "wrong-type",
+      what_ + " has to be a map (`key: value`), but this is " + std::string{name(node.kind)});
 }
 
 const YamlNode* MapReader::take(std::string_view key) {
@@ -224,7 +225,7 @@ std::optional<std::size_t> read_choice(const YamlNode& node, std::string_view ke
     list += (list.empty() ? "" : ", ") + std::string{choice};
   }
   report.error(node.pos, "unknown-value",
-               "`" + std::string{key} + "`: " + quote(node.text) + " is none of " + list +
+               "`" + std::string{key} + "`: " + quote(node.text) + " is not one of " + list +
                    did_you_mean(node.text, names));
   return {};
 }

@@ -62,7 +62,7 @@ class DeviceReader {
     if (node == nullptr) return;
     if (node->kind != YamlNode::Kind::sequence || node->items.size() > max_items) {
       report_.error(node->pos, "wrong-type",
-                    "`" + std::string{key} + "` is a list of at most 1024 entries");
+                    "`" + std::string{key} + "` has to be a list of at most 1024 entries");
       return;
     }
     for (const YamlNode* item : node->items) read(*item);
@@ -94,7 +94,7 @@ class DeviceReader {
     if (!low || !high) return {};
     if (*low > *high) {
       report_.error(node.pos, "out-of-range",
-                    "`" + std::string{key} + "`: the lower number comes first");
+                    "`" + std::string{key} + "`: write the lower number first");
       return {};
     }
     return NumberRange{static_cast<std::uint32_t>(*low), static_cast<std::uint32_t>(*high)};
@@ -113,7 +113,7 @@ class DeviceReader {
     const auto version = Firmware::parse(*value);
     if (!version) {
       report_.error(value.pos, "not-a-version",
-                    "`" + std::string{key} + "` is a version as \"16.00.00\"");
+                    "`" + std::string{key} + "` has to be a version like \"16.00.00\"");
     }
     return version;
   }
@@ -122,16 +122,17 @@ class DeviceReader {
     firmware_in_revision(outer);
     const YamlNode* node = outer.take("match");
     if (node == nullptr) {
-      report_.error(root_.pos, "missing-key",
-                    "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}` "
-                    "or a list of them, or `match: none` where only `device:` of a node shall "
-                    "choose it");
+      report_.error(
+          root_.pos, "missing-key",
+          "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}` "
+          "or a list of them, or `match: none` if only `device:` of a node shall select the entry");
       return;
     }
     if (node->kind == YamlNode::Kind::scalar && node->text == "none") return;
     if (node->kind != YamlNode::Kind::sequence) return match(*node);
     if (node->items.empty() || node->items.size() > max_items) {
-      report_.error(node->pos, "wrong-type", "`match` is one identity, a list of them, or `none`");
+      report_.error(node->pos, "wrong-type",
+                    "`match` has to be one identity, a list of identities, or `none`");
       return;
     }
     for (const YamlNode* item : node->items) match(*item);
@@ -184,9 +185,9 @@ class DeviceReader {
     ValueEdit edit{.fact = fact(reader, item.pos), .object = {*index, *sub}, .value = *number};
     reader.finish();
     if (is_pdo_parameter(*index)) {
-      report_.error(index.pos, "wrong-object",
-                    "`sdo` is not for PDO parameters (0x1400..0x1BFF); rules of `tpdo` and "
-                    "`rpdo` are");
+      report_.error(
+          index.pos, "wrong-object",
+          "`sdo` is not for PDO parameters (0x1400..0x1BFF); write rules of `tpdo` and `rpdo`");
       return;
     }
     data_.values.push_back(std::move(edit));
@@ -240,8 +241,9 @@ class DeviceReader {
 
   void read_types(const YamlNode& node, std::vector<NumberRange>& out) {
     if (node.kind != YamlNode::Kind::sequence || node.items.empty() || node.items.size() > 256) {
-      report_.error(node.pos, "wrong-type",
-                    "transmission types are a list of numbers and ranges: [[1, 240], 254, 255]");
+      report_.error(
+          node.pos, "wrong-type",
+          "transmission types have to be a list of numbers and ranges: [[1, 240], 254, 255]");
       return;
     }
     for (const YamlNode* item : node.items) {
@@ -300,8 +302,9 @@ class DeviceReader {
     edit.object = {*index, *sub};
     edit.whole = !sub.given;
     if (!index.given || *missing == edit.access.has_value()) {
-      report_.error(item.pos, "missing-key",
-                    "an entry of `objects` has an `index`, and either `missing: true` or `access`");
+      report_.error(
+          item.pos, "missing-key",
+          "an entry of `objects` needs an `index`, and either `missing: true` or `access`");
       return;
     }
     data_.objects.push_back(std::move(edit));
@@ -342,7 +345,7 @@ class DeviceReader {
     const YamlNode* node = reader.take("emcy");
     if (node == nullptr) return;
     if (node->kind != YamlNode::Kind::map || node->pairs.size() > max_items) {
-      report_.error(node->pos, "wrong-type", "`emcy` is a map of error codes to texts");
+      report_.error(node->pos, "wrong-type", "`emcy` has to be a map of error codes to texts");
       return;
     }
     for (const YamlPair& pair : node->pairs) {

@@ -22,12 +22,12 @@ void read_consumer(MapReader& reader, Sourced<bool>& consumer) {
                       node->text.find_first_not_of("0123456789") == std::string::npos;
   if (!number) return reader.boolean(key, consumer);
   consumer = {node->text.find_first_not_of('0') != std::string::npos, node->pos, true};
-  reader.report().warning(
-      node->pos, "wrong-type",
-      "`heartbeat_consumer` is true or false; " + node->text + " is read as " +
-          (*consumer ? "true: how long a silence may be follows from `heartbeat_producer` of "
-                       "whom is watched, times `heartbeat_multiplier`"
-                     : "false"));
+  reader.report().warning(node->pos, "wrong-type",
+                          "`heartbeat_consumer` has to be true or false; " + node->text +
+                              " is read as " +
+                              (*consumer ? "true: the accepted silence is `heartbeat_producer` of "
+                                           "the watched node times `heartbeat_multiplier`"
+                                         : "false"));
 }
 
 void read_producer(MapReader& reader, Sourced<std::uint16_t>& producer) {
@@ -38,7 +38,7 @@ void read_producer(MapReader& reader, Sourced<std::uint16_t>& producer) {
   producer = {0, node->pos, true};
   reader.report().warning(
       node->pos, "wrong-type",
-      "`heartbeat_producer` is a time in ms; " + node->text + " is read as 0: no heartbeat");
+      "`heartbeat_producer` has to be a time in ms; " + node->text + " is read as 0: no heartbeat");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ constexpr std::int64_t most_axes = 8;  // CiA 402: objects of axis n at 0x6000 +
 /// Reports a value that is not finite, and returns false for it.
 bool check_finite(double value, SourcePos pos, const std::string& what, NetworkReport& report) {
   if (std::isfinite(value)) return true;
-  report.error(pos, "out-of-range", what + " is a finite number");
+  report.error(pos, "out-of-range", what + " has to be a finite number");
   return false;
 }
 
@@ -25,8 +25,8 @@ void read_magnitude(MapReader& reader, std::string_view key, Sourced<double>& ou
   } else if (*out <= 0) {
     reader.report().error(out.pos, "out-of-range",
                           what +
-                              " is above 0: it holds for both directions; to forbid a motion, "
-                              "leave the output out of the mapping");
+                              " has to be above 0: the limit applies to both directions; to forbid "
+                              "a motion, leave the output out of the mapping");
     out.given = false;
   }
 }
@@ -38,7 +38,7 @@ void read_range(MapReader& reader, std::string_view key, Sourced<RangeSpec>& out
   const std::string what = "`" + std::string{key} + "` of " + reader.what();
   if (list->kind != YamlNode::Kind::sequence || list->items.size() != 2) {
     reader.report().error(list->pos, "wrong-type",
-                          what + " is a pair of the lowest and the highest value: [-1.5, 1.5]");
+                          what + " has to be the lowest and the highest value: [-1.5, 1.5]");
     return;
   }
   const auto low = read_number(*list->items[0], key, reader.report());
@@ -49,8 +49,8 @@ void read_range(MapReader& reader, std::string_view key, Sourced<RangeSpec>& out
   }
   if (*low >= *high) {
     reader.report().error(list->pos, "out-of-range",
-                          what + " begins with the lower value: " + list->items[0]->text +
-                              " isn't below " + list->items[1]->text);
+                          what + " has to begin with the lower value: " + list->items[0]->text +
+                              " is not below " + list->items[1]->text);
     return;
   }
   out = {{*low, *high}, list->pos, true};
@@ -73,7 +73,7 @@ void read_axes(const YamlNode& map, const std::string& owner, LimitsSpec& limits
   if (map.kind != YamlNode::Kind::map) {
     report.error(map.pos, "wrong-type",
                  "`axes` in `limits` of " + owner +
-                     " is a map by the number of the axis: {2: {velocity: 1.0}}");
+                     " has to be a map of axis numbers: {2: {velocity: 1.0}}");
     return;
   }
   for (const YamlPair& pair : map.pairs) {
@@ -113,7 +113,7 @@ void read_object_limit(const YamlNode& item, const std::string& owner, LimitsSpe
     return;
   }
   if (limit.min.given && limit.max.given && *limit.min >= *limit.max) {
-    report.error(limit.min.pos, "out-of-range", what + ": `min` isn't below `max`");
+    report.error(limit.min.pos, "out-of-range", what + ": `min` is not below `max`");
     return;
   }
   for (const ObjectLimitSpec& other : limits.objects) {
@@ -135,9 +135,10 @@ LimitsSpec read_limits(const YamlNode& node, const std::string& owner, NetworkRe
   if (const YamlNode* axes = reader.take("axes")) read_axes(*axes, owner, limits, report);
   if (const YamlNode* list = reader.take("objects")) {
     if (list->kind != YamlNode::Kind::sequence) {
-      report.error(list->pos, "wrong-type",
-                   "`objects` in `limits` of " + owner +
-                       " is a list of `{index: 0x6411, sub_index: 1, min: 0, max: 10, step: 0.5}`");
+      report.error(
+          list->pos, "wrong-type",
+          "`objects` in `limits` of " + owner +
+              " has to be a list of `{index: 0x6411, sub_index: 1, min: 0, max: 10, step: 0.5}`");
     }
     for (const YamlNode* item : list->items) read_object_limit(*item, owner, limits, report);
   }

@@ -40,7 +40,7 @@ class NetworkReader {
   void run() {
     if (root_.kind != YamlNode::Kind::map) {
       report_.error(root_.pos, "wrong-type",
-                    "a network file is a map with `master:` and `nodes:`, this is " +
+                    "a network file has to be a map with `master:` and `nodes:`, but this is " +
                         std::string{name(root_.kind)});
       return;
     }
@@ -50,9 +50,10 @@ class NetworkReader {
     }
     if (const YamlNode* nodes = root_.find("nodes")) read_nodes(*nodes);
     if (!found_node_ && !slipped_) {
-      report_.error(root_.pos, "no-nodes",
-                    "no node is described: expected `nodes:` with `NAME: {node_id: 1..127, dcf: "
-                    "FILE.eds}`");
+      report_.error(
+          root_.pos, "no-nodes",
+          "the file describes no node: expected `nodes:` with `NAME: {node_id: 1..127, dcf: "
+          "FILE.eds}`");
     }
   }
 
@@ -73,7 +74,7 @@ class NetworkReader {
     if (is_node(pair)) return add(pair);
     slipped_ = slipped_ || nearest(pair.key, section_names) == "nodes";
     report_.error(pair.key_pos, "unknown-key",
-                  "unknown section `" + pair.key + "` (a node would have a `node_id`)" +
+                  "unknown section `" + pair.key + "` (a node needs a `node_id`)" +
                       did_you_mean(pair.key, section_names));
   }
 
@@ -90,7 +91,7 @@ class NetworkReader {
   void read_nodes(const YamlNode& nodes) {
     if (nodes.kind != YamlNode::Kind::map) {
       report_.error(nodes.pos, "wrong-type",
-                    "`nodes` is a map of `NAME: {node_id: ..., dcf: ...}`, this is " +
+                    "`nodes` has to be a map of `NAME: {node_id: ..., dcf: ...}`, but this is " +
                         std::string{name(nodes.kind)});
       found_node_ = true;  // this is already reported
       return;

@@ -56,7 +56,7 @@ constexpr std::array<std::string_view, 1> not_supported{"time_cobid"};
 void ignore_scales(MapReader& reader) {
   const auto ignore = [&reader](std::span<const std::string_view> keys, const std::string& unit) {
     reader.ignore(keys,
-                  "is left alone: takt scales by `units: {" + unit + "}}`, from counts to SI");
+                  "has no effect: takt scales with `units: {" + unit + "}}`, from counts to SI");
   };
   ignore(position_scales, "position: {scale: ..., offset: ..., unit: rad");
   ignore(velocity_scales, "velocity: {scale: ..., unit: rad/s");
@@ -67,8 +67,9 @@ void ignore_scales(MapReader& reader) {
 void read_firmware(MapReader& reader, Sourced<std::string>& out) {
   reader.text("firmware", out);
   if (!out.given || Firmware::parse(*out)) return;
-  reader.report().error(out.pos, "not-a-version",
-                        "`firmware` of " + reader.what() + " is a version as \"16.00.00\"");
+  reader.report().error(
+      out.pos, "not-a-version",
+      "`firmware` of " + reader.what() + " has to be a version like \"16.00.00\"");
   out.given = false;
 }
 
@@ -109,7 +110,7 @@ void read_reset(MapReader& reader, NodeSpec& node) {
   if (const auto choice = read_choice(*value, "reset", names, reader.report())) {
     if (communication.given) {
       reader.report().error(value->pos, "duplicate-key",
-                            "`reset` and `reset_communication` say the same twice: keep one");
+                            "`reset` and `reset_communication` set the same option: keep one");
     }
     node.reset = {static_cast<ResetPolicy>(*choice), value->pos, true};
   }
@@ -165,9 +166,9 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
   read_heartbeat_ends(reader, node.heartbeat_consumer, node.heartbeat_producer);
   reader.number("heartbeat_multiplier", node.heartbeat_multiplier);
   if (node.heartbeat_multiplier.given && *node.heartbeat_multiplier < 1.5) {
-    reader.report().error(node.heartbeat_multiplier.pos, "out-of-range",
-                          "`heartbeat_multiplier` is at least 1.5, or one late heartbeat stops the "
-                          "node");
+    reader.report().error(
+        node.heartbeat_multiplier.pos, "out-of-range",
+        "`heartbeat_multiplier` has to be at least 1.5, or one late heartbeat stops the node");
   }
   reader.integer("guard_time", node.guard_time, {0, 65535, " ms"});
   reader.integer("life_time_factor", node.life_time_factor, {0, 255});
@@ -178,8 +179,9 @@ void read_heartbeat(MapReader& reader, NodeSpec& node) {
   const YamlNode* behavior = reader.take("error_behavior");
   if (behavior == nullptr || behavior->kind == YamlNode::Kind::null) return;
   if (behavior->kind != YamlNode::Kind::map) {
-    reader.report().error(behavior->pos, "wrong-type",
-                          "`error_behavior` is a map of 1029 sub-indices, as `{1: 0}`");
+    reader.report().error(
+        behavior->pos, "wrong-type",
+        "`error_behavior` has to be a map of sub-indices of 0x1029, for example `{1: 0}`");
     return;
   }
   for (const YamlPair& pair : behavior->pairs) {
@@ -202,8 +204,8 @@ void warn_of_no_limit(const TimeoutSpec& timeout, NetworkReport& report) {
   for (const Sourced<std::uint32_t>* after : {&timeout.after, &timeout.after_cycles}) {
     if (!after->given || after->value != 0) continue;
     report.warning(after->pos, "no-time-to-live",
-                   "0 means no limit: outputs keep their last command when its application dies; "
-                   "that is for latched outputs of I/O nodes only");
+                   "0 means no limit: outputs keep their last command when the application dies; "
+                   "use this for latched outputs of I/O nodes only");
   }
 }
 
@@ -231,7 +233,7 @@ void read_timeout(MapReader& outer, NodeSpec& node) {
   reader.integer("after_cycles", node.on_timeout.after_cycles, {0, 1'000'000});
   if (node.on_timeout.after.given && node.on_timeout.after_cycles.given) {
     outer.report().error(node.on_timeout.after_cycles.pos, "duplicate-key",
-                         "`after` (ms) and `after_cycles` say the same thing: keep one of them");
+                         "`after` (ms) and `after_cycles` set the same time: keep one of them");
   }
   warn_of_no_limit(node.on_timeout, outer.report());
   warn_of_short_limit(node.on_timeout, outer.report());
@@ -288,16 +290,16 @@ void check_name(const std::string& name, SourcePos pos, NetworkReport& report) {
   if (name == "all" || (!name.empty() && std::ranges::all_of(name, [](unsigned char c) {
         return std::isdigit(c) != 0;
       }))) {
-    report.error(
-        pos, "name",
-        "`" + name +
-            "` is no name for a node: commands like `takt nmt start` take numbers for node "
-            "ids and `all` for all nodes");
+    report.error(pos, "name",
+                 "`" + name +
+                     "` can't be the name of a node: in commands like `takt nmt start` numbers are "
+                     "node ids and `all` means all nodes");
   }
   if (name.empty() || name.size() > 48 || std::ranges::any_of(name, bad)) {
-    report.error(pos, "name",
-                 "the node name `" + name.substr(0, 60) +
-                     "` becomes a part of LCM channels: letters, digits, `_` and `-`, at most 48");
+    report.error(
+        pos, "name",
+        "the node name `" + name.substr(0, 60) +
+            "` becomes part of LCM channel names: use at most 48 letters, digits, `_` and `-`");
   }
 }
 
@@ -329,9 +331,9 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   read_lists(reader, spec);
   read_timeout(reader, spec);
   read_sim(reader, spec);
-  reader.ignore(keys_of_others, "means nothing to takt and is left alone");
+  reader.ignore(keys_of_others, "has no meaning for takt and is ignored");
   ignore_scales(reader);
-  reader.ignore(not_supported, "is not acted on by this version of takt");
+  reader.ignore(not_supported, "has no effect in this version of takt");
   const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
   reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
   if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
@@ -340,8 +342,8 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   if (misnamed != nullptr) {
     report.error(reader.key_pos("eds"), "missing-key",
                  "node `" + name +
-                     "` names its device file by `eds`: no reader of such files takes that; the "
-                     "key is `dcf`, for an EDS as well");
+                     "` names its device file under `eds`, which no program reads; the key is "
+                     "`dcf`, for an EDS as well");
   } else if (!spec.dcf.given && node.find("dcf") == nullptr && !reader.has_slip_of("dcf")) {
     report.error(pos, "missing-key",
                  "node `" + name + "` lacks `dcf`, the name of its EDS or DCF file");

@@ -78,8 +78,8 @@ void tell_repeated(const SdoSpec& sdo, const std::string& owner, SourcePos first
   if (in_order) {
     report.warning(sdo.pos, "written-twice",
                    text +
-                       ": both are, in this order; is one of them meant for another object? "
-                       "(`again: true` says that both are meant)");
+                       ": takt writes both values in this order; is one of them meant for another "
+                       "object? (`again: true` confirms both)");
   } else {
     report.error(sdo.pos, "written-twice", text + ": keep one");
   }
@@ -92,9 +92,10 @@ std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
   std::vector<SdoSpec> list;
   if (node.kind == YamlNode::Kind::null) return list;
   if (node.kind != YamlNode::Kind::sequence || node.items.size() > max_list) {
-    report.error(node.pos, "wrong-type",
-                 "`" + std::string{key} + "` of " + owner +
-                     " is a list of at most 1024 `{index: 0x6083, sub_index: 0, value: 1000}`");
+    report.error(
+        node.pos, "wrong-type",
+        "`" + std::string{key} + "` of " + owner +
+            " has to be a list of at most 1024 `{index: 0x6083, sub_index: 0, value: 1000}`");
     return list;
   }
   std::map<ObjectKey, SourcePos> seen;

@@ -18,8 +18,9 @@ void read_cob_id(MapReader& reader, PdoSpec& pdo) {
   }
   if (node->kind == YamlNode::Kind::scalar && !node->text.empty() &&
       (std::isalpha(static_cast<unsigned char>(node->text[0])) != 0 || node->text[0] == '$')) {
-    reader.report().error(node->pos, "unknown-value",
-                          "`cob_id` is a number or `auto`, not `" + node->text.substr(0, 40) + "`");
+    reader.report().error(
+        node->pos, "unknown-value",
+        "`cob_id` has to be a number or `auto`, not `" + node->text.substr(0, 40) + "`");
     return;
   }
   if (const auto value = read_integer(*node, "cob_id", {0, 0xFFFF'FFFF}, reader.report())) {
@@ -60,7 +61,7 @@ std::optional<ObjectKey> read_short_key(const YamlNode& node, std::string_view k
   if (!is_hex(sub) || sub.size() > 2) {
     report.error(node.pos, "not-a-number",
                  "`" + std::string{key} + "`: `" + node.text.substr(0, 40) +
-                     "` is no object: 0x6064, or 0x6064:0 with the sub-index in hex");
+                     "` is not an object: write 0x6064, or 0x6064:0 with the sub-index in hex");
     return {};
   }
   std::uint8_t number = 0;
@@ -73,10 +74,11 @@ void read_mapping(MapReader& reader, PdoSpec& pdo, const std::string& what) {
   if (node == nullptr) return;
   NetworkReport& report = reader.report();
   if (node->kind != YamlNode::Kind::sequence) {
-    report.error(node->pos, "wrong-type",
-                 "`mapping` of " + what +
-                     " is a list of `0x6041:0` or `{index: 0x6041, sub_index: 0}`, this is " +
-                     std::string{name(node->kind)});
+    report.error(
+        node->pos, "wrong-type",
+        "`mapping` of " + what +
+            " has to be a list of `0x6041:0` or `{index: 0x6041, sub_index: 0}`, but this is " +
+            std::string{name(node->kind)});
     return;
   }
   pdo.mapping.pos = node->pos;
@@ -113,13 +115,13 @@ void check_types(const PdoSpec& pdo, std::string_view key, const std::string& wh
   if (pdo.transmission.given && *pdo.transmission >= 241 && *pdo.transmission <= 251) {
     report.error(pdo.transmission.pos, "transmission-type",
                  "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
-                     " is reserved by CiA 301: 0..240 with SYNC, 254 or 255 by event");
+                     " is reserved by CiA 301: write 0..240 with SYNC, 254 or 255 by event");
   }
   const bool remote = *pdo.transmission == 252 || *pdo.transmission == 253;
   if (pdo.transmission.given && remote && key == "rpdo") {
     report.error(pdo.transmission.pos, "transmission-type",
                  "`transmission` " + std::to_string(*pdo.transmission) + " of " + what +
-                     " is reserved for RPDOs: 0..240 with SYNC, 254 or 255 by event");
+                     " is reserved for RPDOs: write 0..240 with SYNC, 254 or 255 by event");
   }
 }
 
@@ -128,14 +130,13 @@ void check_direction(const PdoSpec& pdo, std::string_view key, const std::string
                      NetworkReport& report) {
   if (pdo.poll_ms.given && pdo.poll_syncs.given) {
     report.error(pdo.poll_syncs.pos, "written-twice",
-                 "`poll_ms` and `poll_syncs` of " + what + ": keep one");
+                 "`poll_ms` and `poll_syncs` of " + what + " exclude each other: keep one");
   }
   if (key == "tpdo") return;
   const auto refuse = [&](const auto& value, std::string_view name) {
     if (!value.given) return;
-    report.error(
-        value.pos, "wrong-direction",
-        "`" + std::string{name} + "` of " + what + ": only a TPDO is received by the master");
+    report.error(value.pos, "wrong-direction",
+                 "`" + std::string{name} + "` of " + what + ": the master receives only TPDOs");
   };
   refuse(pdo.poll_ms, "poll_ms");
   refuse(pdo.poll_syncs, "poll_syncs");
@@ -213,7 +214,7 @@ std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const
   if (node.kind != YamlNode::Kind::map) {
     report.error(node.pos, "wrong-type",
                  "`" + std::string{key} + "` of " + owner +
-                     " is a map of PDO numbers, `1: {mapping: [...]}`; this is " +
+                     " has to be a map of PDO numbers, `1: {mapping: [...]}`, but this is " +
                      std::string{name(node.kind)});
     return pdos;
   }

@@ -18,10 +18,11 @@ void read_channel(MapReader& outer, NodeSpec& node) {
   reader.integer("answer", answer, {0x581, 0x7FF});
   reader.finish();
   if (!request.given || !answer.given || *request == *answer) {
-    outer.report().error(map->pos, "missing-key",
-                         "`sdo_channel` of " + outer.what() +
-                             " has two COB-IDs, as `{request: 0x645, answer: 0x5C5}`: what the "
-                             "master sends and what the device answers on (0x1201:01 and 02)");
+    outer.report().error(
+        map->pos, "missing-key",
+        "`sdo_channel` of " + outer.what() +
+            " needs two COB-IDs, as in `{request: 0x645, answer: 0x5C5}`: for the requests of the "
+            "master and for the answers of the device (0x1201:01 and 02)");
     return;
   }
   node.sdo_channel = {{CobId::base(*request), CobId::base(*answer)}, map->pos, true};
@@ -37,8 +38,9 @@ void read_timeout(const YamlNode& item, MapReader& outer, NodeSpec& node) {
   reader.integer("timeout_ms", timeout, {1, 600'000, " ms"});
   reader.finish();
   if (!index.given || !timeout.given) {
-    outer.report().error(item.pos, "missing-key",
-                         "an entry of `sdo_timeouts` is as `{index: 0x1F50, timeout_ms: 20000}`");
+    outer.report().error(
+        item.pos, "missing-key",
+        "an entry of `sdo_timeouts` has the form `{index: 0x1F50, timeout_ms: 20000}`");
     return;
   }
   SdoObjectTimeout& entry = node.sdo_timeouts.emplace_back();
@@ -60,9 +62,10 @@ void read_sdo_access(MapReader& reader, NodeSpec& node) {
   const YamlNode* list = reader.take("sdo_timeouts");
   if (list == nullptr || list->kind == YamlNode::Kind::null) return;
   if (list->kind != YamlNode::Kind::sequence || list->items.size() > most_timeouts) {
-    reader.report().error(list->pos, "wrong-type",
-                          "`sdo_timeouts` of " + reader.what() +
-                              " is a list of at most 256 `{index: 0x1F50, timeout_ms: 20000}`");
+    reader.report().error(
+        list->pos, "wrong-type",
+        "`sdo_timeouts` of " + reader.what() +
+            " has to be a list of at most 256 `{index: 0x1F50, timeout_ms: 20000}`");
     return;
   }
   for (const YamlNode* item : list->items) read_timeout(*item, reader, node);

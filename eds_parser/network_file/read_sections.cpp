@@ -9,8 +9,9 @@
 namespace takt {
 namespace {
 
-constexpr std::string_view other_reader = "means nothing to takt and is left alone";
-constexpr std::string_view of_nodes = "has no effect: write it to the nodes, or to `defaults`";
+constexpr std::string_view other_reader = "has no meaning for takt and is ignored";
+constexpr std::string_view of_nodes =
+    "has no effect: write it under the nodes, or under `defaults`";
 
 constexpr std::array<std::uint32_t, 9> standard_rates{10, 20, 50, 100, 125, 250, 500, 800, 1000};
 
@@ -30,19 +31,20 @@ void read_bit_rate(MapReader& reader, std::string_view key, Sourced<std::uint32_
   const bool is_bits = *rate > 1000 && *rate % 1000 == 0 && is_standard_rate(kbit);
   if (is_bits && key == "baudrate") {
     report.warning(rate.pos, "unit",
-                   written + ": " + std::to_string(*rate) + " is taken for bit/s, CAN ends at " +
-                       "1000 kbit/s; write " + std::to_string(kbit));
+                   written + ": " + std::to_string(*rate) +
+                       " is read as bit/s, CAN allows at most " + "1000 kbit/s; write " +
+                       std::to_string(kbit));
     rate.value = kbit;
   } else if (*rate > 1000) {
     report.error(rate.pos, "unit",
                  written + ": " + std::to_string(*rate) + " would be " + std::to_string(kbit) +
-                     " Mbit/s; CAN ends at 1000" +
+                     " Mbit/s; CAN allows at most 1000 kbit/s" +
                      (is_bits ? ", write " + std::to_string(kbit) : ""));
     return;
   } else if (!is_standard_rate(*rate)) {
     report.warning(rate.pos, "bit-rate",
                    written + " and " + std::to_string(*rate) +
-                       " is no CANopen rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
+                       " is not a CANopen bit rate (10, 20, 50, 100, 125, 250, 500, 800, 1000)");
   }
   out = rate;
 }
@@ -62,7 +64,7 @@ void read_sync_source(MapReader& reader, MasterSpec& master) {
   const auto needs_source = [&](const SourcePos& pos, const std::string& key) {
     report.error(pos, "sync-source",
                  "`" + key +
-                     "` is for a SYNC that another device makes: name it with "
+                     "` is for a SYNC that another device makes: name this device with "
                      "`sync_source` (a node, or `external`)");
   };
   if (!followed && master.sync_timeout_us.given) {
@@ -72,7 +74,7 @@ void read_sync_source(MapReader& reader, MasterSpec& master) {
   const std::uint32_t period = *master.sync_period_us;
   if (followed && period == 0) {
     report.error(master.sync_source.pos, "sync-source",
-                 "`sync_source` needs `sync_period`: the period in us that the producer keeps");
+                 "`sync_source` needs `sync_period`: the SYNC period of the producer in us");
   } else if (followed && master.sync_timeout_us.given && *master.sync_timeout_us < period) {
     report.error(master.sync_timeout_us.pos, "out-of-range",
                  "`sync_timeout` of " + std::to_string(*master.sync_timeout_us) +
@@ -99,13 +101,13 @@ void read_sync(MapReader& reader, MasterSpec& master) {
   reader.integer("cycle", master.cycle_us, {200, 60'000'000, " us"});
   if (master.sync_overflow.given && *master.sync_overflow == 1) {
     report.error(master.sync_overflow.pos, "out-of-range",
-                 "`sync_overflow` is 0 (no counter) or 2..240; 1 is reserved by CiA 301");
+                 "`sync_overflow` has to be 0 (no counter) or 2..240; CiA 301 reserves 1");
   }
   const std::uint32_t period = *master.sync_period_us;
   if (period > 0 && period < 200) {
     report.error(master.sync_period_us.pos, "unit",
                  "`sync_period` is in us: " + std::to_string(period) +
-                     " us has no room for frames; for " + std::to_string(period) + " ms write " +
+                     " us leaves no room for frames; for " + std::to_string(period) + " ms write " +
                      std::to_string(period * 1000));
   }
   if (master.sync_window_us.given && period > 0 && *master.sync_window_us > period) {
@@ -125,17 +127,19 @@ void read_time(MapReader& reader, MasterSpec& master) {
   reader.integer("time_cob_id", master.time_cob_id);
   const std::uint32_t id = *master.time_cob_id & ~flags;
   if (id == 0 || id > 0x7FF) {
-    reader.report().error(master.time_cob_id.pos, "out-of-range",
-                          "`time_cob_id` is an identifier of 0x001 .. 0x7FF; bits 30 (produce) and "
-                          "31 (consume) may be set as in 0x1012");
+    reader.report().error(
+        master.time_cob_id.pos, "out-of-range",
+        "`time_cob_id` has to be an identifier of 0x001..0x7FF; bits 30 (produce) and "
+        "31 (consume) may be set as in 0x1012");
     return;
   }
   if ((*master.time_cob_id & produces) != 0 && !master.time_period_ms.given) {
     master.time_period_ms = {1000, master.time_cob_id.pos, true};
   }
   if (master.time_period_ms.given && *master.time_period_ms > 0 && *master.time_period_ms < 100) {
-    reader.report().error(master.time_period_ms.pos, "out-of-range",
-                          "`time_period` is in ms and at least 100: TIME goes before every PDO");
+    reader.report().error(
+        master.time_period_ms.pos, "out-of-range",
+        "`time_period` is in ms and has to be at least 100: TIME has priority over every PDO");
   }
 }
 
@@ -150,7 +154,7 @@ void check_interface(const Sourced<std::string>& interface, NetworkReport& repor
                             : name.size() <= 15 && name.find_first_of("/: ") == name.npos;
   if (good) return;
   report.error(interface.pos, "interface",
-               "`interface` is the name of a CAN interface (can0, at most 15 characters) or "
+               "`interface` has to be the name of a CAN interface (can0, at most 15 characters) or "
                "unix:PATH (at most 107)");
 }
 
@@ -167,8 +171,8 @@ void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   if (spec.bus.name.given &&
       (std::ranges::any_of(*spec.bus.name, bad) || spec.bus.name->size() > 32)) {
     report.error(spec.bus.name.pos, "name",
-                 "the bus name becomes a part of LCM channels: letters, digits, `_` and `-`, at "
-                 "most 32");
+                 "the bus name becomes part of LCM channel names: use at most 32 letters, digits, "
+                 "`_` and `-`");
   }
 }
 
@@ -179,8 +183,9 @@ void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report
   reader.integer("retry_factor", spec.retry_factor, {0, 255});
   reader.finish();
   if (spec.heartbeat_multiplier.given && *spec.heartbeat_multiplier < 1.5) {
-    report.error(spec.heartbeat_multiplier.pos, "out-of-range",
-                 "`heartbeat_multiplier` is at least 1.5, or one late heartbeat stops the node");
+    report.error(
+        spec.heartbeat_multiplier.pos, "out-of-range",
+        "`heartbeat_multiplier` has to be at least 1.5, or one late heartbeat stops the node");
   }
 }
 
@@ -217,10 +222,10 @@ void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report)
       other_reader);
   reader.ignore(std::array<std::string_view, 2>{"boot_timeout_ms", "sdo_timeout_ms"}, of_nodes);
   reader.ignore(std::array<std::string_view, 1>{"emcy_inhibit_time"},
-                "has no effect: the master sends no EMCY, so there is none to hold back");
+                "has no effect: the master sends no EMCY");
   reader.ignore(std::array<std::string_view, 1>{"error_behavior"},
                 "has no effect: the master has no 0x1029; `on_loss` of a node, `on_sync_loss`, "
-                "`on_timeout` and `stop_all_nodes` say what faults do");
+                "`on_timeout` and `stop_all_nodes` set the reactions to faults");
   reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
 }
 
@@ -276,8 +281,9 @@ void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report) {
   const bool signs = *authenticate == "images";
   spec.lcm = {.url = *url, .broker = *broker, .typed = *typed, .keys = *keys, .signs = signs};
   if (!signs && *authenticate != "commands") {
-    report.error(authenticate.pos, "lcm",
-                 "`authenticate` of `lcm` is `commands` or `images`, not `" + *authenticate + "`");
+    report.error(
+        authenticate.pos, "lcm",
+        "`authenticate` of `lcm` has to be `commands` or `images`, not `" + *authenticate + "`");
   } else if (authenticate.given && keys->empty()) {
     report.error(authenticate.pos, "lcm", "`authenticate` of `lcm` needs `keys: FILE` beside it");
   }

@@ -16,12 +16,11 @@ void read_unit_fields(MapReader& reader, UnitSpec& unit) {
   if (unit.scale.given && *unit.scale <= 0) {
     report.error(unit.scale.pos, "out-of-range",
                  "`scale` of " + reader.what() +
-                     " is above 0 (SI units of one count); `sign: -1` "
-                     "turns the direction");
+                     " has to be above 0 (SI units per count); `sign: -1` reverses the direction");
     unit.scale.value = 1;
   }
   if (sign.given && *sign == 0) {
-    report.error(sign.pos, "out-of-range", "`sign` of " + reader.what() + " is 1 or -1");
+    report.error(sign.pos, "out-of-range", "`sign` of " + reader.what() + " has to be 1 or -1");
   }
   unit.offset = *offset;
   unit.sign = sign.given && *sign < 0 ? -1 : 1;
@@ -53,8 +52,9 @@ UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkRepo
   quantity("torque", units.torque);
   if (const YamlNode* list = reader.take("objects")) {
     if (list->kind != YamlNode::Kind::sequence) {
-      report.error(list->pos, "wrong-type",
-                   "`objects` is a list of `{index: 0x2000, sub_index: 1, scale: 0.1, unit: V}`");
+      report.error(
+          list->pos, "wrong-type",
+          "`objects` has to be a list of `{index: 0x2000, sub_index: 1, scale: 0.1, unit: V}`");
     }
     for (const YamlNode* item : list->items) {
       MapReader entry{*item, "an entry of `units: objects` of " + owner, report};

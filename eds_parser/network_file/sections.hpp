@@ -16,7 +16,7 @@ void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
 /// Message for unknown keys beside `driver`. ros2_canopen passes the whole map to the class named
 /// there.
 inline constexpr std::string_view driver_key =
-    ": takt reads none of that name and leaves it alone; the class of `driver` may read it";
+    ": takt has no key of this name and ignores it; the class of `driver` may read it";
 
 /// Reads one node. Keys of `defaults` that the node does not have itself are already merged into
 /// it.

@@ -54,7 +54,7 @@ struct Shared {
 };
 
 std::string others_text(const std::vector<std::string>& others) {
-  std::string text = "; the same for ";
+  std::string text = "; the same applies to ";
   for (std::size_t i = 0; i < std::min(others.size(), most_named); ++i) {
     text += (i == 0 ? "`" : ", `") + others[i] + "`";
   }

@@ -36,7 +36,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end() || found->second.second) {
-      stop(position(mark), "alias", "an alias inside the value that it names never ends");
+      stop(position(mark), "alias", "this alias refers to a value that contains the alias itself");
     }
     attach(found->second.first, position(mark));
   }
@@ -158,7 +158,7 @@ class YamlTreeBuilder : public YAML::EventHandler {
                  std::set<std::string, std::less<>>& keys) {
     if (source.kind != YamlNode::Kind::map) {
       stop(pos, "merge-key",
-           "`<<` merges a map or a list of maps, this is " + std::string{name(source.kind)});
+           "`<<` merges a map or a list of maps, but this is " + std::string{name(source.kind)});
     }
     merged_ += source.pairs.size() + 1;
     if (merged_ > YamlTree::max_merged) {
@@ -206,7 +206,7 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
     tree.root_ = nullptr;
   };
   if (text.size() > max_text) {
-    fail({}, "too-large", "larger than 1 MiB: no network file");
+    fail({}, "too-large", "the file is larger than 1 MiB, so it is not a network file");
     return tree;
   }
   try {
@@ -220,7 +220,7 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
     const YamlNode* first = tree.root_;
     if (parser.HandleNextDocument(builder)) {
       fail(tree.root_ != nullptr ? tree.root_->pos : SourcePos{}, "syntax",
-           "a second document begins here (`---`): one network a file");
+           "a second document begins here (`---`), but a file describes one network");
       return tree;
     }
     tree.root_ = first;
@@ -230,8 +230,8 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
     const SourcePos pos = position(error.mark);
     fail(pos, "syntax",
          indented_by_tab(text, pos.line)
-             ? "no valid YAML: a tab at the begin of the line; YAML is indented by spaces only"
-             : "no valid YAML: " + error.msg);
+             ? "invalid YAML: the line begins with a tab; YAML allows only spaces for indentation"
+             : "invalid YAML: " + error.msg);
   }
   return tree;
 }

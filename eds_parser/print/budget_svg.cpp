@@ -123,8 +123,9 @@ class Svg {
     text(edge, 43, "start",
          fmt::format("Bus load {:.0f} % typical, {:.0f} % with worst stuffing. {} {}",
                      100 * budget_.load.typical, 100 * budget_.load.worst, verdict(),
-                     plan_.cycle.sync ? "Each frame as late as it can be."
-                                      : "No frame has a place in the cycle: there is no picture."));
+                     plan_.cycle.sync
+                         ? "Each frame is drawn at its latest time."
+                         : "No frame has a fixed place in the cycle, so there is no picture."));
   }
 
   void legend() {

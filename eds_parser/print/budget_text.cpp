@@ -84,7 +84,8 @@ class BudgetText {
   void cycle_frames() {
     const auto& cycle = plan_.cycle;
     out_ << fmt::format(
-        "\nthe cycle, in us after SYNC: TPDOs are awaited until {:.0f}, outputs go out at {:.0f}\n",
+        "\nthe cycle, in us after SYNC: the master waits for TPDOs until {:.0f} and sends outputs "
+        "at {:.0f}\n",
         us(std::min(cycle.receive_window, cycle.output_deadline)), us(cycle.output_deadline));
     out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
                         "COB-ID", "frame", width_, "bytes", "every", "on wire", "latest",
@@ -107,7 +108,7 @@ class BudgetText {
 
   /// Prints the other frames. Similar frames share one line, that of the worst.
   void other_frames() {
-    out_ << "\nother frames, in us from being queued to their end\n";
+    out_ << "\nother frames, in us from queueing to the end of the frame\n";
     out_ << fmt::format("  {:<8} {:<{}} {:>5} {:>12} {:>8} {:>8} {:>10} {:>9} {:>11} {:>10}\n",
                         "COB-ID", "frame", width_, "bytes", "every", "on wire", "worst", "margin",
                         "limit", "with EMCYs", "behind SDO");
@@ -175,17 +176,19 @@ class BudgetText {
     out_ << "It fits.\n";
     if (budget_.fits_but_for_changes()) {
       out_ << fmt::format(
-          "warning: in a cycle in which all event-driven outputs change, and all else comes at "
-          "once, SYNC is {:.0f} us\nlate behind them; without such changes it is in time{}\n",
+          "warning: if all event-driven outputs change in one cycle and all other frames come at "
+          "once, SYNC is {:.0f} us\nlate behind the outputs; without such changes SYNC is in "
+          "time{}\n",
           us(budget_.sync_delay()), steady_delay());
     } else if (budget_.sync_delay() > Time{0}) {
       out_ << fmt::format(
-          "warning: behind the outputs SYNC can be {:.0f} us late, if all of that comes at once\n",
+          "warning: SYNC can be {:.0f} us late behind the outputs if all these frames come at "
+          "once\n",
           us(budget_.sync_delay()));
     }
     warn_of_services();
     if (budget_.fits_in_burst()) return;
-    out_ << "warning: while every node sends an EMCY at once, these can be late:\n";
+    out_ << "warning: if every node sends an EMCY at once, these frames can be late:\n";
     list([](const BudgetRow& row) { return row.fits_in_burst(); }, &BudgetRow::worst_in_burst);
   }
 
@@ -195,11 +198,11 @@ class BudgetText {
     const Time tolerated = plan_.cycle.period / 10;
     const auto delay = budget_.sync_delay_behind_services();
     if (!plan_.cycle.makes_sync() || (delay && *delay <= tolerated)) return;
-    out_ << "warning: SDO and other service frames leave the queue of SYNC and the outputs; behind "
-            "some that wait in it\n";
+    out_ << "warning: SDO and other service frames share the send queue of SYNC and the outputs; "
+            "behind waiting service frames\n";
     out_ << (delay ? fmt::format("SYNC can be {:.0f} us late", us(*delay))
-                   : std::string{"SYNC can be late, and no bound was found for that"});
-    out_ << ": while servers answer late and all that comes by itself comes at once\n";
+                   : std::string{"SYNC can be late, and no bound was found for this delay"});
+    out_ << " if servers answer late and all unsolicited frames come at once\n";
   }
 
   void refusal() {
@@ -218,7 +221,8 @@ class BudgetText {
     const bool overloaded = std::ranges::any_of(
         budget_.rows, [&](const BudgetRow& row) { return row.frame.in_cycle && !(row.*end); });
     if (overloaded) {
-      out_ << "  the frames of a cycle, with what may come between, need more than the whole bus\n";
+      out_ << "  the frames of a cycle and the frames that may come between need more than the "
+              "whole bus\n";
     }
     for (const auto& row : budget_.rows) {
       if (fits(row) || (overloaded && !(row.*end))) continue;
@@ -233,7 +237,7 @@ class BudgetText {
 
   static std::string why_late(const BudgetRow& row, const std::optional<Time>& end) {
     const auto& name = row.frame.name;
-    if (!end) return name + ": it and what goes before it need more than the whole bus";
+    if (!end) return name + ": the frame and the frames before it need more than the whole bus";
     if (row.why != BudgetLimit::none && *end > row.limit) {
       const std::string whose = row.frame.waits.empty() ? "" : " by " + row.frame.waits;
       return fmt::format("{}: {:.0f} us, {}{} ends at {:.0f} us", name, us(*end), name_of(row.why),
@@ -274,11 +278,11 @@ std::string_view name_of(BudgetLimit limit) noexcept {
 
 void print_suggestions(std::ostream& out, std::span<const Suggestion> suggestions) {
   if (suggestions.empty()) {
-    out << "\nNo other identifiers, inhibit times, rate of PDOs, period or bit rate makes it fit, "
+    out << "\nNo change of identifiers, inhibit times, PDO rates, period or bit rate makes it fit, "
            "not even together.\n";
     return;
   }
-  out << "\nIt would fit, the cheapest change first:\n";
+  out << "\nIt would fit with one of these changes, the cheapest first:\n";
   for (const auto& suggestion : suggestions) {
     out << "  " << suggestion.text << "\n      --what-if " << to_string(suggestion.changes) << '\n';
   }

@@ -22,7 +22,7 @@ class Timeline {
 
   void run() {
     out_ << fmt::format(
-        "\none cycle, a column is {:.0f} us: `.` it may wait, `#` on the wire at the latest; "
+        "\none cycle, {:.0f} us per column: `.` the frame may wait, `#` latest time on the wire; "
         "`:` see below\n",
         us(picture_.end) / columns);
     print("us", axis(), "latest", "margin");
@@ -105,7 +105,7 @@ class Timeline {
 
 void print_budget_timeline(std::ostream& out, const BusPlan& plan, const BusBudget& budget) {
   if (!plan.cycle.sync) {
-    out << "\nno SYNC: no frame has a place in the cycle, so there is no picture of it\n";
+    out << "\nno SYNC: no frame has a fixed place in the cycle, so there is no picture\n";
     return;
   }
   const auto picture = cycle_picture(plan, budget);

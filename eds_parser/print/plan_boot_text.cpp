@@ -27,14 +27,17 @@ class BootText {
   void boot() {
     lines_.line("");
     if (node_.boot_plan.steps.empty()) {
-      lines_.line("boot of node {} {}: none, it is only watched", node_.id.value(), node_.name);
+      lines_.line("boot of node {} {}: no boot, because the node is only watched", node_.id.value(),
+                  node_.name);
       return;
     }
     lines_.line("boot of node {} {}: {} steps; SDO answers within {}, tried again after {}{}",
                 node_.id.value(), node_.name, node_.boot_plan.steps.size(),
                 span_text(node_.sdo_timeout), pauses(),
                 node_.start_later ? "; started with the network, by one broadcast" : "");
-    lines_.line("  NMT PRE-OPERATIONAL before the first write, unless its heartbeat says it");
+    lines_.line(
+        "  NMT enter PRE-OPERATIONAL before the first write, unless the heartbeat shows this "
+        "state");
     sdo_access();
     const std::vector<bool> inside = skippable(node_.boot_plan);
     const std::vector<StepFrames> frames = step_frames(node_);

@@ -33,9 +33,10 @@ class CycleText {
                 c.sync_overflow == 0 ? ", without counter"
                                      : fmt::format(", counter 1..{}", c.sync_overflow),
                 c.sync_followed ? ", made by " + sync_maker() : "");
-    lines_.line("{:>9}  the last of {} synchronous TPDOs is in, if all devices answer at once",
-                us_text(budget.earliest), cyclic_inputs());
-    lines_.line("{:>9}  receive window ends: what is not in counts as missing",
+    lines_.line(
+        "{:>9}  the last of {} synchronous TPDOs has arrived, if all devices answer at once",
+        us_text(budget.earliest), cyclic_inputs());
+    lines_.line("{:>9}  receive window ends: a TPDO that has not arrived counts as missing",
                 us_text(c.receive_window));
     lines_.line("{:>9}  outputs go out: {} RPDOs, {} on the wire", us_text(c.output_deadline),
                 plan_.pdos.rpdos.size(), us_text(budget.outputs_wire));
@@ -46,8 +47,7 @@ class CycleText {
           "acts at SYNC k+1.",
           us(budget.earliest), us(budget.latest), us(budget.latest - budget.earliest));
     } else {
-      lines_.line(
-          "  No time is left for the application: what it computes from SYNC k acts at SYNC k+2.");
+      lines_.line("  No time is left for the application: its output for SYNC k acts at SYNC k+2.");
     }
     lines_.line(
         "  Process data fill {:.0f} % of the bus; up to {} service frames (SDO, NMT) a cycle.",
@@ -58,8 +58,9 @@ class CycleText {
       lines_.line("  Synchronous window (1007): {}.", us_text(c.sync_window));
     time_of_day();
     if (c.sync_followed) {
-      lines_.line("  The cycle keeps to that SYNC, which may be {} early. After {} without it: {}.",
-                  us_text(c.followed_tolerance()), us_text(c.sync_timeout), sync_loss_text());
+      lines_.line(
+          "  The cycle follows this SYNC, which may be {} early. After {} without SYNC: {}.",
+          us_text(c.followed_tolerance()), us_text(c.sync_timeout), sync_loss_text());
     }
   }
 
@@ -80,11 +81,12 @@ class CycleText {
   std::string_view sync_loss_text() const noexcept {
     switch (plan_.cycle.on_sync_loss) {
       case SyncLoss::hold:
-        return "it is told, and no outputs are sent until it is back";
+        return "the master reports the loss and sends no outputs until SYNC is back";
       case SyncLoss::fallback:
-        return "it is told, and outputs take their fallback until it is back";
+        return "the master reports the loss, and outputs take their fallback until SYNC is back";
       case SyncLoss::stop:
-        return "it is told, and all nodes but the producer are stopped until it is back";
+        return "the master reports the loss and stops all nodes but the producer until SYNC is "
+               "back";
     }
     return {};
   }

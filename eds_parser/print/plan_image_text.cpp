@@ -60,7 +60,7 @@ class ImageText {
       text += "when commanded";
     }
     text += "; ";
-    if (signal.fallback_cycles == 0) return text + "a command lasts";
+    if (signal.fallback_cycles == 0) return text + "a command has no time limit";
     text += fmt::format("after {} cycle{} ", signal.fallback_cycles,
                         signal.fallback_cycles == 1 ? "" : "s");
     return text + (signal.fallback == Fallback::hold ? "held" : fallback_text(signal));

@@ -33,8 +33,9 @@ std::string value(const LimitLine& line) {
 }
 
 std::string source(const LimitLine& line) {
-  const std::string unchecked =
-      line.kind == LimitKind::jerk ? ", kept for planned motion" : ", no output shows it";
+  const std::string unchecked = line.kind == LimitKind::jerk
+                                    ? ", used for planned motion only"
+                                    : ", not checked: no output carries this value";
   switch (line.source) {
     case LimitSource::none:
       return fmt::format("proposal: `{}` ({})", line.proposal, line.because);
@@ -54,7 +55,9 @@ void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeI
   };
   if (std::ranges::none_of(plan.limits.lines, wanted)) return;
   lines.line("");
-  lines.line("limits of commands; what is outside isn't sent, and the node takes its fallback:");
+  lines.line(
+      "limits of commands; the master does not send values outside, and the node takes its "
+      "fallback:");
   std::size_t widest_owner = 0;
   std::size_t widest_value = 0;
   for (const LimitLine& line : plan.limits.lines) {

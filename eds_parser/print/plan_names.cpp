@@ -116,25 +116,26 @@ std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& opti
   std::vector<LcmChannel> channels{
       {channel("IMAGE"), "takt.image_t",
        "every cycle: all values, raw, in the order of the layout"},
-      {channel("LAYOUT"), "takt.layout_t", "at start and once a second: what the values mean"},
+      {channel("LAYOUT"), "takt.layout_t", "at start and once a second: the meaning of the values"},
       {channel("COMMAND"), "takt.command_t", "set-points from applications"},
       {channel("STATUS"), "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
       {channel("SYNC"), "takt.sync_status_t",
-       "10 Hz: who makes SYNC, and whether the cycle keeps to it"},
-      {channel("PDOS"), "takt.pdo_status_t", "2 Hz: each PDO, its age, count and troubles"},
+       "10 Hz: the producer of SYNC, and whether the cycle follows SYNC"},
+      {channel("PDOS"), "takt.pdo_status_t", "2 Hz: age, count and faults of each PDO"},
       {channel("TIMING"), "takt.timing_t", "1 Hz: histograms of jitter and latency"},
       {channel("EVENT"), "takt.event_t", "boot reports, EMCY, state changes, faults"},
       {channel("REQUEST"), "takt.request_t", "SDO and NMT on behalf of applications"},
-      {channel("REPLY"), "takt.reply_t", "their answers"},
+      {channel("REPLY"), "takt.reply_t", "answers to these requests"},
       {channel("TRANSFER"), "takt.transfer_t", "files to and from domains of devices, in parts"},
-      {channel("TRANSFER_STATE"), "takt.transfer_state_t", "how far they are, and what was read"},
+      {channel("TRANSFER_STATE"), "takt.transfer_state_t",
+       "progress of these transfers, and data that were read"},
   };
   if (!options.typed) return channels;
   for (const TypedMessage& message : typed_messages(plan)) {
     channels.push_back({message.channel, message.package + '.' + message.name,
                         message.command
-                            ? "set-points for that node alone, SI where it has units"
-                            : "every cycle: inputs of that node, SI where it has units"});
+                            ? "set-points for this node alone, in SI if it has units"
+                            : "every cycle: inputs of this node, in SI if it has units"});
   }
   return channels;
 }

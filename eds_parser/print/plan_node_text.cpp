@@ -47,7 +47,7 @@ class NodeText {
       case LossReaction::report:
         return {};
       case LossReaction::stop_node:
-        return "its loss stops it";
+        return "its loss stops this node";
       case LossReaction::stop_group:
         return "its loss stops the group " + group;
       case LossReaction::quick_stop:
@@ -61,7 +61,7 @@ class NodeText {
     if (node.heartbeat_timeout != Time{}) {
       return "missing after " + span_text(node.heartbeat_timeout) + " without heartbeat";
     }
-    if (node.guard.period == Time{}) return "no heartbeat: its loss is not noticed";
+    if (node.guard.period == Time{}) return "no heartbeat: the master does not notice its loss";
     return "guarded every " + span_text(node.guard.period) + ", missing after " +
            span_text(node.guard.life_time());
   }
@@ -84,8 +84,10 @@ class NodeText {
       known +=
           std::string{known.empty() ? "" : ", "} + names[i] + " " + hex(node.lss->address[i], 8);
     }
-    lines_.line("  without node id it gets this one by LSS, looked for every second: {}{}", known,
-                node.lss->store ? "; the device stores it" : "; not stored");
+    lines_.line(
+        "  a device without node id gets this id by LSS; the master looks for it every second: "
+        "{}{}",
+        known, node.lss->store ? "; the device stores it" : "; not stored");
   }
 
   void device_data(const NodePlan& node) {
@@ -133,8 +135,8 @@ class NodeText {
       text += (is_tpdo ? ", event timer " : ", repeated after ") + span_text(row.event_timer);
     }
     if (row.deadline != Time{}) text += ", missing after " + span_text(row.deadline);
-    if (row.poll != Time{}) text += ", asked for every " + span_text(row.poll);
-    if (row.poll_syncs != 0) text += fmt::format(", asked for every {} SYNCs", row.poll_syncs);
+    if (row.poll != Time{}) text += ", polled every " + span_text(row.poll);
+    if (row.poll_syncs != 0) text += fmt::format(", polled every {} SYNCs", row.poll_syncs);
     if (row.drop_late) text += ", not used when late";
     if (row.on_request) text += ", on request only";
     if (row.multiplexed()) {

@@ -52,21 +52,21 @@ class Waits {
     for (const Time limit : limits) {
       const auto has = [limit](const NodePlan& node) { return node.sdo_timeout == limit; };
       add("sdo_answer", limit,
-          fmt::format("SDO answer of {}; a boot asks up to {} times and writes once; in a block "
-                      "upload what is missing is asked for after {}",
+          fmt::format("SDO answer of {}; a boot asks up to {} times and writes once; a block "
+                      "upload asks for missing segments after {}",
                       nodes(has), waits::upload_attempts, span_text(waits::block_silence(limit))));
     }
     sdo_objects();
     if (!plan_.nodes.empty()) {
       add("sdo_probe", waits::probe_try,
-          "one try of a probe; the next one follows, after an abort " +
+          "one attempt of a probe; the next one follows at once, after an abort " +
               span_text(waits::probe_pause) + " later");
       add("sdo_settle", waits::sdo_settle,
-          "segments still under way when a device aborts a block download");
+          "segments still in transit when a device aborts a block download");
     }
     add("sdo_sub_block", waits::sub_block_end,
-        "service frames of the master while a device sends a sub-block of a block upload, for each "
-        "upload under way");
+        "service frames of the master while a device sends a sub-block, for each block upload in "
+        "progress");
     add("sdo_server", waits::own_server, "next frame of an SDO client of the master itself");
   }
 
@@ -106,25 +106,25 @@ class Waits {
 
   void pdos() {
     add("pdo_answer", waits::pdo_answer,
-        "TPDO of a request that names no time-out; as long for one that is late");
+        "TPDO of a request without time-out; the same time again for a late TPDO");
     add("pdo_turn", waits::pdo_turn(waits::pdo_answer),
-        fmt::format("turn of such a request behind others for the same PDO; {} where it sends an "
-                    "RPDO",
+        fmt::format("turn of such a request behind others for the same PDO; {} if it sends an RPDO",
                     span_text(2 * waits::pdo_turn(waits::pdo_answer))));
   }
 
   void lss() {
     add("lss_answer", waits::lss_answer, "LSS answer of one device");
-    add("lss_store", waits::lss_store, "LSS answer to store, which writes flash");
+    add("lss_store", waits::lss_store, "LSS answer to `store`, which writes flash memory");
     add("lss_all", waits::lss_all,
-        fmt::format("LSS answers of all devices, waited for in full; in a scan down to {}",
+        fmt::format("LSS answers of all devices, always the full time; in a scan down to {}",
                     span_text(waits::lss_shortest)));
     if (std::ranges::none_of(plan_.nodes,
                              [](const NodePlan& node) { return node.lss.has_value(); }))
       return;
-    add("lss_look_again", waits::lss_look_again, "between two looks for a node without id");
+    add("lss_look_again", waits::lss_look_again,
+        "pause between two searches for a node without id");
     add("lss_let_boot", waits::lss_let_boot,
-        "boot-up of a node that has got its id, before it is looked for again");
+        "boot-up of a node that has got its id, before the next search for it");
   }
 
   void sync() {
@@ -132,27 +132,26 @@ class Waits {
     if (cycle.makes_sync()) {
       add("held_sync", waits::held_sync_longest,
           fmt::format(
-              "next try of a SYNC that nobody acknowledges: {}, then twice as long each time",
+              "next attempt of a SYNC that no node acknowledges: {}, then twice as long each time",
               span_text(waits::held_sync_first)));
     } else if (cycle.sync) {
       add("first_sync", std::max<Time>(waits::first_sync, cycle.sync_timeout),
-          "first SYNC of the other device, once no node boots any more");
+          "first SYNC of the other device, after the boots of all nodes");
     }
   }
 
   void applications() {
     add("transfer_silence", waits::transfer_silence,
-        "word from an application whose file is under way");
+        "message from an application during its file transfer");
   }
 
   void stop() {
     const auto limits = waits::stop_limits(plan_.stop_timeout, plan_.cycle.period);
     add("stop_fallback", limits.fallback, "ordered stop: outputs take their fallback");
     add("stop_quick_stop", limits.quick_stop,
-        "ordered stop: axes stop by quick stop, each is disabled when it stands still");
+        "ordered stop: axes stop by quick stop; each is disabled at standstill");
     add("stop_disable", limits.disable, "ordered stop: axes that are still enabled are disabled");
-    add("stop_disarm", limits.disarm,
-        "ordered stop: what the devices watch of the master is disarmed");
+    add("stop_disarm", limits.disarm, "ordered stop: the devices stop watching the master");
     add("stop_nmt", limits.nmt, "ordered stop: nodes get their last NMT command");
   }
 
@@ -166,7 +165,8 @@ std::vector<PlanWait> plan_waits(const BusPlan& plan) { return Waits{plan}.list(
 
 void add_waits(PlanLines& lines, const BusPlan& plan) {
   lines.line("");
-  lines.line("waits: how long each lasts at most; those for nodes, PDOs and boots stand with them");
+  lines.line(
+      "waits: the longest duration of each; waits for nodes, PDOs and boots are listed there");
   for (const PlanWait& wait : plan_waits(plan)) {
     lines.line("{:>9}  {}", span_text(wait.limit), wait.what);
   }

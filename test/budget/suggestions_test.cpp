@@ -235,7 +235,7 @@ TEST(Pictures, SayThatThereIsNoCycleWithoutSync) {
   print_budget_svg(svg, plan, bus_budget(plan));
 
   EXPECT_EQ(text.str(),
-            "\nno SYNC: no frame has a place in the cycle, so there is no picture of it\n");
+            "\nno SYNC: no frame has a fixed place in the cycle, so there is no picture\n");
   EXPECT_THAT(svg.str(), testing::HasSubstr("no SYNC, a cycle of 2 ms"));
   EXPECT_THAT(svg.str(), testing::Not(testing::HasSubstr("outputs go out")));
   EXPECT_THAT(svg.str(), testing::EndsWith("</svg>\n"));

@@ -170,7 +170,7 @@ def imports(tools, folder):
     tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not run it")
     tabs = folder / "tabs.yml"
     tabs.write_text("master:\n\tnode_id: 1\n")
-    tools.says("a bus.yml that is no YAML", ["takt", "import", tabs], 2, "no valid YAML")
+    tools.says("a bus.yml that is no YAML", ["takt", "import", tabs], 2, "invalid YAML")
     nodes = folder / "nodelist.cpj"
     nodes.write_text(f"[Topology]\nNodes=1\nNode5Present=1\nNode5DCFName={ROOT}/share/eds/takt_io401.eds\n")
     tools.says("a network file that is written and does not load", ["takt", "import", nodes, "-o", "/dev/null"], 1,

@@ -124,7 +124,7 @@ TEST_F(Trap, AnUnknownKeyIsAnErrorWithTheKeyThatWasMeant) {
 
 TEST_F(Trap, AValueInTheWrongUnitIsRefused) {
   EXPECT_THAT(errors(load("", "sync_period: 10")), HasSubstr("for 10 ms write 10000"));
-  EXPECT_THAT(errors(load("", "baudrate: 512000")), HasSubstr("CAN ends at 1000"));
+  EXPECT_THAT(errors(load("", "baudrate: 512000")), HasSubstr("CAN allows at most 1000 kbit/s"));
 }
 
 // As in the tutorial of Lely: SYNC comes every second, and the outputs have to be safe before the

@@ -195,7 +195,7 @@ TEST_F(Careful, AMistakeUnderAnAnchorIsOneErrorForAllNodesThatMergeIt) {
   }
   EXPECT_EQ(errors, 2u) << told;
   EXPECT_THAT(told, AllOf(HasSubstr("net.yaml:5:"), HasSubstr("net.yaml:6:"),
-                          HasSubstr("; the same for `b`, `c`, which share this line")));
+                          HasSubstr("; the same applies to `b`, `c`, which share this line")));
 }
 
 TEST_F(Careful, TwoMistakesOfOneNodeInOneLineStayTwo) {
@@ -233,7 +233,8 @@ TEST_F(Careful, TheSubIndexOfTheShortFormIsHexadecimal) {
   EXPECT_THAT(of_drive("tpdo: {1: {mapping: [0x1018:1F]}}"), HasSubstr("1018:1F"));
   EXPECT_THAT(
       of_drive("tpdo: {1: {mapping: [0x6064:100]}}"),
-      HasSubstr("`0x6064:100` is no object: 0x6064, or 0x6064:0 with the sub-index in hex"));
+      HasSubstr(
+          "`0x6064:100` is not an object: write 0x6064, or 0x6064:0 with the sub-index in hex"));
   EXPECT_THAT(of_drive("tpdo: {1: {mapping: [0x6064:]}}"), HasSubstr("error"));
 }
 

@@ -58,8 +58,10 @@ TEST(DeviceWatch, ANodeThatIsOnlyWatchedAndHasNoHeartbeatIsSaidToGoUnnoticed) {
 
   std::ostringstream text;
   print_plan_text(text, net.plan, {.node = {}, .realtime = {}, .lcm = {}});
-  EXPECT_THAT(text.str(), testing::HasSubstr("only watched: no NMT, no SDO, no heartbeat: its "
-                                             "loss is not noticed\n"));
+  EXPECT_THAT(
+      text.str(),
+      testing::HasSubstr(
+          "only watched: no NMT, no SDO, no heartbeat: the master does not notice its loss\n"));
 }
 
 }  // namespace

@@ -203,8 +203,8 @@ TEST(Limits, AreNamedWithTheirSourceByThePlan) {
   EXPECT_THAT(text_of(net),
               AllOf(HasSubstr("arm  position      -1.5 .. 1.5 rad  from the network file\n"),
                     HasSubstr("arm  velocity      2 rad/s          from the network file\n"),
-                    HasSubstr("arm  jerk          400 rad/s^3      from the network file, kept for "
-                              "planned motion\n"),
+                    HasSubstr("arm  jerk          400 rad/s^3      from the network file, used for "
+                              "planned motion only\n"),
                     HasSubstr("arm  step          none             proposal: `step: 0.004` "
                               "(velocity in one cycle)\n")));
   EXPECT_THAT(json_of(net), HasSubstr(R"("source": "file")"));

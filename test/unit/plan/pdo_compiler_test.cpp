@@ -157,7 +157,7 @@ TEST(PdoCompiler, RemoteRequestAndMultiplexedPdosOfTheEdsAreLeftOutWithANote) {
               HasSubstr("TPDO1 of node `arm` is valid in tiny.eds but has "
                         "transmission type 253"));
   EXPECT_THAT(net.said("pdo-left-out"),
-              HasSubstr("TPDO2 of node `arm`: valid in tiny.eds, but nothing is mapped"));
+              HasSubstr("TPDO2 of node `arm`: valid in tiny.eds, but without mapped objects"));
 }
 
 TEST(PdoCompiler, PdoParametersWrittenBySdoCount) {

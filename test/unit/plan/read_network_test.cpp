@@ -72,7 +72,8 @@ TEST(ReadNetwork, KeysThatHaveNoEffectOnTheMasterSayWhy) {
                               "EMCY"));
   EXPECT_THAT(said,
               HasSubstr("`error_behavior` of `master` has no effect: the master has no 0x1029"));
-  EXPECT_THAT(said, HasSubstr("`sdo_timeout_ms` of `master` has no effect: write it to the nodes"));
+  EXPECT_THAT(said,
+              HasSubstr("`sdo_timeout_ms` of `master` has no effect: write it under the nodes"));
 }
 
 TEST(ReadNetwork, QuotedNumbersAndBooleansAreRead) {
@@ -162,9 +163,10 @@ TEST(ReadNetwork, WrongShapesSayWhatIsExpected) {
       "  leg: [1]\n"
       "  eye: {node_id: [2], dcf: a.eds, tpdo: {1: {mapping: {index: 1}}}}\n");
 
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("`heartbeat_consumer` is true or false"));
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("node `leg` is a map"));
-  EXPECT_THAT(net.said("wrong-type"), HasSubstr("`node_id` is a number, this is a list"));
+  EXPECT_THAT(net.said("wrong-type"), HasSubstr("`heartbeat_consumer` has to be true or false"));
+  EXPECT_THAT(net.said("wrong-type"), HasSubstr("node `leg` has to be a map"));
+  EXPECT_THAT(net.said("wrong-type"),
+              HasSubstr("`node_id` has to be a number, but this is a list"));
   EXPECT_THAT(net.said("wrong-type"), HasSubstr("`mapping` of TPDO1"));
 }
 

@@ -100,8 +100,9 @@ TEST_F(WrongNetwork, NumbersAndAllAreNoNamesOfNodes) {
   const std::string file =
       "nodes:\n  5: {node_id: 6, dcf: x.eds}\n  all: {node_id: 7, dcf: x.eds}\n";
 
-  EXPECT_THAT(told_of(file), AllOf(HasSubstr("net.yaml:2:3: error: `5` is no name for a node"),
-                                   HasSubstr("net.yaml:3:3: error: `all` is no name for a node")));
+  EXPECT_THAT(told_of(file),
+              AllOf(HasSubstr("net.yaml:2:3: error: `5` can't be the name of a node"),
+                    HasSubstr("net.yaml:3:3: error: `all` can't be the name of a node")));
 }
 
 TEST_F(WrongNetwork, AnInterfaceHasTheLengthThatLinuxTakes) {
@@ -116,7 +117,7 @@ TEST_F(WrongNetwork, AFolderIsCalledAFolder) {
   EXPECT_THAT(told(folder_ / "none.yaml"), HasSubstr("there is no such file"));
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: .}}\n"), HasSubstr("`.` is a folder"));
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: /dev/zero}}\n"),
-              HasSubstr("`/dev/zero` is no regular file"));
+              HasSubstr("`/dev/zero` is not a regular file"));
 }
 
 TEST_F(WrongNetwork, OfAFileThatIsNoEdsOnlyThatIsTold) {
@@ -136,12 +137,12 @@ TEST_F(WrongNetwork, AnEdsThatIsCutOffIsAWarning) {
   folder_.write("half.eds", eds.str().substr(0, eds.str().size() / 2));
 
   EXPECT_THAT(told_of("nodes: {a: {node_id: 1, dcf: half.eds}}\n"),
-              AllOf(HasSubstr("half.eds: warning"), HasSubstr("is it cut off?")));
+              AllOf(HasSubstr("half.eds: warning"), HasSubstr("is the file cut off?")));
 }
 
 TEST_F(WrongNetwork, ATabIsCalledATab) {
   EXPECT_THAT(told_of("bus:\n\tname: t\n"),
-              AllOf(HasSubstr("net.yaml:2:"), HasSubstr("a tab at the begin of the line")));
+              AllOf(HasSubstr("net.yaml:2:"), HasSubstr("the line begins with a tab")));
   EXPECT_THAT(told_of("nodes:\n  a: {node_id: 1\n"), Not(HasSubstr("tab")));
 }
 
@@ -150,7 +151,7 @@ TEST_F(WrongNetwork, WhatFollowsFromAWrongSyncPeriodIsNotTold) {
       "nodes: {a: {node_id: 1, dcf: " TAKT_SOURCE_DIR "/share/eds/takt_drive402.eds}}\n";
 
   EXPECT_THAT(told_of("master: {sync_period: 2ms}\n" + axis),
-              AllOf(HasSubstr("`2ms` is no whole number"), Not(HasSubstr("[no-sync]"))));
+              AllOf(HasSubstr("`2ms` is not a whole number"), Not(HasSubstr("[no-sync]"))));
   EXPECT_THAT(told_of("master: {sync_period: 2}\n" + axis),
               AllOf(HasSubstr("for 2 ms write 2000"), Not(HasSubstr("[does-not-fit]"))));
 }
@@ -158,17 +159,18 @@ TEST_F(WrongNetwork, WhatFollowsFromAWrongSyncPeriodIsNotTold) {
 TEST_F(WrongNetwork, ANodeThatIsNoMapLacksNothingElse) {
   const std::string text = told_of("nodes: {a: 5, b: [1, 2]}\n");
 
-  EXPECT_THAT(text, AllOf(HasSubstr("node `a` is a map (`key: value`), this is a single value"),
-                          HasSubstr("this is a list"), Not(HasSubstr("lacks"))));
+  EXPECT_THAT(
+      text, AllOf(HasSubstr("node `a` has to be a map (`key: value`), but this is a single value"),
+                  HasSubstr("this is a list"), Not(HasSubstr("lacks"))));
 }
 
 TEST_F(WrongNetwork, AnUnknownModelOrQuirkOfTheSimulationIsAnErrorThatListsWhatThereIs) {
   EXPECT_THAT(
       of_axis("    sim: {model: drive420}\n"),
-      AllOf(HasSubstr("net.yaml:6:18: error: `model`: `drive420` is none of plain, drive402"),
+      AllOf(HasSubstr("net.yaml:6:18: error: `model`: `drive420` is not one of plain, drive402"),
             HasSubstr("did you mean `drive402`?")));
   EXPECT_THAT(of_axis("    sim: {quirks: [no_bootup, mute]}\n"),
-              AllOf(HasSubstr("net.yaml:6:31: error: `quirks`: `mute` is none of late_bootup"),
+              AllOf(HasSubstr("net.yaml:6:31: error: `quirks`: `mute` is not one of late_bootup"),
                     HasSubstr("mute_sdo, mute_pdo"), HasSubstr("loopback")));
   EXPECT_THAT(of_axis("    sim: {quirks: {mute_sdo: true}}\n"), HasSubstr("net.yaml:6:19: error"));
   EXPECT_THAT(of_axis("    sim: {quirks: mute_sdo}\n"), Not(HasSubstr("error")));
