@@ -193,7 +193,7 @@ class BootCompiler {
       read.push_back(object);
       steps_
           .integer(BootAction::read_limit, object, 0,
-                   "limit of the drive; the network file sets none")
+                   "limit of the drive, used if the network file sets none")
           .value.clear();
     };
     for (const DeviceLimit& limit : context_.limits) {

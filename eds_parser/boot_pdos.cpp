@@ -33,14 +33,14 @@ class PdoBoot {
   void append_exchange() {
     if (!pdo_.fixed_mapping) {
       mapping_steps(BootAction::compare, "");
-      const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is mapped as it should be");
+      const std::size_t skip = steps_.skip_if_same(pdo_.label() + " already has this mapping");
       disable();
       write_mapping();
       steps_.land(skip);
     }
     compare_communication();
     if (pdo_.fixed_mapping) mapping_steps(BootAction::compare, "");
-    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is as it should be");
+    const std::size_t skip = steps_.skip_if_same(pdo_.label() + " is already configured");
     disable();
     write_parameters();
     if (steps_.writable(cob_id_key())) {

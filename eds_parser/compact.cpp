@@ -109,7 +109,7 @@ void apply_compact_list(Object& object, CompactList list, const IniEntries& entr
       if (!report.wants("duplicate-key")) continue;
       report.warning(entry.key_pos(), "duplicate-key",
                      "sub-object " + to_string(ObjectKey{object.index, sub->sub}) +
-                         " is listed again; the first entry counts");
+                         " is listed again; the first entry applies");
       continue;
     }
     applied.set(sub->sub);

@@ -187,7 +187,7 @@ void read_commissioning(Commissioning& commissioning, const IniEntries& entries,
   auto kbit = values.read_count(rate->value, 0xFFFF'FFFF, rate->key, rate->pos()).value_or(0);
   if (kbit > 1000) {
     report.warning(rate->pos(), "baudrate-unit",
-                   "Baudrate is in kbit/s; " + quoted(rate->value) + " was taken for bit/s");
+                   "Baudrate is in kbit/s; " + quoted(rate->value) + " was read as bit/s");
     kbit = std::min(kbit / 1000, 0xFFFFU);
   }
   commissioning.baudrate_kbit = static_cast<std::uint16_t>(kbit);

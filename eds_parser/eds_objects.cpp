@@ -68,9 +68,9 @@ Object ObjectReader::read(std::span<const ObjectSection> group) {
   object.type = ObjectType::record;
   object.pos = file_.sections[group.front().section].pos;
   if (parts.main == nullptr) {
-    report_.warning(object.pos, "object-section-missing",
-                    "object " + hex(object.index) +
-                        " has sub-objects but no section of its own; taken for a RECORD");
+    report_.warning(
+        object.pos, "object-section-missing",
+        "object " + hex(object.index) + " has sub-objects but no main section; read as a RECORD");
     read_subs(object, parts);
   } else {
     if (!read_main(object, parts)) return object;
@@ -106,7 +106,7 @@ bool ObjectReader::read_main(Object& object, const Parts& parts) {
   if (compact.value_or(0) != 0 && !is_structured(object.type)) {
     report_.warning(fields.pos(Keyword::object_type, section.pos), "sub-objects-of-var",
                     "object " + hex(object.index) +
-                        " is no ARRAY or RECORD but has CompactSubObj; taken for an ARRAY");
+                        " is not an ARRAY or RECORD but has CompactSubObj; read as an ARRAY");
     object.type = ObjectType::array;
   }
   if (!is_structured(object.type)) {
@@ -217,14 +217,14 @@ ObjectType ObjectReader::read_object_type(const ObjectFields& fields, const IniS
   if (code && !known) {
     report_.warning(pos, "object-type-unknown",
                     "ObjectType " + hex(*code, 2) + " of " + section_text(section) +
-                        " does not exist; taken for a " + (has_subs ? "RECORD" : "VAR"));
+                        " does not exist; read as a " + (has_subs ? "RECORD" : "VAR"));
   }
   const auto type = known ? static_cast<ObjectType>(*code) : ObjectType::var;
   if (!has_subs || is_structured(type)) return type;
   report_.warning(pos, "sub-objects-of-var",
                   "object " + hex(index) +
-                      (known ? " is no ARRAY or RECORD" : " has no ObjectType") +
-                      " but has sub-objects; taken for a RECORD");
+                      (known ? " is not an ARRAY or RECORD" : " has no ObjectType") +
+                      " but has sub-objects; read as a RECORD");
   return ObjectType::record;
 }
 
@@ -284,7 +284,7 @@ void ObjectReader::read_type(SubObject& sub, const ObjectFields& fields, ObjectK
                   section_text(section) + " has no DataType; " +
                       (sub.type == DataType::unknown
                            ? "the object is kept without a type"
-                           : "taken for " + std::string{name(sub.type)} + ", as in CiA 301"));
+                           : "read as " + std::string{name(sub.type)} + ", as in CiA 301"));
 }
 
 Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
@@ -295,7 +295,7 @@ Access ObjectReader::read_access(const ObjectFields& fields, ObjectKey key,
   const auto bare = without_comment(text);
   if (const auto access = access_of_word(bare)) {
     report_.warning(pos, "inline-comment",
-                    to_string(key) + " AccessType: text behind ';' or '#' was taken for a comment");
+                    to_string(key) + " AccessType: text behind ';' or '#' was read as a comment");
     return *access;
   }
   const auto tell = [&](std::string_view rule, const std::string& what) {

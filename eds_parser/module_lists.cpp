@@ -39,7 +39,7 @@ void ModuleLists::check(const IniFile& file, std::size_t described, Report& repo
   for (const Object& object : objects_) {
     if (listed.contains(object) || !report.wants("module-list")) continue;
     report.warning(object.section->pos, "module-list",
-                   "section " + quoted(object.section->name) + " is named by no entry of [" +
+                   "section " + quoted(object.section->name) + " is not named by an entry of [" +
                        list_name(object.module, object.part) +
                        "]; it was read, other tools drop it");
   }

@@ -206,7 +206,7 @@ std::vector<ModuleSections::Slot> ModuleSections::slots(Report& report) const {
     if (report.wants("duplicate-key")) {
       report.warning(second.entry.key_pos(), "duplicate-key",
                      "module " + std::to_string(second.number) +
-                         " is connected again; the first entry counts");
+                         " is connected again; the first entry applies");
     }
     return true;
   };
@@ -229,8 +229,8 @@ std::vector<std::uint16_t> ModuleSections::connected_types(Report& report) const
     if (!known && report.wants("unknown-module")) {
       report.warning(entry.pos(), "unknown-module",
                      "module type " + quoted(entry.value) +
-                         " brings no objects: there is no [MxFixed...] or [MxSubExt...] section "
-                         "of it");
+                         " adds no objects: the file has no [MxFixed...] or [MxSubExt...] section "
+                         "for this type");
     }
   }
   return types;
@@ -345,7 +345,7 @@ void ModuleSections::tell_overlap(const Fill& fill, ObjectDictionary& dictionary
   if (fill.described == 0 || fill.sub == 0 || fill.described == fill.sub) return;
   report.warning(find(fill.index, dictionary)->pos, "module-sub-objects",
                  "object " + hex(fill.index) + " is described up to sub-index " +
-                     std::to_string(fill.described) + ", the connected modules bring " +
+                     std::to_string(fill.described) + ", but the connected modules have " +
                      std::to_string(fill.sub) + "; sub-objects of the same number were merged");
 }
 

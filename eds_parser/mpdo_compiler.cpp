@@ -192,8 +192,8 @@ void check_dispatching(const NodeSource& node, const EffectivePdo& pdo, NodeId m
                            list.proposal(entry.object, master));
     } else if (std::ranges::find(senders, *sender) != senders.end()) {
       error(entry.pos, to_string(entry.object) + " is dispatched from " + to_string(*sender) +
-                           " of the master, as another object of this PDO is: they would "
-                           "overwrite each other; list only one of them");
+                           " of the master, like another object of this PDO: both would overwrite "
+                           "each other; list only one of them");
     } else {
       senders.push_back(*sender);
     }

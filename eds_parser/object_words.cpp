@@ -73,7 +73,7 @@ std::optional<std::uint32_t> read_code(const ObjectFields& fields, const CodeKey
   }
   if (bare.size() != text.size()) {
     report.warning(pos, "inline-comment",
-                   std::string{key.name} + ": text behind ';' or '#' was taken for a comment");
+                   std::string{key.name} + ": text behind ';' or '#' was read as a comment");
   }
   return code;
 }

@@ -147,12 +147,12 @@ class PdoCompiler {
                        "; it is not part of the image");
     };
     if (device.mapping_count == dam_mpdo || device.mapping_count == sam_mpdo) {
-      leave_out("is a multiplexed PDO: name it with `mpdo:` and its objects under `mapping:`");
+      leave_out("is a multiplexed PDO: write it with `mpdo:` and its objects under `mapping:`");
     } else if (!usable_type(pdo)) {
       leave_out("has transmission type " + std::to_string(pdo.transmission));
     } else if (on_remote_request(pdo.transmission)) {
       leave_out("has transmission type " + std::to_string(pdo.transmission) +
-                " (sent on remote request): name it with `poll_ms:` or `poll_syncs:`");
+                " (sent on remote request): write it with `poll_ms:` or `poll_syncs:`");
     } else if (pdo.mapping.empty()) {
       pdo.use = PdoUse::ignored;
       unmapped_.push_back(pdo.label());

@@ -27,17 +27,17 @@ constexpr QuirkText quirk_texts[] = {
     {NumberQuirk::decimal_zero, Severity::warning, "leading-zero",
      "leading zero would mean octal, but has an 8 or 9: read as decimal; drop the zero"},
     {NumberQuirk::suffix, Severity::warning, "number-suffix",
-     "suffix of a programming language was left out; drop it"},
+     "suffix of a programming language was left out; remove the suffix"},
     {NumberQuirk::node_id_not_first, Severity::warning, "nodeid-not-first",
      "CiA 306 requires $NODEID as the first term, other tools drop it here; write $NODEID+number"},
     {NumberQuirk::node_id_no_dollar, Severity::warning, "nodeid-without-dollar",
-     "NODEID was taken for $NODEID; write $NODEID+number"},
+     "NODEID was read as $NODEID; write $NODEID+number"},
     {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",
      "read as hexadecimal; write 0x in front"},
     {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
-     "decimal point in an integer value; write it without"},
+     "decimal point in an integer value; write the value without a decimal point"},
     {NumberQuirk::comment, Severity::warning, "inline-comment",
-     "text behind ';' or '#' was taken for a comment; CiA 306 has no comments behind values"},
+     "text behind ';' or '#' was read as a comment; CiA 306 has no comments behind values"},
     {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},
 };
 
@@ -129,7 +129,7 @@ std::optional<Value> ValueReader::read_integer(std::string_view text, DataType t
     } else {
       report_.error(place.pos, "value-unreadable",
                     to_string(place) + ": " + quoted(text) +
-                        " holds a name other than $NODEID; it has no value now");
+                        " contains a name other than $NODEID; the value is dropped");
     }
     return std::nullopt;
   }
@@ -162,7 +162,7 @@ std::optional<Value> ValueReader::read_real(std::string_view text, DataType type
     const double value =
         as_bits ? real_of(pattern->magnitude, type) : static_cast<double>(pattern->magnitude);
     report_.warning(place.pos, "real-bit-pattern",
-                    to_string(place) + ": hexadecimal was taken for " +
+                    to_string(place) + ": hexadecimal was read as " +
                         (as_bits ? "the bit pattern of " : "") + shortest(value) +
                         "; write a decimal number");
     return value;
@@ -260,7 +260,7 @@ std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std:
   if (number->has(NumberQuirk::comment)) {
     report_.warning(
         pos, "inline-comment",
-        std::string{key} + ": text behind ';' or '#' was taken for a comment: " + quoted(text));
+        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
   }
   if (number->has(NumberQuirk::octal)) {
     report_.warning(pos, "octal-number",
@@ -297,7 +297,7 @@ bool ValueReader::flag_of(const ParsedNumber& number, std::string_view text, std
   } else if (number.has(NumberQuirk::comment)) {
     report_.warning(
         pos, "inline-comment",
-        std::string{key} + ": text behind ';' or '#' was taken for a comment: " + quoted(text));
+        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
   }
   return set;
 }
@@ -323,7 +323,7 @@ std::string_view ValueReader::without_told_comment(std::string_view text, const 
 void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace& place) {
   say(report_, place.misfit, place.pos, "value-exceeds-type",
       to_string(place) + ": " + quoted(text) + " does not fit " + std::string{name(type)} +
-          "; it has no value now (it is not cut to fit)");
+          "; the value is dropped, not cut to fit");
 }
 
 void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value& value,
@@ -335,7 +335,7 @@ void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value
                      std::string{name(type)});
   } else {
     report_.warning(place.pos, "negative-unsigned",
-                    start + " in " + std::string{name(type)} + " was taken for the bit pattern " +
+                    start + " in " + std::string{name(type)} + " was read as the bit pattern " +
                         std::to_string(std::get<std::uint64_t>(value)));
   }
 }
@@ -344,7 +344,7 @@ void ValueReader::unreadable(std::string_view text, std::string_view wanted,
                              const ValuePlace& place) {
   say(report_, place.unreadable, place.pos, "value-unreadable",
       to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
-          "; it has no value now");
+          "; the value is dropped");
 }
 
 }  // namespace takt

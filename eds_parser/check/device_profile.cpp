@@ -106,7 +106,7 @@ class ProfileCheck {
   void need(std::string_view who, const Needed& object) {
     if (has(object.index)) return;
     report_.warning(place(device_type_), "profile-object-missing",
-                    std::string{who} + " demands object " + name_of(object) +
+                    std::string{who} + " requires object " + name_of(object) +
                         "; the file does not describe it");
   }
 
@@ -143,7 +143,7 @@ class ProfileCheck {
       if (has(object.index) || std::ranges::find(told_, object.index) != told_.end()) continue;
       told_.push_back(object.index);
       report_.warning(pos, "profile-object-missing",
-                      "CiA 402 demands object " + name_of(object) + " for the mode " +
+                      "CiA 402 requires object " + name_of(object) + " for the mode " +
                           std::string{mode.name} + ", which " +
                           hex(static_cast<std::uint16_t>(0x6502 + base_)) +
                           " claims; the file does not describe it");

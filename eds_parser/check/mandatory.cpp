@@ -39,14 +39,14 @@ void check_mandatory(const ObjectDictionary& dictionary, Report& report) {
   for (const auto& object : mandatory) {
     if (dictionary.find(object.index) != nullptr) continue;
     report.warning(place_of(dictionary, object.index), "mandatory-object-missing",
-                   "CiA 301 demands object " + hex(object.index) + ' ' + std::string{object.name} +
+                   "CiA 301 requires object " + hex(object.index) + ' ' + std::string{object.name} +
                        "; the file does not describe it");
   }
   const bool no_vendor = dictionary.find(std::uint16_t{0x1018}) != nullptr &&
                          dictionary.find(ObjectKey{0x1018, 1}) == nullptr;
   if (no_vendor) {
     report.warning(dictionary.find(std::uint16_t{0x1018})->pos, "mandatory-object-missing",
-                   "CiA 301 demands the vendor id, 1018sub1; the file does not describe it");
+                   "CiA 301 requires the vendor id, 1018sub1; the file does not describe it");
   }
 }
 

@@ -16,11 +16,11 @@ std::string_view function_of_high_bits(ObjectKey key) noexcept {
   const bool is_entry = key.sub != 0;
   switch (key.index) {
     case 0x1005:
-      return "bit 30, by which the device makes SYNC";
+      return "bit 30, with which the device produces SYNC";
     case 0x1006:
       return "SYNC periods of more than 65 ms";
     case 0x1012:
-      return "bits 30 and 31, by which the device makes or takes TIME";
+      return "bits 30 and 31, with which the device produces or consumes TIME";
     case 0x1014:
       return "bit 31, which has to be set while the COB-ID of EMCY changes";
     case 0x1010:
@@ -36,10 +36,10 @@ std::string_view function_of_high_bits(ObjectKey key) noexcept {
   }
   const bool of_channel = key.sub == 1 || key.sub == 2;
   if (in(0x1200, 0x12FF) && of_channel) {
-    return "bit 31, by which the SDO channel is switched off while its COB-IDs change";
+    return "bit 31, which switches the SDO channel off while its COB-IDs change";
   }
   if ((in(0x1400, 0x15FF) || in(0x1800, 0x19FF)) && key.sub == 1) {
-    return "bit 31, by which the PDO is switched off and mapped anew";
+    return "bit 31, which switches the PDO off for a new mapping";
   }
   const bool maps = (in(0x1600, 0x17FF) || in(0x1A00, 0x1BFF)) && is_entry;
   return maps ? "the index of the object in bits 16 to 31: nothing can be mapped" : "";

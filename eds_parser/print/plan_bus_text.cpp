@@ -41,8 +41,8 @@ class BusText {
     const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
     if (!start.start_master) add("the master does not become operational by itself");
     if (start.start_all) add("all nodes are started by one broadcast");
-    if (start.on_loss == MandatoryLoss::reset_all) add("loss of a mandatory node resets all");
-    if (start.on_loss == MandatoryLoss::stop_all) add("loss of a mandatory node stops all");
+    if (start.on_loss == MandatoryLoss::reset_all) add("loss of a mandatory node resets all nodes");
+    if (start.on_loss == MandatoryLoss::stop_all) add("loss of a mandatory node stops all nodes");
     if (start.boot_time != Time{}) {
       add("mandatory nodes boot within " + span_text(start.boot_time));
     }

@@ -23,8 +23,10 @@ class CycleText {
     lines_.line("");
     if (!c.sync) {
       lines_.line("cycle: no SYNC; the image has a period of {}", us_text(c.period));
-      lines_.line("  Outputs go out up to {} after its start; up to {} service frames a cycle.",
-                  us_text(c.output_deadline), c.service_frames);
+      lines_.line(
+          "  Outputs go out up to {} after the start of the period; up to {} service frames a "
+          "cycle.",
+          us_text(c.output_deadline), c.service_frames);
       time_of_day();
       return;
     }

@@ -56,7 +56,7 @@ void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeI
   if (std::ranges::none_of(plan.limits.lines, wanted)) return;
   lines.line("");
   lines.line(
-      "limits of commands; the master does not send values outside, and the node takes its "
+      "limits of commands; the master does not send values outside them, and the node takes its "
       "fallback:");
   std::size_t widest_owner = 0;
   std::size_t widest_value = 0;

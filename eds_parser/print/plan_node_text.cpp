@@ -51,7 +51,7 @@ class NodeText {
       case LossReaction::stop_group:
         return "its loss stops the group " + group;
       case LossReaction::quick_stop:
-        return "its loss quick stops " +
+        return "its loss causes a quick stop of " +
                (group.empty() ? "all drives" : "the drives of the group " + group);
     }
     return {};

@@ -88,18 +88,29 @@ std::string comment_of(const Signal& signal) {
 
 std::vector<TypedField> head_of(bool command) {
   if (command) {
-    return {
-        {"utime", LcmPrimitive::int64, {}, "microseconds since 1970"},
-        {"session", LcmPrimitive::int64, {}, "session of the state; another one is refused"},
-        {"instance", LcmPrimitive::int64, {}, "of the sender: random, chosen at its start, not 0"},
-        {"sender", LcmPrimitive::string, {}, "its name in events and in status_t"},
-        {"cycle", LcmPrimitive::int64, {}, "of the state these were computed from"},
-        {"time_to_live", LcmPrimitive::int32, {}, "cycles; 0 = the configured one"},
-        {"release", LcmPrimitive::boolean, {}, "the sender gives up the node's outputs"}};
+    return {{"utime", LcmPrimitive::int64, {}, "microseconds since 1970"},
+            {"session",
+             LcmPrimitive::int64,
+             {},
+             "session of the state; commands of another session are refused"},
+            {"instance",
+             LcmPrimitive::int64,
+             {},
+             "instance of the sender: random, chosen when the sender starts, not 0"},
+            {"sender", LcmPrimitive::string, {}, "name of the sender in events and in status_t"},
+            {"cycle",
+             LcmPrimitive::int64,
+             {},
+             "cycle of the state from which the set-points were computed"},
+            {"time_to_live", LcmPrimitive::int32, {}, "in cycles; 0 = the configured time to live"},
+            {"release", LcmPrimitive::boolean, {}, "the sender gives up the node's outputs"}};
   }
   return {{"utime", LcmPrimitive::int64, {}, "wall clock of SYNC, microseconds since 1970"},
           {"sync_mono_ns", LcmPrimitive::int64, {}, "monotonic clock of SYNC"},
-          {"session", LcmPrimitive::int64, {}, "of this run of taktd; commands repeat it"},
+          {"session",
+           LcmPrimitive::int64,
+           {},
+           "session of this run of taktd; commands repeat this number"},
           {"cycle", LcmPrimitive::int64, {}, "number of this SYNC"},
           {"stale", LcmPrimitive::boolean, {}, "a PDO of the node did not arrive when expected"}};
 }

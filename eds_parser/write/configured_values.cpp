@@ -81,7 +81,7 @@ class Collector {
       if (object.index == 0x1010 || object.index == 0x1011) {
         report_.note(sub.parameter_pos, "command-left-out",
                      to_string(ObjectKey{object.index, sub.sub}) +
-                         " stores or restores parameters; a configuration does not hold it");
+                         " stores or restores parameters; takt leaves it out of the configuration");
         continue;
       }
       add({object.index, sub.sub}, sub, *sub.parameter_value);
@@ -145,7 +145,7 @@ class Collector {
       if (integer_of(dictionary_, key).value_or(0) != 0) continue;
       report_.error(mapping.pos, "mapping-count-unknown",
                     to_string(ObjectKey{mapping.index, 0}) + " has no value, and " +
-                        to_string(key) + " before the last configured entry has none either");
+                        to_string(key) + " before the last configured entry has no value either");
       break;
     }
     return number;

@@ -105,8 +105,9 @@ class DcfWriter {
       const bool needs_node =
           number && number->relative() && !options_.node && !dictionary_.node_id;
       return refuse(sub.pos, "value-unreadable",
-                    to_string(value.object) + ": " + takt::quoted(value.text) + " is no value of " +
-                        std::string{name(sub.type)} + (needs_node ? ": $NODEID needs --node" : ""));
+                    to_string(value.object) + ": " + takt::quoted(value.text) +
+                        " is not a value of " + std::string{name(sub.type)} +
+                        (needs_node ? ": $NODEID needs --node" : ""));
     }
     if (!outside_limits(*read, sub)) return true;
     const auto limit = [&](const std::optional<Value>& end) {
@@ -349,8 +350,8 @@ void confirm(const std::string& text, const ObjectDictionary& before, const DcfO
     if (holds(written, *value)) continue;
     report.error(before.find(object)->pos, "value-not-set",
                  to_string(object) +
-                     ": another line of the file than takt would change says its "
-                     "value; set it there by hand");
+                     ": the file gives the value on another line than the one that takt would "
+                     "change; correct that line by hand");
   }
 }
 

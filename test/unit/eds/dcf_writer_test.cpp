@@ -193,11 +193,11 @@ TEST(DcfWriter, WhatTheDeviceWouldRefuseIsAnErrorAndGivesNoText) {
             "refuse it [value-outside-limits]");
   EXPECT_EQ(refused({0x2001, 0}, "1"),
             "folder/gain.eds: error: 2001:00 is not an object of folder/gain.eds [unknown-object]");
-  EXPECT_NE(refused({0x1017, 0}, "70000").find("is no value of UNSIGNED16 [value"),
+  EXPECT_NE(refused({0x1017, 0}, "70000").find("is not a value of UNSIGNED16 [value"),
             std::string::npos);
   EXPECT_NE(refused({0x1017, 0}, "$NODEID+1").find("UNSIGNED16: $NODEID needs --node ["),
             std::string::npos);
-  EXPECT_NE(refused({0x1017, 0}, "fast").find("is no value of UNSIGNED16"), std::string::npos);
+  EXPECT_NE(refused({0x1017, 0}, "fast").find("is not a value of UNSIGNED16"), std::string::npos);
   EXPECT_NE(refused({0x1017, 0}, "1\n[9999]").find("line break"), std::string::npos);
 }
 

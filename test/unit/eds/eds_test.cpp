@@ -188,7 +188,7 @@ TEST(Eds, FormulasThatAreNoSumAreAllJudgedAlike) {
     ASSERT_NE(finding, nullptr) << formula;
     EXPECT_EQ(finding->severity, Severity::warning) << formula;
     EXPECT_EQ(finding->message, "2000:00 DefaultValue: '" + std::string{formula} +
-                                    "' is not UNSIGNED32; it has no value now");
+                                    "' is not UNSIGNED32; the value is dropped");
   }
   const auto other = read(var("7", "$NODE-1"));
   EXPECT_EQ(find(other.findings, "value-unreadable")->severity, Severity::error);

@@ -30,9 +30,9 @@ TEST(WidthOfLimits, OfAnSdoChannelCostItsSwitch) {
     EXPECT_EQ(
         finding->message,
         std::string{section} +
-            ": UNSIGNED32 with HighLimit 65535, that of 16 bits; lost is bit 31, by which the "
-            "SDO channel is switched off while its COB-IDs change. Correct HighLimit to "
-            "0xFFFFFFFF where the device takes more");
+            ": UNSIGNED32 with HighLimit 65535, the limit of 16 bits; it excludes bit 31, which "
+            "switches the SDO channel off while its COB-IDs change. Correct HighLimit to "
+            "0xFFFFFFFF if the device accepts more");
     EXPECT_FALSE(has(findings, "range-of-16-bits"));
   }
   EXPECT_FALSE(has(judged(object("1200sub1", "7", "0", "65535", "ro")), "limits-of-16-bits"));
@@ -46,8 +46,8 @@ TEST(WidthOfLimits, OfAPositionAreTheRangeThatIsLeft) {
   EXPECT_EQ(finding->severity, Severity::note);
   EXPECT_EQ(finding->pos, (SourcePos{line_of(1), 1}));
   EXPECT_EQ(finding->message,
-            "a 32-bit object has the limits of 16 bits: 607Asub0 (-32768..32767); values outside "
-            "are refused. Correct the limits where the device takes more");
+            "a 32-bit object has the limits of 16 bits: 607Asub0 (-32768..32767); takt refuses "
+            "values outside them. Correct the limits if the device accepts more");
 }
 
 TEST(WidthOfLimits, OfManyObjectsAreOneNoteWithTheirNumber) {
@@ -62,8 +62,8 @@ TEST(WidthOfLimits, OfManyObjectsAreOneNoteWithTheirNumber) {
   ASSERT_TRUE(has(findings, "range-of-16-bits"));
   EXPECT_EQ(find(findings, "range-of-16-bits")->message,
             "5 32-bit objects have the limits of 16 bits: 6081sub0 (0..65535), 6083sub0 "
-            "(0..65535), 6084sub0 (0..65535), 6085sub0 (0..65535) and 1 more; values outside are "
-            "refused. Correct the limits where the device takes more");
+            "(0..65535), 6084sub0 (0..65535), 6085sub0 (0..65535) and 1 more; takt refuses "
+            "values outside them. Correct the limits if the device accepts more");
 }
 
 TEST(WidthOfLimits, AreNoFindingWhereTheyFitTheObject) {

@@ -112,7 +112,7 @@ TEST(MpdoBySource, NeedsADispatchingList) {
 TEST(MpdoBySource, DoesNotSendTwoObjectsUnderOneName) {
   const auto net = compile(arm("{index: 0x6081}, {index: 0x607A}"),
                            eds("0x016081002100037F", "0x01607A002100037F"));
-  EXPECT_THAT(net.said("dispatching-list"), HasSubstr("they would overwrite each other"));
+  EXPECT_THAT(net.said("dispatching-list"), HasSubstr("both would overwrite each other"));
 }
 
 }  // namespace
