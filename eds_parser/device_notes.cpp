@@ -61,12 +61,12 @@ std::vector<std::string> device_notes(const NodePdos& node) {
   for (const TimeoutEdit& edit : data.timeouts) {
     const SdoObjectTimeout& slow = edit.timeout;
     notes.push_back((slow.sub ? to_string(ObjectKey{slow.index, *slow.sub}) : hex(slow.index)) +
-                    " may take " + time_text(static_cast<std::uint64_t>(slow.timeout / 1us)));
+                    ": SDO time-out " + time_text(static_cast<std::uint64_t>(slow.timeout / 1us)));
   }
   for (const PdoRule& rule : data.pdos) notes.push_back(rule_text(rule));
   if (data.inhibit.unit_us != 100 || data.inhibit.least != 0) {
     notes.push_back(
-        "inhibit times in " + time_text(data.inhibit.unit_us) + ", at least " +
+        "inhibit times in steps of " + time_text(data.inhibit.unit_us) + ", at least " +
         time_text(std::uint64_t{data.inhibit.least} * data.inhibit.unit_us) +
         (data.inhibit.factory == 0
              ? ""

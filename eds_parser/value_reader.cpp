@@ -35,7 +35,7 @@ constexpr QuirkText quirk_texts[] = {
     {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",
      "read as hexadecimal; write 0x in front"},
     {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
-     "decimal point in an integer value; write the value without a decimal point"},
+     "decimal point in an integer value; remove the decimal point"},
     {NumberQuirk::comment, Severity::warning, "inline-comment",
      "text behind ';' or '#' was read as a comment; CiA 306 has no comments behind values"},
     {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},

@@ -31,10 +31,11 @@ class BootText {
                   node_.name);
       return;
     }
-    lines_.line("boot of node {} {}: {} steps; SDO answers within {}, tried again after {}{}",
-                node_.id.value(), node_.name, node_.boot_plan.steps.size(),
-                span_text(node_.sdo_timeout), pauses(),
-                node_.start_later ? "; started with the network, by one broadcast" : "");
+    lines_.line(
+        "boot of node {} {}: {} steps; SDO answers within {}; a failed boot starts again after "
+        "{}{}",
+        node_.id.value(), node_.name, node_.boot_plan.steps.size(), span_text(node_.sdo_timeout),
+        pauses(), node_.start_later ? "; started with the network, by one broadcast" : "");
     lines_.line(
         "  NMT enter PRE-OPERATIONAL before the first write, unless the heartbeat shows this "
         "state");

@@ -39,7 +39,7 @@ TEST(DeviceDataDiff, ShowsValues) {
 
 TEST(DeviceDataDiff, ShowsTimeOuts) {
   EXPECT_THAT(diff("sdo_timeouts: [{index: 0x1017, sub_index: 0, timeout_ms: 2000}]"),
-              AllOf(HasSubstr("+    1017:00 may take 2000 ms\n"),
+              AllOf(HasSubstr("+    1017:00: SDO time-out 2000 ms\n"),
                     HasSubstr("<2000 ms  heartbeat every"), HasSubstr("<500 ms  heartbeat every")));
 }
 

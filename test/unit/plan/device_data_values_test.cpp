@@ -128,7 +128,7 @@ TEST(DeviceDataTimeouts, OfAnNxpBootRomAreThoseOfErasing) {
   EXPECT_EQ(net.plan.nodes.at(0).sdo.timeout_of({0x5030, 0}, 500ms), 3s);
   EXPECT_EQ(net.plan.nodes.at(0).sdo.timeout_of({0x5020, 0}, 500ms), 500ms);
   EXPECT_THAT(net.plan.nodes.at(0).device_notes,
-              ElementsAre("node ids 125", "0x5030 may take 3000 ms"));
+              ElementsAre("node ids 125", "0x5030: SDO time-out 3000 ms"));
 }
 
 TEST(DeviceDataTimeouts, AreWrittenDownCompletely) {

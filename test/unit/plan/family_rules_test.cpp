@@ -144,7 +144,7 @@ TEST(FamilyRules, AreInThePlanOfEachDemo) {
   EXPECT_THAT(pump, HasSubstr("TPDO1: types 255, no event timer, no remote requests, the parameter "
                               "channel"));
   EXPECT_THAT(pump, HasSubstr("TPDO2..4: types 1..240, 254, 255, no remote requests"));
-  EXPECT_THAT(pump, HasSubstr("inhibit times in 1 ms, at least 50 ms, 500 ms by default"));
+  EXPECT_THAT(pump, HasSubstr("inhibit times in steps of 1 ms, at least 50 ms, 500 ms by default"));
   EXPECT_THAT(pump, HasSubstr("with an event timer, a change sends no PDO"));
 }
 
