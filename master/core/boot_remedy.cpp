@@ -12,15 +12,15 @@ namespace {
 
 /// For a node that gets its node-ID by LSS and has given no sign of life.
 std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
-  return "nothing at all was heard of node " + std::to_string(int{node.id.value()}) +
-         ", which gets this id by LSS (`lss: true`) as soon as a device without id answers that "
+  return "node " + std::to_string(int{node.id.value()}) +
+         " has sent nothing. LSS (`lss: true`) assigns this id to a device without node id that "
          "has " +
          identity_text(*node.lss) +
-         ": `takt lss find` shows who is without id. Where it is another one, correct the network "
-         "file; where it is not there, `takt scan` shows whether it has another id already. Where "
-         "the log says that it has got this id, it may want a reset of all nodes (`takt nmt "
-         "reset-comm all`), or to be switched off and on, before it uses it. "
-         "Else: is it powered, and wired, is its bit rate " +
+         ": `takt lss find` shows the devices without node id. If the device there has another "
+         "address, correct the network file; if no device is there, `takt scan` shows whether the "
+         "device has another node id already. If the log says that the device has got this id, a "
+         "reset of all nodes (`takt nmt reset-comm all`) or a power cycle may be needed before the "
+         "device uses the id. Otherwise: is the device powered and wired, is its bit rate " +
          std::to_string(plan.bitrate / 1000) + " kbit/s, does it know LSS fastscan?";
 }
 
@@ -28,13 +28,12 @@ std::string against_missing_id(const BusPlan& plan, const NodePlan& node) {
 std::string about_channel(const BusPlan& plan, const NodePlan& node, const BootFailure& failure) {
   const SdoChannel used = node.sdo.channel_of(node.id);
   if (failure.letter != 'B' || used == default_sdo_channel(node.id)) return {};
-  return " It was asked on the SDO channel that `sdo_channel` names (" + to_string(used.request) +
-         " and " + to_string(used.answer) +
-         "): the device may not have this server, may have it off or on other COB-IDs "
+  return " The master used the SDO channel of `sdo_channel` (" + to_string(used.request) + " and " +
+         to_string(used.answer) +
+         "): the device may lack this SDO server, or have it switched off or on other COB-IDs "
          "(`takt sdo read " +
          std::to_string(int{node.id.value()}) + " 1201:01 --bus " + interface_text(plan) +
-         "` asks on the default channel). Without `sdo_channel` the boot goes over the default "
-         "channel";
+         "` uses the default channel). Without `sdo_channel` the boot uses the default channel";
 }
 
 /// Returns the newest reset before the failure if the node has answered in this boot before that
@@ -60,30 +59,29 @@ std::string against_silence(const BusPlan& plan, const NodePlan& node, const Boo
   const BootStep* const reset = reset_of_a_node_that_was_there(node, failure);
   if (failure.node_state == NmtState::unknown && reset != nullptr) {
     const bool whole = reset->command == NmtCommand::reset_node;
-    return "the node was there, and did not come back from NMT reset " +
+    return "the node answered before, but has sent nothing since NMT reset " +
            std::string{whole ? "node" : "communication"} + " (" + reset->purpose +
-           "): does it need longer to start (raise `boot_timeout_ms`), or has it another node id "
-           "now (`takt scan`)? Else switch it off and on";
+           "): does it need longer to start (raise `boot_timeout_ms`), or does it have another "
+           "node id now (`takt scan`)? Otherwise switch it off and on";
   }
   const std::string channel = about_channel(plan, node, failure);
   if (failure.node_state == NmtState::unknown && node.lss) {
     return against_missing_id(plan, node) + channel;
   }
   if (failure.node_state == NmtState::unknown) {
-    return "nothing at all was heard of node " + id +
-           ": is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? "
-           "Is "
-           "its node id " +
+    return "node " + id +
+           " has sent nothing: is it powered and wired (CAN_H, CAN_L, ground, 120 ohm at both ends "
+           "of the line)? Is its node id " +
            id + " and its bit rate " + std::to_string(plan.bitrate / 1000) +
-           " kbit/s? `takt dump --bus " + interface_text(plan) + "` shows who talks on the bus" +
-           (channel.empty() ? "" : ".") + channel;
+           " kbit/s? `takt dump --bus " + interface_text(plan) +
+           "` shows which nodes send on the bus" + (channel.empty() ? "" : ".") + channel;
   }
   if (failure.node_state == NmtState::stopped) {
-    return "the node is in NMT state STOPPED, where it answers no SDO: let the boot reset it "
-           "(`reset: communication`), or stop whoever stops it";
+    return "the node is in NMT state STOPPED and answers no SDO in this state: let the boot reset "
+           "the node (`reset: communication`), or find out which other master stops it";
   }
-  return "the node is alive on the bus but its SDO server keeps silent" +
-         (channel.empty() ? ":" : "." + channel + ". Else:") +
+  return "the node is alive on the bus, but its SDO server does not answer" +
+         (channel.empty() ? ":" : "." + channel + ". Otherwise:") +
          " does it need longer to start (raise `boot_timeout_ms` of the node)? Is a second node or "
          "a second master using node id " +
          id + "?";
@@ -100,15 +98,14 @@ std::string against_identity(const NodePlan& node, const BootFailure& failure) {
     case 'N':
       return "the device has another firmware or hardware revision than " + node.description_file +
              ": use the EDS of this revision, or drop `revision_number` from the network file if "
-             "the "
-             "difference doesn't matter";
+             "the difference does not matter";
     case 'O':
-      return "another specimen of the device is connected: enter its serial number in the network "
-             "file, or drop `serial_number` there";
+      return "a device of the same type with another serial number is connected: enter this serial "
+             "number in the network file, or drop `serial_number` there";
     default:
-      return "another device than the one that was configured answers at node id " + id +
-             ": check the node ids and the wiring, name the EDS of the device that is there "
-             "instead of " +
+      return "a device other than the configured one answers at node id " + id +
+             ": check the node ids and the wiring, name the EDS of the connected device instead "
+             "of " +
              node.description_file + ", or correct `" + identity_key(failure.letter) +
              "` where the network file gives it";
   }
@@ -121,10 +118,10 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
   }
   if (step.action == BootAction::verify) {
     return "the device took the write but holds another value (it rounds, limits or ignores it): "
-           "enter the value it keeps in the network file";
+           "enter the value that the device keeps in the network file";
   }
   return "the device holds another value in " + to_string(failure.object) +
-         " than the network file expects: correct whichever is wrong";
+         " than the network file expects: correct the device or the network file";
 }
 
 /// The device has accepted a block download and then became silent. CiA 301, 7.2.4.3.9.
@@ -136,9 +133,10 @@ constexpr std::uint16_t sync_length_emcy = 0x8240;
 
 /// A SYNC came before 0x1019 was written, and some stacks keep that error until their next reset.
 std::string against_counter() {
-  return "SYNC came with its counter before the device knew of it (EMCY 0x8240), and this error "
-         "keeps it out of OPERATIONAL; it may pass with the next try. Let the device keep 0x1019 "
-         "(`store_configuration: 1` of this node), or go without counter (`sync_overflow: 0`)";
+  return "a SYNC with counter reached the device before 0x1019 was written (EMCY 0x8240), and this "
+         "error keeps the device out of OPERATIONAL; the next try may succeed. Let the device "
+         "store 0x1019 (`store_configuration: 1` of this node), or switch the counter off "
+         "(`sync_overflow: 0`)";
 }
 
 /// For an endless sequence of segments, or a value that is longer than any object that a boot
@@ -148,7 +146,8 @@ std::string against_long_answer(const BootStep& step, const BootFailure& failure
   if (!step.value.empty() && step.value.size() < request_bytes) {
     return "the device sends more than " + std::to_string(request_bytes) + " bytes for " + object +
            ", which has " + std::to_string(step.value.size()) +
-           ": its SDO server is faulty. Look for other firmware, or leave the object out";
+           ": its SDO server is faulty. Look for other firmware, or leave the object out of the "
+           "network file";
   }
   return object + " is longer than " + std::to_string(request_bytes) +
          " bytes: remove it from the network file";
@@ -177,18 +176,19 @@ std::string against_odd_answers(const NodePlan& node, const BootFailure& failure
   if (!failure.answered) return {};
   return "the device answers with " + to_string(*failure.answered) + " where " +
          to_string(failure.object) +
-         " was asked for: its SDO server is faulty (look for other firmware), or a second SDO "
-         "client talks to it at the same time (stop other masters and tools)";
+         " was requested: its SDO server is faulty (look for other firmware), or a second SDO "
+         "client uses this server at the same time (stop other masters and tools)";
 }
 
 /// For an answer that breaks the protocol, so that the master has ended the transfer.
 std::string against_protocol_error(const BootFailure& failure) {
   const std::string other =
-      ". Or a second SDO client talks to the node at the same time (stop other masters and tools)";
+      ". Or a second SDO client uses this server at the same time (stop other masters and tools)";
   if (failure.abort_code == abort_code::toggle_not_alternated) {
-    return "the device does not alternate the toggle bit of its segments, so that one may be lost "
-           "or come twice; the master has ended the transfer. Its SDO server is faulty with values "
-           "of more than 4 bytes: look for other firmware, or leave the object out" +
+    return "the device does not alternate the toggle bit of its segments, so a segment may be lost "
+           "or come twice; the master has ended the transfer. The SDO server is faulty with values "
+           "of more than 4 bytes: look for other firmware, or leave the object out of the network "
+           "file" +
            other;
   }
   if (failure.abort_code == abort_code::command_unknown) {
@@ -198,7 +198,7 @@ std::string against_protocol_error(const BootFailure& failure) {
   }
   return "the answers break the SDO protocol, and the master has ended the transfer: the SDO "
          "server of the device is faulty" +
-         other + ", or two nodes share the id";
+         other + ", or two nodes have the same node id";
 }
 
 std::string against_timeout(const BusPlan& plan, const NodePlan& node, const BootStep& step,
@@ -206,45 +206,46 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
   switch (step.action) {
     case BootAction::await_heartbeat:
       return failure.node_state == NmtState::unknown || failure.node_state == NmtState::bootup
-                 ? "the device produces no heartbeat: is 0x1017 not zero after the boot? Set "
-                   "`heartbeat_producer` of this node in ms, or 0 to go without"
+                 ? "the device produces no heartbeat: is 0x1017 zero after the boot? Set "
+                   "`heartbeat_producer` of this node in ms; with 0 the master expects no heartbeat"
                  : "the heartbeat is slower than expected: raise `heartbeat_multiplier` or lower "
                    "`heartbeat_producer` of this node";
     case BootAction::await_guarding:
       return "the device does not answer guarding requests (remote frames): set `guard_time: 0` of "
-             "this node, or `heartbeat_producer` where the device has 1017:00; some CAN "
-             "controllers and gateways do not pass remote frames";
+             "this node, or `heartbeat_producer` if the device has 1017:00; some CAN controllers "
+             "and gateways do not pass remote frames";
     case BootAction::await_operational:
       if (failure.emcy == sync_length_emcy && plan.cycle.sync_overflow != 0)
         return against_counter();
-      return "the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its "
-             "EMCY messages, 0x1001 and 0x1003), or a second master holds it back";
+      return "the node did not go to OPERATIONAL after NMT start: an error of the device prevents "
+             "it (look at its EMCY messages, 0x1001 and 0x1003), or a second master commands "
+             "another state";
     default:
       break;
   }
   if (const std::string odd = against_odd_answers(node, failure); !odd.empty()) return odd;
   if (failure.downloading && (failure.moved != 0 || accepted_block(failure))) {
-    return "the device fell silent in the middle of a long value: did it lose power, restart, or "
-           "does another master talk to it? Raise `sdo_timeout_ms` of this node where it only is "
-           "slow. The write was not repeated, because it might act twice";
+    return "the device stopped answering in the middle of a long value: did it lose power, did it "
+           "restart, or does another master use its SDO server? If the device is only slow, raise "
+           "`sdo_timeout_ms` of this node. The master did not repeat the write, because the write "
+           "might act twice";
   }
   if (failure.downloading) {
     return "the device needs longer than " + time_text(step.timeout) + " for " +
            to_string(failure.object) +
-           " (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The write was not "
-           "repeated, because it might act twice";
+           " (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The master did not "
+           "repeat the write, because the write might act twice";
   }
   return against_silence(plan, node, failure);
 }
 
 std::string against_dead_node(const BootStep& step) {
   return std::string{
-             "the node is kept running when the master starts (`reset: keep_alive`), but "
-             "shows no sign of life: it is asked by SDO with the next try, still without a "
-             "reset. "} +
+             "the node is kept running when the master starts (`reset: keep_alive`), but shows no "
+             "sign of life: at the next try the master reads it by SDO, again without a reset. "} +
          (step.guarded ? "Set `guard_time` of this node, if the device can be guarded"
                        : "Let the device keep its heartbeat (0x1017, stored with 0x1010)") +
-         ", or use `reset: communication` where it may be reset";
+         ", or use `reset: communication` if the node may be reset";
 }
 
 /// The device has given an answer that tells something about its software.
@@ -258,42 +259,43 @@ std::string against_program(const NodePlan& node, const BootStep& step,
                             const BootFailure& failure) {
   switch (failure.letter) {
     case 'G':
-      return "the device does not tell the version of its software in 1F56:01: drop "
-             "`software_version` from the network file";
+      return "the device does not report its software version in 1F56:01: drop `software_version` "
+             "from the network file";
     case 'H':
       return failure.running
-                 ? "the device runs another software than the network file wants, and it is "
+                 ? "the device runs other software than the network file requires, and the node is "
                    "OPERATIONAL: stop the machine and reset the node (`takt nmt reset " +
-                       std::to_string(int{node.id.value()}) + "`), then it is updated"
-                 : "the device runs another software than the network file wants: name the file "
-                   "with `software_file` and takt loads it, or correct `software_version`";
+                       std::to_string(int{node.id.value()}) + "`), so that the master updates it"
+                 : "the device runs other software than the network file requires: name the file "
+                   "with `software_file`, so that the master loads it, or correct "
+                   "`software_version`";
     default:
       break;
   }
   if (failure.fault == SdoFault::none && failure.object.index == 0x1F56) {
-    return "the program was loaded, but it is another version than `software_version` says: "
-           "correct whichever is wrong";
+    return "the program was loaded, but its version differs from `software_version`: correct "
+           "`software_file` or `software_version`";
   }
   if (failure.fault == SdoFault::timeout && step.action == BootAction::download_program) {
-    return "the device fell silent in the middle of its program: it has none now, or a part of it. "
-           "It is loaded anew with the next try; raise `sdo_timeout_ms` where its flash memory is "
-           "slow";
+    return "the device stopped answering in the middle of the program download: it has no program "
+           "now, or a part of one. The next try loads the program again; raise `sdo_timeout_ms` if "
+           "the flash memory is slow";
   }
   if (failure.fault == SdoFault::timeout) {
-    return "the device gives no answer while its program is loaded: does its boot loader talk "
-           "CANopen, at this node id and bit rate? Switch it off and on; the program is loaded "
-           "anew with the next try";
+    return "the device gives no answer during the program download: does its boot loader support "
+           "CANopen, at this node id and bit rate? Switch the device off and on; the next try "
+           "loads the program again";
   }
-  return "the device did not take the program: is `software_file` made for this device and its "
-         "boot loader? The next try loads it anew";
+  return "the device did not accept the program: is `software_file` made for this device and its "
+         "boot loader? The next try loads the program again";
 }
 
 std::string against_running_node(const NodePlan& node, const BootFailure& failure) {
-  return "the node was OPERATIONAL already and is not touched, but " + to_string(failure.object) +
-         " is not what the network file wants, so its PDOs can't be used: stop the machine, then "
-         "`takt nmt reset-comm " +
-         std::to_string(int{node.id.value()}) +
-         "` lets it be configured; or correct the network file";
+  return "the node was OPERATIONAL already, so the master did not configure it, but " +
+         to_string(failure.object) +
+         " differs from the network file, and the PDOs can't be used: stop the machine and let the "
+         "master configure the node (`takt nmt reset-comm " +
+         std::to_string(int{node.id.value()}) + "`), or correct the network file";
 }
 
 }  // namespace
@@ -316,8 +318,8 @@ std::string remedy(const BusPlan& plan, const NodePlan& node, const BootFailure&
     case SdoFault::too_long:
       return against_long_answer(step, failure);
     case SdoFault::cancelled:
-      return "the node restarts again and again while it is booted: weak supply, its watchdog, or "
-             "another master that resets it";
+      return "the node restarts again and again during its boot: check the power supply, the "
+             "watchdog of the device, and whether another master resets the node";
     case SdoFault::no_such_node:
     case SdoFault::refused:
     case SdoFault::no_such_pdo:

@@ -42,10 +42,10 @@ std::string against_refused_mapping(const BootStep& step, const BootFailure& fai
     case abort_code::not_mappable:
     case abort_code::write_only:
       return "the device does not let " + object + " be mapped into " + pdo +
-             ", whatever its EDS says: take " + object + " out of the mapping of " + pdo +
+             ", although the EDS may allow it: take " + object + " out of the mapping of " + pdo +
              " in the network file, or map a related object";
     case abort_code::mapping_too_long:
-      return "the device can't hold so much in " + pdo +
+      return "the device can't hold so many bytes or entries in " + pdo +
              ": map fewer or shorter objects, or spread them over two PDOs";
     case abort_code::no_object:
     case abort_code::no_sub_index:
@@ -53,15 +53,17 @@ std::string against_refused_mapping(const BootStep& step, const BootFailure& fai
                  ? "the device has no " + to_string(step.object) +
                        ": it has fewer PDOs or entries than its EDS says; use another PDO number"
                  : "the device has no object " + object +
-                       ": its firmware is older than the EDS; take it out of the mapping of " + pdo;
+                       ": its firmware is older than the EDS; take the object out of the mapping "
+                       "of " +
+                       pdo;
     case abort_code::read_only:
       return "the mapping of " + pdo +
              " is fixed in this device: remove its `mapping` from the network file, so that the "
              "device's own mapping is used";
     default:
       return "the device refuses to change " + pdo +
-             " now: it may want to be reset first (`reset: communication`), or its mapping is "
-             "fixed; then remove its `mapping` from the network file";
+             " now: the device may need a reset first (`reset: communication`), or the mapping is "
+             "fixed; then remove `mapping` of this PDO from the network file";
   }
 }
 
@@ -77,8 +79,8 @@ std::string against_length(const NodePlan& node, const BootStep& step, const Boo
   if (failure.abort_code == abort_code::length_too_high) {
     return object + " of the device has no room for " + bytes + ": make the value shorter";
   }
-  return object + " of the device takes another length than " + bytes +
-         ": look it up in the manual, and fill the value up to it";
+  return object + " of the device expects another length than " + bytes +
+         ": look up the length in the manual, and pad the value to this length";
 }
 
 std::string against_rare_abort(const BootFailure& failure) {
@@ -86,34 +88,34 @@ std::string against_rare_abort(const BootFailure& failure) {
   switch (failure.abort_code) {
     case abort_code::toggle_not_alternated:
     case abort_code::command_unknown:
-      return "the device complains about the SDO protocol: a second SDO client may be talking to "
-             "it "
-             "at the same time (stop other masters and tools)";
+      return "the device complains about the SDO protocol: a second SDO client may be using the "
+             "SDO server at the same time (stop other masters and tools)";
     case abort_code::out_of_memory:
-      return "the device has no memory for so long a value of " + object + ": make it shorter";
+      return "the device has no memory for a value of this length in " + object +
+             ": make the value shorter";
     case abort_code::access_unsupported:
       return "the device does not let " + object +
-             " be accessed in this way or now: look it up in the manual, or take it out of the "
-             "network file";
+             " be accessed in this way or at this time: look up the object in the manual, or take "
+             "it out of the network file";
     case abort_code::incompatible_device:
       return object +
-             " does not fit what else is set in the device: set first what it depends on "
-             "(entries of `sdo` are written in their order)";
+             " conflicts with other settings of the device: first set the objects on which it "
+             "depends (the master writes the entries of `sdo` in their order)";
     case 0x0609'0036:  // the maximum is below the minimum
       return "the limits of the device for " + object +
              " contradict each other: write the limit objects first, or restore the defaults "
              "(`restore_configuration: 1`)";
     case abort_code::resource_unavailable:
-      return "the SDO server of the device is busy: does another master or tool use it?";
+      return "the SDO server of the device is busy: does another master or tool use this server?";
     case abort_code::general_error:
       return "the device gives no reason: look at its EMCY messages (`takt emcy`), at 0x1001 and "
              "at "
              "0x1003";
     case 0x0800'0023:  // no object dictionary
-      return "the device has no object dictionary at the moment: reset it (`reset: node`), or load "
-             "its firmware anew";
+      return "the device has no object dictionary at the moment: reset the device (`reset: node`), "
+             "or load its firmware again";
     case abort_code::no_data:
-      return object + " holds nothing yet: the device has to be set up first with its maker's tool";
+      return object + " holds no value yet: set up the device first with the manufacturer's tool";
     default:
       return {};
   }
@@ -170,13 +172,12 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
     case abort_code::read_only:
       return object + " can't be written: remove it from the network file";
     case abort_code::write_only:
-      return failure.downloading
-                 ? "the device says that " + object +
-                       " can only be written, although it was "
-                       "written: look it up in the manual"
-                 : object +
-                       " can't be read: does the EDS say `wo`? Then it is written without "
-                       "comparing";
+      return failure.downloading ? "the device says that " + object +
+                                       " is write-only, although the master did write it: look up "
+                                       "the object in the manual"
+                                 : object +
+                                       " can't be read: if the EDS gives it the access `wo`, the "
+                                       "master writes it without a comparison";
     case abort_code::length_mismatch:
     case abort_code::length_too_high:
     case abort_code::length_too_low:
@@ -192,8 +193,8 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
     case abort_code::device_state:
       return against_state(node, failure);
     case abort_code::hardware_error:
-      return "the device reports a hardware error: power it off and on; if that does not help, its "
-             "storage may be worn";
+      return "the device reports a hardware error: switch it off and on; if the error remains, its "
+             "flash memory may be worn out";
     default:
       return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
              " in the manual of the device";

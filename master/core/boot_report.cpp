@@ -58,7 +58,7 @@ std::string silence_text(const BootStep& step, const BootFailure& failure) {
   if (!polls && !failure.downloading && failure.attempts > 1) {
     text += ", asked " + std::to_string(int{failure.attempts}) + " times";
   }
-  if (failure.downloading) text += "; a write is not repeated";
+  if (failure.downloading) text += "; the master does not repeat a write";
   return text;
 }
 
@@ -78,7 +78,7 @@ std::string received_text(const NodePlan& node, const BootStep& step, const Boot
              to_string(CobId::base(0x700U + node.id.value())) + " within " +
              time_text(step.timeout);
     case BootAction::await_operational:
-      return "heartbeats that say " + std::string{name(failure.node_state)} + " for " +
+      return "heartbeats with the state " + std::string{name(failure.node_state)} + " for " +
              time_text(step.timeout);
     default:
       break;
@@ -103,19 +103,19 @@ std::string_view flash_text(std::uint8_t status) noexcept {
     case 1:
       return "there is no valid program";
     case 2:
-      return "the format of the program is not known";
+      return "the format of the program is unknown";
     case 3:
       return "the program has a CRC error";
     case 4:
-      return "the flash memory was not cleared before";
+      return "the flash memory was not erased before the download";
     case 5:
-      return "writing the flash memory failed";
+      return "the flash memory could not be written";
     case 6:
       return "the program has a wrong address";
     case 7:
-      return "the flash memory is secured";
+      return "the flash memory is write-protected";
     default:
-      return "the device reports a flash error of its own";
+      return "the device reports a manufacturer-specific flash error";
   }
 }
 
@@ -204,7 +204,7 @@ std::string heard_text(const BootFailure& failure) {
   const bool only_bootup = failure.node_state == NmtState::bootup;
   std::string text = failure.bootup_seen ? "its boot-up message" : "";
   if (only_bootup) return text;
-  return text + (text.empty() ? "" : ", then ") + "heartbeats that say " +
+  return text + (text.empty() ? "" : ", then ") + "heartbeats with the state " +
          std::string{name(failure.node_state)};
 }
 

@@ -18,21 +18,23 @@ std::string missed_line(const Event& event) {
   switch (static_cast<MissedBecause>(event.detail)) {
     case MissedBecause::wire_blocked:
       return count +
-             " without SYNC: the one before was not on the wire yet, because the controller is "
-             "bus-off or nobody acknowledges";
+             " without SYNC: the previous SYNC was not on the wire yet, because the controller is "
+             "bus-off or no node acknowledges";
     case MissedBecause::sent_late:
       return count +
-             " without SYNC: the bus thread was late in the cycle before, and its SYNC was not on "
-             "the wire yet";
+             " without SYNC: the bus thread was late in the previous cycle, and the SYNC of that "
+             "cycle was not on the wire yet";
     case MissedBecause::not_seen:
       return count +
-             " without SYNC: the one before was not seen on the wire yet, although the controller "
-             "reports no error; there was too much traffic, or this machine was too busy to send "
-             "it or to see it";
+             " without SYNC: the previous SYNC was not seen on the wire yet, although the "
+             "controller reports no error; there was too much traffic, or this machine was too "
+             "busy to send the SYNC or to receive it";
     case MissedBecause::late:
       break;
   }
-  return count + " missed: the bus thread was late; skipped, not caught up";
+  return count +
+         " missed: the bus thread was late; the master skips these cycles and does not make up for "
+         "them";
 }
 
 std::string send_trouble_text(const Event& event, const std::string& interface) {
@@ -40,23 +42,24 @@ std::string send_trouble_text(const Event& event, const std::string& interface) 
     case SendTrouble::bus_off:
       return "the CAN controller is bus-off";
     case SendTrouble::nobody_acknowledges:
-      return "nobody acknowledges on the bus; check cable, termination, bit rate, and whether any "
-             "device has power";
+      return "no node acknowledges on the bus; check the cable, the termination, the bit rate and "
+             "the power supply of the devices";
     case SendTrouble::queue_too_short:
       break;
   }
-  return "its queue is shorter than what one cycle sends: `ip link set " + interface +
+  return "its queue is too short for the frames of one cycle: `ip link set " + interface +
          " txqueuelen 1000`";
 }
 
 std::string_view while_lost(std::uint32_t reaction) noexcept {
   switch (static_cast<SyncLoss>(reaction)) {
     case SyncLoss::hold:
-      return "no outputs are sent until it is back";
+      return "no outputs are sent until SYNC is back";
     case SyncLoss::fallback:
-      return "outputs take their fallback until it is back, those in synchronous RPDOs by SDO";
+      return "outputs take their fallback until SYNC is back; those in synchronous RPDOs get it by "
+             "SDO";
     case SyncLoss::stop:
-      return "every node but the producer is stopped until it is back";
+      return "every node except the SYNC producer is stopped until SYNC is back";
   }
   return {};
 }
@@ -64,11 +67,11 @@ std::string_view while_lost(std::uint32_t reaction) noexcept {
 std::string_view when_back(std::uint32_t reaction) noexcept {
   switch (static_cast<SyncLoss>(reaction)) {
     case SyncLoss::hold:
-      return "outputs are sent again";
+      return "the master sends outputs again";
     case SyncLoss::fallback:
-      return "commands are heard again";
+      return "the master accepts commands again";
     case SyncLoss::stop:
-      return "the nodes are started again";
+      return "the master starts the nodes again";
   }
   return {};
 }
@@ -80,24 +83,25 @@ std::string sync_line(const BusPlan& plan, const Event& event) {
   const Time time{event.value};
   switch (event.kind) {
     case EventKind::sync_lost:
-      return (event.value == 0 ? "no SYNC has come" : "SYNC lost: none for " + time_text(time)) +
-             "; " + std::string{while_lost(event.detail)} + ". Look at " + maker +
+      return (event.value == 0 ? "no SYNC has come" : "SYNC lost: no SYNC for " + time_text(time)) +
+             "; " + std::string{while_lost(event.detail)} + ". Check " + maker +
              ": does it run, is its 0x1006 set, and bit 30 of its 0x1005?";
     case EventKind::sync_back:
-      return event.value == 0 ? "SYNC is there: the cycle keeps to it"
+      return event.value == 0 ? "SYNC has come: the cycle follows it"
                               : "SYNC is back after " + time_text(time) + "; " +
                                     std::string{when_back(event.detail)};
     case EventKind::sync_jump:
       return (event.value < 0 ? "SYNC without counter"
                               : "SYNC counter " + std::to_string(event.value)) +
-             (event.detail == 0 ? std::string{", but `sync_overflow` says that it has none"}
+             (event.detail == 0 ? std::string{", but `sync_overflow` says that SYNC has no counter"}
                                 : ", expected " + std::to_string(event.detail)) +
-             ": a SYNC was lost, " + maker + " has started again, or its 0x1019 is another";
+             ": a SYNC was lost, " + maker + " has restarted, or its 0x1019 differs";
     case EventKind::sync_early:
-      return "a SYNC only " + time_text(time) + " after the one before, in a period of " +
-             time_text(plan.cycle.period) + ": it is left out; is there a second producer?";
+      return "a SYNC came only " + time_text(time) + " after the previous one, in a period of " +
+             time_text(plan.cycle.period) +
+             ": the master ignores it; is there a second SYNC producer?";
     default:
-      return "SYNC comes each " + time_text(time) + ", but `sync_period` says " +
+      return "SYNC comes every " + time_text(time) + ", but `sync_period` says " +
              time_text(plan.cycle.period) + ": correct the network file, or 0x1006 of " + maker;
   }
 }
@@ -121,20 +125,20 @@ std::string network_line(const BusPlan& plan, const Event& event) {
     case EventKind::unlisted_node:
       return "node " + std::to_string(event.value) +
              " is on the bus but not in the network file (status A of CiA 302-2: " +
-             std::string{letter_text('A')} + "): add it, or leave it alone; `takt sdo read " +
+             std::string{letter_text('A')} +
+             "): add the node to the file, or ignore it; `takt sdo read " +
              std::to_string(event.value) + " 1018:1 u32 --bus " + interface_text(plan) +
-             "` tells its vendor";
+             "` shows its vendor";
     case EventKind::network_ready:
       return "the network is ready: every mandatory node has booted";
     case EventKind::network_late:
       return std::to_string(event.detail) +
-             " mandatory nodes have not booted within the boot "
-             "time of " +
+             " mandatory nodes did not boot within the boot time of " +
              time_text(plan.start_up.boot_time) + " (mandatory: " + missing_mandatory(plan) +
-             "): the master waits for them; their boot reports say why";
+             "): the master waits for them; their boot reports give the causes";
     case EventKind::mandatory_lost:
-      return event.value == 1 ? "a mandatory node was lost: all nodes are stopped; they stay so "
-                                "until they are reset or started (`takt nmt reset all`)"
+      return event.value == 1 ? "a mandatory node was lost: all nodes are stopped; they stay in "
+                                "STOPPED until they are reset or started (`takt nmt reset all`)"
                               : "a mandatory node was lost: all nodes are reset and boot again";
     default:
       return std::string{name(event.kind)};
@@ -153,31 +157,33 @@ std::string bus_line(const BusPlan& plan, const Event& event) {
     case EventKind::cycles_missed:
       return missed_line(event);
     case EventKind::receive_overrun:
-      return count + " received frames lost by the kernel";
+      return count + " received frames were lost in the kernel";
     case EventKind::bus_error_passive:
-      return "CAN controller is error-passive: check cable, termination and bit rate";
+      return "the CAN controller is error-passive: check the cable, the termination and the bit "
+             "rate";
     case EventKind::bus_error_active:
-      return "CAN controller is error-active again";
+      return "the CAN controller is error-active again";
     case EventKind::bus_off:
-      return "bus-off: the CAN controller has switched itself off; `ip link set " + interface +
-             " type can restart-ms 100` lets it come back";
+      return "bus-off: the CAN controller has switched itself off; with `ip link set " + interface +
+             " type can restart-ms 100` it restarts by itself";
     case EventKind::bus_recovered:
-      return "recovered from bus-off";
+      return "the CAN controller has recovered from bus-off";
     case EventKind::send_buffer_full:
-      return count + " frames not sent, the send buffer is full (ENOBUFS): " +
+      return count + " frames were not sent, because the send buffer is full (ENOBUFS): " +
              send_trouble_text(event, interface);
     case EventKind::interface_down:
       return interface + " is down (error " + std::to_string(event.detail) + ")";
     case EventKind::interface_up:
       return interface + " is up";
     case EventKind::foreign_sync:
-      return "a SYNC that this master did not send: there is a second SYNC producer on the bus";
+      return "a SYNC came that this master did not send: there is a second SYNC producer on the "
+             "bus";
     case EventKind::foreign_nmt:
       return "NMT command " + nmt_bytes_text(event) +
-             " that this master did not send: there is a second master on the bus";
+             " came that this master did not send: there is a second master on the bus";
     case EventKind::duplicate_cob_id:
       return "COB-ID " + hex(static_cast<std::uint32_t>(event.value), 3) +
-             " is also sent by somebody else: two nodes with one id?";
+             " is also sent by another node: do two nodes have the same id?";
     case EventKind::stopping:
       return "stopping";
     case EventKind::stopped:

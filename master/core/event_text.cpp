@@ -30,9 +30,9 @@ std::string_view reason(std::uint32_t detail) noexcept {
     case RefusedBecause::not_an_output:
       return "it is not an output";
     case RefusedBecause::other_session:
-      return "another sender holds the outputs of this node";
+      return "another sender has the lease of the outputs of this node";
     case RefusedBecause::stale_session:
-      return "it was made for an earlier run of the daemon (a replayed log?)";
+      return "the command is for an earlier session of the daemon (a replayed log?)";
     case RefusedBecause::node_not_ready:
       return "the node is not ready";
     case RefusedBecause::out_of_range:
@@ -40,7 +40,7 @@ std::string_view reason(std::uint32_t detail) noexcept {
     case RefusedBecause::observing:
       return "the master only observes";
   }
-  return "of an unknown reason";
+  return "the reason is unknown";
 }
 
 /// Describes which TPDO carries an actual position, and what makes the device send it soon.
@@ -50,7 +50,8 @@ std::string first_time_text(const BusPlan& plan, SignalIndex signal) {
   const std::string tpdo = "TPDO" + std::to_string(pdo->number);
   if (!comes_by_event_alone(*pdo)) return "; check whether the device sends " + tpdo;
   return "; the device sends " + tpdo +
-         " only by event: give it an `event_timer`, or make it synchronous (`transmission: 1`)";
+         " only by event: give the TPDO an `event_timer`, or make it synchronous (`transmission: "
+         "1`)";
 }
 
 std::string held_line(const BusPlan& plan, const Event& event) {
@@ -58,8 +59,8 @@ std::string held_line(const BusPlan& plan, const Event& event) {
   if (event.detail == 0) return rpdo + "each of its signals has a commanded, safe or seeded value";
   const auto awaited = static_cast<SignalIndex>(event.detail - 1);
   return rpdo + signal_name(plan, awaited) +
-         " has come from the device for the first time: a position with `limits:` is measured from "
-         "there" +
+         " has come from the device for the first time: takt checks the first position command "
+         "with `limits:` against this value" +
          first_time_text(plan, awaited);
 }
 
@@ -82,29 +83,30 @@ std::string emcy_line(const BusPlan& plan, const Event& event) {
   }
   for (const std::uint8_t byte : bytes.first(length)) text += " " + hex(byte, 2).substr(2);
   text += length == 8 ? ")" : ", always 8)";
-  if (event.value > 0) text += "; " + std::to_string(event.value) + " before it were not told";
+  if (event.value > 0)
+    text += "; " + std::to_string(event.value) + " earlier ones were not reported";
   return text;
 }
 
 std::string boot_done_text(const Event& event) {
   std::string text = "ready after " + std::to_string(event.detail) + " ms";
   if (event.value != 1) return text;
-  text += "; it was operational already and was not reset (status L of CiA 302-2)";
+  text += "; the node was operational already and was not reset (status L of CiA 302-2)";
   const auto left_alone = load_le<std::uint16_t>(std::span{event.bytes});
   if (left_alone == 0) return text;
   const ObjectKey first{load_le<std::uint16_t>(std::span{event.bytes}.subspan(2)), event.bytes[4]};
   return text + "; " + std::to_string(left_alone) +
          (left_alone == 1 ? " object differs" : " objects differ") +
-         " from the network file and stay so until it is reset, first " + to_string(first);
+         " from the network file until the node is reset, the first is " + to_string(first);
 }
 
 std::string twin_text(const Event& event) {
   if (event.value == static_cast<std::int64_t>(DuplicateSign::answers)) {
-    return "several answers to each SDO request: two devices have this node id, or another SDO "
-           "client talks to it; switch one device off, or give it another id (`takt lss`)";
+    return "several answers came to each SDO request: two devices have this node id, or another "
+           "SDO client uses the server; switch one device off, or give it another id (`takt lss`)";
   }
-  return "twice as many heartbeats as one device sends: two devices have this node id; switch one "
-         "off, or give it another id (`takt lss`)";
+  return "twice as many heartbeats came as one device sends: two devices have this node id; switch "
+         "one device off, or give it another id (`takt lss`)";
 }
 
 std::string lss_trouble_text(const BusPlan& plan, const Event& event) {
@@ -114,11 +116,12 @@ std::string lss_trouble_text(const BusPlan& plan, const Event& event) {
                          .specific = event.bytes[3]};
   const NodePlan* const node = plan.find(event.node);
   if (result.outcome == LssOutcome::nobody && node != nullptr && node->lss) {
-    return "a device without node id answers LSS, but none with " + identity_text(*node->lss) +
-           ", which the network file gives this node: `takt lss find` shows what is there";
+    return "a device without node id answers LSS, but no such device has " +
+           identity_text(*node->lss) +
+           ", which the network file gives this node: `takt lss find` shows the devices without "
+           "node id";
   }
-  return "a device without node id is there, but LSS came to no good end: " +
-         lss_failure_text(result);
+  return "a device without node id is on the bus, but LSS failed: " + lss_failure_text(result);
 }
 
 std::string no_block_text(const Event& event) {
@@ -129,13 +132,13 @@ std::string no_block_text(const Event& event) {
                                : "refuses SDO block transfer (" + object + ", " +
                                      abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
   return what +
-         ": this transfer and all others go by segments until the node is reset; "
-         "`sdo_block: never` of this node saves the attempt";
+         ": the master uses segmented transfer for this and all other values until the node is "
+         "reset; `sdo_block: never` of this node avoids the attempt";
 }
 
 std::string firmware_line(const BusPlan& plan, const Event& event) {
   const NodePlan* const node = plan.find(event.node);
-  if (node == nullptr || !node->firmware) return "another firmware than planned";
+  if (node == nullptr || !node->firmware) return "the firmware differs from the plan";
   return firmware_text(*node->firmware, Firmware::unpacked(event.value));
 }
 
@@ -159,19 +162,20 @@ std::string node_line(const BusPlan& plan, const Event& event) {
     case EventKind::guarding_lost:
       return "guarding lost: no good answer for " + time_text(Time{event.value});
     case EventKind::guarding_toggle:
-      return "guarding answer with the toggle bit of the one before: it counts as not received (an "
-             "answer was lost, or somebody else asks the node too)";
+      return "a guarding answer has the same toggle bit as the previous answer: the master treats "
+             "it as not received (an answer was lost, or another master guards the node too)";
     case EventKind::bootup_again:
-      return "boot-up message of a node that was ready: it has restarted and is booted again";
+      return "a boot-up message came from a node that was ready: the node has restarted, and the "
+             "master boots it again";
     case EventKind::lss_assigned:
       return "a device without node id, serial number " + std::to_string(event.value) +
              ", has got this id by LSS";
     case EventKind::lss_not_assigned:
       return lss_trouble_text(plan, event);
     case EventKind::node_replaced:
-      return "another device than before: its serial number is " + std::to_string(event.value) +
+      return "the device was replaced: its serial number is " + std::to_string(event.value) +
              ", it was " + std::to_string(event.detail) +
-             "; `serial_number` in the network file would refuse it";
+             "; with `serial_number` in the network file the master would refuse it";
     case EventKind::firmware_differs:
       return firmware_line(plan, event);
     case EventKind::no_sdo_block:
@@ -182,7 +186,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
     case EventKind::duplicate_node:
       return twin_text(event);
     case EventKind::loss_reaction:
-      return "it was lost: " + reaction_text(event);
+      return "the node was lost: " + reaction_text(event);
     case EventKind::emcy:
       return emcy_line(plan, event);
     case EventKind::pdo_missing:
@@ -194,7 +198,7 @@ std::string node_line(const BusPlan& plan, const Event& event) {
              " us after SYNC, after the synchronous window";
     case EventKind::pdo_length:
       return "TPDO" + std::to_string(event.value) + " has " + std::to_string(event.detail) +
-             " bytes, which is not what its mapping says";
+             " bytes, which differs from its mapping";
     case EventKind::outputs_held:
       return held_line(plan, event);
     default:
@@ -262,7 +266,8 @@ std::string describe(const BusPlan& plan, const Event& event) {
   if (event.kind == EventKind::boot_failed) {
     std::string text = explain(plan, plan.index_of(event.node), event.failure);
     if (event.detail > 1) {
-      text += "\n  repeated  " + std::to_string(event.detail) + " times in a row by the same cause";
+      text +=
+          "\n  repeated  " + std::to_string(event.detail) + " times in a row with the same cause";
     }
     return text;
   }

@@ -66,12 +66,13 @@ std::string limit_text(const BusPlan& plan, const Event& event) {
   if ((event.detail & held_set_point) != 0) {
     return "the set-point " + number(commanded, signal.unit) + " that " + output + " still has" +
            limits +
-           "; the command that would make the axis follow it isn't sent, and the outputs of the "
-           "node take their fallback until a set-point is inside again";
+           "; takt does not send the command that would make the axis follow it, and the outputs "
+           "of "
+           "the node take their fallback until a set-point is within the limits again";
   }
   return "command " + number(commanded, signal.unit) + " to " + output + limits +
-         "; it isn't sent, and the outputs of the node take their fallback until a command is "
-         "inside again";
+         "; takt does not send it, and the outputs of the node take their fallback until a command "
+         "is within the limits again";
 }
 
 std::string read_limit_text(const BusPlan& plan, const Event& event) {
@@ -86,7 +87,7 @@ std::string read_limit_text(const BusPlan& plan, const Event& event) {
     return "limit: " + what;
   }
   return "no limit: " + what + ", is implausible and is ignored; write `limits: {" + key +
-         ": ...}` into the network file";
+         ": ...}` in the network file";
 }
 
 }  // namespace takt

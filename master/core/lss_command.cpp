@@ -47,7 +47,7 @@ bool has_sense(const LssCommand& command) noexcept {
 std::string what(LssOp op) {
   switch (op) {
     case LssOp::switch_global:
-      return "switch state of all";
+      return "switch the state of all devices";
     case LssOp::configure_node_id:
       return "configure node id";
     case LssOp::configure_bit_timing:
@@ -57,7 +57,7 @@ std::string what(LssOp op) {
     case LssOp::store:
       return "store configuration";
     case LssOp::switch_selective:
-      return "switch one device to configuration";
+      return "switch one device to configuration state";
     case LssOp::identify:
       return "identify by ranges";
     case LssOp::identify_unconfigured:
@@ -84,10 +84,11 @@ std::string what(LssOp op) {
 std::string refusal(const LssResult& result) {
   const std::string code = " (error " + std::to_string(result.error) + ")";
   if (result.error == 255) {
-    return "the device gave its own error code " + std::to_string(result.specific);
+    return "the device gave the manufacturer-specific error code " +
+           std::to_string(result.specific);
   }
   if (result.op == LssOp::configure_node_id && result.error == 1) {
-    return "the device says that this node id is out of range" + code;
+    return "the device reports that this node id is out of range" + code;
   }
   if (result.op == LssOp::configure_bit_timing && result.error == 1) {
     return "the device does not support this bit rate" + code;
@@ -103,15 +104,15 @@ std::string refusal(const LssResult& result) {
 
 std::string nobody(LssOp op) {
   if (op == LssOp::identify || op == LssOp::slow_scan) {
-    return "no device says that it has an LSS address in these ranges; not every device knows this "
+    return "no device reports an LSS address in these ranges; not every device supports this "
            "service";
   }
   if (op == LssOp::fast_scan) {
-    return "no device without node id has such an LSS address; a device that has a node id does "
-           "not take part";
+    return "no device without node id has such an LSS address; devices with a node id do not take "
+           "part";
   }
-  return "no device says that it is without node id; not every device knows this service, `takt "
-         "lss find` asks by fastscan";
+  return "no device reports that it has no node id; not every device supports this service; `takt "
+         "lss find` uses fastscan";
 }
 
 }  // namespace
@@ -191,8 +192,8 @@ std::string lss_failure_text(const LssResult& result) {
       return what(result.op) + ": " + refusal(result);
     case LssOutcome::lost:
       return what(result.op) +
-             ": the answers of the devices contradict each other; they may be slower than the "
-             "time-out, or several share an LSS address";
+             ": the answers of the devices contradict each other; the devices may be slower than "
+             "the time-out, or several devices may have the same LSS address";
   }
   return what(result.op) + ": unknown outcome";
 }

@@ -50,8 +50,8 @@ std::string refusal_text(const Event& event) {
   const std::string object =
       "statusword " + to_string(ObjectKey{index, 0}) + " (" + abort_digits(code) + ")";
   const bool missing = code == abort_code::no_object;
-  return (missing ? "answers that it has no " : "refuses to tell its ") + object +
-         ": it is not known whether it is enabled";
+  return (missing ? "reports that it has no " : "refuses to send its ") + object +
+         ": takt does not know whether the drive is enabled";
 }
 
 }  // namespace
@@ -59,15 +59,16 @@ std::string refusal_text(const Event& event) {
 std::string reaction_text(const Event& event) {
   switch (static_cast<LossReaction>(event.value)) {
     case LossReaction::stop_node:
-      return "NMT stop to it; it stays away until it is reset or started (`takt nmt reset`)";
+      return "NMT stop to the node; it stays in STOPPED until it is reset or started (`takt nmt "
+             "reset`)";
     case LossReaction::stop_group:
-      return "NMT stop to its group; the nodes stay away until they are reset or started";
+      return "NMT stop to its group; the nodes stay in STOPPED until they are reset or started";
     case LossReaction::quick_stop:
-      return "quick stop of the drives that depend on it";
+      return "quick stop of the drives that depend on the node";
     case LossReaction::report:
       break;
   }
-  return "it is told";
+  return "the loss is reported";
 }
 
 std::string axis_stop_text(const BusPlan& plan, const Event& event) {
@@ -102,13 +103,13 @@ std::string named_axis_stop_text(const BusPlan& plan, const Event& event) {
 std::string still_armed_text(const Event& event) {
   const ObjectKey object{static_cast<std::uint16_t>(event.detail >> 8U),
                          static_cast<std::uint8_t>(event.detail)};
-  std::string why = "did not confirm it";
+  std::string why = "did not confirm the write";
   if (event.value < 0) why = "gave no answer within " + time_text(Time{-event.value});
   if (event.value > 0) {
-    why = "refused it (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
+    why = "refused the write (" + abort_digits(static_cast<std::uint32_t>(event.value)) + ")";
   }
-  return "the write that disarms " + to_string(object) + " failed, the device " + why +
-         ": it may report that its master is gone";
+  return "the write that disarms " + to_string(object) + " failed, because the device " + why +
+         ": it may report the loss of its master";
 }
 
 }  // namespace takt

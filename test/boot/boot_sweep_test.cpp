@@ -98,9 +98,9 @@ TEST(BootSweep, SilenceIsNeverTakenForADifference) {
       EXPECT_NE(text.find("nothing within"), std::string::npos) << text;
       EXPECT_EQ(text.find(" differs"), std::string::npos) << text;
       EXPECT_NE(advice(text), "") << text;
-      for (const std::string blame :
-           {"another device", "another specimen", "another software", "another version",
-            "another value", "another firmware", "did not take", "does not tell"}) {
+      for (const std::string blame : {"other than the configured", "another serial number",
+                                      "other software", "its version differs", "another value",
+                                      "another firmware", "did not accept", "does not report"}) {
         EXPECT_EQ(advice(text).find(blame), std::string::npos) << text;
       }
     }

@@ -89,8 +89,8 @@ TEST(Disarming, SaysForHowLongTheDeviceGaveNoAnswer) {
   EXPECT_EQ(plant.stop(), StopResult::confirmed);
 
   EXPECT_NE(plant.text_of(EventKind::still_armed)
-                .find("the write that disarms 1016:01 failed, the device gave no answer within "
-                      "300 ms: it may report that its master is gone"),
+                .find("the write that disarms 1016:01 failed, because the device gave no answer "
+                      "within 300 ms: it may report the loss of its master"),
             std::string::npos)
       << plant.text_of(EventKind::still_armed);
 }
@@ -103,7 +103,8 @@ TEST(Disarming, SaysWithWhichCodeTheDeviceRefused) {
 
   EXPECT_EQ(plant.stop(), StopResult::confirmed);
 
-  EXPECT_NE(plant.text_of(EventKind::still_armed).find("refused it (0504 0000)"), std::string::npos)
+  EXPECT_NE(plant.text_of(EventKind::still_armed).find("refused the write (0504 0000)"),
+            std::string::npos)
       << plant.text_of(EventKind::still_armed);
 }
 

@@ -28,12 +28,12 @@ TEST(FirmwareOfADevice, ThatIsOlderThanPlannedIsToldWithWhatFollows) {
   plant.run(5s);
 
   EXPECT_EQ(plant.count(EventKind::firmware_differs), 1);
-  EXPECT_EQ(plant.text_of(EventKind::firmware_differs),
-            "node 5 'conveyor': its firmware is 14.03.00 (1018:03), the plan takes it for "
-            "16.00.00: it is not so that a SYNC that the device sends triggers its own TPDOs; "
-            "these objects are "
-            "missing: 1403, 1603, 1803, 1A03. Write `firmware: \"14.03.00\"` for it, and read "
-            "`takt plan`");
+  EXPECT_EQ(
+      plant.text_of(EventKind::firmware_differs),
+      "node 5 'conveyor': the firmware is 14.03.00 (1018:03), but the plan assumes 16.00.00: "
+      "this does not hold: a SYNC that the device sends triggers its own TPDOs; these objects "
+      "are missing: 1403, 1603, 1803, 1A03. Write `firmware: \"14.03.00\"` for this node, and "
+      "check the plan with `takt plan`");
 }
 
 TEST(FirmwareOfADevice, ThatIsNewerIsToldAsWell) {
@@ -64,7 +64,8 @@ TEST(FirmwareOfADevice, OnWhichNothingDependsIsToldAsThat) {
   plant.run(5s);
 
   const std::string text = plant.text_of(EventKind::firmware_differs);
-  EXPECT_NE(text.find("nothing in the device data depends on that"), std::string::npos) << text;
+  EXPECT_NE(text.find("nothing in the device data depends on this difference"), std::string::npos)
+      << text;
 }
 
 TEST(FirmwareInAText, IsItsFirstVersion) {

@@ -159,15 +159,15 @@ class FoundWithoutStatusword : public FoundEnabled {
 
 TEST_F(FoundWithoutStatusword, IsNotConfirmedWhereItSaysThatItIsADrive) {
   EXPECT_EQ(stop_refused_with(0x0602'0000), StopResult::unconfirmed);
-  EXPECT_NE(text().find("answers that it has no statusword 6041:00 (0602 0000): it is not known "
-                        "whether it is enabled"),
+  EXPECT_NE(text().find("reports that it has no statusword 6041:00 (0602 0000): takt does not know "
+                        "whether the drive is enabled"),
             std::string::npos)
       << text();
 }
 
 TEST_F(FoundWithoutStatusword, IsNotConfirmedWhereItRefusesForAnotherReason) {
   EXPECT_EQ(stop_refused_with(0x0800'0022), StopResult::unconfirmed);
-  EXPECT_NE(text().find("refuses to tell its statusword 6041:00 (0800 0022)"), std::string::npos)
+  EXPECT_NE(text().find("refuses to send its statusword 6041:00 (0800 0022)"), std::string::npos)
       << text();
 }
 

@@ -50,7 +50,7 @@ TEST(SdoChannelBoot, NamesTheChannelWhereNobodyAnswersOnIt) {
 
   const std::string report = plant.text_of(EventKind::boot_failed);
   EXPECT_THAT(report, HasSubstr("sent      6C5  40 00 10 00"));
-  EXPECT_THAT(report, HasSubstr("`sdo_channel` names (0x6C5 and 0x6E5)"));
+  EXPECT_THAT(report, HasSubstr("SDO channel of `sdo_channel` (0x6C5 and 0x6E5)"));
   EXPECT_THAT(report, HasSubstr("`takt sdo read 5 1201:01 --bus can0`"));
 }
 

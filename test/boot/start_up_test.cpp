@@ -97,8 +97,8 @@ TEST(StartUp, BootTimeNamesTheMandatoryNodesOnce) {
   plant.run(8s);
   EXPECT_EQ(plant.count(EventKind::network_late), 1);
   EXPECT_NE(plant.text_of(EventKind::network_late)
-                .find("1 mandatory nodes have not booted within the boot time of 1 s (mandatory: "
-                      "node 1 'one')"),
+                .find("1 mandatory nodes did not boot within the boot time of 1 s (mandatory: node "
+                      "1 'one')"),
             std::string::npos)
       << plant.text_of(EventKind::network_late);
   EXPECT_EQ(plant.count(EventKind::network_ready), 0);

@@ -32,7 +32,7 @@ TEST(EndOfTaktd, WithoutAMandatoryNodeThatIsKeptAliveComesWhenItWasAskedBySdo) {
   EXPECT_EQ(daemon.wait(), 4);
 
   const std::string log = daemon.log();
-  const std::size_t silent = log.find("it is asked by SDO with the next try");
+  const std::size_t silent = log.find("at the next try the master reads it by SDO");
   ASSERT_NE(silent, std::string::npos) << log;
   EXPECT_NE(log.find("boot begins", silent), std::string::npos) << "no next try: " << log;
   EXPECT_NE(log.find("is mandatory and did not boot"), std::string::npos) << log;

@@ -106,7 +106,7 @@ TEST(SyncSource, TellsALostSyncAndFallsBack) {
 
   ASSERT_EQ(count(outcome, EventKind::sync_lost), 1);
   const std::string lost = text_of(outcome, EventKind::sync_lost);
-  EXPECT_NE(lost.find("SYNC lost: none for 15"), std::string::npos) << lost;
+  EXPECT_NE(lost.find("SYNC lost: no SYNC for 15"), std::string::npos) << lost;
   EXPECT_NE(lost.find("outputs take their fallback"), std::string::npos) << lost;
   EXPECT_NE(lost.find("node 3"), std::string::npos) << lost;
   EXPECT_EQ(count(outcome, EventKind::sync_back), 2) << "the first one, and after the loss";

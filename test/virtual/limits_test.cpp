@@ -65,8 +65,8 @@ TEST(LimitedMaster, SendsNoJumpOfHalfAMetreAndStopsTheAxisInThatCycle) {
   const auto told = std::ranges::find(rig.events, EventKind::limit_exceeded, &Event::kind);
   EXPECT_EQ(describe(limited_axes(), *told),
             "node 1 'axis1': command 0.51 m to target_position (607A:00) is outside its limits: "
-            "step 0.5 m, limit 0.02 m; it isn't sent, and the outputs of the node take their "
-            "fallback until a command is inside again");
+            "step 0.5 m, limit 0.02 m; takt does not send it, and the outputs of the node take "
+            "their fallback until a command is within the limits again");
 }
 
 /// A plan with one axis whose limits come only from its device, where the boot reads 607D.

@@ -216,9 +216,9 @@ TEST(Lss, LeavesADeviceOfAnotherIdentityAlone) {
   ASSERT_EQ(rig.count(EventKind::lss_not_assigned), 1) << "told once";
   const Event told = *std::ranges::find(rig.events, EventKind::lss_not_assigned, &Event::kind);
   EXPECT_EQ(describe(rig.master->plan(), told),
-            "node 1 'axis1': a device without node id answers LSS, but none with vendor id "
-            "0x0000015A, product code 0x0000004D, revision number 0x00000003, which the network "
-            "file gives this node: `takt lss find` shows what is there");
+            "node 1 'axis1': a device without node id answers LSS, but no such device has vendor "
+            "id 0x0000015A, product code 0x0000004D, revision number 0x00000003, which the network "
+            "file gives this node: `takt lss find` shows the devices without node id");
 }
 
 TEST(Lss, TellsNothingOfADeviceThatIsSilentToLss) {

@@ -65,7 +65,7 @@ TEST_F(BootReport, OfAWrongVendor) {
   status    D of CiA 302-2: vendor id differs
   heard     no boot-up message and no heartbeat
   EDS       VendorNumber=0x42 in [DeviceInfo]
-  try       another device than the one that was configured answers at node id 5: check the node ids and the wiring, name the EDS of the device that is there instead of drive.eds, or correct `vendor_id` where the network file gives it)");
+  try       a device other than the configured one answers at node id 5: check the node ids and the wiring, name the EDS of the connected device instead of drive.eds, or correct `vendor_id` where the network file gives it)");
 }
 
 TEST_F(BootReport, OfARefusedMapping) {
@@ -85,9 +85,9 @@ TEST_F(BootReport, OfARefusedMapping) {
   received  585  80 00 1A 02 41 00 04 06
   meaning   abort 0604 0041: object can't be mapped into the PDO
   status    J of CiA 302-2: configuration failed
-  heard     heartbeats that say PRE-OPERATIONAL
+  heard     heartbeats with the state PRE-OPERATIONAL
   EDS       PDOMapping=1
-  try       the device does not let 6077:00 be mapped into TPDO1, whatever its EDS says: take 6077:00 out of the mapping of TPDO1 in the network file, or map a related object)");
+  try       the device does not let 6077:00 be mapped into TPDO1, although the EDS may allow it: take 6077:00 out of the mapping of TPDO1 in the network file, or map a related object)");
 }
 
 TEST_F(BootReport, OfAMuteNode) {
@@ -102,7 +102,7 @@ TEST_F(BootReport, OfAMuteNode) {
   received  nothing within 2 s
   status    B of CiA 302-2: no answer to the read of 0x1000
   heard     no boot-up message and no heartbeat
-  try       nothing at all was heard of node 5: is it powered, and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? Is its node id 5 and its bit rate 1000 kbit/s? `takt dump --bus can0` shows who talks on the bus)");
+  try       node 5 has sent nothing: is it powered and wired (CAN_H, CAN_L, ground, 120 ohm at both ends of the line)? Is its node id 5 and its bit rate 1000 kbit/s? `takt dump --bus can0` shows which nodes send on the bus)");
 }
 
 TEST_F(BootReport, OfANodeThatIsAliveButAnswersNoSdo) {
@@ -113,7 +113,7 @@ TEST_F(BootReport, OfANodeThatIsAliveButAnswersNoSdo) {
                  "device type"));
   const std::string text = report(std::move(steps), 3s);
   EXPECT_NE(text.find("\n  heard     its boot-up message\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("its SDO server keeps silent"), std::string::npos) << text;
+  EXPECT_NE(text.find("its SDO server does not answer"), std::string::npos) << text;
 }
 
 TEST_F(BootReport, OfAMissingHeartbeat) {
@@ -125,7 +125,7 @@ TEST_F(BootReport, OfAMissingHeartbeat) {
   received  no heartbeat on 0x705 within 300 ms
   status    K of CiA 302-2: no heartbeat or guarding answer at the start of error control
   heard     no boot-up message and no heartbeat
-  try       the device produces no heartbeat: is 0x1017 not zero after the boot? Set `heartbeat_producer` of this node in ms, or 0 to go without)");
+  try       the device produces no heartbeat: is 0x1017 zero after the boot? Set `heartbeat_producer` of this node in ms; with 0 the master expects no heartbeat)");
 }
 
 TEST_F(BootReport, OfAWriteThatTakesTooLong) {
@@ -135,10 +135,10 @@ TEST_F(BootReport, OfAWriteThatTakesTooLong) {
   EXPECT_EQ(report(std::move(steps), 1100ms),
             R"(node 5 'shoulder' failed to boot at step 1 of 1 (store parameters) after 1 s
   sent      605  23 10 10 01 73 61 76 65   write 1010:01
-  received  nothing within 500 ms; a write is not repeated
+  received  nothing within 500 ms; the master does not repeat a write
   status    J of CiA 302-2: configuration failed
   heard     no boot-up message and no heartbeat
-  try       the device needs longer than 500 ms for 1010:01 (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The write was not repeated, because it might act twice)");
+  try       the device needs longer than 500 ms for 1010:01 (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The master did not repeat the write, because the write might act twice)");
 }
 
 TEST_F(BootReport, OfANodeThatDoesNotStart) {
@@ -153,10 +153,10 @@ TEST_F(BootReport, OfANodeThatDoesNotStart) {
                 "OPERATIONAL"));
   EXPECT_EQ(report(std::move(steps), 500ms),
             R"(node 5 'shoulder' failed to boot at step 2 of 2 (OPERATIONAL) after 300 ms
-  received  heartbeats that say PRE-OPERATIONAL for 300 ms
-  heard     heartbeats that say PRE-OPERATIONAL
+  received  heartbeats with the state PRE-OPERATIONAL for 300 ms
+  heard     heartbeats with the state PRE-OPERATIONAL
   EMCY      0x8210: PDO not processed: its length is wrong
-  try       the node did not obey NMT start: an error keeps it out of OPERATIONAL (look at its EMCY messages, 0x1001 and 0x1003), or a second master holds it back)");
+  try       the node did not go to OPERATIONAL after NMT start: an error of the device prevents it (look at its EMCY messages, 0x1001 and 0x1003), or a second master commands another state)");
 }
 
 TEST_F(BootReport, OfANodeThatTakesTheCounterOfSyncForAnError) {
@@ -172,7 +172,7 @@ TEST_F(BootReport, OfANodeThatTakesTheCounterOfSyncForAnError) {
       .add(with({.action = BootAction::await_operational, .letter = 'L', .timeout = 300ms},
                 "OPERATIONAL"));
   const std::string text = report(std::move(steps), 900ms);
-  EXPECT_NE(text.find("Let the device keep 0x1019 (`store_configuration: 1` of this node)"),
+  EXPECT_NE(text.find("Let the device store 0x1019 (`store_configuration: 1` of this node)"),
             std::string::npos)
       << text;
 }
@@ -187,7 +187,7 @@ TEST_F(BootReport, OfAValueThatTheDeviceChangedByItself) {
   EXPECT_NE(text.find("meaning   0x007F00C8 (8323272)\n  expected  0x007F00CA (8323274)"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("enter the value it keeps"), std::string::npos) << text;
+  EXPECT_NE(text.find("enter the value that the device keeps"), std::string::npos) << text;
 }
 
 TEST_F(BootReport, OfANodeThatRestartsAgainAndAgain) {
@@ -200,7 +200,7 @@ TEST_F(BootReport, OfANodeThatRestartsAgainAndAgain) {
   EXPECT_NE(text.find("received  6 boot-up messages while the node was being booted"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("weak supply"), std::string::npos) << text;
+  EXPECT_NE(text.find("check the power supply"), std::string::npos) << text;
 }
 
 TEST(Remedy, DiffersForEachAbortOfAMapping) {
@@ -216,7 +216,8 @@ TEST(Remedy, DiffersForEachAbortOfAMapping) {
     return remedy(plan, plan.nodes[0], failure);
   };
   EXPECT_NE(text(0x06040041).find("607A:00 out of the mapping of RPDO2"), std::string::npos);
-  EXPECT_NE(text(0x06040042).find("can't hold so much in RPDO2"), std::string::npos);
+  EXPECT_NE(text(0x06040042).find("can't hold so many bytes or entries in RPDO2"),
+            std::string::npos);
   EXPECT_NE(text(0x06020000).find("no object 607A:00"), std::string::npos);
   EXPECT_NE(text(0x06010002).find("mapping of RPDO2 is fixed"), std::string::npos);
   EXPECT_NE(text(0x06090030).find("refuses to change RPDO2 now"), std::string::npos);
@@ -231,7 +232,7 @@ TEST(Remedy, OfAnAnswerThatDoesNotEndBlamesTheServerWhereTheLengthIsKnown) {
   failure.object = {0x1000, 0};
   EXPECT_EQ(remedy(plan, plan.nodes[0], failure),
             "the device sends more than 1024 bytes for 1000:00, which has 4: its SDO server is "
-            "faulty. Look for other firmware, or leave the object out");
+            "faulty. Look for other firmware, or leave the object out of the network file");
 }
 
 TEST(LetterText, HasWordsForAToO) {

@@ -141,7 +141,7 @@ TEST(LssMaster, ConfiguresANodeIdAndTellsTheRefusal) {
   EXPECT_EQ(refused.outcome, LssOutcome::refused);
   EXPECT_EQ(refused.error, 1);
   EXPECT_EQ(lss_failure_text(refused),
-            "configure node id: the device says that this node id is out of range (error 1)");
+            "configure node id: the device reports that this node id is out of range (error 1)");
   EXPECT_EQ(talk.sent,
             (std::vector<Bytes>{{0x11, 5, 0, 0, 0, 0, 0, 0}, {0x11, 0xC8, 0, 0, 0, 0, 0, 0}}));
 }
@@ -179,7 +179,7 @@ TEST(LssMaster, TellsWhyStoringFailed) {
   EXPECT_EQ(lss_failure_text(no_access),
             "store configuration: the device could not access its storage medium (error 2)");
   EXPECT_EQ(lss_failure_text(own_code),
-            "store configuration: the device gave its own error code 9");
+            "store configuration: the device gave the manufacturer-specific error code 9");
   EXPECT_EQ(good.outcome, LssOutcome::done);
   EXPECT_EQ(talk.sent.front(), (Bytes{0x17}));
 }

@@ -44,7 +44,7 @@ TEST_F(OddAnswers, AnAnswerToTheSubIndexNextToItIsToldAsThat) {
   EXPECT_EQ(failure().letter, 'D');
   EXPECT_EQ(failure().fault, SdoFault::timeout);
   const std::string text = describe(plan, *find(EventKind::boot_failed));
-  EXPECT_NE(text.find("the device answers with 1018:02 where 1018:01 was asked for"),
+  EXPECT_NE(text.find("the device answers with 1018:02 where 1018:01 was requested"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("585  43 18 10 02"), std::string::npos) << "the frame is shown\n" << text;

@@ -91,7 +91,8 @@ TEST(MissedCycles, NameBusOffOnlyWhereTheControllerReportsIt) {
     return describe(test::axes(), event);
   };
 
-  EXPECT_THAT(text_of(MissedBecause::wire_blocked), HasSubstr("is bus-off or nobody acknowledges"));
+  EXPECT_THAT(text_of(MissedBecause::wire_blocked),
+              HasSubstr("is bus-off or no node acknowledges"));
   EXPECT_THAT(
       text_of(MissedBecause::sent_late),
       AllOf(HasSubstr("1 cycle without SYNC: the bus thread was late"), Not(HasSubstr("bus-off"))));

@@ -173,7 +173,7 @@ TEST(OutputLimits, TellWhichActualPositionTheFirstCommandWaitsFor) {
   EXPECT_THAT(text_with(255),
               AllOf(HasSubstr("RPDO1 is held back until "),
                     HasSubstr("(6064:00) has come from the device for the first time"),
-                    HasSubstr("TPDO1 only by event: give it an `event_timer`, or make it "
+                    HasSubstr("TPDO1 only by event: give the TPDO an `event_timer`, or make it "
                               "synchronous (`transmission: 1`)")));
   EXPECT_THAT(text_with(1), HasSubstr("check whether the device sends TPDO1"));
 }
