@@ -28,13 +28,13 @@ def read_keys(path):
         if info.st_uid not in (0, os.geteuid()):
             raise ValueError(f"key file {path}: it belongs to another user")
         if info.st_mode & 0o077:
-            raise ValueError(f"key file {path}: others than its owner can use it: chmod 600 {path}")
+            raise ValueError(f"key file {path}: users other than its owner can access it: chmod 600 {path}")
         with open(descriptor, encoding="utf-8", closefd=False) as file:
             lines = [words for line in file if (words := line.partition("#")[0].split())]
     finally:
         os.close(descriptor)
     if not lines:
-        raise ValueError(f"key file {path}: there is no key in it")
+        raise ValueError(f"key file {path}: the file has no key")
     try:
         keys = {name: bytes.fromhex(secret) for name, secret in lines}
     except ValueError:

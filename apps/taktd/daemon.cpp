@@ -47,13 +47,14 @@ Exit Daemon::run() {
   if (const auto trouble = open()) return *trouble;
   if (const auto trouble = start()) return *trouble;
   loop();
-  if (!stopping_ && StopSignal::count() > 0) stop(Exit::good, "told to stop");
+  if (!stopping_ && StopSignal::count() > 0) stop(Exit::good, "a stop was requested");
   if (!master_->finished()) {
-    reporter_.say(Weight::error, StopSignal::count() > 1
-                                     ? "stopped at once: the axes were not brought to rest in order"
-                                     : "the ordered stop did not end in time");
-    recorder_.finish_running(why_.empty() ? "stopped at once" : why_ + "; it did not end in order",
-                             last_recording);
+    reporter_.say(Weight::error,
+                  StopSignal::count() > 1
+                      ? "stopped at once: the ordered stop did not bring the axes to rest"
+                      : "the ordered stop did not end in time");
+    recorder_.finish_running(
+        why_.empty() ? "stopped at once" : why_ + "; the ordered stop did not end", last_recording);
     reporter_.finish(last_lines);
     std::_Exit(static_cast<int>(exit_of_cut_stop()));
   }
@@ -132,7 +133,9 @@ std::optional<Exit> Daemon::start() {
   reporter_.say(realtime_.complete() ? Weight::note : Weight::warning,
                 "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {
-    reporter_.say(Weight::error, "--rt enforce: not started without the real time asked for");
+    reporter_.say(Weight::error,
+                  "--rt enforce: taktd does not start, because the requested real-time settings "
+                  "are not available");
     master_->join();
     return Exit::refused;
   }
@@ -198,7 +201,7 @@ void Daemon::watch_conditions(Time now) {
   const BusStatus& bus = bridge_->status().bus;
   if (now - bus.when < std::chrono::seconds{1}) service_.alive(now);
   if (stopping_) return;
-  if (StopSignal::count() > 0) return stop(Exit::good, "told to stop");
+  if (StopSignal::count() > 0) return stop(Exit::good, "a stop was requested");
   if (now >= end_) return end_of_time();
   watch_lateness();
 }
@@ -209,7 +212,7 @@ void Daemon::end_of_time() {
   const std::string why = "the time of --for is over";
   const std::string missing = options_.observe ? "" : never_ready();
   if (missing.empty()) return stop(Exit::good, why);
-  stop(Exit::node_missing, why + ", and mandatory nodes never were ready: " + missing);
+  stop(Exit::node_missing, why + ", and these mandatory nodes were never ready: " + missing);
 }
 
 std::string Daemon::never_ready() const {
@@ -232,7 +235,7 @@ void Daemon::watch_lateness() {
   stop(Exit::too_late,
        "SYNC was up to " +
            std::to_string(std::chrono::duration_cast<microseconds>(latest).count()) +
-           " us late, the limit is " +
+           " us late, but the limit is " +
            std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
 }
 
@@ -263,7 +266,8 @@ void Daemon::stop(Exit reason, const std::string& why) {
   exit_ = reason;
   why_ = why;
   stop_limit_ = clocks_.now() + network_.plan.stop_timeout + patience;
-  reporter_.say(reason == Exit::good ? Weight::note : Weight::error, why + "; stopping in order");
+  reporter_.say(reason == Exit::good ? Weight::note : Weight::error,
+                why + "; the ordered stop begins");
   service_.stopping(network_.plan.stop_timeout + patience + last_recording + last_lines);
   master_->request_stop();
 }

@@ -21,7 +21,8 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open_real(const s
   if (diagnostics) {
     bus->diagnostics_.emplace(std::move(*diagnostics));
   } else {
-    bus->warnings_.push_back("foreign masters will not be noticed: " + diagnostics.error().message);
+    bus->warnings_.push_back("takt can't detect other masters on the bus: " +
+                             diagnostics.error().message);
   }
   const BusName parsed = BusName::parse(name);
   if (parsed.kind != BusName::Kind::can_interface) return bus;

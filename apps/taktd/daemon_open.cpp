@@ -30,7 +30,7 @@ std::optional<Exit> Daemon::open() {
     const bool passing = is_passing_trouble(errno);
     reporter_.say(passing ? Weight::warning : Weight::error,
                   "--events " + options_.events_file + ": can't be written: " +
-                      std::strerror(errno) + (passing ? "; running without it" : ""));
+                      std::strerror(errno) + (passing ? "; taktd runs without this file" : ""));
     if (!passing) return Exit::wrong_use;
   }
   auto url = parse_lcm_url(choose_lcm_url(options_.lcm_url, network_.lcm.url));
@@ -123,7 +123,7 @@ std::optional<Exit> Daemon::look_for_master() {
     return Exit::bus_trouble;
   }
   if (StopSignal::count() == 0) return std::nullopt;
-  reporter_.say(Weight::note, "told to stop before the start");
+  reporter_.say(Weight::note, "a stop was requested before the start");
   return Exit::good;
 }
 

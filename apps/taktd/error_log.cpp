@@ -69,14 +69,14 @@ ErrorLog::~ErrorLog() = default;
 
 void ErrorLog::say(Weight weight, const std::string& sentence) {
   if (const std::uint64_t lost = writer_.take_lost(); lost != 0) {
-    log_->warn("stderr took too little: {} lines are lost here", lost);
+    log_->warn("stderr was not read fast enough: {} lines are lost here", lost);
   }
   log_->log(level_of(weight), "{}", sentence);
   if (writer_.has_thread()) return;
   if (!std::exchange(without_thread_told_, true)) {
     log_->warn(
-        "no thread can be created for stderr; it is tried again. Until then lines are "
-        "written as fast as stderr takes them, and the others wait");
+        "no thread can be created for stderr; taktd tries again. Until then taktd writes lines as "
+        "fast as stderr takes them, and the other lines wait");
   }
   writer_.write_through(Time{0});
 }

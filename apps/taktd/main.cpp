@@ -21,8 +21,8 @@ namespace {
 bool fits_the_bus(const LoadedNetwork& network, const std::string& file, const char* severity) {
   if (bus_fits(network.plan)) return true;
   std::fprintf(stderr,
-               "taktd: %sin the worst case frames are too late on this bus: `takt budget %s` says "
-               "which, and the cheapest change with which they are not\n",
+               "taktd: %sin the worst case frames are too late on this bus: `takt budget %s` lists "
+               "these frames and the cheapest change that makes them fit\n",
                severity, file.c_str());
   return false;
 }

@@ -12,21 +12,21 @@ namespace takt {
 namespace {
 
 constexpr const char* description =
-    "taktd - CANopen master: boots the devices of a network file, beats SYNC, and carries the\n"
-    "process image to and from applications over LCM.";
+    "taktd - CANopen master: boots the devices of a network file, produces SYNC, and\nexchanges "
+    "the process image with applications over LCM.";
 
 constexpr const char* footer = R"(
 Examples:
   taktd lift.yaml                      on the `interface:` of the file
-  taktd lift.yaml --bus vcan0          on another one
+  taktd lift.yaml --bus vcan0          on another interface
   taktd lift.yaml --bus sim --for 10s  simulated bus and devices, no hardware needed
   taktd lift.yaml --check              compile everything, touch no bus; 1: frames can be too late
-  taktd lift.yaml --observe            listen only: send nothing at all
+  taktd lift.yaml --observe            listen only: send nothing
   taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
   taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
 
-Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes) stops in order:
-axes to rest, nodes to pre-operational, SYNC off. A second one stops at once.
+Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes) starts the ordered stop:
+axes to rest, nodes to pre-operational, SYNC off. A second signal stops at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
 3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,
@@ -48,24 +48,24 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   int typed = 0;  // 1 for --typed, -1 for --no-typed, 0 for neither
   app.add_option("NET.yaml", options.network_file, "network file")->required();
   app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
-  app.add_option("--rt", rt, "enforce: no start without real time; try: say what is missing; off")
+  app.add_option("--rt", rt, "enforce: start with real time only; try: report what is missing; off")
       ->check(one_of({"enforce", "try", "off"}))
       ->type_name("MODE");
   app.add_option("--lcm-url", options.lcm_url,
-                 "instead of LCM_DEFAULT_URL and of the file's `lcm: url` and `broker`")
+                 "use this URL, not LCM_DEFAULT_URL and `lcm: {url, broker}` of the file")
       ->type_name("URL");
-  app.add_option("--for", run_for, "ordered stop after this time: 10s, 500ms, 2min")
+  app.add_option("--for", run_for, "start the ordered stop after this time: 10s, 500ms, 2min")
       ->type_name("TIME");
-  app.add_option("--events", options.events_file, "append events as JSON, one a line")
+  app.add_option("--events", options.events_file, "append events as JSON, one object a line")
       ->type_name("FILE");
   app.add_option("--gateway", options.gateway,
-                 "text commands of CiA 309-3: unix:PATH, or tcp:PORT on loopback")
+                 "serve text commands of CiA 309-3: unix:PATH, or tcp:PORT on loopback")
       ->type_name("WHERE");
   app.add_option("--black-box", options.black_box,
-                 "record; write frames and decisions here after a fault or SIGUSR1")
+                 "record frames and decisions; write them here after a fault or SIGUSR1")
       ->type_name("DIR");
   app.add_flag("--typed,!--no-typed", typed,
-               "BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`, or not");
+               "use BUS_NODE_STATE and BUS_NODE_COMMAND in the types of `takt export lcm`");
   app.add_flag("--check", options.check, "compile everything, print a summary, touch no bus");
   app.add_flag("--observe", options.observe, "listen only: no NMT, no SDO, no SYNC, no outputs");
   if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {

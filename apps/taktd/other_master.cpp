@@ -42,14 +42,14 @@ void OtherMaster::on_frame(const Frame& frame) {
   const unsigned id = plan_.master_id.value();
   if (!refusal_ && frame.id == CobId::base(0x700 + id)) {
     refusal_ = fmt::format(
-        "{}: node {}, the id of the master, has a heartbeat on the bus: another master runs it "
-        "already, or a device has this id; end the other one, or give this one another "
-        "`node_id` under `master:`",
+        "{}: node {}, the id of the master, has a heartbeat on the bus already: another master "
+        "runs on this bus, or a device has this id; end the other master, or give this master "
+        "another `node_id` under `master:`",
         bus_, id);
   }
   if (!sync_warning_ && plan_.cycle.makes_sync() && frame.id == plan_.cycle.sync_cob_id) {
-    sync_warning_ =
-        fmt::format("{}: somebody else makes SYNC (COB-ID 0x{:X}) on the bus", bus_, frame.id.id());
+    sync_warning_ = fmt::format("{}: another node produces SYNC (COB-ID 0x{:X}) on the bus", bus_,
+                                frame.id.id());
   }
 }
 
@@ -63,11 +63,11 @@ void OtherMaster::on_status(const status_t& status, Time realtime) {
                   printable_text(status.interface.substr(0, longest_name)), status.session);
   constexpr std::string_view mend = "or give one of the two buses another name: `bus: {name: ...}`";
   if (status_ == StatusCounts::as_refusal) {
-    refusal_ = fmt::format("{}; end it, {}", what, mend);
+    refusal_ = fmt::format("{}; end that master, {}", what, mend);
   } else {
     status_warning_ = fmt::format(
-        "{}, says a message without proof, so this one starts all the same; end the other one if "
-        "it is there, {}",
+        "{}. The message is unsigned, so this master starts all the same; if the other master "
+        "exists, end it, {}",
         what, mend);
   }
 }

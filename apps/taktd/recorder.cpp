@@ -43,17 +43,17 @@ void Recorder::on_request(const request_t& request) {
   }
   if (!box_) {
     return refuse(
-        "nothing is recorded: start taktd with --black-box DIR, or give the network file "
-        "`black_box: {folder: DIR}`");
+        "the black box is off: start taktd with --black-box DIR, or write `black_box: {folder: "
+        "DIR}` in the network file");
   }
   if (waiting_.size() == most_waiting) return refuse("too many requests at once; ask again later");
   waiting_.push_back(request);
-  box_->on_request("asked for by " + request.sender.substr(0, 64), monotonic_now());
+  box_->on_request("requested by " + request.sender.substr(0, 64), monotonic_now());
 }
 
 void Recorder::serve(Time now) {
   if (!box_) return;
-  if (StopSignal::take_recording_wish()) box_->on_request("asked for", now);
+  if (StopSignal::take_recording_wish()) box_->on_request("requested by SIGUSR1", now);
   box_->serve(now);
 }
 
@@ -66,7 +66,8 @@ bool Recorder::finish(const std::string& reason, Time limit) {
 
 void Recorder::finish_running(const std::string& reason, Time limit) {
   if (box_ && !box_->finish_running(reason, limit)) {
-    say_(Weight::warning, "black box: no whole recording of the end could be written in time");
+    say_(Weight::warning,
+         "black box: the recording of the end could not be written completely in time");
   }
   answer_all(false, "taktd has ended");
 }

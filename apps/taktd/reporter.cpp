@@ -22,7 +22,7 @@ void Reporter::tell(const Notice& notice) {
   write(notice);
   if (events_->has_thread() || std::exchange(without_thread_told_, true)) return;
   say(Weight::warning,
-      "--events: no thread can be created for it; its lines wait, and it is tried again");
+      "--events: no thread can be created for this file; its lines wait, and taktd tries again");
 }
 
 /// Reports lost lines on stderr and in the file, at the place of the gap.
@@ -42,7 +42,8 @@ void Reporter::tell_lost() {
 void Reporter::finish(Time limit) {
   if (events_) {
     const bool through = events_->flush(limit);
-    if (!through) say(Weight::warning, "--events: the file takes no more lines; the last are lost");
+    if (!through)
+      say(Weight::warning, "--events: the file takes no more lines; the last lines are lost");
     tell_lost();
   }
   log_.flush(limit);

@@ -48,9 +48,9 @@ std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_
   text += fmt::format("  frames             {} received, {} sent, {} not sent, {} lost\n",
                       bus.frames_received, bus.frames_sent, bus.send_failures,
                       bus.port.receive_overruns);
-  text += fmt::format("  images on LCM      {}, {} lost on the way there\n", bridge.images(),
+  text += fmt::format("  images on LCM      {}, {} lost before sending\n", bridge.images(),
                       master.image_overruns());
-  text += fmt::format("  commands           {} taken, {} refused\n", bridge.commands_taken(),
+  text += fmt::format("  commands           {} accepted, {} refused\n", bridge.commands_taken(),
                       bridge.commands_refused());
   text += fmt::format("  events             {} errors, {} warnings", errors, warnings);
   return text;

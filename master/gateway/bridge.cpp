@@ -93,7 +93,7 @@ void Bridge::notice_gap() {
         .kind = "front_gap",
         .weight = Weight::warning,
         .text = "taktd's front thread did not run for " + std::to_string(milliseconds) +
-                " ms: commands and requests that waited meanwhile are discarded"});
+                " ms: taktd discards the commands and requests that waited in this time"});
 }
 
 std::uint64_t Bridge::cycle_at(Time now) const noexcept {
@@ -297,7 +297,7 @@ void Bridge::tell_lost_events() {
         .kind = "events_lost",
         .weight = Weight::warning,
         .text = subject(master_.plan(), 0) + ": " + std::to_string(more) +
-                " events lost: more came at once than there is room for"});
+                " events were lost: more events came at once than the queue holds"});
 }
 
 /// Adds what only the gateway knows: the limit that the last command had, and its sender.
@@ -339,7 +339,8 @@ void Bridge::tell(Notice notice) {
   const auto kept_back = limit_.allow(notice);
   if (!kept_back) return;
   if (*kept_back != 0) {
-    notice.text += " (" + std::to_string(*kept_back) + " more of this kind before)";
+    notice.text +=
+        " (" + std::to_string(*kept_back) + " earlier ones of this kind were not reported)";
   }
   send(notice);
 }

@@ -70,16 +70,17 @@ std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
   const bool before_gap_ended = end != Time{0} && utime < wall(end);
   if (gap_.discards_requests(now) || (before_gap_ended && !old)) {
     return "taktd did not run for " + std::to_string(length / std::chrono::milliseconds{1}) +
-           " ms, and this may have waited as long: ask again";
+           " ms, and the request may have waited as long: send it again";
   }
   if (old) {
-    return "its time (utime) is more than 10 s away from the clock of taktd's machine: it waited "
-           "for long or comes from a log, or the clocks of two machines differ";
+    return "the time of the request (utime) is more than 10 s before the clock of taktd's machine: "
+           "the "
+           "request waited too long, comes from a log, or the clocks of the two machines differ";
   }
   if (utime <= wall(now + most_ahead)) return {};
-  return "its time (utime) is more than 1 s ahead of the clock of taktd's machine: the clocks of "
-         "two "
-         "machines differ";
+  return "the time of the request (utime) is more than 1 s ahead of the clock of taktd's machine: "
+         "the "
+         "clocks of the two machines differ";
 }
 
 reply_t Bridge::reply_to(const request_t& request) const {

@@ -34,7 +34,7 @@ class PatternParser {
     if (left_.starts_with('^')) left_.remove_prefix(1);
     if (left_.ends_with('$') && !left_.ends_with("\\$")) left_.remove_suffix(1);
     const Part whole = alternatives(0);
-    if (why_.empty() && !left_.empty()) refuse("a ')' closes no group");
+    if (why_.empty() && !left_.empty()) refuse("a ')' has no opening '('");
     if (!why_.empty()) return std::unexpected{why_};
     out_.first_ = whole.first;
     out_.last_ = whole.last;
@@ -114,24 +114,24 @@ class PatternParser {
       case '*':
       case '+':
       case '?':
-        return refuse(fmt::format("nothing stands before '{}'", c));
+        return refuse(fmt::format("'{}' has nothing to repeat", c));
       case '{':
       case '}':
         return refuse("repetition by '{}' is not supported");
       case '^':
       case '$':
-        return refuse(fmt::format("'{}' stands inside the pattern", c));
+        return refuse(fmt::format("'{}' is inside the pattern", c));
       default:
         return literal(c);
     }
   }
 
   Part group(std::size_t depth) {
-    if (depth == ChannelPattern::deepest) return refuse("too many groups inside each other");
+    if (depth == ChannelPattern::deepest) return refuse("too many nested groups");
     if (left_.starts_with("?:")) left_.remove_prefix(2);
     if (left_.starts_with('?')) return refuse("look-ahead and other '(?' are not supported");
     const Part inner = alternatives(depth + 1);
-    if (at_end() || take() != ')') return refuse("a group is not closed");
+    if (at_end() || take() != ')') return refuse("a '(' is not closed");
     return inner;
   }
 
@@ -142,7 +142,7 @@ class PatternParser {
   }
 
   Part escaped() {
-    if (left_.empty()) return refuse("a backslash ends the pattern");
+    if (left_.empty()) return refuse("the pattern ends with a backslash");
     const char c = take();
     const bool word = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     if (word) return refuse(fmt::format("'\\{}' is not supported", c));
@@ -186,7 +186,7 @@ class PatternParser {
 
 std::expected<ChannelPattern, std::string> ChannelPattern::parse(std::string_view text) {
   if (text.size() > longest) {
-    return std::unexpected{"it is longer than " + std::to_string(longest) + " characters"};
+    return std::unexpected{"the pattern is longer than " + std::to_string(longest) + " characters"};
   }
   ChannelPattern pattern;
   pattern.text_ = text;

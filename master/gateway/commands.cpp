@@ -26,12 +26,12 @@ std::string signal_text(const BusPlan& plan, const Signal& signal) {
 }
 
 std::string too_old(const command_t& command, const CommandContext& context) {
-  return "it is too old: computed from cycle " + std::to_string(command.cycle) + ", now is cycle " +
-         std::to_string(context.cycle);
+  return "the command is too old: it is computed from cycle " + std::to_string(command.cycle) +
+         ", the present cycle is " + std::to_string(context.cycle);
 }
 
 std::string overtaken(const command_t& command) {
-  return "it is older than the newest command of the node: computed from cycle " +
+  return "the command is older than the newest one of the node: it is computed from cycle " +
          std::to_string(command.cycle);
 }
 
@@ -91,17 +91,18 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
   }
   if (command.session != options_.session) {
     return refuse({context, command, CommandRefusal::session},
-                  "another session of taktd (a replayed log, or taktd was started again); take the "
-                  "session from the newest image_t");
+                  "the command is for another session of taktd (a replayed log, or taktd has "
+                  "restarted); use the session of the newest image_t");
   }
   if (command.sender.empty() || command.sender.size() > longest_sender ||
       std::ranges::any_of(command.sender, is_control)) {
     return refuse({context, command, CommandRefusal::sender},
-                  "the sender has to give a name of 1 to 64 characters, none a control character");
+                  "the sender must have a name of 1 to 64 characters without control characters");
   }
   if (command.instance == 0) {
-    return refuse({context, command, CommandRefusal::sender},
-                  "it has instance 0; a sender chooses a random number other than 0 at its start");
+    return refuse(
+        {context, command, CommandRefusal::sender},
+        "the command has instance 0; a sender chooses a random number other than 0 at its start");
   }
   return true;
 }
@@ -111,14 +112,15 @@ bool Commands::check_message(const command_t& command, const CommandContext& con
 bool Commands::check_cycle(const command_t& command, const CommandContext& context) {
   if (command.cycle < 1) {
     return refuse({context, command, CommandRefusal::no_cycle},
-                  "it is computed from cycle " + std::to_string(command.cycle) +
-                      ", which is none: a command repeats the cycle of the image that it was "
-                      "computed from");
+                  "the command is computed from cycle " + std::to_string(command.cycle) +
+                      ", which does not exist: a command repeats the cycle of the image from which "
+                      "it was computed");
   }
   if (static_cast<std::uint64_t>(command.cycle) <= context.cycle + 1) return true;
   return refuse({context, command, CommandRefusal::future},
-                "it comes from the future: computed from cycle " + std::to_string(command.cycle) +
-                    ", now is cycle " + std::to_string(context.cycle));
+                "the command comes from the future: it is computed from cycle " +
+                    std::to_string(command.cycle) + ", the present cycle is " +
+                    std::to_string(context.cycle));
 }
 
 bool Commands::read_items(const command_t& command, const CommandContext& context) {
@@ -173,7 +175,7 @@ bool Commands::check_node(std::size_t node_index, const command_t& command,
   const NodeStatus& status = context.nodes[node_index];
   if (plan_.nodes[node_index].boot && status.boot != BootState::ready) {
     return refuse({context, command, CommandRefusal::not_ready, node},
-                  "the node has not booted (yet)");
+                  "the node has not booted yet");
   }
   if (status.nmt != NmtState::operational) {
     return refuse({context, command, CommandRefusal::not_ready, node},
@@ -201,8 +203,8 @@ std::string Commands::owned_text(std::size_t node_index, const command_t& comman
   const std::string who = holder == command.sender
                               ? "another program of the same name, '" + holder + "',"
                               : "'" + holder + "'";
-  return "its outputs belong to " + who +
-         " until it releases them or the time to live of its commands has run out";
+  return "the outputs of the node belong to " + who +
+         " until this sender releases them or the time to live of its commands has expired";
 }
 
 /// Returns the shortest configured time to live of the node's outputs; 0 means no limit.

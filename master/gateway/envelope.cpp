@@ -31,7 +31,7 @@ bool has_mac(Bytes encoded, const Mac& mac) noexcept {
 std::string_view text(EnvelopeFault fault) noexcept {
   switch (fault) {
     case EnvelopeFault::damaged:
-      return "its bytes are damaged, or it is of another version";
+      return "its bytes are damaged, or it has another version";
     case EnvelopeFault::other_schema:
       return "it has another schema";
     case EnvelopeFault::unknown_key:
@@ -39,15 +39,15 @@ std::string_view text(EnvelopeFault fault) noexcept {
     case EnvelopeFault::forged:
       return "its MAC is wrong: it was forged or altered, or its sender has another secret";
     case EnvelopeFault::other_session:
-      return "it is for another session of taktd (a replayed log, or taktd was started again)";
+      return "it is for another session of taktd (a replayed log, or taktd has restarted)";
     case EnvelopeFault::too_old:
-      return "it is older than 1 s by the clock";
+      return "its time is more than 1 s in the past";
     case EnvelopeFault::from_the_future:
-      return "it is more than 1 s in the future by the clock";
+      return "its time is more than 1 s in the future";
     case EnvelopeFault::repeated:
-      return "it is repeated or out of order: this sender's counter was higher already";
+      return "it is repeated or out of order: the counter of this sender was higher already";
     case EnvelopeFault::too_many_senders:
-      return "there are too many senders at once";
+      return "too many senders are active at once";
   }
   return "";
 }

@@ -58,10 +58,10 @@ std::expected<void, std::string> check_permissions(const std::string& path,
     return failed(path, "it belongs to another user");
   }
   if ((status.st_mode & 077) != 0) {
-    return failed(path, "others than its owner can use it: chmod 600 " + path);
+    return failed(path, "users other than its owner can access it: chmod 600 " + path);
   }
   if (static_cast<std::size_t>(status.st_size) > most_bytes) {
-    return failed(path, "it is longer than 64 KiB");
+    return failed(path, "the file is longer than 64 KiB");
   }
   return {};
 }
@@ -74,7 +74,7 @@ std::expected<std::string, std::string> read_all(int fd, const std::string& path
     if (size < 0) return failed(path, std::strerror(errno));
     if (size == 0) return text;
     text.append(chunk.data(), static_cast<std::size_t>(size));
-    if (text.size() > most_bytes) return failed(path, "it is longer than 64 KiB");
+    if (text.size() > most_bytes) return failed(path, "the file is longer than 64 KiB");
   }
 }
 
@@ -105,12 +105,12 @@ std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::strin
       return std::unexpected{here + "expected a name and 64 hex digits"};
     }
     if (std::ranges::find(keys, key.name, &EnvelopeKey::name) != keys.end()) {
-      return std::unexpected{here + "key '" + key.name + "' is there twice"};
+      return std::unexpected{here + "key '" + key.name + "' occurs twice"};
     }
-    if (keys.size() == most_keys) return std::unexpected{here + "there are more than 64 keys"};
+    if (keys.size() == most_keys) return std::unexpected{here + "the file has more than 64 keys"};
     keys.push_back(std::move(key));
   }
-  if (keys.empty()) return failed(where, "there is no key in it");
+  if (keys.empty()) return failed(where, "the file has no key");
   return keys;
 }
 
@@ -130,8 +130,8 @@ std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string
 std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name) {
   if (!is_name(name)) {
     return failed(path, "'" + printable_text(name) +
-                            "' is no name of a key: it has 1 to 32 "
-                            "letters, digits, underscores, dashes or dots");
+                            "' is not a valid key name: a name has 1 to 32 letters, digits, "
+                            "underscores, dashes or dots");
   }
   const FileDescriptor file{
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600)};

@@ -21,8 +21,8 @@ constexpr const char* by_environment =
 std::string port_is_taken(std::uint16_t port) {
   const std::string number = std::to_string(port);
   return "port " + number +
-         " of loopback is taken by another program, which nobody has told me to trust: no hub "
-         "there; trying again and again. To use the hub of that program: --lcm-url "
+         " of loopback is used by another program, and no setting tells taktd to trust it: taktd "
+         "serves no hub there and tries again every 5 s. To use the hub of that program: --lcm-url "
          "tcpq://127.0.0.1:" +
          number + ", or `lcm: {url: ...}` without `broker`";
 }
@@ -67,7 +67,7 @@ bool LcmLink::serve_hub(std::uint16_t port) {
   auto hub = listen(port);
   if (!hub) return false;
   say_(Weight::note,
-       "LCM: serving the tcpq protocol by myself; other programs: export LCM_DEFAULT_URL=" +
+       "LCM: taktd serves the tcpq protocol itself; other programs: export LCM_DEFAULT_URL=" +
            (*hub)->url());
   use(std::move(*hub));
   return true;
@@ -81,8 +81,8 @@ void LcmLink::open_tcpq(const LcmUrl& url) {
   const bool chosen = hub_ == Hub::named;
   say_(answers && chosen ? Weight::note : Weight::warning,
        "LCM: " +
-           (answers ? "using the hub at " + client->url()
-                    : "no hub answers at " + client->url() + "; trying again and again") +
+           (answers ? "taktd uses the hub at " + client->url()
+                    : "no hub answers at " + client->url() + "; taktd keeps trying") +
            (chosen ? "" : by_environment));
   use(std::move(client));
 }
@@ -113,7 +113,7 @@ void LcmLink::begin_lcm() {
       });
   if (!thread) {
     return warn_once(std::string{"LCM: no thread can be created to open it: "} +
-                     std::strerror(thread.error()) + "; trying again and again");
+                     std::strerror(thread.error()) + "; taktd tries again every 5 s");
   }
   thread->detach();
   opening_ = std::move(opening);
@@ -143,7 +143,7 @@ void LcmLink::fall_back(const std::string& why) {
   for (const std::string& pattern : patterns_) fallback_->subscribe(pattern);
   say_(Weight::note,
        "LCM: " + why +
-           ". Serving LCM's tcpq protocol on loopback instead; other programs: export "
+           ". taktd serves LCM's tcpq protocol on loopback instead; other programs: export "
            "LCM_DEFAULT_URL=" +
            fallback_->url());
 }

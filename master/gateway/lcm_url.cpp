@@ -33,7 +33,7 @@ std::string multicast_obstacle(const LcmUrl& url) {
   if (::connect(socket.get(), address, sizeof group) == 0) return {};
   if (errno != ENETUNREACH) return std::string{"multicast: "} + std::strerror(errno);
   return "this machine has no multicast route; `ip link set lo multicast on && ip route add "
-         "224.0.0.0/4 dev lo` (as root) makes one";
+         "224.0.0.0/4 dev lo` (as root) adds one";
 }
 
 }  // namespace takt

@@ -27,7 +27,7 @@ std::string how_often(std::uint64_t count) {
 
 std::string still(std::size_t missing) {
   if (missing == 0) return "all are back";
-  return std::to_string(missing) + (missing == 1 ? " is" : " are") + " missing still";
+  return std::to_string(missing) + (missing == 1 ? " is" : " are") + " still missing";
 }
 
 std::string lately(Time span) {
@@ -112,7 +112,7 @@ Notice PdoOutages::one(const Row& row, Time now) const {
           .weight = Weight::warning,
           .text = subject(plan_, pdo.node) + ": TPDO" + std::to_string(pdo.number) +
                   " was missing " + how_often(outage.missed) + " " + lately(now - outage.since) +
-                  (outage.missing ? "; it is missing still" : "; it is back")};
+                  (outage.missing ? "; it is still missing" : "; it is back")};
 }
 
 Notice PdoOutages::many(const std::vector<Row*>& rows, Time now) const {

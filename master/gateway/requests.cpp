@@ -61,36 +61,35 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
     case SdoFault::none:
       return {};
     case SdoFault::aborted_by_device:
-      return "the device refused with SDO abort " + abort();
+      return "the device refused the access with SDO abort " + abort();
     case SdoFault::aborted_by_master:
-      return "the device broke the SDO protocol; the transfer was ended with " + abort();
+      return "the device violated the SDO protocol; takt ended the transfer with " + abort();
     case SdoFault::timeout:
       return "the device did not answer in time";
     case SdoFault::too_long:
       return "the value is longer than " + std::to_string(request_bytes) +
-             " bytes, the most that a request carries; read it as a file";
+             " bytes, the maximum of a request; read it as a file";
     case SdoFault::no_such_node:
       return "the network file has no such node";
     case SdoFault::refused:
       return "the master only observes and sends nothing";
     case SdoFault::cancelled:
-      return "the node was reset or the master stops";
+      return "the node was reset, or the master stops";
     case SdoFault::axes_not_stopped:
       return "the command was obeyed, but not every axis was seen at standstill and disabled "
              "before";
     case SdoFault::no_such_pdo:
-      return "the network file has no such PDO of this node, or not one that can be asked for: "
-             "takt "
-             "plan lists them";
+      return "the network file has no such PDO of this node, or it can't be requested: `takt plan` "
+             "lists the PDOs";
     case SdoFault::not_exchanging:
       return "the node is not operational: PDOs are exchanged in OPERATIONAL only";
     case SdoFault::lss_failed:
       return "an LSS service failed";
     case SdoFault::lss_refused:
-      return "the daemon takes 1 to 28 LSS services a request, and does not activate another bit "
-             "rate while it runs: stop it and use takt lss with --bus";
+      return "the daemon accepts 1 to 28 LSS services in a request, and does not activate another "
+             "bit rate while it runs: stop the daemon and use takt lss with --bus";
     case SdoFault::wrong_length:
-      return "the RPDO has another number of bytes: takt plan shows its mapping";
+      return "the RPDO has another number of bytes: `takt plan` shows its mapping";
   }
   return {};
 }
@@ -128,7 +127,7 @@ std::optional<std::string> Requests::oversize(const request_t& message) {
   }
   if (message.service.size() > longest_service) {
     return "service '" + message.service.substr(0, longest_service) +
-           "...' is not known: no name of a service is longer than 32 bytes";
+           "...' is not known: the name of a service has at most 32 bytes";
   }
   if (message.data.size() > request_bytes) {
     return "a request carries at most " + std::to_string(request_bytes) + " bytes";
@@ -160,9 +159,8 @@ void Requests::forget(Time now) {
 std::optional<reply_t> Requests::take_again(const Known& known, const request_t& message) const {
   if (known.answered == never) return std::nullopt;
   if (same_message(known.message, message)) return known.reply;
-  return refusal(message, "id " + std::to_string(message.id) +
-                              " of this sender was used already, " +
-                              "some seconds ago; each request has another one");
+  return refusal(message, "id " + std::to_string(message.id) + " of this sender was used " +
+                              "some seconds ago already; each request needs a new id");
 }
 
 std::optional<reply_t> Requests::take(const request_t& message, Time now) {
@@ -175,7 +173,7 @@ std::optional<reply_t> Requests::take(const request_t& message, Time now) {
   if (!request) return refusal(message, request.error());
   request->id = next_id_;
   if (pending_.size() == most_pending || !submit_(*request)) {
-    return refusal(message, "too many requests at once; ask again later");
+    return refusal(message, "too many requests came at once; send the request again later");
   }
   known_.push_back({.message = message});
   pending_.emplace(next_id_++, Pending{std::prev(known_.end()), request->kind});
@@ -204,7 +202,7 @@ std::expected<Request, std::string> Requests::translate(const request_t& message
   }
   if (message.service == "lss") return translate_lss(message);
   return std::unexpected{"service '" + message.service.substr(0, 32) +
-                         "' is not known; there are sdo_upload, sdo_download, pdo_poll, "
+                         "' is not known; the services are sdo_upload, sdo_download, pdo_poll, "
                          "pdo_exchange, lss and nmt"};
 }
 

@@ -61,9 +61,9 @@ void SecuredTransport::reread_keys(Time now) {
   if (*read) {
     use_keys();
     options_.say(keys_.path() + " has changed: " + std::to_string(keys_.keys().size()) +
-                 " keys are good from now on");
+                 " keys are valid from now on");
   } else {
-    options_.say(read->error() + "; the keys from before stay good");
+    options_.say(read->error() + "; the previous keys stay valid");
   }
 }
 
@@ -74,7 +74,7 @@ void SecuredTransport::take(std::string_view channel, Bytes data, const MessageH
     const auto envelope = guard_.open(data, now + clocks_.wall_offset());
     if (!envelope) return refuse("an envelope was refused: " + std::string{text(envelope.error())});
     if (!is_guarded(envelope->channel)) {
-      return refuse("an envelope was refused: nothing is taken on channel '" +
+      return refuse("an envelope was refused: taktd accepts no messages on channel '" +
                     printable_text(std::string_view{envelope->channel}.substr(0, 63)) + "'");
     }
     if (opened_.size() == most_opened) opened_.pop_front();
@@ -84,7 +84,7 @@ void SecuredTransport::take(std::string_view channel, Bytes data, const MessageH
   }
   if (is_guarded(channel)) {
     return refuse("a message on " + std::string{channel} +
-                  " was refused: this bus has `keys`, and it came without an envelope");
+                  " was refused: this bus has `keys`, and the message came without an envelope");
   }
   handler(channel, data);
 }
@@ -102,7 +102,9 @@ bool SecuredTransport::is_echo(Bytes envelope, Time now) {
 void SecuredTransport::refuse(const std::string& what) {
   const auto kept_back = told_.allow(what, clocks_.now());
   if (!kept_back) return;
-  options_.say(*kept_back == 0 ? what : what + " (" + std::to_string(*kept_back) + " more before)");
+  options_.say(*kept_back == 0
+                   ? what
+                   : what + " (" + std::to_string(*kept_back) + " earlier ones were not reported)");
 }
 
 }  // namespace takt

@@ -24,13 +24,13 @@ std::string maker(const BusPlan& plan) {
 
 std::string words(const sync_status_t& message, SyncState state) {
   const std::string of = message.node_id == 0
-                             ? "a device outside of the network file"
+                             ? "a device that is not in the network file"
                              : message.source + " (node " + std::to_string(message.node_id) + ")";
   switch (state) {
     case SyncState::none:
       return "no SYNC";
     case SyncState::made:
-      return "made by the master, " + ms_text(message.declared_ns);
+      return "produced by the master, " + ms_text(message.declared_ns);
     case SyncState::awaited:
       return "waits for the first SYNC of " + of;
     case SyncState::locked:

@@ -56,7 +56,8 @@ void TcpqBroker::close(Client& client, const std::string& why) {
   const auto kept_back = told_.allow(why.substr(0, 40), options_.clock());
   if (!kept_back) return;
   std::string sentence = "LCM hub: a connection was closed: " + why;
-  if (*kept_back != 0) sentence += " (" + std::to_string(*kept_back) + " more since then)";
+  if (*kept_back != 0)
+    sentence += " (" + std::to_string(*kept_back) + " earlier ones were not reported)";
   options_.say(sentence);
 }
 
@@ -83,15 +84,15 @@ void TcpqBroker::accept_clients(Time now) {
 /// most one per second. LCM's clients reconnect, so that in the end everybody has a turn. A program
 /// that sends commands is never the idle one.
 bool TcpqBroker::make_room(Time now) {
-  const std::string full = "there are " + std::to_string(most_clients) + " connections already";
+  const std::string full = "the hub has " + std::to_string(most_clients) + " connections already";
   auto unasked = std::ranges::find_if(
       clients_, [](const auto& client) { return !client->connection.opened(); });
   if (unasked == clients_.end()) unasked = std::ranges::find(clients_, false, &Client::has_asked);
   if (unasked != clients_.end()) {
-    close(**unasked, full + ", and it had asked for nothing yet");
+    close(**unasked, full + ", and this one had not requested anything yet");
   } else if (Client* const idle = idle_client(now)) {
     displaced_ = now;
-    close(*idle, full + ", and it had sent nothing for 10 s");
+    close(*idle, full + ", and this one had sent nothing for 10 s");
   } else {
     if (told_.allow(full, options_.clock())) {
       options_.say("LCM hub: a new connection was refused: " + full);

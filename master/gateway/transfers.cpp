@@ -41,7 +41,7 @@ void Transfers::take(const transfer_t& message, Time now) {
   if (message.action == "more" && job->stage == Stage::done) return ask_for_parts(*job, message);
   if (message.action == "end" && !job->submitted) return forget(*job);
   if (message.action == "data") fill(*job, message);
-  if (message.action == "abort") cancel(*job, "called off");
+  if (message.action == "abort") cancel(*job, "the program that requested the transfer aborted it");
   sinks_.state(state_of(*job));
 }
 
@@ -54,14 +54,16 @@ void Transfers::take_old(const transfer_t& message, const std::string& why) {
 void Transfers::begin(const transfer_t& message, Time now) {
   if (message.action != "download" && message.action != "upload") {
     if (message.action == "end") return;
-    return refuse(message, "no such transfer is known here; it may have been silent for too long");
+    return refuse(message,
+                  "taktd does not know this transfer; it may have been silent for too long");
   }
   auto request = translate(message);
   if (!request) return refuse(message, request.error());
   const auto job = std::ranges::find(jobs_, Stage::free, &Job::stage);
   if (job == jobs_.end()) {
-    return refuse(message, std::to_string(jobs_.size()) +
-                               " files are under way already, the most at once; ask again later");
+    return refuse(message,
+                  std::to_string(jobs_.size()) +
+                      " file transfers run already, which is the maximum; try again later");
   }
   *job = {.buffer = job->buffer,
           .stage = Stage::filling,
@@ -104,7 +106,7 @@ std::expected<Request, std::string> Transfers::translate(const transfer_t& messa
   if (message.total < 0 || static_cast<std::uint64_t>(message.total) > most_bytes) {
     return Error{"a file has at most " + std::to_string(most_bytes) + " bytes"};
   }
-  if (message.sender.size() > 64) return Error{"the sender's name is longer than 64"};
+  if (message.sender.size() > 64) return Error{"the sender's name is longer than 64 bytes"};
   Request request;
   request.kind = message.action == "upload" ? RequestKind::sdo_upload : RequestKind::sdo_download;
   request.node = node;
@@ -166,10 +168,10 @@ bool Transfers::finish(const Reply& reply) {
   job->stage = good ? Stage::done : Stage::failed;
   job->abort_code = reply.abort_code;
   if (job->text.empty() && !good) {
-    job->text = reply.fault == SdoFault::too_long
-                    ? "the object is longer than the " + std::to_string(job->total) +
-                          " bytes that were asked for"
-                    : fault_text(reply.fault, reply.abort_code);
+    job->text =
+        reply.fault == SdoFault::too_long
+            ? "the object is longer than the " + std::to_string(job->total) + " requested bytes"
+            : fault_text(reply.fault, reply.abort_code);
   }
   if (good && job->request.kind == RequestKind::sdo_upload) {
     job->buffer->data.resize(job->buffer->done.load());
@@ -206,7 +208,7 @@ bool Transfers::on_time(Time now, const TimeBudget& budget) {
 void Transfers::watch(Job& job, Time now) {
   if (job.stage == Stage::free) return;
   if (now - job.heard > waits::transfer_silence) {
-    cancel(job, "whoever asked for it is gone");
+    cancel(job, "the program that requested the transfer has gone away");
     if (!job.submitted) forget(job);
     return;
   }

@@ -177,8 +177,7 @@ std::string misfit_text(std::string_view name, DataType type, std::span<const st
   constexpr std::size_t shown = 16;
   const bool long_value = bytes.size() > shown;
   return fmt::format(
-      "the device sent {} bytes ({}{}), {} takes {}; without a type they are shown "
-      "as they are",
+      "the device sent {} bytes ({}{}), {} takes {}; without a type the bytes are shown unchanged",
       bytes.size(), hex_text(bytes.first(std::min(shown, bytes.size()))), long_value ? " ..." : "",
       name, byte_width(type));
 }

@@ -91,11 +91,11 @@ std::expected<BusClaim, BusError> BusClaim::take(const BusName& bus) {
   const int error = errno;
   if (error != EADDRINUSE) {
     return std::unexpected{BusError{
-        text_of(bus) + ": can't be claimed for one master: " + std::strerror(error), error}};
+        text_of(bus) + ": takt can't lock the bus for one master: " + std::strerror(error), error}};
   }
   return std::unexpected{BusError{text_of(bus) + ": " + holder_of(address) +
-                                      " is the master of this bus already; end it first, or "
-                                      "listen only: --observe",
+                                      " is the master of this bus already; end that process first, "
+                                      "or only listen with --observe",
                                   error}};
 }
 

@@ -147,27 +147,27 @@ std::vector<std::string> link_warnings(const CanLink& link, std::uint32_t bitrat
   const auto& n = link.name;
   if (link.bitrate && *link.bitrate != bitrate) {
     out.push_back(n + " runs at " + std::to_string(*link.bitrate / 1000) +
-                  " kbit/s, the network file says " + std::to_string(bitrate / 1000) +
+                  " kbit/s, but the network file says " + std::to_string(bitrate / 1000) +
                   ": ip link set " + n + " down && ip link set " + n + " up type can bitrate " +
                   std::to_string(bitrate));
   }
   const std::size_t room = frames_a_cycle + 16;  // service frames in addition to the outputs
   if (link.tx_queue_length != 0 && link.tx_queue_length < room) {
     out.push_back(n + " has a send queue of " + std::to_string(link.tx_queue_length) +
-                  " frames, a cycle may send " + std::to_string(room) + ": ip link set " + n +
+                  " frames, but a cycle may send " + std::to_string(room) + ": ip link set " + n +
                   " txqueuelen " + std::to_string(room < 128 ? 128 : room));
   }
   if (link.restart_ms && *link.restart_ms == 0) {
-    out.push_back(n + " stays off after a bus-off: ip link set " + n + " down && ip link set " + n +
-                  " up type can restart-ms 100");
+    out.push_back(n + " does not restart after a bus-off: ip link set " + n +
+                  " down && ip link set " + n + " up type can restart-ms 100");
   }
   if (link.listen_only) {
-    out.push_back(n + " only listens: ip link set " + n + " down && ip link set " + n +
+    out.push_back(n + " is in listen-only mode: ip link set " + n + " down && ip link set " + n +
                   " up type can listen-only off");
   }
   if (link.state == CanState::bus_off || link.state == CanState::error_passive) {
     out.push_back(n + " is " + std::string{name(*link.state)} +
-                  ": check the bit rate of all devices, the terminators and the cable");
+                  ": check the bit rate of all devices, the termination and the cable");
   }
   return out;
 }

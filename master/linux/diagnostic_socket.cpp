@@ -123,7 +123,7 @@ std::expected<DiagnosticSocket, BusError> DiagnosticSocket::open(std::string_vie
   auto state = std::make_unique<State>(BusName::parse(bus), plan, sent);
   if (!state->connect()) {
     std::string message{bus};
-    message += ": no diagnostic socket: ";
+    message += ": the diagnostic socket can't be opened: ";
     return std::unexpected{BusError{message + std::strerror(errno), errno}};
   }
   state->watch.on_drained(sent, monotonic_now());

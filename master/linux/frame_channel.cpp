@@ -23,7 +23,7 @@ std::expected<FrameChannel, BusError> FrameChannel::open(std::string_view bus, B
       break;
   }
   std::string message{bus};
-  message += ": not a bus of this machine (can0, unix:PATH)";
+  message += ": this is not a bus of this machine (can0, unix:PATH)";
   return std::unexpected{BusError{std::move(message), EINVAL}};
 }
 

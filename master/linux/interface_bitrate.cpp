@@ -38,7 +38,7 @@ std::string interface_bitrate_trouble(const CanLink& link) {
   const std::string length = std::to_string(link.tx_queue_length);  // the current length
   if (run({"ip", "link", "set", link.name, "txqueuelen", length})) return {};
   return "the bit rate of " + link.name +
-         " can't be changed (ip link: needs root, or CAP_NET_ADMIN); no device was changed";
+         " can't be changed (ip link needs root, or CAP_NET_ADMIN); no device was changed";
 }
 
 std::string interface_bitrate_trouble(const std::string& bus) {
@@ -56,8 +56,8 @@ std::string set_interface_bitrate(const std::string& bus, int bitrate) {
                     run({"ip", "link", "set", interface, "up"});
   if (done) return {};
   return "the devices change to " + rate + " bit/s, but " + interface +
-         " could not: as root, ip link set " + interface + " down && ip link set " + interface +
-         " up type can bitrate " + rate;
+         " could not change: as root, ip link set " + interface + " down && ip link set " +
+         interface + " up type can bitrate " + rate;
 }
 
 }  // namespace takt

@@ -28,7 +28,7 @@ std::expected<AnyPort, BusError> open_bus(std::string_view bus, const BusPlan& p
     case BusName::Kind::simulated:
       break;
   }
-  return std::unexpected{BusError{"a simulated bus is not opened but made", EINVAL}};
+  return std::unexpected{BusError{"a simulated bus can't be opened as an interface", EINVAL}};
 }
 
 }  // namespace takt

@@ -67,7 +67,7 @@ void pin(int cpu, RtReport& report) {
   cpu_set_t set;
   CPU_ZERO(&set);
   if (cpu < 0 || cpu >= CPU_SETSIZE) {
-    report.missing.push_back("cpu " + std::to_string(cpu) + ": no such processor");
+    report.missing.push_back("cpu " + std::to_string(cpu) + ": this machine has no such processor");
     return;
   }
   CPU_SET(cpu, &set);
@@ -75,8 +75,9 @@ void pin(int cpu, RtReport& report) {
     report.cpu = cpu;
     return;
   }
-  report.missing.push_back("cpu " + std::to_string(cpu) + ": " + error_text(errno) +
-                           " (not one of this machine's, or not in this process's cpuset)");
+  report.missing.push_back(
+      "cpu " + std::to_string(cpu) + ": " + error_text(errno) +
+      " (this machine does not have it, or it is not in the cpuset of this process)");
 }
 
 /// Under a finite limit, MCL_FUTURE could turn a later allocation into a failure. The function

@@ -139,7 +139,7 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
   const std::string& name = options.interface;
   auto state = std::make_unique<State>();
   if (name.empty() || name.size() >= IFNAMSIZ) {
-    return std::unexpected{BusError{name + ": not an interface name", EINVAL}};
+    return std::unexpected{BusError{name + ": this is not an interface name", EINVAL}};
   }
   std::memcpy(state->request.ifr_name, name.c_str(), name.size() + 1);
   state->filters = options.filters;
@@ -158,7 +158,7 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
       !set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1) ||
       !set_option(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, options.sync_cob_id ? 1 : 0) ||
       setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0) {
-    return std::unexpected{error_of(name, "socket option", errno)};
+    return std::unexpected{error_of(name, "a socket option can't be set", errno)};
   }
   // Room for the burst after a stall. Only a privileged process can exceed net.core.rmem_max.
   if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, 1 << 20)) {
@@ -166,14 +166,16 @@ std::expected<SocketCanPort, BusError> SocketCanPort::open(const SocketCanOption
   }
   ifreq flags = state->request;
   if (ioctl(fd, SIOCGIFFLAGS, &flags) != 0) {
-    return std::unexpected{error_of(name, "no such interface (ip -br link lists them)", errno)};
+    return std::unexpected{
+        error_of(name, "the interface does not exist (ip -br link lists the interfaces)", errno)};
   }
   if (!state->bind_interface())
-    return std::unexpected{error_of(name, "not a CAN interface", errno)};
+    return std::unexpected{error_of(name, "this is not a CAN interface", errno)};
   if ((flags.ifr_flags & IFF_UP) == 0) {
-    return std::unexpected{error_of(
-        name, "is down (ip link set " + name + " up, for hardware with type can bitrate ...)",
-        ENETDOWN)};
+    return std::unexpected{error_of(name,
+                                    "the interface is down (ip link set " + name +
+                                        " up, for hardware with type can bitrate ...)",
+                                    ENETDOWN)};
   }
   return SocketCanPort{std::move(state)};
 }

@@ -50,11 +50,10 @@ std::string refusal(const std::string& path, int error) {
     return std::string{"cannot listen: "} + std::strerror(error);
   }
   if (S_ISSOCK(found.st_mode)) {
-    return "another program listens there, which is no bus of takt; the bus needs a path of its "
-           "own";
+    return "another program listens there, and it is not a bus of takt; the bus needs its own path";
   }
-  return "there is something else of this name already, which is left alone; the bus needs a path "
-         "of its own";
+  return "another file of this name exists already and takt does not change it; the bus needs its "
+         "own path";
 }
 
 }  // namespace
@@ -246,7 +245,7 @@ std::expected<UnixBusHub, BusError> UnixBusHub::join(const std::string& path) {
   FileDescriptor lock{::open(lock_path.c_str(), flags | O_EXCL, 0666)};
   const bool is_new = static_cast<bool>(lock);
   if (!lock && errno == EEXIST) lock.reset(::open(lock_path.c_str(), flags, 0666));
-  if (!lock) return refuse_with("cannot create the lock file beside it", errno);
+  if (!lock) return refuse_with("cannot create the lock file beside the socket", errno);
   FileDescriptor stop{eventfd(0, EFD_CLOEXEC)};
   if (!stop) return refuse_with("eventfd", errno);
   auto impl = std::make_unique<Impl>(std::move(lock), std::move(stop), *address);

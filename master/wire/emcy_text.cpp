@@ -69,13 +69,14 @@ constexpr std::array texts{
     EmcyText{0x7600, 0x76FF, "data storage module"},
     EmcyText{0x8110, 0x8110, "CAN overrun, messages lost"},
     EmcyText{0x8120, 0x8120, "CAN in error-passive mode"},
-    EmcyText{0x8130, 0x8130, "life guard or heartbeat error: the device misses a partner"},
+    EmcyText{0x8130, 0x8130,
+             "life guard or heartbeat error: a node that the device monitors is silent"},
     EmcyText{0x8140, 0x8140, "recovered from bus-off"},
     EmcyText{0x8150, 0x8150, "collision of CAN identifiers"},
     EmcyText{0x8210, 0x821F, "PDO not processed: its length is wrong"},
     EmcyText{0x8220, 0x822F, "PDO longer than its mapping"},
     EmcyText{0x8230, 0x8230, "destination of an MPDO not available"},
-    EmcyText{0x8240, 0x8240, "SYNC of unexpected length: does 0x1019 agree with the master's?"},
+    EmcyText{0x8240, 0x8240, "SYNC of unexpected length: does 0x1019 agree with `sync_overflow`?"},
     EmcyText{0x8250, 0x825F, "RPDO time-out: the device waits for a PDO of the master"},
     EmcyText{0x8311, 0x8311, "torque too high"},
     EmcyText{0x8312, 0x8312, "start-up torque"},
@@ -120,7 +121,8 @@ constexpr std::array texts{
     EmcyText{0x9000, 0x9FFF, "external error"},
     EmcyText{0xF000, 0xF0FF, "additional functions"},
     EmcyText{0xFF00, 0xFFFF, "device-specific: see the manual of the device"},
-    EmcyText{0x0000, 0xFFFF, "a code that CiA 301 and 402 do not know: see the device's manual"},
+    EmcyText{0x0000, 0xFFFF,
+             "CiA 301 and 402 do not define this code: see the manual of the device"},
 };
 
 constexpr std::array<std::string_view, 8> register_bits{

@@ -55,9 +55,9 @@ constexpr std::string_view error_text(std::uint16_t error) noexcept {
                                                    "value out of range",
                                                    "the operation failed",
                                                    "wrong password",
-                                                   "the frame is not as it should be",
+                                                   "the frame is malformed",
                                                    "the parameter is read-only",
-                                                   "not while the drive is running",
+                                                   "not allowed while the drive is running",
                                                    "the parameter is locked by a password"};
   return error < texts.size() ? texts[error] : "unknown error code";
 }

@@ -61,7 +61,7 @@ TEST(CanLinkOnHardware, WarnsOfAnotherBitRateAndOfTheShortQueue) {
   ASSERT_TRUE(link);
 
   EXPECT_THAT(link_warnings(*link, 500'000, 8),
-              ElementsAre(HasSubstr("runs at 1000 kbit/s, the network file says 500"),
+              ElementsAre(HasSubstr("runs at 1000 kbit/s, but the network file says 500"),
                           HasSubstr("txqueuelen 128")));
 }
 

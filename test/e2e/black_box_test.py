@@ -82,7 +82,7 @@ def main(binaries):
         recordings = record(binaries, folder, network, f"tcpq://127.0.0.1:{port}")
         first = recordings[0]
         last = replay(binaries, recordings[-1], "--quiet")
-        check(last.returncode == 0 and "it did not end in order" in last.stdout, "the end replays", last)
+        check(last.returncode == 0 and "the ordered stop did not end" in last.stdout, "the end replays", last)
 
         good = replay(binaries, first)
         check(good.returncode == 0 and "heartbeat" in good.stdout, "the same decisions", good)

@@ -15,8 +15,8 @@ TEST(EndOfTaktd, WithoutAMandatoryNodeIs4AfterTheTimeOfFor) {
   DaemonProcess daemon{slow_network(folder.path()), {"--bus", empty_bus(folder), "--for", "500ms"}};
 
   EXPECT_EQ(daemon.wait(), 4);
-  EXPECT_NE(daemon.log().find("the time of --for is over, and mandatory nodes never were ready: "
-                              "1 shoulder, 2 elbow"),
+  EXPECT_NE(daemon.log().find("the time of --for is over, and these mandatory nodes were never "
+                              "ready: 1 shoulder, 2 elbow"),
             std::string::npos);
 }
 
@@ -56,7 +56,7 @@ TEST(EndOfTaktd, IsInOrderWhenItsTerminalCloses) {
   daemon.signal(SIGHUP);
 
   EXPECT_EQ(daemon.wait(), 0);
-  EXPECT_NE(daemon.log().find("told to stop; stopping in order"), std::string::npos);
+  EXPECT_NE(daemon.log().find("a stop was requested; the ordered stop begins"), std::string::npos);
 }
 
 /// A program inherits the ignored signals of its parent.

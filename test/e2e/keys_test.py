@@ -60,7 +60,7 @@ def main(binaries):
             until("an answer to who has the key", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
             unsigned = takt(binaries, *read)
             assert unsigned.returncode == 3 and "does it ask for a key" in unsigned.stderr, unsigned
-            until("a word about it", lambda: "it came without an envelope" in log.read_text())
+            until("a word about it", lambda: "the message came without an envelope" in log.read_text())
 
             status = ["status", "--check-images", "--lcm-url", url]
             until("signed states", lambda: takt(binaries, *status, "--keys", keys).returncode == 0)

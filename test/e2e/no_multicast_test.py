@@ -76,7 +76,7 @@ def judge_taken_port(binaries):
             while "the network is ready" not in text and time.monotonic() < until:
                 time.sleep(0.05)
                 text = os.pread(said.fileno(), 1 << 20, 0).decode()
-            check("port 7700 of loopback is taken by another program" in text, "a port that is taken is told")
+            check("port 7700 of loopback is used by another program" in text, "a port that is taken is told")
             check("the network is ready" in text, "and the bus runs all the same")
             daemon.send_signal(signal.SIGTERM)
             check(daemon.wait(PATIENCE) == 0, f"taktd ended with exit code {daemon.returncode}")

@@ -81,7 +81,7 @@ TEST_F(SecondDaemon, WithKeysIsOnlyWarnedByAStatusOfTheSameBusName) {
       folder_.path(), [&](std::string& text) { text += "\nlcm: {keys: " + keys + "}\n"; });
 
   Ended second;  // exit code 4: the time is over before the nodes are ready
-  const auto is_warned = [&] { return second.output.contains("says a message without proof"); };
+  const auto is_warned = [&] { return second.output.contains("The message is unsigned"); };
   while (second.exit_code != 3 && !is_warned() && before(patience_)) {
     second =
         run({TAKTD, keyed.string(), "--bus", "sim", "--lcm-url", first.lcm_url(), "--for", "100ms"},

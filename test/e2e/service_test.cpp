@@ -85,7 +85,7 @@ TEST_P(StopSignals, ASecondOneStopsAtOnceAndSaysWhatWasNotDone) {
   ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
 
   daemon.signal(SIGTERM);
-  ASSERT_TRUE(daemon.says("stopping in order"));
+  ASSERT_TRUE(daemon.says("the ordered stop begins"));
   daemon.signal(GetParam());
 
   EXPECT_EQ(daemon.wait(), 6);
@@ -121,7 +121,8 @@ TEST(RealtimeLimit, EndsAnEnforcedRunInOrderWithExitCode5) {
     return;
   }
   EXPECT_EQ(exit_code, 5);
-  EXPECT_NE(daemon.log().find("us late, the limit is 1 us; stopping in order"), std::string::npos);
+  EXPECT_NE(daemon.log().find("us late, but the limit is 1 us; the ordered stop begins"),
+            std::string::npos);
 }
 
 TEST(RealtimeLimit, EndsNoRunThatDoesNotEnforceIt) {

@@ -136,7 +136,7 @@ TEST(TypedChannels, ANumberThatTheDriveCannotHoldIsRefused) {
 
   EXPECT_TRUE(refused(1e9, "command_refused", "1591549430919, does not fit its 32 bits"))
       << daemon.log();
-  EXPECT_TRUE(refused(1e300, "bad_message", "64 bits can't hold")) << daemon.log();
+  EXPECT_TRUE(refused(1e300, "bad_message", "does not fit 64 bits")) << daemon.log();
   EXPECT_EQ(application.statusword() & 0x6F, 0x40U) << "the controlword beside it counts no more";
 }
 

@@ -403,9 +403,9 @@ def link(file):
     return other
 
 
-reads_keys("a key file that the group reads is refused", "others than its owner can use it: chmod 600",
+reads_keys("a key file that the group reads is refused", "users other than its owner can access it: chmod 600",
            lambda file: file.chmod(0o640))
-reads_keys("a key file that others write is refused", "others than its owner can use it: chmod 600",
+reads_keys("a key file that others write is refused", "users other than its owner can access it: chmod 600",
            lambda file: file.chmod(0o602))
 reads_keys("a link to a key file is refused", "key file", link)
 reads_keys("a folder is refused", "not a regular file", lambda file: file.parent)

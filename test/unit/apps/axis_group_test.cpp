@@ -128,7 +128,7 @@ TEST_F(Group, TellsOnceThatTheDaemonIsOfAnOlderTakt) {
   EXPECT_EQ(events[0].kind, "other_schema");
   EXPECT_EQ(
       events[0].text,
-      "the daemon sends messages of schema 1 and this program has schema 2: update the daemon");
+      "the daemon sends messages of schema 1 and this program uses schema 2: update the daemon");
 }
 
 TEST_F(Group, TellsThatTheDaemonHasRestarted) {

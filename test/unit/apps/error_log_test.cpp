@@ -96,7 +96,7 @@ TEST(ErrorLog, SaysItsSentencesWhereNoThreadCanEverBeCreated) {
 
   log.say(Weight::error, "the bus thread can't be created");
 
-  const std::string text = read_until(pipe.reader, "the others wait\n");
+  const std::string text = read_until(pipe.reader, "the other lines wait\n");
   EXPECT_THAT(text, HasSubstr(" error  the bus thread can't be created\n"));
   EXPECT_THAT(text, HasSubstr("no thread can be created for stderr"));
 }

@@ -64,7 +64,7 @@ TEST_F(OtherMasterTest, IsOnlyWarnedOfWhereSomebodyElseMakesSync) {
   other.on_frame(make_frame(CobId::base(0x080), {}));
 
   EXPECT_FALSE(other.refusal());
-  EXPECT_THAT(other.warnings(), ElementsAre(HasSubstr("somebody else makes SYNC (COB-ID 0x80)")));
+  EXPECT_THAT(other.warnings(), ElementsAre(HasSubstr("another node produces SYNC (COB-ID 0x80)")));
 }
 
 TEST_F(OtherMasterTest, MayMakeTheSyncThatThisOneFollows) {
@@ -107,8 +107,9 @@ TEST_F(OtherMasterTest, IsOnlyWarnedOfByAStatusWhereTheBusHasKeys) {
   EXPECT_FALSE(keyed.refusal());
   EXPECT_THAT(
       keyed.warnings(),
-      ElementsAre(HasSubstr("makes SYNC"), HasSubstr("a taktd on can1, session 7, says a "
-                                                     "message without proof, so this one starts")));
+      ElementsAre(
+          HasSubstr("produces SYNC"),
+          HasSubstr("a taktd on can1, session 7. The message is unsigned, so this master starts")));
 }
 
 TEST_F(OtherMasterTest, ShowsAForeignInterfaceWithoutControlCharactersAndCutToSize) {

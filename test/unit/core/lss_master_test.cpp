@@ -124,8 +124,8 @@ TEST(LssMaster, SaysThatNobodyAnsweredASelection) {
   EXPECT_EQ(result.outcome, LssOutcome::silent);
   EXPECT_LE(talk.now - before, 1100ms);
   EXPECT_EQ(lss_failure_text(result),
-            "switch one device to configuration: no answer; is there a device in configuration "
-            "state, with LSS, on this bus?");
+            "switch one device to configuration state: no answer; is there a device in "
+            "configuration state, with LSS, on this bus?");
 }
 
 TEST(LssMaster, ConfiguresANodeIdAndTellsTheRefusal) {

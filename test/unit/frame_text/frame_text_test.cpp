@@ -79,8 +79,8 @@ TEST_F(FrameTextTest, AShortEmcyIsNotReadAsACode) {
   EXPECT_EQ(plain(0x085, {0x11}),
             "EMCY node 5 of 1 byte (always 8), too short for an error code: 11");
   EXPECT_EQ(plain(0x085, {0x30, 0x81}),
-            "EMCY node 5 8130 life guard or heartbeat error: the device misses a partner, error "
-            "register 00 (none) (2 bytes, always 8)");
+            "EMCY node 5 8130 life guard or heartbeat error: a node that the device monitors is "
+            "silent, error register 00 (none) (2 bytes, always 8)");
   EXPECT_EQ(plain(0x085, {}), "EMCY node 5 empty (the boot-up message of devices before CiA 301)");
   EXPECT_EQ(plain(0x085, {0x11, 0x86, 0x21}),
             "EMCY node 5 8611 following error, error register 21 (generic, profile) (3 bytes, "

@@ -168,7 +168,7 @@ TEST_F(CommandsTest, SenderWithoutAnInstanceIsRefused) {
   nobody.instance = 0;
 
   EXPECT_FALSE(take(nobody));
-  EXPECT_TRUE(told("it has instance 0"));
+  EXPECT_TRUE(told("the command has instance 0"));
 }
 
 TEST_F(CommandsTest, CommandOfNoCycleIsRefused) {
@@ -191,7 +191,7 @@ TEST_F(CommandsTest, CommandFromTheFutureIsRefused) {
   }
 
   EXPECT_EQ(outputs[1], 0x0F);
-  EXPECT_TRUE(told("it comes from the future"));
+  EXPECT_TRUE(told("the command comes from the future"));
 }
 
 TEST_F(CommandsTest, LongestTimeToLiveGivesALeaseOfOneSecond) {

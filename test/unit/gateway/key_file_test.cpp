@@ -49,7 +49,7 @@ TEST_F(KeyFileTest, ThatOthersCanUseIsRefusedWithTheCommandThatMendsIt) {
   for (const mode_t mode : {0640U, 0604U, 0620U, 0602U, 0610U}) {
     write("plant " + zeros + "\n", mode);
     EXPECT_EQ(error(),
-              "key file " + path + ": others than its owner can use it: chmod 600 " + path);
+              "key file " + path + ": users other than its owner can access it: chmod 600 " + path);
   }
   write("plant " + zeros + "\n", 0400);
   EXPECT_EQ(error(), "");
@@ -87,11 +87,11 @@ TEST_F(KeyFileTest, ErrorsNameTheLine) {
       zeros + "\n");
   EXPECT_EQ(error(), here + "a name has 1 to 32 letters, digits, underscores, dashes or dots");
   write("a " + zeros + "\na " + ones + "\n");
-  EXPECT_EQ(error(), here + "key 'a' is there twice");
+  EXPECT_EQ(error(), here + "key 'a' occurs twice");
   write("# nothing\n");
-  EXPECT_EQ(error(), "key file " + path + ": there is no key in it");
+  EXPECT_EQ(error(), "key file " + path + ": the file has no key");
   write(std::string(70000, ' '));
-  EXPECT_EQ(error(), "key file " + path + ": it is longer than 64 KiB");
+  EXPECT_EQ(error(), "key file " + path + ": the file is longer than 64 KiB");
 }
 
 TEST_F(KeyFileTest, IsMadeForItsOwnerOnlyAndNeverOverAnother) {

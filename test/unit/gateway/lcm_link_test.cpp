@@ -45,7 +45,7 @@ TEST_F(LcmLinkTest, IsNobodysClientWhereItsOwnHubFindsThePortTaken) {
   EXPECT_EQ(other->clients(), 0U);
   EXPECT_THAT(link.url(), IsEmpty());
   EXPECT_THAT(
-      said, ElementsAre(AllOf(StartsWith("warning: "), HasSubstr(" is taken by another program"))));
+      said, ElementsAre(AllOf(StartsWith("warning: "), HasSubstr(" is used by another program"))));
   EXPECT_FALSE(link.publish("LIFT_IMAGE", {}));
 }
 

@@ -40,7 +40,7 @@ TEST(LostEvents, AreToldOnceWithTheirNumber) {
   EXPECT_GT(lost, 100U);
   ASSERT_EQ(texts.size(), 1U);
   EXPECT_EQ(texts[0], "bus 'test': " + std::to_string(lost) +
-                          " events lost: more came at once than there is room for");
+                          " events were lost: more events came at once than the queue holds");
 }
 
 TEST(Notices, CarryNoControlCharacterToATerminal) {

@@ -101,7 +101,7 @@ TEST(Messages, ATypeThatSchema1HadOtherwiseIsSaidToBeOfSchema1) {
   EXPECT_EQ(decode<status_t>(begins_with("b1e043970713c28c")).error(), DecodeFault::schema_1);
   EXPECT_EQ(decode<event_t>(begins_with("0000000000000000")).error(), DecodeFault::other_version);
   EXPECT_EQ(schema_refusal(1),
-            "message of schema 1: rebuild the application against this takt, which has schema 2");
+            "message of schema 1: rebuild the application against this takt, which uses schema 2");
 }
 
 TEST(Messages, CountsThatTheMessageCannotHoldAreRefusedWithoutMemory) {

@@ -73,7 +73,7 @@ TEST_F(PdoOutagesTest, ASumSaysThatThePdoStaysAwayAndALaterLineThatItIsBack) {
   EXPECT_EQ(
       due(7000),
       (std::vector<std::string>{
-          "node 5 'shoulder': TPDO1 was missing once in the last 1.5 s; it is missing still"}));
+          "node 5 'shoulder': TPDO1 was missing once in the last 1.5 s; it is still missing"}));
   EXPECT_EQ(back(7400), "");
   EXPECT_EQ(due(8000), (std::vector<std::string>{"node 5 'shoulder': TPDO1 is back"}));
 }
@@ -106,9 +106,9 @@ TEST_F(PdoOutagesTest, ManyPdosShareOneLine) {
   const auto lines = due(6000);
 
   ASSERT_EQ(lines.size(), 0U) << "a line within a second of the first one";
-  EXPECT_EQ(due(7000), (std::vector<std::string>{
-                           "32 TPDOs were missing 33 times in the last 1.5 s, most often TPDO1 of "
-                           "node 20 'n' (twice); 1 is missing still"}));
+  EXPECT_EQ(due(7000),
+            (std::vector<std::string>{"32 TPDOs were missing 33 times in the last 1.5 s, most "
+                                      "often TPDO1 of node 20 'n' (twice); 1 is still missing"}));
 }
 
 TEST_F(PdoOutagesTest, AFloodOfAMinuteMakesAtMostALineASecondAndPdo) {

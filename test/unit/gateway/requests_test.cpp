@@ -87,7 +87,8 @@ TEST_F(RequestsTest, AnotherRequestOfAUsedIdIsRefusedAndTaken12sLater) {
   const auto refused = requests.take(other, now + 5s);
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->good, 0);
-  EXPECT_NE(refused->text.find("id 7 of this sender was used already"), std::string::npos);
+  EXPECT_NE(refused->text.find("id 7 of this sender was used some seconds ago already"),
+            std::string::npos);
 
   EXPECT_TRUE(requests.take(other, now + 12s));
   EXPECT_FALSE(requests.take(other, now + 12s + 1ms));

@@ -95,8 +95,10 @@ TEST_F(SecuredTransportTest, RefusesWhatComesWithoutAnEnvelopeAndTellsItOnceASec
   clocks.pass(1s);
   bring("LIFT_COMMAND", message);
   const std::string sentence =
-      "a message on LIFT_COMMAND was refused: this bus has `keys`, and it came without an envelope";
-  EXPECT_EQ(told, (std::vector<std::string>{sentence, sentence + " (99 more before)"}));
+      "a message on LIFT_COMMAND was refused: this bus has `keys`, and the message came without an "
+      "envelope";
+  EXPECT_EQ(told, (std::vector<std::string>{sentence,
+                                            sentence + " (99 earlier ones were not reported)"}));
 }
 
 TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAreTold) {
@@ -121,10 +123,10 @@ TEST_F(SecuredTransportTest, ForgedRepeatedAndDelayedEnvelopesChangeNothingAndAr
             (std::vector<std::string>{
                 "an envelope was refused: its MAC is wrong: it was forged or altered, or its "
                 "sender has another secret",
-                "an envelope was refused: it is repeated or out of order: this sender's counter "
-                "was higher already",
-                "an envelope was refused: it is older than 1 s by the clock",
-                "an envelope was refused: nothing is taken on channel 'LIFT_IMAGE'"}));
+                "an envelope was refused: it is repeated or out of order: the counter of this "
+                "sender was higher already",
+                "an envelope was refused: its time is more than 1 s in the past",
+                "an envelope was refused: taktd accepts no messages on channel 'LIFT_IMAGE'"}));
 }
 
 TEST_F(SecuredTransportTest, LetsOtherChannelsThrough) {
@@ -141,7 +143,7 @@ TEST_F(SecuredTransportTest, TakesNewKeysWithoutAStop) {
   EXPECT_EQ(heard, (std::vector<std::string>{"LIFT_COMMAND:5"}))
       << "the old secret is good no more";
   ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0], path + " has changed: 1 keys are good from now on");
+  EXPECT_EQ(told[0], path + " has changed: 1 keys are valid from now on");
 }
 
 TEST_F(SecuredTransportTest, SignsNothingThatItPublishesUnlessAsked) {

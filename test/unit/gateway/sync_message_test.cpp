@@ -53,11 +53,11 @@ TEST(SyncMessage, HasWordsForEveryState) {
   EXPECT_EQ(sync_message(plan, in(SyncState::lost)).text, "SYNC of conveyor (node 3) LOST");
   plan.cycle.sync_producer.reset();
   EXPECT_EQ(sync_message(plan, in(SyncState::lost)).text,
-            "SYNC of a device outside of the network file LOST");
+            "SYNC of a device that is not in the network file LOST");
   EXPECT_EQ(sync_message(plan, in(SyncState::lost)).source, "external");
   plan.cycle.sync_followed = false;
   const sync_status_t made = sync_message(plan, in(SyncState::made));
-  EXPECT_EQ(made.text, "made by the master, 10.000 ms");
+  EXPECT_EQ(made.text, "produced by the master, 10.000 ms");
   EXPECT_EQ(made.source, "master");
   EXPECT_EQ(made.timeout_ns, 0);
   plan.cycle.sync = false;

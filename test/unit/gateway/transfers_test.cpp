@@ -158,7 +158,7 @@ TEST_F(TransfersTest, CallingOffReachesTheBusThread) {
   EXPECT_EQ(last().stage, "running") << "until the bus thread has answered";
   reply(SdoFault::cancelled);
   EXPECT_EQ(last().stage, "failed");
-  EXPECT_EQ(last().text, "called off");
+  EXPECT_EQ(last().text, "the program that requested the transfer aborted it");
 }
 
 TEST_F(TransfersTest, ASilentSenderIsForgottenButNotItsBufferTooEarly) {

@@ -41,8 +41,8 @@ TEST(CanLink, NamesBothBitRatesAndTheCommand) {
   link.bitrate = 250'000;
 
   EXPECT_THAT(link_warnings(link, 1'000'000, 8),
-              ElementsAre("can0 runs at 250 kbit/s, the network file says 1000: ip link set can0 "
-                          "down && ip link set can0 up type can bitrate 1000000"));
+              ElementsAre("can0 runs at 250 kbit/s, but the network file says 1000: ip link set "
+                          "can0 down && ip link set can0 up type can bitrate 1000000"));
 }
 
 TEST(CanLink, ASendQueueShorterThanACycleIsTold) {

@@ -14,9 +14,9 @@ TEST(ParameterChannel, TellsEachErrorCodeInWords) {
                                "value out of range",
                                "the operation failed",
                                "wrong password",
-                               "the frame is not as it should be",
+                               "the frame is malformed",
                                "the parameter is read-only",
-                               "not while the drive is running",
+                               "not allowed while the drive is running",
                                "the parameter is locked by a password"};
   for (std::uint16_t code = 0; code < std::size(words); ++code) {
     EXPECT_EQ(parameter_channel::error_text(code), words[code]) << code;

@@ -34,7 +34,8 @@ TEST(EmcyText, TakesTheMostSpecificEntry) {
   EXPECT_EQ(emcy_text(0x7121), "motor blocked");
   EXPECT_EQ(emcy_text(0x7130), "power module or motor");
   EXPECT_EQ(emcy_text(0x7F00), "additional modules");
-  EXPECT_EQ(emcy_text(0x8130), "life guard or heartbeat error: the device misses a partner");
+  EXPECT_EQ(emcy_text(0x8130),
+            "life guard or heartbeat error: a node that the device monitors is silent");
   EXPECT_EQ(emcy_text(0x8611), "following error");
   EXPECT_EQ(emcy_text(0x0000), "error reset or no error");
 }
