@@ -12,7 +12,7 @@ namespace takt {
 namespace {
 
 constexpr const char* description =
-    "taktd - CANopen master: boots the devices of a network file, produces SYNC, and\nexchanges "
+    "taktd - CANopen master: boots the devices of a network file, produces SYNC, and exchanges\n"
     "the process image with applications over LCM.";
 
 constexpr const char* footer = R"(
@@ -20,13 +20,14 @@ Examples:
   taktd lift.yaml                      on the `interface:` of the file
   taktd lift.yaml --bus vcan0          on another interface
   taktd lift.yaml --bus sim --for 10s  simulated bus and devices, no hardware needed
-  taktd lift.yaml --check              compile everything, touch no bus; 1: frames can be too late
+  taktd lift.yaml --check              compile only, use no bus; exit code 1: frames may be too late
   taktd lift.yaml --observe            listen only: send nothing
   taktd lift.yaml --gateway unix:/run/takt.sock       ASCII gateway (CiA 309-3)
   taktd lift.yaml --black-box /var/lib/takt           recordings of faults, for takt replay
 
-Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes) starts the ordered stop:
-axes to rest, nodes to pre-operational, SYNC off. A second signal stops at once.
+Live views: takt top, takt status. SIGTERM, SIGINT (Ctrl-C) or SIGHUP (the terminal closes)
+starts the ordered stop: axes to rest, nodes to pre-operational, SYNC off. A second signal stops
+taktd at once.
 
 Exit codes: 0 good, 1 refused (real time under --rt enforce), 2 wrong use or network file,
 3 bus trouble, 4 a mandatory node is missing or failed its boot, 5 real-time limit broken,

@@ -46,7 +46,8 @@ void Recorder::on_request(const request_t& request) {
         "the black box is off: start taktd with --black-box DIR, or write `black_box: {folder: "
         "DIR}` in the network file");
   }
-  if (waiting_.size() == most_waiting) return refuse("too many requests at once; ask again later");
+  if (waiting_.size() == most_waiting)
+    return refuse("too many requests came at once; send the request again later");
   waiting_.push_back(request);
   box_->on_request("requested by " + request.sender.substr(0, 64), monotonic_now());
 }

@@ -117,8 +117,8 @@ std::string against_mismatch(const NodePlan& node, const BootStep& step,
     return against_identity(node, failure);
   }
   if (step.action == BootAction::verify) {
-    return "the device took the write but holds another value (it rounds, limits or ignores it): "
-           "enter the value that the device keeps in the network file";
+    return "the device accepted the write but holds another value (it rounds, limits or ignores "
+           "it): enter the value that the device keeps in the network file";
   }
   return "the device holds another value in " + to_string(failure.object) +
          " than the network file expects: correct the device or the network file";

@@ -186,15 +186,15 @@ std::string against_refusal(const NodePlan& node, const BootStep& step,
     case abort_code::value_too_high:
     case abort_code::value_too_low:
     case abort_code::incompatible_parameters:
-      return "the device does not take this value for " + object +
+      return "the device does not accept this value for " + object +
              ": look up its range in the manual and correct the network file";
     case abort_code::cannot_store:
     case abort_code::local_control:
     case abort_code::device_state:
       return against_state(node, failure);
     case abort_code::hardware_error:
-      return "the device reports a hardware error: switch it off and on; if the error remains, its "
-             "flash memory may be worn out";
+      return "the device reports a hardware error: switch the device off and on; if the error "
+             "remains, its flash memory may be worn out";
     default:
       return "look up " + object + " and abort code " + abort_digits(failure.abort_code) +
              " in the manual of the device";

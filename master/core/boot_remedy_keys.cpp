@@ -69,7 +69,7 @@ std::string against_refused_pdo(ObjectKey object) {
   }
   const std::string key{pdo_key(object)};
   if (key.empty()) return {};
-  return "the device does not take this `" + key + "` of " + pdo +
+  return "the device does not accept this `" + key + "` of " + pdo +
          ": look up the allowed values in its manual, or leave `" + key + "` out";
 }
 

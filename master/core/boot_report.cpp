@@ -56,7 +56,7 @@ std::string silence_text(const BootStep& step, const BootFailure& failure) {
   std::string text = "nothing within " + time_text(step.timeout);
   const bool polls = step.action == BootAction::probe || step.action == BootAction::await_value;
   if (!polls && !failure.downloading && failure.attempts > 1) {
-    text += ", asked " + std::to_string(int{failure.attempts}) + " times";
+    text += "; the master sent " + std::to_string(int{failure.attempts}) + " requests";
   }
   if (failure.downloading) text += "; the master does not repeat a write";
   return text;

@@ -76,7 +76,7 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
     case SdoFault::cancelled:
       return "the node was reset, or the master stops";
     case SdoFault::axes_not_stopped:
-      return "the command was obeyed, but not every axis was seen at standstill and disabled "
+      return "the command was executed, but not every axis was seen at standstill and disabled "
              "before";
     case SdoFault::no_such_pdo:
       return "the network file has no such PDO of this node, or it can't be requested: `takt plan` "

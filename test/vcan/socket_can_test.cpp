@@ -255,7 +255,7 @@ TEST(SocketCan, AnInterfaceThatIsNoCanIsRefused) {
   const auto port = SocketCanPort::open({.interface = "lo", .filters = {}});
 
   ASSERT_FALSE(port);
-  EXPECT_NE(port.error().message.find("lo: not a CAN interface"), std::string::npos);
+  EXPECT_NE(port.error().message.find("lo: this is not a CAN interface"), std::string::npos);
 }
 
 class SocketCanTrouble : public testing::Test {

@@ -299,8 +299,8 @@ TEST(Describe, IsOneLineAnEvent) {
   foreign.kind = EventKind::foreign_nmt;
   foreign.bytes = {0x81, 0x05};
   EXPECT_EQ(describe(plan, foreign),
-            "bus 'lift': NMT command 81 05 that this master did not send: there is a second master "
-            "on the bus");
+            "bus 'lift': NMT command 81 05 came that this master did not send: there is a second "
+            "master on the bus");
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ TEST_F(RequestsTest, NmtStopNamesTheAxesThatWereNotConfirmed) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->good, 0);
   EXPECT_EQ(answer->text,
-            "the command was obeyed, but not every axis was seen at standstill and disabled "
+            "the command was executed, but not every axis was seen at standstill and disabled "
             "before:\nz was disabled at 75 mm/s");
 }
 

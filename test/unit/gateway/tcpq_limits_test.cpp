@@ -279,8 +279,9 @@ class FullHouse : public TcpqLimits {
 TEST_F(FullHouse, KeepsWhoHasSentSomethingWithinTenSeconds) {
   clock.pass(9999ms);
   EXPECT_FALSE(gets_in("LATE"));
-  EXPECT_EQ(told, (std::vector<std::string>{"LCM hub: a new connection was refused: there are 64 "
-                                            "connections already"}));
+  EXPECT_EQ(told,
+            (std::vector<std::string>{
+                "LCM hub: a new connection was refused: the hub has 64 connections already"}));
   for (int i = 0; i < 64; ++i) EXPECT_TRUE(broker->wanted(name(i)));
 }
 
