@@ -36,7 +36,7 @@ std::string unknown_option(const std::string& path, const CLI::App& app, const s
   const std::vector<std::string> names = options_of(app);
   if (std::ranges::find(names, name) != names.end()) return {};
   return path + ": no option '" + name + "'" + guess(name, names) + "; " + path +
-         " --help lists them";
+         " --help lists the options";
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ CLI::Validator one_of(std::vector<std::string> words) {
   const auto check = [words = std::move(words), list = std::move(list)](const std::string& word) {
     if (std::ranges::find(words, word) != words.end()) return std::string{};
     const std::string guessed = guess(word, words);
-    return "'" + word + "' is none of " + list + guessed;
+    return "'" + word + "' is not one of " + list + guessed;
   };
   return CLI::Validator{check, described};
 }

@@ -113,21 +113,24 @@ int run(const Arguments& arguments) {
 void add_audit(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
   auto* command = app.add_subcommand(
-      "audit", "what each device does when the master dies, the cable is cut, the bus goes off");
+      "audit", "tells what devices do if the master, the cable or the bus fails");
   command->add_option("NET", arguments->network, "network file (YAML, also a bus.yml)")->required();
-  command->add_option("--bus", arguments->bus, "ask the devices on this bus; no daemon runs there")
+  command
+      ->add_option("--bus", arguments->bus,
+                   "ask the devices on this bus directly; stop the daemon first")
       ->type_name("IFACE");
   command->add_flag("--live", arguments->through_daemon, "ask the devices through the daemon");
-  add_number(*command, "--timeout", arguments->timeout_ms, "ms for each answer")
+  add_number(*command, "--timeout", arguments->timeout_ms, "longest wait for each answer, ms")
       ->check(CLI::Range(1, 60'000));
   add_live_options(*command, arguments->live);
   command->footer(
-      "From EDS files and what the boot plan writes: heartbeat consumer (1016), life guarding\n"
-      "(100C, 100D), error behaviour (1029), abort connection of drives (6007, 605A, 605E), error\n"
-      "values of outputs (6206, 6443 ...), deadlines of RPDOs and SYNC. With --bus or --live the\n"
-      "devices are asked by SDO; nothing is written. Exit code 1: some device keeps its last\n"
-      "set-points.\n\n"
-      "Example:\n  takt audit share/demo/two_axes.yaml");
+      "The audit reads the EDS files and what the boot plan writes: heartbeat consumer (1016),\n"
+      "life guarding (100C, 100D), error behaviour (1029), abort connection of drives (6007,\n"
+      "605A, 605E), error values of outputs (6206, 6443 ...), deadlines of RPDOs and SYNC. With\n"
+      "--bus or --live takt asks the devices by SDO and writes nothing. Exit code 1: a device\n"
+      "keeps its last set-points.\n\n"
+      "Example:\n"
+      "  takt audit share/demo/two_axes.yaml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -66,18 +66,19 @@ int report(const Options& options, const LoadedNetwork& network, const WhatIf& c
 
 /// Returns the values that the key of a change accepts. Empty if there is no such key.
 std::string values_of(std::string_view key) {
-  if (key == "period") return "a whole number of us, ms or s, 200us to 60s";
+  if (key == "period") return "a whole number of us, ms or s from 200us to 60s";
   if (key == "bitrate") return "10, 20, 50, 100, 125, 250, 500, 800 or 1000 (kbit/s)";
   if (key == "services") return "1 to 250 frames a cycle";
   if (key == "counter") return "0 (none) or 2 to 240";
   const bool tpdo = key.find(".tpdo") != std::string_view::npos;
   if (!tpdo && key.find(".rpdo") == std::string_view::npos) return {};
-  if (key.ends_with(".start")) return "0 to 240, the SYNC counter of the first one";
-  if (key.ends_with(".inhibit")) return "a whole number of us or ms in steps of 100us, to 6553ms";
-  if (key.ends_with(".cob_id")) return "a COB-ID as 0x1C0";
+  if (key.ends_with(".start")) return "0 to 240, the SYNC counter of the first transmission";
+  if (key.ends_with(".inhibit"))
+    return "a whole number of us or ms in steps of 100us, up to 6553ms";
+  if (key.ends_with(".cob_id")) return "a COB-ID such as 0x1C0";
   if (!std::isdigit(static_cast<unsigned char>(key.back()))) return {};
   return std::string{"a transmission type, 0 to 240"} + (tpdo ? " or 252 to 255" : ", 254 or 255") +
-         ", or `off`; of PDO 1 to 512";
+         ", or `off`; PDO numbers are 1 to 512";
 }
 
 std::string guess_of_key(const std::string& key) {
@@ -90,13 +91,15 @@ std::string guess_of_key(const std::string& key) {
 int wrong_change(const std::string& text) {
   const std::string key = text.substr(0, text.find('='));
   const std::string values = values_of(key);
-  return complain("--what-if " + text + (values.empty() ? guess_of_key(key) : std::string{}) +
-                      (values.empty() ? ": not as period=1ms, bitrate=500, services=2, counter=60, "
-                                        "arm.tpdo2=10 (transmission), arm.tpdo2=off, "
-                                        "arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
-                                        "arm.tpdo2.cob_id=0x1C0"
-                                      : ": expected " + values),
-                  wrong_use);
+  return complain(
+      "--what-if " + text + (values.empty() ? guess_of_key(key) : std::string{}) +
+          (values.empty()
+               ? ": expected a change such as period=1ms, bitrate=500, services=2, counter=60, "
+                 "arm.tpdo2=10 (transmission), arm.tpdo2=off, "
+                 "arm.tpdo2.start=2, arm.tpdo2.inhibit=10ms, "
+                 "arm.tpdo2.cob_id=0x1C0"
+               : ": expected " + values),
+      wrong_use);
 }
 
 int run(const Options& options) {
@@ -106,13 +109,14 @@ int run(const Options& options) {
   }
   const auto device_time = parse_duration(options.device_time);
   if (!device_time) {
-    return complain("--device-time " + options.device_time + ": not as 200us", wrong_use);
+    return complain("--device-time " + options.device_time + ": expected a time such as 200us",
+                    wrong_use);
   }
   BudgetOptions how{.device_time = *device_time};
   if (!options.errors.empty()) {
     const auto interval = parse_duration(options.errors);
     if (!interval || *interval == Time{0}) {
-      return complain("--errors " + options.errors + ": not as 10ms", wrong_use);
+      return complain("--errors " + options.errors + ": expected a time such as 10ms", wrong_use);
     }
     how.errors = {.burst = 1, .interval = *interval};
   }
@@ -130,25 +134,27 @@ int run(const Options& options) {
 
 void add_budget(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("budget", "whether the frames of a network fit its bus");
+  auto* verb = app.add_subcommand("budget", "tells whether the frames of a network fit its bus");
   verb->add_option("NET", options->file, "network file")->required();
   verb->add_option("--what-if", options->what_if,
-                   "with another period=1ms, bitrate=500, arm.tpdo2=10 ...")
+                   "compute with period=1ms, bitrate=500, arm.tpdo2=10 ... instead")
       ->delimiter(',');
   verb->add_option("--device-time", options->device_time,
-                   "from SYNC until a device's TPDO is ready for the bus")
+                   "time from SYNC until a device has its TPDO ready for the bus")
       ->type_name("TIME")
       ->capture_default_str();
-  verb->add_option("--errors", options->errors, "one error on the wire each so often")
+  verb->add_option("--errors", options->errors,
+                   "assume one error on the wire in each interval of this length")
       ->type_name("TIME");
-  verb->add_flag("--timeline", options->timeline, "a picture of one cycle");
-  verb->add_option("--svg", options->svg, "the same picture as an SVG file")->type_name("FILE");
-  verb->add_flag("--json", options->json, "one JSON document");
+  verb->add_flag("--timeline", options->timeline, "also print a picture of one cycle");
+  verb->add_option("--svg", options->svg, "write that picture as an SVG file")->type_name("FILE");
+  verb->add_flag("--json", options->json, "print one JSON document");
   verb->footer(
-      "Worst stuffing, worst order, every frame as often as it may come. Exit code 1 where a "
-      "frame\n"
-      "can be too late; then the cheapest changes with which it fits are told.\n\n"
-      "Examples:\n  takt budget lift.yaml --timeline\n"
+      "takt assumes worst bit stuffing, worst order, and every frame as often as it may come.\n"
+      "Exit code 1: a frame can be too late. takt then also prints the cheapest changes that\n"
+      "help.\n\n"
+      "Examples:\n"
+      "  takt budget lift.yaml --timeline\n"
       "  takt budget lift.yaml --what-if period=1ms,bitrate=500");
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }

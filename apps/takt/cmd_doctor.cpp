@@ -94,22 +94,27 @@ int run(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("doctor", "is this machine fit for a bus, and what mends it");
+  auto* verb = app.add_subcommand(
+      "doctor", "checks whether this machine is fit for a bus, and names remedies");
   verb->footer(
-      "Each line is good, a hint, or BAD (exit code 1), with the command that mends it (as root).\n"
-      "Changes nothing.\n"
-      "Examples:\n  takt doctor\n  takt doctor --bus can0 --bitrate 500");
+      "Each line is good, a hint or BAD (exit code 1). The command below a line mends the fault;\n"
+      "run that command as root. takt doctor itself changes nothing.\n"
+      "Examples:\n"
+      "  takt doctor\n"
+      "  takt doctor --bus can0 --bitrate 500");
   auto options = std::make_shared<DoctorOptions>();
   verb->add_option("--bus", options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
-  add_number(*verb, "--bitrate", options->bitrate_kbit, "that the interface ought to have, kbit/s")
+  add_number(*verb, "--bitrate", options->bitrate_kbit,
+             "bit rate that the interface must have, kbit/s")
       ->check(CLI::Range(10, 1000))
       ->type_name("KBIT");
-  add_number(*verb, "--priority", options->priority, "of the bus thread")
+  add_number(*verb, "--priority", options->priority, "priority of the bus thread")
       ->check(CLI::Range(1, 99))
       ->type_name("N");
-  verb->add_option("--lcm-url", options->lcm_url, "else LCM_DEFAULT_URL, else LCM's default")
+  verb->add_option("--lcm-url", options->lcm_url,
+                   "LCM URL to check; default: LCM_DEFAULT_URL, else LCM's own")
       ->type_name("URL");
-  verb->add_flag("--json", options->json, "as one JSON document");
+  verb->add_flag("--json", options->json, "print one JSON document");
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -35,13 +35,13 @@ constexpr int usage = 2;
 constexpr int bus_trouble = 3;
 
 constexpr const char* example = R"(Examples:
-  takt dump --bus can0                 what goes over the bus now
-  takt dump lift.yaml --bus can0       with the names, values and units of the network file
-  takt dump lift.yaml trace.log        a recording of `candump -L` or `candump`, a .trc or .asc
-  candump -L can0 | takt dump          the same from a pipe
+  takt dump --bus can0                 prints the frames that are on the bus now
+  takt dump lift.yaml --bus can0       adds names, values and units of the network file
+  takt dump lift.yaml trace.log        reads a recording of `candump -L` or `candump`, .trc or .asc
+  candump -L can0 | takt dump          reads frames from a pipe
   takt dump lift.yaml trace.log --node shoulder --only SDO,EMCY
 Services: NMT, SYNC, TIME, EMCY, TPDO, RPDO, SDO, BOOTUP, HEARTBEAT, GUARD, LSS, MASTER, GFC, ERROR
-and ? for what is none of them.)";
+and ? for all other frames.)";
 
 constexpr std::array<std::string_view, 15> services{
     "NMT",       "SYNC",  "TIME", "EMCY",   "TPDO", "RPDO",  "SDO", "BOOTUP",
@@ -153,13 +153,15 @@ int dump_log(std::istream& in, const std::string& name, Printer& printer) {
       ++frames;
       if (!printer.print(*line)) break;
     } else if (!is_remark(text) && ++strange <= 3) {
-      fmt::print(stderr, "{}:{}: not a frame of candump, .trc or .asc (or CAN FD), left out\n",
+      fmt::print(stderr,
+                 "{}:{}: not a frame of candump, .trc or .asc, or a CAN FD frame; line left out\n",
                  name, line_number);
     }
   }
-  if (strange > 3) fmt::print(stderr, "{}: {} lines left out\n", name, strange);
+  if (strange > 3) fmt::print(stderr, "{}: {} lines were left out\n", name, strange);
   if (frames == 0 && strange != 0) {
-    fmt::print(stderr, "{}: no frame in it; `candump -L can0 > FILE` records what takt reads\n",
+    fmt::print(stderr,
+               "{}: holds no frame; `candump -L can0 > FILE` makes a recording that takt reads\n",
                name);
     return usage;
   }
@@ -198,7 +200,7 @@ class InterfaceNews {
                  bus_, now.bus_off ? "BUS-OFF" : state, now.tx_error_counter, now.rx_error_counter);
     }
     if (now.receive_overruns != last_.receive_overruns) {
-      fmt::print(stderr, "takt dump: {} frames lost\n",
+      fmt::print(stderr, "takt dump: {} frames were lost\n",
                  now.receive_overruns - last_.receive_overruns);
     }
     last_ = now;
@@ -247,20 +249,20 @@ int run(const Options& options) {
     } else if (!log) {
       log = file;
     } else {
-      fmt::print(stderr, "takt dump: one network file and one recording at most\n");
+      fmt::print(stderr, "takt dump: give at most one network file and one recording\n");
       return usage;
     }
   }
   if (log && !options.bus.empty()) {
-    fmt::print(stderr, "takt dump: either --bus or a recording\n");
+    fmt::print(stderr, "takt dump: give either --bus or a recording, not both\n");
     return usage;
   }
   const LoadedNetwork* const names = network ? &*network : nullptr;
   const auto node = options.node.empty() ? std::optional{0U} : node_of(options.node, names);
   if (!node) {
     fmt::print(
-        stderr, "takt dump: '{}' is no node id 1..127{}\n", options.node,
-        names == nullptr ? "; names are those of a network file" : " and no node of the file");
+        stderr, "takt dump: '{}' is not a node id 1..127{}\n", options.node,
+        names == nullptr ? "; a name needs a network file" : " and not a node of the network file");
     return usage;
   }
   Printer printer{options, *node, names};
@@ -270,7 +272,8 @@ int run(const Options& options) {
   if (network && !network->plan.interface.empty()) {
     return dump_bus(network->plan.interface, printer);
   }
-  fmt::print(stderr, "takt dump: which bus? --bus can0, --bus unix:PATH, or a recording\n");
+  fmt::print(stderr,
+             "takt dump: no bus is given; use --bus can0, --bus unix:PATH, or a recording\n");
   return usage;
 }
 
@@ -278,18 +281,19 @@ int run(const Options& options) {
 
 void add_dump(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
-  CLI::App* dump = app.add_subcommand("dump", "CAN frames with their CANopen meaning");
-  dump->add_option("files", options->files, "network file (.yaml), recording of candump or -")
+  CLI::App* dump = app.add_subcommand("dump", "prints CAN frames with their CANopen meaning");
+  dump->add_option("files", options->files,
+                   "network file (.yaml), recording (.log, .trc, .asc; - for stdin)")
       ->type_name("[NET.yaml] [FILE]");
   dump->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
-  add_number(*dump, "-n,--count", options->count, "end after so many frames");
-  dump->add_flag("--json", options->json, "one JSON object a frame");
-  dump->add_option("--only", options->only, "these services: SDO,EMCY")
+  add_number(*dump, "-n,--count", options->count, "end after this number of frames");
+  dump->add_flag("--json", options->json, "print one JSON object per frame");
+  dump->add_option("--only", options->only, "print only these services, for example SDO,EMCY")
       ->delimiter(',')
       ->transform([](std::string text) { return in_capitals(std::move(text)); })
       ->check(service_trouble)
       ->type_name("SERVICE,...");
-  dump->add_option("--node", options->node, "frames of this node, by id or name")
+  dump->add_option("--node", options->node, "print only frames of this node, by id or name")
       ->type_name("NODE");
   dump->footer(example);
   dump->callback([options, &exit_code] { exit_code = run(*options); });

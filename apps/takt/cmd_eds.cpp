@@ -86,32 +86,33 @@ int check_files(const CheckOptions& options) {
 
 void add_show(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<ShowOptions>();
-  auto* command = eds.add_subcommand("show", "object dictionary and PDO tables of a file");
+  auto* command = eds.add_subcommand("show", "prints the object dictionary and the PDOs of a file");
   command->add_option("FILE", options->file, "EDS or DCF")->required();
-  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
       ->check(CLI::Range(1U, 127U));
-  command->add_flag("--json", options->json, "one JSON document");
+  command->add_flag("--json", options->json, "print one JSON document");
   command->footer("Example:\n  takt eds show --node 5 share/eds/takt_drive402.eds");
   command->callback([options, &exit_code] { exit_code = show(*options); });
 }
 
 void add_check(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
-  auto* command = eds.add_subcommand("check", "what is wrong with files");
+  auto* command = eds.add_subcommand("check", "lists the mistakes in files");
   auto* rules = command->add_flag("--rules", options->rules, "list the rules, with examples");
   auto* files = command->add_option("FILE", options->files, "EDS or DCF");
   files->excludes(rules);
-  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
       ->check(CLI::Range(1U, 127U));
   command->add_flag("--quiet", options->quiet, "leave out notes");
-  command->add_flag("--json", options->json, "one JSON document")->excludes(rules);
+  command->add_flag("--json", options->json, "print one JSON document")->excludes(rules);
   command->footer(
       "Findings are written as file:line:column: severity: message [rule].\n"
-      "  error    the device would refuse it, or a master would do something else than meant\n"
-      "  warning  a deviation that can be read in only one way\n"
-      "  note     style\n"
-      "Exit code 1 if there is any error.\n\n"
-      "Example:\n  takt eds check share/eds/*.eds");
+      "  error    the device would refuse it, or takt would not do what the author meant\n"
+      "  warning  the file deviates from the standard, but can be read in only one way\n"
+      "  note     a matter of style\n"
+      "The exit code is 1 if there is an error.\n\n"
+      "Example:\n"
+      "  takt eds check share/eds/*.eds");
   command->callback([options, &exit_code] {
     if (!options->rules && options->files.empty()) throw CLI::RequiredError{"FILE"};
     exit_code = options->rules ? print_rules() : check_files(*options);
@@ -121,7 +122,7 @@ void add_check(CLI::App& eds, int& exit_code) {
 }  // namespace
 
 void add_eds(CLI::App& app, int& exit_code) {
-  auto* eds = app.add_subcommand("eds", "read, judge and write EDS and DCF files");
+  auto* eds = app.add_subcommand("eds", "shows, checks, mends and writes EDS and DCF files");
   eds->require_subcommand(1);
   eds->footer("Example:\n  takt eds check drive.eds\n  takt eds show --node 5 drive.eds");
   add_show(*eds, exit_code);

@@ -43,8 +43,8 @@ int decode(const Options& options) {
   const auto used = size_of(*entries);
   if (content->size() > used) {
     complain(options.file + ": " + std::to_string(content->size() - used) +
-                 " bytes behind the last of " + std::to_string(entries->size()) +
-                 " entries; devices ignore them",
+                 " bytes follow the last of " + std::to_string(entries->size()) +
+                 " entries; devices ignore these bytes",
              0);
   }
   return 0;
@@ -70,17 +70,22 @@ int encode(const Options& options) {
 
 void add_eds_cdcf(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = eds.add_subcommand("cdcf", "concise DCF (0x1F22) of a DCF, or what one holds");
+  auto* command = eds.add_subcommand(
+      "cdcf", "converts a DCF to a concise DCF (0x1F22), or prints a concise DCF");
   command->add_option("FILE", options->file, "DCF, or with --decode a concise DCF")->required();
-  add_number(*command, "--node", options->node, "node id that $NODEID stands for")
+  add_number(*command, "--node", options->node, "node id that replaces $NODEID")
       ->check(CLI::Range(1U, 127U));
-  auto* out = command->add_option("-o,--output", options->out, "the concise DCF; - for stdout");
+  auto* out = command->add_option("-o,--output", options->out,
+                                  "output file for the concise DCF; - for stdout");
   auto* decoding = command->add_flag("--decode", options->decode, "print a concise DCF as text");
   out->excludes(decoding);
   command->footer(
-      "Holds each ParameterValue of the DCF, ascending; a PDO as one piece: invalid, mapping\n"
-      "off, mapping, parameters, valid. After an error nothing is written.\n\n"
-      "Examples:\n  takt eds cdcf axis.dcf -o axis.bin\n  takt eds cdcf --decode axis.bin");
+      "The concise DCF holds each ParameterValue of the DCF, in ascending order. Each PDO is one\n"
+      "piece: invalid, mapping off, mapping, parameters, valid. After an error takt writes no\n"
+      "file.\n\n"
+      "Examples:\n"
+      "  takt eds cdcf axis.dcf -o axis.bin\n"
+      "  takt eds cdcf --decode axis.bin");
   command->callback([options, out, &exit_code] {
     if (!options->decode && out->empty()) throw CLI::RequiredError{"--output"};
     exit_code = options->decode ? decode(*options) : encode(*options);

@@ -33,7 +33,8 @@ int run(const Options& options) {
   if (options.bitrate != 0) wanted.baudrate_kbit = static_cast<std::uint16_t>(options.bitrate);
   for (const auto& argument : options.values) {
     const auto value = parse_value(argument);
-    if (!value) return complain("--set " + argument + ": not as 6081:00=1000", 2);
+    if (!value)
+      return complain("--set " + argument + ": expected OBJECT=VALUE, such as 6081:00=1000", 2);
     wanted.values.push_back(*value);
   }
   const auto source = read_whole_file(options.file);
@@ -49,19 +50,21 @@ int run(const Options& options) {
 
 void add_eds_dcf(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = eds.add_subcommand("dcf", "write the DCF of one device");
+  auto* command = eds.add_subcommand("dcf", "writes the DCF of one device");
   command->add_option("FILE", options->file, "EDS or DCF to start from")->required();
-  add_number(*command, "--node", options->node, "node id")->check(CLI::Range(1U, 127U));
-  add_number(*command, "--bitrate", options->bitrate, "kbit/s of the network")
+  add_number(*command, "--node", options->node, "node id of the device")
+      ->check(CLI::Range(1U, 127U));
+  add_number(*command, "--bitrate", options->bitrate, "bit rate of the network, kbit/s")
       ->check(CLI::Range(1U, 1000U));
   command->add_option("--name", options->name, "name of the device in the network");
   command->add_option("--set", options->values,
-                      "a value: OBJECT=VALUE; VALUE as an EDS writes it, for a DOMAIN @FILE");
-  command->add_option("-o,--output", options->out, "the DCF; - for stdout")->required();
+                      "set OBJECT=VALUE; VALUE as in an EDS, for a DOMAIN @FILE");
+  command->add_option("-o,--output", options->out, "output file for the DCF; - for stdout")
+      ->required();
   command->footer(
-      "The text of FILE stays byte for byte but for what is set, and for PDOs that it only counts\n"
-      "(CompactPDO): those that are on are listed. A value that the device would refuse is an\n"
-      "error, and nothing is written.\n\n"
+      "The text of FILE stays the same byte for byte, except for the values that are set and for\n"
+      "PDOs that FILE only counts (CompactPDO): the DCF lists the enabled ones. A value that the\n"
+      "device would refuse is an error; takt then writes no file.\n\n"
       "Example:\n  takt eds dcf drive.eds --node 5 --set 6081:00=1000 --set 1017=100 -o axis.dcf");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -29,9 +29,9 @@ std::optional<std::string> recoded(const std::string& source) {
 
 /// Prints that the shown difference cannot be applied with `patch`.
 void tell_unpatchable(const Options& options) {
-  std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference is that of "
-            << "the text and can't be applied with patch, "
-            << (options.out.empty() ? "-o writes the mended file\n" : "the output is whole\n");
+  std::cerr << options.file << ": the file is UTF-16 and becomes UTF-8; the difference shows only "
+            << "the text and can't be applied with patch; "
+            << (options.out.empty() ? "-o writes the mended file\n" : "the output is complete\n");
 }
 
 int run(const Options& options) {
@@ -63,23 +63,24 @@ int run(const Options& options) {
 
 void add_eds_fix(CLI::App& eds, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = eds.add_subcommand("fix", "mend what can be read in only one way");
+  auto* command = eds.add_subcommand("fix", "mends mistakes that can be read in only one way");
   command->add_option("FILE", options->file, "EDS or DCF")->required();
   command->add_option("-o,--output", options->out,
-                      "the mended file; - for stdout; without it only the difference is shown");
-  command->add_flag("--quiet", options->quiet, "leave out notes of what is left");
+                      "mended file; - for stdout; without -o takt only shows changes");
+  command->add_flag("--quiet", options->quiet, "leave out notes about the remaining findings");
   std::string rules;
   for (const std::string_view rule : fixable_rules) {
     rules += (rules.empty() ? "" : rules.size() - rules.rfind('\n') > 75 ? ",\n" : ", ");
     rules += rule;
   }
   command->footer(
-      "The difference goes to stdout as diff -u prints it, for `patch --binary` (that of a file\n"
-      "in UTF-16, or with CR alone at its line ends, is only to be read), what is left to stderr\n"
-      "(named as by `takt eds check`). No object and no value becomes another one; the text\n"
-      "elsewhere stays byte for byte. Exit code 1 if an error is left. Mended are:\n" +
+      "The difference goes to stdout in the form of diff -u, for `patch --binary`. (For a file in\n"
+      "UTF-16, or with CR alone as line ends, the difference is only for reading.) The remaining\n"
+      "findings go to stderr in the form of `takt eds check`. No object and no value changes into\n"
+      "another one; all other text stays the same byte for byte. The exit code is 1 if an error\n"
+      "remains. takt mends the findings of these rules:\n" +
       rules +
-      ",\nand slips of ParameterName and DataType.\n\n"
+      ",\nand misspellings of the keys ParameterName and DataType.\n\n"
       "Example:\n  takt eds fix drive.eds -o drive_fixed.eds");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -153,13 +153,15 @@ int run(const EmcyOptions& options) {
 }  // namespace
 
 void add_emcy(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("emcy", "EMCYs that the nodes have sent, with their meaning");
+  auto* verb =
+      app.add_subcommand("emcy", "prints the EMCYs that nodes have sent, with their meaning");
   verb->footer(
-      "Examples:\n  takt emcy                 the newest 32 of each node\n"
-      "  takt emcy shoulder --json\n  takt emcy --follow        and what comes from now on");
+      "Examples:\n  takt emcy                 the newest 32 EMCYs of each node\n"
+      "  takt emcy shoulder --json\n  takt emcy --follow        also those that arrive later");
   auto options = std::make_shared<EmcyOptions>();
-  verb->add_option("NODE", options->node, "node id or name; else all nodes");
-  verb->add_flag("-f,--follow", options->follow, "go on with what arrives, until interrupted");
+  verb->add_option("NODE", options->node, "node id or name; default: all nodes");
+  verb->add_flag("-f,--follow", options->follow,
+                 "continue with the EMCYs that arrive, until interrupted");
   add_live_options(*verb, options->live);
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }

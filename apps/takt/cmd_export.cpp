@@ -82,19 +82,21 @@ CLI::App* add(CLI::App& verb, const std::shared_ptr<Options>& options, int& exit
 }  // namespace
 
 void add_export(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("export", "the plan of a network for other tools");
+  auto* verb = app.add_subcommand("export", "writes the plan of a network for other tools");
   verb->require_subcommand(1);
   verb->footer(
-      "Prints the names of the files that it wrote.\n\n"
+      "takt export prints the names of the files that it wrote.\n\n"
       "Example:\n  takt export dbc lift.yaml -o out");
   auto options = std::make_shared<Options>();
-  add(*verb, options, exit_code, "dbc", "frames of the bus for CAN tools", as_dbc)
+  add(*verb, options, exit_code, "dbc", "writes the frames of the bus as a DBC for CAN tools",
+      as_dbc)
       ->add_flag("--whole-words", options->whole_words,
-                 "statusword and controlword as one value, not as their bits");
-  add(*verb, options, exit_code, "header", "positions in the image for C++", as_header);
-  add(*verb, options, exit_code, "lcm", "a typed LCM message for each node's inputs and outputs",
-      as_lcm);
-  add(*verb, options, exit_code, "json", "all of `takt plan --json`", as_json);
+                 "write statuswords and controlwords as one value, not as bits");
+  add(*verb, options, exit_code, "header", "writes the positions in the image as a C++ header",
+      as_header);
+  add(*verb, options, exit_code, "lcm",
+      "writes typed LCM messages for the inputs and outputs of each node", as_lcm);
+  add(*verb, options, exit_code, "json", "writes the document of `takt plan --json`", as_json);
 }
 
 }  // namespace takt

@@ -69,11 +69,11 @@ struct Imported {
 std::string last_line(const Options& options, const Imported& imported) {
   if (!imported.report.usable) {
     return imported.written ? options.out +
-                                  " is written, but taktd does not run it: mend what is "
+                                  " is written, but taktd does not run it: correct what is "
                                   "wrong."
-                            : "there is no network file for it: mend what is wrong.";
+                            : "takt can't make a network file of it: correct what is wrong.";
   }
-  return imported.written ? options.out + " is written; `takt plan` shows what it does."
+  return imported.written ? options.out + " is written; `takt plan` shows what taktd does with it."
                           : "`-o NET.yaml` writes the network file.";
 }
 
@@ -89,7 +89,8 @@ void print_text(const Options& options, const Imported& imported) {
     fmt::print("{:>7}  {:<10}  {:<52}  {}\n", place, name(key.fate), printable_text(what),
                printable_text(key.why));
   }
-  if (!report.unasked.empty()) fmt::print("without a word in the file taktd sets:\n");
+  if (!report.unasked.empty())
+    fmt::print("taktd also sets these values, which the file does not mention:\n");
   for (const std::string& line : report.unasked) fmt::print("  {}\n", line);
   for (const Finding& finding : report.others) {
     fmt::print("{}\n", printable_text(to_string(finding)));
@@ -98,8 +99,9 @@ void print_text(const Options& options, const Imported& imported) {
     fmt::print("{}\n", last_line(options, imported));
     return;
   }
-  fmt::print("{}\n", report.usable ? "taktd runs it as it is; `takt plan` shows what it does."
-                                   : "taktd does not run it: mend what is wrong.");
+  fmt::print("{}\n", report.usable
+                         ? "taktd runs this file as it is; `takt plan` shows what taktd does."
+                         : "taktd does not run this file: correct what is wrong.");
 }
 
 /// Imports a nodelist and, if requested, writes the network file. The report then includes the
@@ -145,23 +147,27 @@ int run(const Options& options) {
 void add_import(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command =
-      app.add_subcommand("import", "what takt makes of a bus.yml, or of a nodelist.cpj");
+      app.add_subcommand("import", "tells how takt reads a bus.yml; converts a nodelist.cpj");
   command
       ->add_option("FILE", options->file,
                    "bus.yml of dcfgen or ros2_canopen, or nodelist.cpj of CiA 306-3")
       ->required();
-  command->add_option("-o,--output", options->out, "of a nodelist.cpj: network file to be written");
-  add_number(*command, "--network", options->network, "of a nodelist.cpj: 2 for [Topology2]")
+  command->add_option("-o,--output", options->out, "network file to write from a nodelist.cpj");
+  add_number(*command, "--network", options->network,
+             "network of a nodelist.cpj: 2 for [Topology2]")
       ->check(CLI::Range(1U, 99U))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "one JSON document");
-  command->add_flag("--brief", options->brief, "leave out keys that are used as they are");
+  command->add_flag("--json", options->json, "print one JSON document");
+  command->add_flag("--brief", options->brief, "leave out keys that takt uses unchanged");
   command->footer(
-      "A bus.yml has not to be converted: taktd and all commands read it as it is. A nodelist.cpj\n"
-      "with its DCFs becomes a network file (-o): nodes, names, device files, bit rate. Each key\n"
-      "is used, ignored (and why), suspicious (used, but hardly what was meant), or wrong (the\n"
-      "file can't run with it; exit code 1). A file that can't be read is exit code 2.\n\n"
-      "Examples:\n  takt import bus.yml --brief\n  takt import nodelist.cpj -o lift.yaml");
+      "A bus.yml needs no conversion: taktd and all commands read it as it is. A nodelist.cpj\n"
+      "with its DCFs becomes a network file (-o): nodes, names, device files, bit rate. takt\n"
+      "reports each key as used, ignored (with the reason), suspicious (used, but hardly what\n"
+      "was meant) or wrong (taktd can't run the file; exit code 1). If the file can't be read,\n"
+      "the exit code is 2.\n\n"
+      "Examples:\n"
+      "  takt import bus.yml --brief\n"
+      "  takt import nodelist.cpj -o lift.yaml");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -31,19 +31,23 @@ int check(const KeysOptions& options) {
 }  // namespace
 
 void add_keys(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("keys", "key files: who may command a bus");
+  auto* verb =
+      app.add_subcommand("keys", "makes and checks key files, which decide who may command a bus");
   verb->require_subcommand(1);
   verb->footer(
-      "Without keys whoever reaches LCM can command the bus. With `lcm: {keys: FILE}` in the\n"
-      "network file taktd takes commands, requests and files in envelopes only, and programs\n"
-      "make them with the first key of the file in TAKT_KEYS or --keys.\n\n"
-      "Example:\n  takt keys new lift.keys && export TAKT_KEYS=$PWD/lift.keys");
+      "Without keys every program that reaches LCM can command the bus. With `lcm: {keys: FILE}`\n"
+      "in the network file taktd accepts commands, requests and files only in envelopes.\n"
+      "Programs make these envelopes with the first key of the file in TAKT_KEYS or --keys.\n\n"
+      "Example:\n"
+      "  takt keys new lift.keys && export TAKT_KEYS=$PWD/lift.keys");
   auto options = std::make_shared<KeysOptions>();
-  auto* fresh = verb->add_subcommand("new", "make a file with one new random key, mode 0600");
-  fresh->add_option("FILE", options->file, "must not be there yet")->required();
-  fresh->add_option("--name", options->name, "of the key")->capture_default_str();
+  auto* fresh = verb->add_subcommand("new", "makes a file with one new random key, mode 0600");
+  fresh->add_option("FILE", options->file, "key file to make; the file must not exist yet")
+      ->required();
+  fresh->add_option("--name", options->name, "name of the key")->capture_default_str();
   fresh->callback([options, &exit_code] { exit_code = make(*options); });
-  auto* look = verb->add_subcommand("check", "permissions and contents; prints the names");
+  auto* look = verb->add_subcommand(
+      "check", "checks permissions and contents, and prints the names of the keys");
   look->add_option("FILE", options->file, "the key file")->required();
   look->callback([options, &exit_code] { exit_code = check(*options); });
 }

@@ -60,7 +60,8 @@ int judge(const std::string& file) {
   const LoadedNetwork network = load_network(file);
   if (!has_error(network.findings)) return 0;
   print(network.findings, true);
-  std::cerr << file << ": written, but to be mended before taktd takes it\n";
+  std::cerr << file
+            << ": this file was written, but taktd does not accept it; correct the errors above\n";
   return 1;
 }
 
@@ -80,8 +81,8 @@ int run(const Options& options) {
   }
   if (bus->frames == 0) {
     return complain(options.log +
-                        ": holds no frame; what candump, PCAN (.trc), Vector (.asc) and python-can "
-                        "record is read",
+                        ": holds no frame; takt reads recordings of candump, PCAN (.trc), Vector "
+                        "(.asc) and python-can",
                     2);
   }
 
@@ -112,31 +113,35 @@ int run(const Options& options) {
 void add_learn(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command =
-      app.add_subcommand("learn", "a network file from a recorded boot of another master");
+      app.add_subcommand("learn", "makes a network file from a recorded boot of another master");
   command
       ->add_option("LOG", options->log,
-                   "recording of candump (-L, or its ordinary output), .trc, .asc or -")
+                   "recording of candump (-L or plain), .trc or .asc; - for stdin")
       ->required();
-  command->add_option("-o,--output", options->out, "the network file; - for stdout")
+  command->add_option("-o,--output", options->out, "network file to write; - for stdout")
       ->type_name("NET.yaml")
       ->required();
   command->add_option("--eds", options->files,
-                      "EDS or DCF of a device, found by its identity; 5=FILE: that of node 5");
-  command->add_option("--eds-dir", options->folders, "folder with such files, searched whole")
+                      "EDS or DCF, matched by its identity; 5=FILE assigns it to node 5");
+  command
+      ->add_option("--eds-dir", options->folders,
+                   "folder with EDS and DCF files; takt searches subfolders, too")
       ->type_name("DIR");
-  command->add_option("--bus", options->interface, "only this interface of the recording");
-  add_number(*command, "--bitrate", options->bitrate_kbit, "kbit/s: a recording does not say it")
+  command->add_option("--bus", options->interface, "use only this interface of the recording");
+  add_number(*command, "--bitrate", options->bitrate_kbit,
+             "bit rate, kbit/s; a recording does not contain it")
       ->check(CLI::Range(10U, 1000U))
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->footer(
-      "Record the start of the other master from before it resets the devices:\n"
+      "Start the recording before the other master resets the devices:\n"
       "  candump -L can0 > boot.log\n"
-      "Nodes, SDO writes in their order, PDOs, SYNC, heartbeats and guarding become the file;\n"
-      "what it can't say stands there as comments. A device without EDS gets one of what the\n"
-      "recording shows, beside the network file. Exit code 1: the file needs mending, see "
-      "stderr.\n\n"
-      "Example:\n  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
+      "The network file contains nodes, SDO writes in their order, PDOs, SYNC, heartbeats and\n"
+      "guarding. Comments in it describe what a network file can't express. For a device without\n"
+      "EDS takt writes an EDS from the recording, beside the network file. Exit code 1: the\n"
+      "network file needs corrections, which stderr lists.\n\n"
+      "Example:\n"
+      "  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
       "  takt plan machine.yaml");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

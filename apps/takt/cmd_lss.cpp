@@ -53,9 +53,9 @@ bool all_answered(const LssOptions& options, const LssAddress& found) {
 
 /// Some devices also answer a scan in configuration state, and they answer every question.
 constexpr const char* answers_everything =
-    "a device that was found answers every further question (only devices in waiting state "
-    "should): "
-    "there may be more. Give it a node id (takt lss set-id), then look again";
+    "the device that was found answers every further question, but only devices in waiting state "
+    "should. There may be more devices: give this one a node id (takt lss set-id), then search "
+    "again";
 
 /// Finds devices without node-ID with Fastscan, one after the other. A found device stays in
 /// configuration state until the end, so that it does not answer the next scan. Devices that were
@@ -102,7 +102,8 @@ int scan(const LssOptions& options) {
   const auto serials = lss_range(options.parts[3]);
   const auto vendor = lss_number(options.parts[0]);
   const auto product = lss_number(options.parts[1]);
-  if (!vendor || !product || !revisions || !serials) return complain("a number is missing", 2);
+  if (!vendor || !product || !revisions || !serials)
+    return complain("a number of the LSS address is missing", 2);
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());
   std::vector<LssAddress> devices;
@@ -142,7 +143,7 @@ std::expected<std::vector<LssResult>, LiveError> configure(const LssOptions& opt
   if (!results) return results;
   if (results->empty() || results->back().outcome != LssOutcome::done) {
     const std::string why =
-        results->empty() ? "the daemon ran no service" : lss_failure_text(results->back());
+        results->empty() ? "the daemon ran no LSS service" : lss_failure_text(results->back());
     return std::unexpected{LiveError{why, 1}};
   }
   return results;
@@ -165,8 +166,8 @@ int set_id(const LssOptions& options) {
   }
   if (device) std::puts(device_text(*device).c_str());
   std::printf(
-      "node id %d%s. A device without node id boots with it now; one that had another id "
-      "takes it at its next reset (takt nmt reset-comm)\n",
+      "node id %d%s. A device without node id boots with this id now; a device that had another\n"
+      "id takes the new one at its next reset (takt nmt reset-comm)\n",
       options.node_id, options.store ? ", stored" : ", not stored");
   return 0;
 }
@@ -188,7 +189,7 @@ int activate(const LssOptions& options, LssAccess& access) {
   }
   const auto activation = static_cast<std::uint8_t>(lss::Service::activate_bit_timing);
   if (!witness->sees(lss::request_cob_id, activation, milliseconds{options.delay_ms})) {
-    return complain("the activation waits to be sent: does nobody acknowledge it on " +
+    return complain("the activation command was not sent: does any node acknowledge frames on " +
                         options.access.bus + "? The interface keeps its bit rate",
                     3);
   }
@@ -211,8 +212,8 @@ int set_bitrate(const LssOptions& options) {
                     2);
   }
   if (options.delay_ms != 0 && (!options.all || options.access.bus.empty())) {
-    return complain(
-        "--activate changes the whole bus: it needs --all, and --bus with taktd stopped", 2);
+    return complain("--activate changes the whole bus: stop taktd, and give --all and --bus, too",
+                    2);
   }
   if (options.delay_ms != 0) {
     const std::string trouble = interface_bitrate_trouble(options.access.bus);
@@ -231,8 +232,9 @@ int set_bitrate(const LssOptions& options) {
          {"device", device ? device_json(*device) : nlohmann::json{}}});
   } else {
     if (device) std::puts(device_text(*device).c_str());
-    std::printf("%d kbit/s configured%s%s\n", options.kbit, options.store ? ", stored" : "",
-                options.delay_ms != 0 ? "" : "; it counts from the next power-on or activation");
+    std::printf(
+        "%d kbit/s configured%s%s\n", options.kbit, options.store ? ", stored" : "",
+        options.delay_ms != 0 ? "" : "; the devices use it from the next power-on or activation");
   }
   return options.delay_ms != 0 ? activate(options, *access) : 0;
 }
@@ -300,23 +302,26 @@ void add_identity(CLI::App& verb, LssOptions& options, Takes takes) {
   constexpr std::array<const char*, 4> flags{"--vendor", "--product", "--revision", "--serial"};
   for (std::size_t i = 0; i < flags.size(); ++i) {
     const bool has_range = takes == Takes::ranges && i >= 2;
-    auto* option = verb.add_option(flags[i], options.parts[i],
-                                   has_range ? "one, or a range A-B" : "of its LSS address (1018)");
+    auto* option =
+        verb.add_option(flags[i], options.parts[i],
+                        has_range ? "number, or a range A-B" : "part of the LSS address (1018)");
     option->check(check(i))->type_name(has_range ? "N|A-B" : "N");
     if (takes == Takes::ranges && i < 2) option->required();
   }
   if (takes != Takes::one_device) return;
-  verb.add_flag("--alone", options.alone, "the only device on the bus, whatever its address");
+  verb.add_flag("--alone", options.alone,
+                "address the only device on the bus, whatever its LSS address");
 }
 
 CLI::App* add_verb(CLI::App& lss, const char* name, const char* text, Takes takes,
                    const std::shared_ptr<LssOptions>& options) {
   auto* verb = lss.add_subcommand(name, text);
   if (takes != Takes::nothing) add_identity(*verb, *options, takes);
-  verb->add_option("--bus", options->access.bus, "directly on can0, unix:PATH; without a daemon")
+  verb->add_option("--bus", options->access.bus,
+                   "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
   add_number(*verb, "--timeout", options->access.timeout_ms,
-             "wait for each answer, ms; else 100 in scans, 5000 to store, 1000")
+             "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
   add_live_options(*verb, options->access.live);
@@ -329,53 +334,56 @@ void run_as(CLI::App* verb, const std::shared_ptr<LssOptions>& options, Run run,
 
 void add_searches(CLI::App& lss, int& exit_code) {
   const auto options = std::make_shared<LssOptions>();
-  auto* find_verb =
-      add_verb(lss, "find", "devices without node id (fastscan)", Takes::numbers, options);
-  find_verb->add_flag("--first", options->first, "only one");
+  auto* find_verb = add_verb(lss, "find", "lists the devices without node id (fastscan)",
+                             Takes::numbers, options);
+  find_verb->add_flag("--first", options->first, "end after the first device");
   run_as(find_verb, options, find, exit_code);
   const auto scanned = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "scan", "all devices of a product, also those with a node id", Takes::ranges,
-                  scanned),
+  run_as(add_verb(lss, "scan", "lists all devices of a product, also those with a node id",
+                  Takes::ranges, scanned),
          scanned, scan, exit_code);
   const auto asked = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "unconfigured", "is anybody without node id?", Takes::nothing, asked), asked,
-         unconfigured, exit_code);
+  run_as(
+      add_verb(lss, "unconfigured", "tells whether a device has no node id", Takes::nothing, asked),
+      asked, unconfigured, exit_code);
   const auto inquired = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "inquire", "LSS address and node id of one device", Takes::one_device,
-                  inquired),
+  run_as(add_verb(lss, "inquire", "prints the LSS address and the node id of one device",
+                  Takes::one_device, inquired),
          inquired, inquire, exit_code);
 }
 
 void add_settings(CLI::App& lss, int& exit_code) {
   const auto id = std::make_shared<LssOptions>();
-  auto* id_verb = add_verb(lss, "set-id", "give one device a node id", Takes::one_device, id);
-  add_number(*id_verb, "ID", id->node_id, "1..127; 255 takes the id away")
+  auto* id_verb = add_verb(lss, "set-id", "gives one device a node id", Takes::one_device, id);
+  add_number(*id_verb, "ID", id->node_id, "1..127; 255 removes the node id")
       ->required()
       ->check([](const std::string& text) {
         const auto value = lss_number(text);
         const bool good = value && ((*value >= 1 && *value <= 127) || *value == 255);
         return good ? "" : "'" + text + "' is not a node id 1..127, or 255 for none";
       });
-  id_verb->add_flag("--store", id->store, "the device keeps it");
+  id_verb->add_flag("--store", id->store, "let the device store the node id");
   run_as(id_verb, id, set_id, exit_code);
 
   const auto rate = std::make_shared<LssOptions>();
   auto* rate_verb =
-      add_verb(lss, "set-bitrate", "configure another bit rate", Takes::one_device, rate);
+      add_verb(lss, "set-bitrate", "configures another bit rate", Takes::one_device, rate);
   add_number(*rate_verb, "KBIT", rate->kbit, "1000, 800, 500, 250, 125, 50, 20, 10")->required();
-  rate_verb->add_flag("--all", rate->all, "every device of the bus");
-  rate_verb->add_flag("--store", rate->store, "the devices keep it");
+  rate_verb->add_flag("--all", rate->all, "configure every device of the bus");
+  rate_verb->add_flag("--store", rate->store, "let the devices store the bit rate");
   add_number(*rate_verb, "--activate", rate->delay_ms,
-             "change the whole bus and the interface now; silent for twice this time, ms")
+             "switch bus and interface now; the bus is silent for twice this, ms")
       ->check(CLI::Range(100, 60000))
       ->type_name("MS");
   run_as(rate_verb, rate, set_bitrate, exit_code);
 
   const auto stored = std::make_shared<LssOptions>();
-  run_as(add_verb(lss, "store", "one device keeps what is configured", Takes::one_device, stored),
-         stored, store, exit_code);
+  run_as(
+      add_verb(lss, "store", "makes one device store its configuration", Takes::one_device, stored),
+      stored, store, exit_code);
   const auto state = std::make_shared<LssOptions>();
-  auto* state_verb = add_verb(lss, "switch", "state of all devices", Takes::nothing, state);
+  auto* state_verb =
+      add_verb(lss, "switch", "switches the LSS state of all devices", Takes::nothing, state);
   state_verb->add_option("STATE", state->state, "config or waiting")
       ->required()
       ->check(one_of({"config", "waiting"}));
@@ -385,13 +393,17 @@ void add_settings(CLI::App& lss, int& exit_code) {
 }  // namespace
 
 void add_lss(CLI::App& app, int& exit_code) {
-  auto* lss = app.add_subcommand("lss", "node ids and bit rates of devices over the bus (CiA 305)");
+  auto* lss =
+      app.add_subcommand("lss", "sets node ids and bit rates of devices over the bus (CiA 305)");
   lss->require_subcommand(1);
   lss->footer(
-      "A device is named by all four numbers of its LSS address (1018:1-4), or is the one without\n"
-      "node id that fits the numbers given, or is --alone. Devices with a node id should be in\n"
-      "Stopped or pre-operational (takt nmt stop).\n"
-      "Examples:\n  takt lss find --bus can0\n  takt lss set-id 5 --store\n"
+      "takt addresses one device: the device with all four numbers of the LSS address\n"
+      "(1018:1-4), or the only device without node id that has the given numbers, or with\n"
+      "--alone the only device on the bus. Devices with a node id should be in Stopped or\n"
+      "pre-operational (takt nmt stop).\n"
+      "Examples:\n"
+      "  takt lss find --bus can0\n"
+      "  takt lss set-id 5 --store\n"
       "  takt lss set-id 6 --vendor 0x15A --product 2 --revision 3 --serial 17 --store\n"
       "  takt lss set-bitrate 500 --all --store --activate 1000 --bus can0");
   add_searches(*lss, exit_code);

@@ -83,11 +83,12 @@ request_t request_of(const ParamOptions& options, std::int16_t node, const chann
 int run(const ParamOptions& options, channel::Command command) {
   const auto address = address_of(options.parameter);
   if (!address) {
-    return complain("'" + options.parameter + "' is no parameter: P15.13, or an address 0x0F0D", 2);
+    return complain(
+        "'" + options.parameter + "' is not a parameter like P15.13, or an address like 0x0F0D", 2);
   }
   const auto value =
       options.value.empty() ? std::optional<std::uint32_t>{0} : number(options.value, 0xFFFF'FFFF);
-  if (!value) return complain("'" + options.value + "' is not a number of 32 bits", 2);
+  if (!value) return complain("'" + options.value + "' is not a 32-bit number", 2);
   auto daemon = DaemonClient::find(options.live);
   if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
   const auto node = daemon->node(options.node);
@@ -98,7 +99,7 @@ int run(const ParamOptions& options, channel::Command command) {
   if (!reply) return complain(reply.error().sentence, reply.error().code);
   if (reply->good == 0) return complain(reply->text, 1);
   const auto answer = channel::answer(reply->data);
-  if (!answer) return complain("the device's answer is not one of a parameter channel", 1);
+  if (!answer) return complain("the answer of the device does not fit a parameter channel", 1);
   return print(options, *address, *answer);
 }
 
@@ -106,22 +107,22 @@ int run(const ParamOptions& options, channel::Command command) {
 
 void add_param(CLI::App& app, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "param", "parameters of a drive over its pair of PDOs (parameter channel)");
+      "param", "accesses drive parameters over a pair of PDOs (parameter channel)");
   verb->require_subcommand(1);
   verb->footer(
-      "The network file says `request: true` at RPDO1 and TPDO1 of the node.\nExamples:\n"
+      "The network file must have `request: true` at RPDO1 and TPDO1 of the node.\nExamples:\n"
       "  takt param read pump P15.13\n  takt param write pump P15.13 1");
   for (const bool writes : {false, true}) {
     auto* way = verb->add_subcommand(writes ? "write" : "read",
-                                     writes ? "set a parameter" : "print a parameter");
+                                     writes ? "sets a parameter" : "prints a parameter");
     auto options = std::make_shared<ParamOptions>();
     way->add_option("NODE", options->node, "node id or name")->required();
-    way->add_option("PARAM", options->parameter, "P15.13, or its address 0x0F0D")->required();
+    way->add_option("PARAM", options->parameter, "P15.13, or the address 0x0F0D")->required();
     if (writes) way->add_option("VALUE", options->value, "number")->required();
     add_number(*way, "--pdo", options->pdo, "number of the pair of PDOs")
         ->check(CLI::Range(1, 512))
         ->capture_default_str();
-    add_number(*way, "--timeout", options->timeout_ms, "ms to wait for the answer")
+    add_number(*way, "--timeout", options->timeout_ms, "longest wait for the answer, ms")
         ->check(CLI::Range(1, 60'000))
         ->capture_default_str();
     add_live_options(*way, options->live);

@@ -140,26 +140,28 @@ int print(const PlanOptions& options) {
 
 void add_plan(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PlanOptions>();
-  auto* command = app.add_subcommand("plan", "all that taktd will do with a network file");
+  auto* command =
+      app.add_subcommand("plan", "prints everything that taktd will do with a network file");
   command->add_option("NET", options->file, "network file (YAML, also a bus.yml)")->required();
-  command->add_option("--node", options->node, "only this node, by name or id");
-  command->add_flag("--json", options->json, "one JSON document");
-  auto* other = command->add_option("--diff", options->other, "what changes from NET to this file")
-                    ->type_name("OTHER");
+  command->add_option("--node", options->node, "print only this node, by name or id");
+  command->add_flag("--json", options->json, "print one JSON document");
+  auto* other =
+      command->add_option("--diff", options->other, "print what changes from NET to this file")
+          ->type_name("OTHER");
   command
       ->add_flag("--diff-devices", options->devices,
-                 "what the device data change, before and after")
+                 "print what the device data change, before and after")
       ->excludes(other);
   command->add_flag("--quiet", options->quiet, "leave out notes");
   command->footer(
-      "The plan goes to stdout, findings to stderr. Exit code 2 if the file is invalid.\n"
-      "The boot has the first frame of each step; `..` is a byte that the device decides. What is\n"
-      "written where the answer differs stands beside it as a value, in --json as a frame too.\n"
-      "--diff compares all that happens on the bus and the image, in the form of diff -u. Nodes "
-      "are\n"
-      "matched by their id; steps and signals are listed without their numbers. Exit code as that\n"
-      "of diff: 0 nothing differs, 1 something does, 2 a file is invalid.\n\n"
-      "Example:\n  takt plan share/demo/two_axes.yaml --node shoulder\n"
+      "The plan goes to stdout, findings go to stderr. Exit code 2: the file is invalid.\n"
+      "Each boot step shows its first frame; `..` is a byte that depends on the device. If takt\n"
+      "writes only where the answer differs, the value follows, in --json also as a frame.\n"
+      "--diff compares everything that happens on the bus and the image, in the form of diff -u.\n"
+      "takt matches nodes by id, and lists steps and signals without their numbers. The exit\n"
+      "codes are those of diff: 0 nothing differs, 1 something differs, 2 a file is invalid.\n\n"
+      "Example:\n"
+      "  takt plan share/demo/two_axes.yaml --node shoulder\n"
       "  takt plan lift.yaml --diff lift_new.yaml\n"
       "  takt plan share/demo/lenze8400.yaml --diff-devices");
   command->callback([options, &exit_code] { exit_code = print(*options); });

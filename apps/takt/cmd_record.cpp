@@ -27,11 +27,13 @@ int run(const LiveOptions& options) {
 }  // namespace
 
 void add_record(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("record", "let the daemon write its last seconds to files");
+  auto* verb =
+      app.add_subcommand("record", "makes the daemon write a recording of its last seconds");
   verb->footer(
-      "The daemon records where it was started with --black-box, or where the network file has\n"
-      "`black_box:`. Prints the file, of the machine that taktd runs on.\n\n"
-      "Example:\n  takt replay $(takt record)");
+      "The daemon needs --black-box, or `black_box:` in the network file. takt record prints the\n"
+      "path of the recording, which is on the machine of taktd.\n\n"
+      "Example:\n"
+      "  takt replay $(takt record)");
   auto options = std::make_shared<LiveOptions>();
   add_live_options(*verb, *options);
   verb->callback([options, &exit_code] { exit_code = run(*options); });

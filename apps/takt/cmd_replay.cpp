@@ -15,11 +15,11 @@ constexpr int usage = 2;
 
 constexpr const char* help =
     R"(FILE is any of the three files of a recording: NAME.log (frames, as `candump -L` writes them),
-NAME.events.json (decisions), NAME.journal (times). The frames are taken from NAME.log: change one
-in it and see where the master would have done something else.
+NAME.events.json (decisions), NAME.journal (times). takt reads the frames from NAME.log: change a
+frame there to see where the master would have decided otherwise.
 
-Exit codes: 0 the same decisions, 1 a difference (the first is named), 2 not a recording, or one
-that can't be replayed.
+Exit codes: 0 the same decisions, 1 a difference (takt prints the first one), 2 the file is not a
+recording, or takt can't replay it.
 
 Examples:
   takt replay lift-20260314T150926.log
@@ -62,11 +62,12 @@ int run(const Options& options) {
   }
   if (has_error(network.findings)) {
     if (!options.network.empty()) return usage;
-    return fail("the recording is of " + recording->head.network + "; name it with --network");
+    return fail("the recording needs the network file " + recording->head.network +
+                "; give it with --network");
   }
   if (plan_fingerprint(network.plan) != recording->head.fingerprint) {
     fmt::print(stderr,
-               "takt replay: {} or its EDS files are not as they were when this was recorded\n",
+               "takt replay: {} or its EDS files have changed since the recording was made\n",
                file);
   }
   network.plan.name = recording->head.bus;
@@ -85,12 +86,12 @@ int run(const Options& options) {
 
 void add_replay(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("replay", "a recording of the black box once more, decision by decision");
+  CLI::App* command = app.add_subcommand(
+      "replay", "runs a recording of the black box again and compares the decisions");
   command->add_option("FILE", options->file, "recording of `taktd --black-box`")->required();
   command->add_option("--network", options->network,
-                      "instead of the network file it was made with");
-  command->add_flag("--quiet", options->quiet, "only the result");
+                      "network file to use instead of that of the recording");
+  command->add_flag("--quiet", options->quiet, "print only the result");
   command->footer(help);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -68,7 +68,7 @@ std::expected<BusScan, std::string> scan_bus(const ScanOptions& options) {
     scan.on_time(monotonic_now(), out);
     if (!send(out.frames(), scan, *channel)) {
       return std::unexpected{"a frame could not be sent on " + options.bus +
-                             ": it is down, or nobody acknowledges"};
+                             ": the interface is down, or no node acknowledges frames"};
     }
     hear(scan, *channel);
   }
@@ -159,10 +159,9 @@ int run(const ScanOptions& options) {
   const auto scan = scan_bus(options);
   if (!scan) return complain(scan.error(), 3);
   if (scan->met_another_client()) {
-    complain(
-        "another program sends SDO requests on " + options.bus +
-            " (a running taktd?): answers may have been mixed up; `takt status` asks the daemon",
-        0);
+    complain("another program sends SDO requests on " + options.bus +
+                 " (a running taktd?), so answers may be mixed up; `takt status` asks the daemon",
+             0);
   }
   const std::vector<Found> nodes = with_files(*scan, files);
   if (options.json) {
@@ -174,32 +173,33 @@ int run(const ScanOptions& options) {
     print(nodes, !options.folders.empty());
   }
   if (!nodes.empty()) return 0;
-  return complain("nobody answers on " + options.bus +
+  return complain("no device answers on " + options.bus +
                       ": is the bit rate right, are the devices powered, is the bus terminated? "
-                      "Devices without node id: `takt lss find`",
+                      "`takt lss find` finds devices without node id",
                   1);
 }
 
 }  // namespace
 
 void add_scan(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("scan", "who is on a bus: node, state, identity, device file");
+  auto* verb =
+      app.add_subcommand("scan", "lists the devices on a bus: node, state, identity, device file");
   verb->footer(
-      "Reads 0x1000, 0x1018 and 0x1008 of all node ids and listens to heartbeats; changes "
-      "nothing.\n"
+      "takt scan reads 0x1000, 0x1018 and 0x1008 of all node ids and listens to heartbeats. The\n"
+      "command changes nothing.\n"
       "Examples:\n  takt scan --bus can0\n  takt scan --bus can0 --eds-dir vendor/ --json");
   auto options = std::make_shared<ScanOptions>();
   verb->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
   verb->add_option("--eds-dir", options->folders,
-                   "folder of EDS and DCF files, to find those that fit")
+                   "folder with EDS and DCF files to match with the devices")
       ->type_name("DIR");
   add_number(*verb, "--timeout", options->timeout_ms, "longest silence of a node, ms")
       ->check(CLI::Range(1, 60000))
       ->type_name("MS");
-  add_number(*verb, "--listen", options->listen_ms, "listen to heartbeats at least so long, ms")
+  add_number(*verb, "--listen", options->listen_ms, "shortest time to listen to heartbeats, ms")
       ->check(CLI::Range(0, 600000))
       ->type_name("MS");
-  verb->add_flag("--json", options->json, "as one JSON document");
+  verb->add_flag("--json", options->json, "print one JSON document");
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

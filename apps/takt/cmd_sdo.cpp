@@ -72,8 +72,8 @@ std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
     const auto id = parse_node_id(options.node);
     if (!id) {
       return std::unexpected{LiveError{"'" + options.node +
-                                           "' is not a node id 1..127; names are "
-                                           "known to a daemon only, and --bus goes past it",
+                                           "' is not a node id 1..127; only a daemon "
+                                           "knows names, and --bus does not use the daemon",
                                        2}};
     }
     access.node_ = id->value();
@@ -85,7 +85,7 @@ std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
   if (!daemon) return std::unexpected{daemon.error()};
   const auto node = daemon->node(options.node);
   if (!node) return std::unexpected{node.error()};
-  if (*node == 0) return std::unexpected{LiveError{"an SDO goes to one node", 2}};
+  if (*node == 0) return std::unexpected{LiveError{"an SDO transfer needs one node, not `all`", 2}};
   access.node_ = *node;
   access.daemon_.emplace(std::move(*daemon));
   return access;
@@ -123,7 +123,8 @@ std::expected<void, LiveError> SdoAccess::download(ObjectKey object, const Value
   if (direct_) return direct_->download(object, value);
   if (value.size() > request_bytes) {
     return std::unexpected{LiveError{"the daemon takes at most " + std::to_string(request_bytes) +
-                                         " bytes as one value; longer ones as a file",
+                                         " bytes as one value; write a longer one from a file "
+                                         "with `takt sdo download`",
                                      1}};
   }
   const auto reply = ask("sdo_download", object, value);
@@ -235,8 +236,9 @@ CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
                    const std::shared_ptr<SdoOptions>& options) {
   auto* verb = sdo.add_subcommand(name, text);
   verb->add_option("NODE", options->node, "node id or name")->required();
-  verb->add_option("OBJ", options->object, "6041, 1018:1; index and sub-index in hex")->required();
-  verb->add_option("--bus", options->bus, "directly on can0, unix:PATH; without a daemon")
+  verb->add_option("OBJ", options->object, "object 6041 or 1018:1; index and sub-index in hex")
+      ->required();
+  verb->add_option("--bus", options->bus, "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
   add_number(*verb, "--timeout", options->timeout_ms,
              "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")
@@ -249,7 +251,7 @@ CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
 }  // namespace
 
 void add_sdo(CLI::App& app, int& exit_code) {
-  auto* sdo = app.add_subcommand("sdo", "read and write objects of a device");
+  auto* sdo = app.add_subcommand("sdo", "reads and writes objects of a device");
   sdo->require_subcommand(1);
   sdo->footer(
       "Examples:\n  takt sdo read 5 6041 u16\n  takt sdo read shoulder 1008\n"
@@ -258,24 +260,25 @@ void add_sdo(CLI::App& app, int& exit_code) {
       "Files have at most 16 MiB; Ctrl-C aborts a transfer on the bus.\n"
       "Types: bool, i8..i64, u8..u64, f32, f64, string, hex.");
   auto options = std::make_shared<SdoOptions>();
-  auto* reading = add_verb(*sdo, "read", "one value", options);
+  auto* reading = add_verb(*sdo, "read", "prints one value", options);
   reading->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...");
   reading->callback([options, &exit_code] { exit_code = read(*options); });
-  auto* writing = add_verb(*sdo, "write", "one value", options);
+  auto* writing = add_verb(*sdo, "write", "writes one value", options);
   writing->add_option("TYPE", options->type, "u16, i32, f32, string, hex ...")->required();
   writing->add_option("VALUE", options->value, "decimal, 0x hex, or text")->required();
   writing->callback([options, &exit_code] { exit_code = write(*options); });
-  auto* uploading = add_verb(*sdo, "upload", "from the device into a file", options);
+  auto* uploading = add_verb(*sdo, "upload", "reads an object of the device into a file", options);
   uploading->add_option("FILE", options->file)->required();
   uploading
       ->add_option("--limit", options->limit,
-                   "most bytes: a device that sends more is aborted; 64K, 2M (16M)")
+                   "most bytes, as 64K or 2M; takt aborts a longer transfer (16M)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(CLI::Validator{[](std::string& text) { return octal_trouble(text); }, ""})
       ->check(CLI::Range(std::size_t{1}, most_file_bytes))
       ->type_name("BYTES");
   uploading->callback([options, &exit_code] { exit_code = upload_file(*options); });
-  auto* downloading = add_verb(*sdo, "download", "from a file into the device", options);
+  auto* downloading =
+      add_verb(*sdo, "download", "writes a file to an object of the device", options);
   downloading->add_option("FILE", options->file)->required();
   downloading->callback([options, &exit_code] { exit_code = download_file(*options); });
 }

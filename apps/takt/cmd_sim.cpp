@@ -98,16 +98,19 @@ int run(const Arguments& arguments) {
 
 void add_sim(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  auto* command = app.add_subcommand("sim", "simulated devices on a CAN interface, in real time");
+  auto* command = app.add_subcommand("sim", "simulates devices on a CAN interface in real time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
   command->add_option("--bus", arguments->bus, "vcan0, can0 or unix:PATH");
-  command->add_option("--only", arguments->only, "these nodes, by name or number")->delimiter(',');
-  command->add_option("--for", arguments->run_for, "end after this time; else with SIGINT")
+  command->add_option("--only", arguments->only, "simulate only these nodes, by name or number")
+      ->delimiter(',');
+  command->add_option("--for", arguments->run_for, "end after this time; default: run until SIGINT")
       ->check([](const std::string& text) {
         return parse_duration(text) ? "" : "'" + text + "' is not a time like 10s";
       });
-  command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
-  add_number(*command, "--seed", arguments->seed, "of the random parts")->capture_default_str();
+  command->add_option("--faults", arguments->faults,
+                      "file that lists faults and their times (YAML)");
+  add_number(*command, "--seed", arguments->seed, "seed of the random parts")
+      ->capture_default_str();
   command->footer("Example:\n  takt sim lift.yaml --bus vcan0 --only shoulder,elbow");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -62,40 +62,41 @@ std::string check_duration(const std::string& text) {
 
 void add_simulate(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  auto* command = app.add_subcommand("simulate", "master and devices in virtual time");
+  auto* command = app.add_subcommand("simulate", "runs the master and its devices in virtual time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
   command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
       ->check(check_duration)
       ->capture_default_str();
-  add_number(*command, "--seed", arguments->simulation.seed, "same seed, same run")
+  add_number(*command, "--seed", arguments->simulation.seed, "seed; equal seeds give equal runs")
       ->capture_default_str();
-  command->add_option("--faults", arguments->faults, "what goes wrong, and when (YAML)");
-  auto* move = command->add_flag(
-      "--move", arguments->simulation.move,
-      "built-in sine set-points for all CiA 402 axes, in place of an application");
+  command->add_option("--faults", arguments->faults,
+                      "file that lists faults and their times (YAML)");
+  auto* move = command->add_flag("--move", arguments->simulation.move,
+                                 "move all CiA 402 axes with a built-in sine, without application");
   add_number(*command, "--applications", arguments->simulation.applications,
-             "so many programs move the axes over LCM, with the whole taktd in virtual time")
+             "run the whole taktd, and this many programs that move the axes")
       ->check(CLI::Range(std::size_t{1}, most_applications))
       ->excludes(move);
   command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
       ->check(check_duration)
       ->capture_default_str();
   command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
-  command->add_flag("--json", arguments->json, "one JSON document; equal for equal seeds");
+  command->add_flag("--json", arguments->json,
+                    "print one JSON document, which is equal for equal seeds");
   command->footer(
       "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss, duplicate,\n"
       "error_frames (probability), delay (time), babble (cob_id, data, time), power_off, drift\n"
       "(ppm), mute_sdo (object), slow_sdo (time), refuse_object and refuse_write (object,\n"
       "abort_code), ignore_write (object), override_value (object, value), fixed_mapping,\n"
-      "late_bootup and bootup_storm (time),\n"
-      "no_bootup, self_start, no_start, preop_only, no_heartbeat, no_guarding, stuck_toggle, "
-      "mute_pdo,\n"
-      "device_error (emcy_code), lss_silent, lss_no_store, reset, bus_off, stall_master,\n"
-      "interface_down. With --applications also stall_front, kill_master, slow_messages (time),\n"
-      "stall_application, slow_application (time), kill_application, end_application,\n"
-      "second_sender (all five: application), replay, forge_command, forge_image and\n"
-      "damage_messages (time). share/doc/faults.md has a line of each.\n\n"
-      "Example:\n  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
+      "late_bootup and bootup_storm (time), no_bootup, self_start, no_start, preop_only,\n"
+      "no_heartbeat, no_guarding, stuck_toggle, mute_pdo, device_error (emcy_code), lss_silent,\n"
+      "lss_no_store, reset, bus_off, stall_master, interface_down. With --applications also\n"
+      "stall_front, kill_master, slow_messages (time), stall_application, slow_application\n"
+      "(time), kill_application, end_application, second_sender (these five also take\n"
+      "application), replay, forge_command, forge_image and damage_messages (time).\n"
+      "share/doc/faults.md has an example of each kind.\n\n"
+      "Example:\n"
+      "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
       "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
       "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
   command->callback([arguments, &exit_code] {

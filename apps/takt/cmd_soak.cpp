@@ -88,7 +88,8 @@ int run(Arguments& arguments) {
   SoakPlan& plan = arguments.plan;
   plan.run.duration = *parse_duration(arguments.run_for);
   if (!parse_seeds(arguments.seeds, plan)) {
-    std::cerr << "takt soak: --seeds " << arguments.seeds << " is not like 17 or 1..200\n";
+    std::cerr << "takt soak: --seeds " << arguments.seeds
+              << " is not a seed like 17 or a range like 1..200\n";
     return 2;
   }
   plan.part = parts.at(arguments.part);
@@ -128,51 +129,48 @@ int run(Arguments& arguments) {
 
 void add_soak(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  auto* command =
-      app.add_subcommand("soak", "random walks of faults in virtual time, and what must hold");
+  auto* command = app.add_subcommand(
+      "soak", "runs random fault sequences in virtual time and checks invariants");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
-  command->add_option("--seeds,--seed", arguments->seeds, "one run for each: 17, 1..200")
+  command->add_option("--seeds,--seed", arguments->seeds, "one run for each seed: 17 or 1..200")
       ->capture_default_str();
-  command->add_option("--for", arguments->run_for, "faults last so long in each run")
+  command->add_option("--for", arguments->run_for, "time in which faults happen in each run")
       ->check([](const std::string& text) {
         return parse_duration(text) ? "" : "'" + text + "' is not a time like 20s or 1h";
       })
       ->capture_default_str();
   command
       ->add_option("--part", arguments->part,
-                   "of each seed: the walk on the bus, that of the front thread, or both")
+                   "run the bus part or the front thread part of each seed, or both")
       ->check(one_of({"bus", "front", "both"}))
       ->capture_default_str();
-  command->add_option("--hours", arguments->hours, "as many seeds as make so many hours of bus")
+  command
+      ->add_option("--hours", arguments->hours,
+                   "run as many seeds as give this number of hours on the bus")
       ->check(CLI::PositiveNumber);
-  add_number(*command, "--jobs", arguments->plan.jobs, "processes")
+  add_number(*command, "--jobs", arguments->plan.jobs, "number of processes")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command->add_option("--candump", arguments->plan.run.candump,
-                      "all frames (for one seed); FILE.front: of the front thread's walk");
-  command->add_flag("--verbose", arguments->plan.run.verbose, "faults and events (for one seed)");
+                      "write all frames of one seed (front thread part: FILE.front)");
+  command->add_flag("--verbose", arguments->plan.run.verbose,
+                    "print faults and events of one seed");
   command->footer(
-      "Faults: lost, late, doubled and broken frames, babbling and rubbish, devices that go, "
-      "come,\n"
-      "reset within their boot, are exchanged, fall mute, EMCY and boot-up storms, bus-off, a "
-      "stalled\n"
-      "master, applications that fall silent, requests at any time. Must hold: no torn image, "
-      "cycle\n"
-      "numbers rise, no stale output, no burst of SYNCs, every node in a named state, every wait\n"
-      "ends, every request answered once, memory flat, all nodes come back, the stop ends in "
-      "time.\n"
-      "The walk of the front thread: taktd with its LCM gateway and several programs that move "
-      "axes,\n"
-      "which are stopped, die, end and come again, jump, or have the name of another; messages "
-      "that "
-      "are\n"
-      "slow, repeated, forged and damaged. Must hold: no output older than its time to live by the "
-      "true\n"
-      "clock, no program moves what another holds, no output outside `limits:`, no wait of the "
-      "front\n"
-      "thread too long, no program deaf, no stop that confirms more than the drives did.\n"
-      "Exit code 1: something did not hold; each line names seed, cycle and what it was.\n\n"
-      "Example:\n  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
+      "The bus part has lost, late, doubled and broken frames, babbling nodes, arbitrary frames,\n"
+      "devices that disappear, appear, reset during their boot, are exchanged or stop answering,\n"
+      "EMCY and boot-up storms, bus-off, a stalled master, silent applications, requests at any\n"
+      "time. takt checks: no image is torn, cycle numbers rise, no output is stale, SYNCs do not\n"
+      "come in bursts, every node is in a named state, every wait ends, every request is\n"
+      "answered once, memory use stays flat, all nodes come back, the stop ends in time.\n"
+      "The front thread part runs taktd with its LCM gateway and several programs that move\n"
+      "axes. The programs are stalled, die, end, restart, jump, or have the name of another\n"
+      "program; messages are slow, repeated, forged and damaged. takt checks: no output is older\n"
+      "than its time to live by the true clock, no program moves what another one holds, no\n"
+      "output leaves `limits:`, no wait of the front thread is too long, every program receives\n"
+      "its messages, no stop confirms more than the drives did.\n"
+      "Exit code 1: an invariant was violated; each line names seed, cycle and invariant.\n\n"
+      "Example:\n"
+      "  takt soak share/demo/two_axes.yaml --hours 24 --jobs 2\n"
       "  takt soak share/demo/two_axes.yaml --seed 17 --part front --verbose");
   command->callback([arguments, &exit_code] {
     try {

@@ -164,11 +164,13 @@ int run(const StatusOptions& all) {
 }  // namespace
 
 void add_status(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("status", "state of the running daemon, its bus and its nodes");
+  auto* verb = app.add_subcommand(
+      "status", "prints the state of the running daemon, of its bus and its nodes");
   verb->footer(
       "Examples:\n  takt status\n  takt status --pdos\n  takt status --json --bus-name lift");
   auto options = std::make_shared<StatusOptions>();
-  verb->add_flag("--pdos", options->pdos, "each PDO too: age, count, missing, late, wrong length");
+  verb->add_flag("--pdos", options->pdos,
+                 "also print each PDO: age, count, missing, late, wrong length");
   add_live_options(*verb, options->live);
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }

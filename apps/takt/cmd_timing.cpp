@@ -94,7 +94,8 @@ int run(const TimingOptions& options) {
   do {
     const auto timing = ear.next();
     if (interrupted) break;
-    if (!timing) return complain("the daemon of bus '" + bus + "' has gone silent", 3);
+    if (!timing)
+      return complain("the daemon of bus '" + bus + "' sends no timing messages any more", 3);
     print(bus, *timing, options);
   } while (options.follow);
   return 0;
@@ -103,15 +104,17 @@ int run(const TimingOptions& options) {
 }  // namespace
 
 void add_timing(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("timing", "how punctual the cycle of a running daemon is");
+  auto* verb = app.add_subcommand("timing", "shows how punctual the cycle of a running daemon is");
   verb->footer(
-      "Times of the last second: how late SYNC went out, when the last synchronous PDO and the\n"
-      "image came after it, when the image was handed to LCM and when this program received it\n"
-      "(on the daemon's machine), how old set-points were when they were sent. Each column of the\n"
-      "picture is twice as long a time as the one before.\n"
-      "Examples:\n  takt timing\n  takt timing --follow --json > night.jsonl");
+      "The table covers the last second: how late SYNC was sent, how long after SYNC the last\n"
+      "synchronous PDO and the image came, the image was handed to LCM, and this program\n"
+      "received it (on the daemon's machine), and how old set-points were when they were sent.\n"
+      "Each column of the picture covers twice the time of the column before.\n"
+      "Examples:\n"
+      "  takt timing\n"
+      "  takt timing --follow --json > night.jsonl");
   auto options = std::make_shared<TimingOptions>();
-  verb->add_flag("-f,--follow", options->follow, "each second, until interrupted");
+  verb->add_flag("-f,--follow", options->follow, "print each second, until interrupted");
   add_live_options(*verb, options->live);
   verb->callback([options, &exit_code] { exit_code = run(*options); });
 }

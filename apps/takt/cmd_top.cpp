@@ -102,18 +102,18 @@ int run(const TopArguments& arguments) {
 }  // namespace
 
 void add_top(CLI::App& app, int& exit_code) {
-  auto* verb = app.add_subcommand("top", "live view of a running daemon");
+  auto* verb = app.add_subcommand("top", "shows a live view of a running daemon");
   verb->footer(
       "Keys: q quits, arrows scroll the values.\nExamples:\n  takt top\n"
-      "  takt top --once            one frame, for scripts\n"
+      "  takt top --once            prints the view once, for scripts\n"
       "  takt top --bus-name lift");
   auto arguments = std::make_shared<TopArguments>();
   verb->add_option("--lcm-url", arguments->live.lcm_url,
-                   "where the daemon is; else LCM_DEFAULT_URL")
+                   "LCM URL of the daemon; default: LCM_DEFAULT_URL")
       ->type_name("URL");
-  verb->add_option("--bus-name", arguments->live.bus_name, "which bus, where there are several")
+  verb->add_option("--bus-name", arguments->live.bus_name, "name of the bus, if there are several")
       ->type_name("NAME");
-  verb->add_flag("--once", arguments->once, "print one frame and end");
+  verb->add_flag("--once", arguments->once, "print the view once and end");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -42,7 +42,7 @@ std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient
   if (auto two = two_daemons(buses)) return std::unexpected{std::move(*two)};
   if (buses.size() > 1) {
     return std::unexpected{
-        LiveError{"several buses are there: " + names_of(views) + "; choose with --bus-name", 2}};
+        LiveError{"LCM carries several buses: " + names_of(views) + "; choose with --bus-name", 2}};
   }
   return *buses.front()->status();
 }
@@ -68,18 +68,18 @@ std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses) {
   if (found == buses.end()) return std::nullopt;
   return LiveError{
       "two daemons run a bus named '" + (*found)->status()->bus +
-          "' on this LCM, and --bus-name can't choose between them; stop one of them, or give each "
-          "an LCM URL of its own (`lcm: {url: ...}`) and choose with --lcm-url. Where the real one "
-          "has `authenticate: images`, --check-images hears only that",
+          "' on this LCM, and --bus-name can't choose between them; stop one daemon, or give each "
+          "its own LCM URL (`lcm: {url: ...}`) and choose with --lcm-url. If the right daemon has "
+          "`authenticate: images`, --check-images accepts only its messages",
       3};
 }
 
 LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {
   const std::string others = names_of(views);
-  if (!others.empty()) return {"no bus '" + bus_name + "', there are: " + others, 2};
+  if (!others.empty()) return {"there is no bus '" + bus_name + "'; the buses are: " + others, 2};
   const std::string which = bus_name.empty() ? std::string{} : " for bus '" + bus_name + "'";
   return {"no daemon" + which + " answers on " + lcm.where() +
-              ". Is taktd running? It says at its start which LCM_DEFAULT_URL to set",
+              ". Is taktd running? At its start taktd prints the LCM_DEFAULT_URL to set",
           3};
 }
 
@@ -146,8 +146,8 @@ std::expected<std::int16_t, LiveError> DaemonClient::node(const std::string& tex
     if (node.name == text || (id && node.node_id == id->value())) return node.node_id;
     known += (known.empty() ? "" : ", ") + std::to_string(node.node_id) + " " + node.name;
   }
-  return std::unexpected{
-      LiveError{"bus '" + status_.bus + "' has no node '" + text + "'; it has: " + known, 2}};
+  return std::unexpected{LiveError{
+      "bus '" + status_.bus + "' has no node '" + text + "'; the nodes are: " + known, 2}};
 }
 
 std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limit) {
@@ -173,8 +173,8 @@ std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limi
   }
   if (answer) return std::move(*answer);
   return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer" +
-                                       (seal_ ? "; does it have this key, in `lcm: {keys: ...}`?"
-                                              : "; does it ask for a key (--keys)?"),
+                                       (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
+                                              : "; does it require a key (--keys)?"),
                                    3}};
 }
 

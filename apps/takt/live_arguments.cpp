@@ -22,17 +22,17 @@ std::optional<unsigned> parse_number(std::string_view text, int base) {
 }  // namespace
 
 void add_live_options(CLI::App& verb, LiveOptions& options) {
-  verb.add_option("--lcm-url", options.lcm_url, "where the daemon is; else LCM_DEFAULT_URL")
+  verb.add_option("--lcm-url", options.lcm_url, "LCM URL of the daemon; default: LCM_DEFAULT_URL")
       ->type_name("URL");
-  verb.add_option("--bus-name", options.bus_name, "which bus, where there are several")
+  verb.add_option("--bus-name", options.bus_name, "name of the bus, if there are several")
       ->type_name("NAME");
-  verb.add_flag("--json", options.json, "JSON on stdout");
-  verb.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
+  verb.add_flag("--json", options.json, "print JSON");
+  verb.add_option("--keys", options.keys, "key file, if the daemon has one; default: TAKT_KEYS")
       ->type_name("FILE")
       ->envname("TAKT_KEYS");
   verb.add_flag("--check-images", options.check_images,
-                "believe only what the daemon has signed (`authenticate: images`); else "
-                "TAKT_CHECK_IMAGES=true")
+                "accept only messages that the daemon has signed (see\n"
+                "`authenticate: images`); TAKT_CHECK_IMAGES=true does the same")
       ->envname("TAKT_CHECK_IMAGES");
 }
 

@@ -31,12 +31,13 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "takt " TAKT_VERSION);
   app.get_formatter()->column_width(34);
   app.footer(
-      "Examples:\n  takt plan lift.yaml            what taktd will do with a network file\n"
-      "  takt simulate lift.yaml        try it in virtual time\n"
+      "Examples:\n"
+      "  takt plan lift.yaml            print what taktd will do with a network file\n"
+      "  takt simulate lift.yaml        run a network file in virtual time\n"
       "  takt status                    ask the running daemon\n"
-      "Each command has a --help of its own. Exit codes: 0 good, 1 the answer is no, 2 wrong use\n"
-      "or network file, 3 bus trouble, 4 a mandatory node is missing, 5 real-time limit broken,\n"
-      "6 the ordered stop was not confirmed.");
+      "Each command has its own --help. Exit codes: 0 good, 1 the answer is no, 2 wrong use or\n"
+      "invalid network file, 3 bus trouble, 4 a mandatory node is missing, 5 a real-time limit\n"
+      "was broken, 6 the ordered stop was not confirmed.");
   int exit_code = 0;
   takt::add_audit(app, exit_code);
   takt::add_dump(app, exit_code);

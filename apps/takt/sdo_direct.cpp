@@ -42,8 +42,7 @@ class Drive {
     }
     std::string why = fault_text(result.fault, result.abort_code);
     if (result.fault == SdoFault::too_long && limit_ != 0) {
-      why = "the object is longer than the " + std::to_string(limit_) +
-            " bytes that were asked for (--limit)";
+      why = "the object is longer than the limit of " + std::to_string(limit_) + " bytes (--limit)";
     }
     return std::unexpected{LiveError{std::move(why), 1, result.abort_code}};
   }

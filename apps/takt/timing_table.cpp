@@ -62,7 +62,7 @@ std::string_view timing_label(std::string_view histogram) {
 
 std::vector<std::string> timing_lines(const timing_t& timing) {
   const Octaves range = filled(timing);
-  if (range.end == 0) return {"nothing was timed in the last second"};
+  if (range.end == 0) return {"no times were measured in the last second"};
   std::vector<std::string> lines{fmt::format("{:16} {:>7} {:>9} {:>9} {:>9} {:>9}   {} .. {}", "us",
                                              "times", "least", "median", "p99", "longest",
                                              edge(range.first), edge(range.end))};

@@ -30,7 +30,7 @@ TEST_F(BusChoice, AnUnknownBusIsWrongUseForEachVerb) {
     verb.insert(verb.end(), {"--bus-name", "typo"});
     const Ended ended = takt(verb);
     EXPECT_EQ(ended.exit_code, 2) << verb[0];
-    EXPECT_NE(ended.output.find("no bus 'typo', there are: demo"), std::string::npos)
+    EXPECT_NE(ended.output.find("there is no bus 'typo'; the buses are: demo"), std::string::npos)
         << verb[0] << ": " << ended.output;
   }
 }

@@ -60,7 +60,7 @@ TEST_F(EdsCdcf, BytesBehindTheLastEntryAreTold) {
 
   EXPECT_EQ(decoded.exit_code, 0);
   EXPECT_THAT(decoded.output, HasSubstr("1017:00 64 00\n"));
-  EXPECT_THAT(decoded.output, HasSubstr("axis.bin: 2 bytes behind the last of 1 entries"));
+  EXPECT_THAT(decoded.output, HasSubstr("axis.bin: 2 bytes follow the last of 1 entries"));
 }
 
 TEST_F(EdsCdcf, GoesToStdoutAsWell) {
@@ -81,9 +81,9 @@ TEST_F(EdsCdcf, TheDifferenceOfAUtf16FileIsSaidToBeForTheEyeOnly) {
   const auto mended = (folder_ / "mended.eds").string();
 
   const Ended shown = takt({"fix", file});
-  EXPECT_THAT(shown.output, HasSubstr("can't be applied with patch, -o writes the mended file\n"));
+  EXPECT_THAT(shown.output, HasSubstr("can't be applied with patch; -o writes the mended file\n"));
   const Ended written = takt({"fix", file, "-o", mended});
-  EXPECT_THAT(written.output, HasSubstr("can't be applied with patch, the output is whole\n"));
+  EXPECT_THAT(written.output, HasSubstr("can't be applied with patch; the output is complete\n"));
   EXPECT_THAT(read_file(mended), HasSubstr("AccessType=rw\nDefaultValue=8\n"));
   EXPECT_THAT(takt({"fix", mended}).output, Not(HasSubstr("patch")));
 }

@@ -59,7 +59,7 @@ def main(binaries):
             read = ["sdo", "read", "io", "1000", "u32", "--lcm-url", url]
             until("an answer to who has the key", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
             unsigned = takt(binaries, *read)
-            assert unsigned.returncode == 3 and "does it ask for a key" in unsigned.stderr, unsigned
+            assert unsigned.returncode == 3 and "does it require a key" in unsigned.stderr, unsigned
             until("a word about it", lambda: "the message came without an envelope" in log.read_text())
 
             status = ["status", "--check-images", "--lcm-url", url]

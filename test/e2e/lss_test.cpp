@@ -56,7 +56,8 @@ TEST_F(TaktLss, RefusesToActivateABitRateUnderARunningDaemon) {
   DaemonProcess daemon{network()};
   const Ended refused = lss(daemon, {"set-bitrate", "500", "--all", "--activate", "500"});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.output.find("with taktd stopped"), std::string::npos) << refused.output;
+  EXPECT_NE(refused.output.find("stop taktd, and give --all and --bus"), std::string::npos)
+      << refused.output;
 }
 
 }  // namespace

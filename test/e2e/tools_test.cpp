@@ -109,7 +109,7 @@ TEST(Scan, ExitsWith1WhereNobodyAnswers) {
                           folder.path());
 
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_NE(ended.output.find("nobody answers"), std::string::npos) << ended.output;
+  EXPECT_NE(ended.output.find("no device answers"), std::string::npos) << ended.output;
 }
 
 TEST(Timing, ShowsTheHistogramsOfTheLastSecond) {

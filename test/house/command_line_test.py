@@ -52,10 +52,10 @@ def wrong_use(tools):
     tools.says("so has one of taktd", ["taktd", DEMO, "--chek"], 2, "taktd: no option '--chek'", "did you mean '--check'?")
     tools.says("so has one of takt-move", ["takt-move", "--sin"], 2, "did you mean '--sine'?")
     tools.says("so has a word that an option takes", ["taktd", DEMO, "--rt", "enforc"], 2, "did you mean 'enforce'?")
-    tools.says("so has one that a command takes", ["takt", "nmt", "strat", "5"], 2, "'strat' is none of start, stop,", "did you mean 'start'?")
+    tools.says("so has one that a command takes", ["takt", "nmt", "strat", "5"], 2, "'strat' is not one of start, stop,", "did you mean 'start'?")
     tools.says("so has a change of what if", ["takt", "budget", DEMO, "--what-if", "perod=1ms"], 2, "did you mean 'period'?")
     tools.says("so has one of a PDO", ["takt", "budget", DEMO, "--what-if", "io.tpdo1.inhibt=1ms"], 2, "did you mean 'inhibit'?")
-    tools.says("a far one has none", ["takt", "plan", "--zzzzzz", DEMO], 2, "no option '--zzzzzz'; takt plan --help lists them")
+    tools.says("a far one has none", ["takt", "plan", "--zzzzzz", DEMO], 2, "no option '--zzzzzz'; takt plan --help lists the options")
     tools.says("behind -- are no options", ["takt", "plan", "--", "--jsn"], 2, "--jsn")
     tools.says("takt without a command is wrong use", ["takt"], 2, "--help")
     for command in ([], ["dump"], ["eds"], ["import"], ["learn"], ["plan"], ["budget"], ["sim"], ["simulate"], ["status"],
@@ -146,8 +146,8 @@ def dump_chooses(tools, folder):
     tools.says("nothing to learn from", ["takt", "learn", pcan, "-o", folder / "x.yaml"], 2, "holds no frame", ".trc")
     tools.says("nothing to learn from on that interface", ["takt", "learn", log, "--bus", "can7", "-o", folder / "x.yaml"], 2,
                "no frame of interface can7", "--bus can0")
-    tools.says("no recording at all", ["takt", "dump", pcan], 2, "no frame in it; `candump -L can0 > FILE`")
-    tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is no node id 1..127")
+    tools.says("no recording at all", ["takt", "dump", pcan], 2, "holds no frame; `candump -L can0 > FILE`")
+    tools.says("--node wants a node", ["takt", "dump", log, "--node", "nobody"], 2, "'nobody' is not a node id 1..127")
 
 
 def folders_for_files(tools, folder):
@@ -167,7 +167,7 @@ def imports(tools, folder):
     tools.says("a nodelist that there is not", ["takt", "import", folder / "none.cpj"], 2, "can't be read")
     wrong = folder / "wrong.yml"
     wrong.write_text("master: {node_id: 127}\nnodes:\n  a: {nod_id: 5}\n")
-    tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not run it")
+    tools.says("a file that can't run", ["takt", "import", wrong], 1, "taktd does not run this file")
     tabs = folder / "tabs.yml"
     tabs.write_text("master:\n\tnode_id: 1\n")
     tools.says("a bus.yml that is no YAML", ["takt", "import", tabs], 2, "invalid YAML")
@@ -219,7 +219,7 @@ def sdo_without_daemon(tools, folder):
         tools.says("a present one does", ["takt", "sdo", "read", 1, "1018:1", "u32", *bus], 0, "43981\n")
         tools.says("a value of another size is not shown in a type that it has not",
                    ["takt", "sdo", "read", 1, "1018:1", "u8", *bus], 1, "4 bytes (CDAB0000), u8 takes 1")
-        tools.says("names need a daemon", ["takt", "sdo", "read", "io", "1000", *bus], 2, "known to a daemon only")
+        tools.says("names need a daemon", ["takt", "sdo", "read", "io", "1000", *bus], 2, "only a daemon knows names")
     finally:
         stop.set()
         babbler.join()

@@ -108,7 +108,7 @@ def judge_endless(takt):
     check(code == 1 and "longer than 1024 bytes" in err, f"an answer without end is ended: {err}")
     with tempfile.TemporaryDirectory() as folder:
         code, _, err = takt.sdo("upload", 5, "1021", f"{folder}/file", "--bus", "vcan0", "--limit", "4K")
-        check(code == 1 and "longer than the 4096 bytes" in err, f"a file without end is ended at its limit: {err}")
+        check(code == 1 and "longer than the limit of 4096 bytes" in err, f"a file without end is ended at its limit: {err}")
         check(not pathlib.Path(f"{folder}/file").exists(), "and nothing is written")
     ends.set()
     thread.join()

@@ -228,12 +228,12 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
 
   EXPECT_FALSE(take(release(102), 103)) << "a later command has overtaken it";
   EXPECT_TRUE(
-      told("node 5 (shoulder): it is older than the newest command of the node: computed "
+      told("node 5 (shoulder): the command is older than the newest one of the node: it is computed "
            "from cycle 102"));
   EXPECT_FALSE(take(release(0), 103));
-  EXPECT_TRUE(told("computed from cycle 0, which is none"));
+  EXPECT_TRUE(told("is computed from cycle 0"));
   EXPECT_FALSE(take(release(105), 103));
-  EXPECT_TRUE(told("it comes from the future"));
+  EXPECT_TRUE(told("the command comes from the future"));
 
   EXPECT_EQ(commands.holder(0, 103), "move");
   EXPECT_EQ(last_time_to_live, 5U);
@@ -247,7 +247,7 @@ TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
 
   EXPECT_FALSE(take(end, 103));
 
-  EXPECT_TRUE(told("it is too old: computed from cycle 100, now is cycle 103"));
+  EXPECT_TRUE(told("the command is too old: it is computed from cycle 100, the present cycle is 103"));
   EXPECT_EQ(commands.holder(0, 103), "move");
 }
 
@@ -272,7 +272,7 @@ TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
   EXPECT_FALSE(take(command({1}, {1}), 102)) << "a copy of the first one, within its time to live";
 
   EXPECT_EQ(outputs[1], 2);
-  EXPECT_TRUE(told("it is older than the newest command of the node: computed from cycle 100"));
+  EXPECT_TRUE(told("the command is older than the newest one of the node: it is computed from cycle 100"));
   for (int i = 0; i < 100; ++i) take(command({1}, {1}), 102);
   EXPECT_EQ(notices.size(), 1U) << "at most one a second";
   newer.values = {3};

@@ -57,7 +57,7 @@ TEST_F(LcmLinkTest, IsTheClientOfTheHubThatTheUrlNames) {
   EXPECT_EQ(link.url(), other->url());
   EXPECT_GE(other->clients(), 1U);
   EXPECT_THAT(said, ElementsAre("warning: LCM: no hub answers at " + other->url() +
-                                "; trying again and again"));
+                                "; taktd keeps trying"));
 }
 
 TEST_F(LcmLinkTest, WarnsOfAHubThatOnlyTheEnvironmentNames) {
