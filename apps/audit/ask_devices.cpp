@@ -47,8 +47,8 @@ bool matters(ObjectKey key) {
 bool ask_device(NodeId node, DeviceValues& values, const ReadObject& read) {
   const auto there = read(node, {0x1000, 0});
   if (!there && (there.error().abort_code == 0 || there.error().abort_code == timed_out)) {
-    values.note("it does not answer (" + there.error().sentence +
-                "): all of this is by EDS and network file");
+    values.note("the device does not answer (" + there.error().sentence +
+                "): all values are those of EDS and network file");
     return false;
   }
   std::vector<ObjectKey> keys;
@@ -63,7 +63,7 @@ bool ask_device(NodeId node, DeviceValues& values, const ReadObject& read) {
       values.missing(key);
     } else {
       values.note(to_string(key) + " can't be read (" + value.error().sentence +
-                  "): by EDS and network file");
+                  "): the value is that of EDS and network file");
     }
   }
   return true;

@@ -19,11 +19,11 @@ class NodeAuditor {
     Supervision supervision = supervision_of(plan_, index_, values_);
     out_.notices = supervision.after;
     out_.how = std::move(supervision.how);
-    if (!out_.notices && supervision.by_sync) out_.how = "SYNC stays away (1006)";
+    if (!out_.notices && supervision.by_sync) out_.how = "no SYNC arrives (1006)";
     out_.besides = std::move(supervision.besides);
     tell_state();
     judge(out_.drive ? drive_reaction(values_) : output_reaction(plan_, index_, values_));
-    if (!node_.boot) out_.besides.emplace_back("takt does not configure it (boot: false)");
+    if (!node_.boot) out_.besides.emplace_back("takt does not configure this node (boot: false)");
     out_.besides.insert(out_.besides.end(), values_.notes().begin(), values_.notes().end());
     return std::move(out_);
   }
@@ -32,9 +32,10 @@ class NodeAuditor {
   void tell_state() {
     const auto behaviour = values_.get({0x1029, 1});
     const std::string source =
-        behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")" : " (no 1029: as if 0)";
+        behaviour ? " (1029:01 = " + std::to_string(*behaviour) + ")" : " (no 1029, so like 0)";
     constexpr const char* states[] = {"goes to PRE-OPERATIONAL", "STAYS OPERATIONAL",
-                                      "goes to STOPPED", "changes its state as its maker decided"};
+                                      "goes to STOPPED",
+                                      "changes its state as the manufacturer defines"};
     out_.state = static_cast<ErrorState>(std::min<std::uint64_t>(behaviour.value_or(0), 3));
     state_text_ = states[static_cast<std::size_t>(out_.state)] + source;
     if (out_.notices) out_.then = state_text_;
@@ -43,7 +44,7 @@ class NodeAuditor {
   void judge(Reaction reaction) {
     if (reaction.verdict == Failsafe::harmless) {
       out_.verdict = Failsafe::harmless;
-      out_.outputs = "it takes no outputs from the master";
+      out_.outputs = "the device takes no outputs from the master";
       out_.bus_off = state_text_;
       return;
     }
@@ -64,16 +65,16 @@ class NodeAuditor {
     for (const std::string& entry : reaction.remedy) {
       line += (line.ends_with('[') ? "" : ", ") + entry;
     }
-    out_.remedy.push_back(line + "]   # beside what stands there");
+    out_.remedy.push_back(line + "]   # in addition to the present entries");
   }
 
   void tell_fixed(const std::vector<ObjectKey>& objects) {
     if (objects.empty()) return;
     std::string names;
     for (const ObjectKey key : objects) names += (names.empty() ? "" : ", ") + to_string(key);
-    out_.besides.push_back("its EDS does not let " + names + " be changed so that " +
+    out_.besides.push_back("the EDS does not let " + names + " be changed so that " +
                            (out_.drive ? "the drive stops" : "the outputs change") +
-                           ": only its power, or a hardware enable, stops it");
+                           ": only its power, or a hardware enable, stops the device");
   }
 
   /// Handles a device that stays OPERATIONAL. CiA 401 applies error values after a failure, and not
@@ -81,11 +82,11 @@ class NodeAuditor {
   void keep_in_operational(Reaction& reaction) {
     if (out_.state != ErrorState::operational) return;
     if (reaction.verdict == Failsafe::stops) reaction.verdict = Failsafe::untold;
-    reaction.text += ", if it counts that as a failure: see the manual";
+    reaction.text += ", if the device counts this as a failure: see the manual";
     if (values_.takes({0x1029, 1}, 0)) {
       out_.remedy.emplace_back("error_behavior: {1: 0}   # leave OPERATIONAL");
     } else {
-      out_.besides.emplace_back("its EDS does not let 1029:01 be changed to 0");
+      out_.besides.emplace_back("the EDS does not let 1029:01 be changed to 0");
     }
   }
 
@@ -98,8 +99,8 @@ class NodeAuditor {
     if (!remedy.removal.empty()) out_.besides.push_back(remedy.removal);
     if (helpless) {
       out_.besides.emplace_back(
-          "it can watch neither heartbeat nor guarding: only its power, or a hardware enable, "
-          "stops it");
+          "the device can watch neither heartbeat nor guarding: only its power, or a hardware "
+          "enable, stops the device");
     }
   }
 

@@ -25,18 +25,18 @@ std::string words(const NodeAudit& node) {
              (node.notices ? ", at the latest " + ms_text(*node.notices) + " later"
                            : std::string{});
     case Failsafe::untold:
-      return "notices it; what its outputs do is not in its EDS";
+      return "notices it; the EDS does not say what the outputs do";
     case Failsafe::goes_on:
       break;
   }
-  if (node.how.empty()) return "KEEPS ITS LAST SET-POINTS for ever: nobody tells it";
-  return "KEEPS ITS LAST SET-POINTS for ever, although it notices";
+  if (node.how.empty()) return "KEEPS ITS LAST SET-POINTS for ever: the device does not notice";
+  return "KEEPS ITS LAST SET-POINTS for ever, although the device notices";
 }
 
 std::string notice_text(const NodeAudit& node) {
   if (node.notices) return "noticed after " + ms_text(*node.notices) + ": " + node.how;
   if (!node.how.empty()) return "noticed when " + node.how;
-  return "never noticed: it watches neither heartbeat nor guarding of the master";
+  return "never noticed: the device watches neither heartbeat nor guarding of the master";
 }
 
 void line(std::ostream& out, const char* head, const std::string& text) {
@@ -58,7 +58,7 @@ void print(std::ostream& out, const NodeAudit& node, Colour colour) {
   line(out, "master dies  ", notice_text(node));
   line(out, "  then       ", node.then);
   line(out, node.drive ? "  drive      " : "  outputs    ", node.outputs);
-  line(out, "cable cut    ", "the same: it hears nothing of the master");
+  line(out, "cable cut    ", "the same: the device receives nothing from the master");
   line(out, "bus-off      ", node.bus_off);
   for (const std::string& text : node.besides) line(out, "besides      ", text);
   print_remedy(out, node);
@@ -88,7 +88,7 @@ std::string summary(const Audit& audit) {
   std::array<unsigned, 4> count{};
   for (const NodeAudit& node : audit.nodes) ++count[std::to_underlying(node.verdict)];
   constexpr std::array<const char*, 4> texts{"without outputs", "safe by themselves",
-                                             "in the hands of their manual",
+                                             "described only in the manual",
                                              "with their last set-points for ever"};
   std::string text;
   for (std::size_t i = 0; i < count.size(); ++i) {
@@ -105,8 +105,8 @@ void print_audit(std::ostream& out, const Audit& audit, Colour colour) {
   out << (audit.heartbeat > Time{} ? "heartbeat every " + ms_text(audit.heartbeat)
                                    : "no heartbeat");
   out << "): " << summary(audit) << '\n'
-      << (audit.asked ? "as the devices are now, by SDO\n"
-                      : "as takt boots them, by EDS and network file\n");
+      << (audit.asked ? "devices as they are now, read by SDO\n"
+                      : "devices as takt boots them, by EDS and network file\n");
   for (const NodeAudit& node : audit.nodes) {
     out << '\n';
     print(out, node, colour);

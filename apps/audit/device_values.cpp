@@ -53,15 +53,17 @@ void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
   const std::uint64_t value = number_of(bytes);
   const auto known = values_.find(key);
   if (known != values_.end() && known->second != value) {
-    note(to_string(key) + " is " + hex(static_cast<std::uint32_t>(value), 2) + " in the device, " +
-         hex(static_cast<std::uint32_t>(known->second), 2) + " by network file and EDS");
+    note(to_string(key) + " is " + hex(static_cast<std::uint32_t>(value), 2) +
+         " in the device, but " + hex(static_cast<std::uint32_t>(known->second), 2) +
+         " by network file and EDS");
   }
   values_[key] = value;
 }
 
 void DeviceValues::missing(ObjectKey key) {
   writable_.erase(key);
-  if (values_.erase(key) != 0) note(to_string(key) + " stands in the EDS; the device has none");
+  if (values_.erase(key) != 0)
+    note(to_string(key) + " is in the EDS, but the device does not have this object");
 }
 
 bool DeviceValues::takes(ObjectKey key, std::int64_t value) const {

@@ -16,7 +16,7 @@ std::string braked(std::optional<int> code, std::string_view object) {
                                             ", at the voltage limit"};
   const int way = *code >= 5 && *code <= 8 && object == "605A" ? *code - 4 : *code;
   const bool known = way >= 0 && way < std::ssize(ways);
-  return (known ? ways[static_cast<std::size_t>(way)] : ", as its manufacturer decided") +
+  return (known ? ways[static_cast<std::size_t>(way)] : ", as the manufacturer defines") +
          (" (" + std::string{object}) + " = " + std::to_string(*code) + ")";
 }
 
@@ -26,7 +26,7 @@ class Axis {
       : values_{values}, number_{number}, code_{values.option(at(0x6007))} {}
 
   Reaction reaction() const {
-    if (!code_) return {Failsafe::untold, "it has no " + name(0x6007) + ": see its manual"};
+    if (!code_) return {Failsafe::untold, "the drive has no " + name(0x6007) + ": see the manual"};
     const std::string tail = " (" + name(0x6007) + " = " + std::to_string(*code_) + ")";
     switch (*code_) {
       case 0:
@@ -38,7 +38,7 @@ class Axis {
       case 3:
         return {Failsafe::stops, "quick stop" + tail + braked(values_.option(at(0x605A)), "605A")};
       default:
-        return with_remedy({Failsafe::untold, "as its manufacturer decided" + tail});
+        return with_remedy({Failsafe::untold, "as the manufacturer defines" + tail});
     }
   }
 

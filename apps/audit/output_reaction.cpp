@@ -44,7 +44,7 @@ class Outputs {
     const auto kind = std::ranges::find(kinds, output.index, &OutputKind::outputs);
     Fate fate{.first = output, .last = output.sub};
     if (kind == kinds.end()) {
-      fate.text = "is its maker's own: see the manual";
+      fate.text = "is specific to the manufacturer: see the manual";
     } else {
       judge(*kind, fate);
     }
@@ -91,8 +91,8 @@ class Outputs {
     }
     fate.verdict = Failsafe::goes_on;
     fate.text = taken == 0 ? "STAYS" + tail
-                           : "STAYS but for its bits " + number_text(kind, taken) +
-                                 ", they go to " + number_text(kind, *value & taken) + tail;
+                           : "STAYS except for bits " + number_text(kind, taken) +
+                                 ", which go to " + number_text(kind, *value & taken) + tail;
     if (!values_.takes(mode_key, static_cast<std::int64_t>(kind.all))) {
       fixed_.push_back(mode_key);
       return;

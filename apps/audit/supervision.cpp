@@ -37,10 +37,11 @@ class Finder {
       if (!of_master || (entry & 0xFFFF) == 0) continue;
       const std::string name = to_string(ObjectKey{0x1016, sub});
       if (plan_.master_heartbeat == Time{}) {
-        found_.besides.push_back(name + " watches the master, but the master makes no heartbeat");
+        found_.besides.push_back(name +
+                                 " watches the master, but the master produces no heartbeat");
         continue;
       }
-      notice(milliseconds{entry & 0xFFFF}, "the master's heartbeat stays away (" + name + ")");
+      notice(milliseconds{entry & 0xFFFF}, "no heartbeat of the master arrives (" + name + ")");
     }
   }
 
@@ -51,7 +52,7 @@ class Finder {
         values_.get({0x100C, 0}).value_or(0) * values_.get({0x100D, 0}).value_or(0);
     const bool guarded = node_.guard.period != Time{} && values_.get({0x1017, 0}).value_or(0) == 0;
     if (life == 0 || !guarded) return;
-    notice(milliseconds{life}, "no guarding request comes (life guarding: 100C x 100D)");
+    notice(milliseconds{life}, "no guarding request arrives (life guarding: 100C x 100D)");
   }
 
   void sync() {
@@ -59,16 +60,16 @@ class Finder {
     const bool heard = found_.after.has_value() && node_.on_sync_loss.empty();
     if (period == 0 || !plan_.cycle.sync || heard) return;
     const std::string known =
-        "SYNC is known to come every " + std::to_string(period) + " us (1006)";
+        "the device expects SYNC every " + std::to_string(period) + " us (1006)";
     if (plan_.cycle.sync_followed) {
-      found_.besides.push_back(known + "; another device makes it, and goes on without the master");
+      found_.besides.push_back(known + "; another device produces SYNC, also without the master");
       return;
     }
     if (node_.on_sync_loss.empty()) {
-      found_.besides.push_back(known + "; whether its absence does anything: see the manual");
+      found_.besides.push_back(known + "; for the effect of a missing SYNC see the manual");
       return;
     }
-    found_.besides.push_back(known + ": without it " + node_.on_sync_loss);
+    found_.besides.push_back(known + ": without SYNC " + node_.on_sync_loss);
     found_.by_sync = true;
   }
 
@@ -82,7 +83,7 @@ class Finder {
       if (deadline == 0) continue;
       found_.besides.push_back("RPDO" + std::to_string(row.number) + " has a deadline of " +
                                std::to_string(deadline) + " ms (" + to_string(timer) +
-                               "): EMCY 0x8250; what else follows: see the manual");
+                               "): the device sends EMCY 0x8250; for other effects see the manual");
     }
   }
 

@@ -27,7 +27,7 @@ struct Supervision {
 Supervision supervision_of(const BusPlan& plan, std::size_t node_index, const DeviceValues& values);
 
 /// Line without which takt writes nothing to the device.
-inline constexpr const char* boot_line = "boot: true   # takt configures it";
+inline constexpr const char* boot_line = "boot: true   # takt configures the device";
 
 /// Lines for the network file that make a device notice the loss of the master. Lines that only
 /// repeat a default are left out. If `node`, `master` and `removal` are empty, no entry of the

@@ -107,7 +107,7 @@ bool is_overwritten(const BusPlan& plan, const NodePlan& node, std::uint8_t sub)
 std::string explicit_entry(const BusPlan& plan, const NodePlan& node, std::uint8_t sub) {
   std::array<char, 96> line{};
   std::snprintf(line.data(), line.size(),
-                "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # it watches the master",
+                "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # watches the master",
                 unsigned{sub}, static_cast<unsigned>(consumer_entry(plan, node)));
   return line.data();
 }
@@ -117,14 +117,14 @@ std::string explicit_entry(const BusPlan& plan, const NodePlan& node, std::uint8
 void watch_guarding(const NodePlan& node, const DeviceValues& values, SupervisionRemedy& remedy) {
   if (node.boot && node.guard.retries == 0) {
     remedy.node.emplace_back(
-        "retry_factor: 3   # with 0 the master does not guard; beside life_time_factor");
+        "retry_factor: 3   # with 0 the master does not guard; in addition to life_time_factor");
   } else if (node.boot && node.guard.period != Time{} &&
              values.takes({0x100D, 0}, life_time_factor)) {
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
+    remedy.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
   } else if (values.takes({0x100C, 0}, guard_ms) && values.takes({0x100D, 0}, life_time_factor)) {
     remedy.node.emplace_back("heartbeat_producer: 0");
     remedy.node.emplace_back("guard_time: 100   # ms");
-    remedy.node.emplace_back("life_time_factor: 3   # life guarding: it misses the master");
+    remedy.node.emplace_back("life_time_factor: 3   # life guarding notices a dead master");
   } else {
     remedy.node.clear();
   }
@@ -141,19 +141,20 @@ bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValu
   const bool silent = plan.master_heartbeat == Time{};
   if (silent) remedy.master = "master: {heartbeat_producer: 100}   # ms";
   if (wide) {
-    remedy.why = "its " + to_string(ObjectKey{0x1016, *chosen}) +
-                 " can't be written, or by the limits of its EDS does not hold the master's node "
-                 "id and a time, but another entry does: name that one, or correct the EDS";
+    remedy.why = "entry " + to_string(ObjectKey{0x1016, *chosen}) +
+                 " can't be written, or by the limits of the EDS does not hold the master's node "
+                 "id and a time, but another entry does: name that entry, or correct the EDS";
     remedy.node.push_back(explicit_entry(plan, node, *wide));
     return true;
   }
   if (!silent && node.boot && !boot_writes_consumer(plan, node)) {  // set to false
-    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: it watches the master");
+    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: the device watches the master");
   }
   if (is_overwritten(plan, node, *chosen)) {
-    remedy.removal = "`sdo` in the network file sets " + to_string(ObjectKey{0x1016, *chosen}) +
-                     " so that it does not watch the master: remove it there, then takt writes "
-                     "the master into it";
+    remedy.removal =
+        "`sdo` in the network file sets " + to_string(ObjectKey{0x1016, *chosen}) +
+        " so that the entry does not watch the master: remove it there, then takt writes "
+        "the master into the entry";
   }
   return true;
 }
@@ -168,11 +169,11 @@ SupervisionRemedy supervision_remedy(const BusPlan& plan, std::size_t node_index
   if (watch_heartbeat(plan, node, values, remedy)) return remedy;
   if (entries_of(values) != 0 && !chosen_entry(plan, values)) {
     remedy.why =
-        "each entry of its 1016 watches another node: it can't watch the master's heartbeat";
+        "each entry of 1016 watches another node: the device can't watch the master's heartbeat";
   } else if (values.has(0x1016)) {
     remedy.why =
-        "its 1016 can't be written, or by the limits of its EDS does not hold the master's node id "
-        "and a time: it can't watch the master's heartbeat";
+        "1016 can't be written, or by the limits of the EDS does not hold the master's node id and "
+        "a time: the device can't watch the master's heartbeat";
   }
   watch_guarding(node, values, remedy);
   return remedy;

@@ -102,8 +102,7 @@ int scan(const LssOptions& options) {
   const auto serials = lss_range(options.parts[3]);
   const auto vendor = lss_number(options.parts[0]);
   const auto product = lss_number(options.parts[1]);
-  if (!vendor || !product || !revisions || !serials)
-    return complain("a number of the LSS address is missing", 2);
+  if (!vendor || !product || !revisions || !serials) return complain("an LSS number is missing", 2);
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());
   std::vector<LssAddress> devices;
@@ -166,7 +165,7 @@ int set_id(const LssOptions& options) {
   }
   if (device) std::puts(device_text(*device).c_str());
   std::printf(
-      "node id %d%s. A device without node id boots with this id now; a device that had another\n"
+      "node id %d%s. A device without node id boots with this id now; a device that had another "
       "id takes the new one at its next reset (takt nmt reset-comm)\n",
       options.node_id, options.store ? ", stored" : ", not stored");
   return 0;
@@ -232,9 +231,8 @@ int set_bitrate(const LssOptions& options) {
          {"device", device ? device_json(*device) : nlohmann::json{}}});
   } else {
     if (device) std::puts(device_text(*device).c_str());
-    std::printf(
-        "%d kbit/s configured%s%s\n", options.kbit, options.store ? ", stored" : "",
-        options.delay_ms != 0 ? "" : "; the devices use it from the next power-on or activation");
+    std::printf("%d kbit/s configured%s%s\n", options.kbit, options.store ? ", stored" : "",
+                options.delay_ms != 0 ? "" : "; in use from the next power-on or activation");
   }
   return options.delay_ms != 0 ? activate(options, *access) : 0;
 }
@@ -302,23 +300,20 @@ void add_identity(CLI::App& verb, LssOptions& options, Takes takes) {
   constexpr std::array<const char*, 4> flags{"--vendor", "--product", "--revision", "--serial"};
   for (std::size_t i = 0; i < flags.size(); ++i) {
     const bool has_range = takes == Takes::ranges && i >= 2;
-    auto* option =
-        verb.add_option(flags[i], options.parts[i],
-                        has_range ? "number, or a range A-B" : "part of the LSS address (1018)");
+    auto* option = verb.add_option(flags[i], options.parts[i],
+                                   has_range ? "one, or a range A-B" : "of the LSS address (1018)");
     option->check(check(i))->type_name(has_range ? "N|A-B" : "N");
     if (takes == Takes::ranges && i < 2) option->required();
   }
   if (takes != Takes::one_device) return;
-  verb.add_flag("--alone", options.alone,
-                "address the only device on the bus, whatever its LSS address");
+  verb.add_flag("--alone", options.alone, "the only device on the bus, whatever its address");
 }
 
 CLI::App* add_verb(CLI::App& lss, const char* name, const char* text, Takes takes,
                    const std::shared_ptr<LssOptions>& options) {
   auto* verb = lss.add_subcommand(name, text);
   if (takes != Takes::nothing) add_identity(*verb, *options, takes);
-  verb->add_option("--bus", options->access.bus,
-                   "work directly on can0 or unix:PATH, without a daemon")
+  verb->add_option("--bus", options->access.bus, "use can0 or unix:PATH directly, not a daemon")
       ->type_name("IFACE");
   add_number(*verb, "--timeout", options->access.timeout_ms,
              "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")
@@ -343,9 +338,8 @@ void add_searches(CLI::App& lss, int& exit_code) {
                   Takes::ranges, scanned),
          scanned, scan, exit_code);
   const auto asked = std::make_shared<LssOptions>();
-  run_as(
-      add_verb(lss, "unconfigured", "tells whether a device has no node id", Takes::nothing, asked),
-      asked, unconfigured, exit_code);
+  run_as(add_verb(lss, "unconfigured", "tests for a missing node id", Takes::nothing, asked), asked,
+         unconfigured, exit_code);
   const auto inquired = std::make_shared<LssOptions>();
   run_as(add_verb(lss, "inquire", "prints the LSS address and the node id of one device",
                   Takes::one_device, inquired),
@@ -378,12 +372,10 @@ void add_settings(CLI::App& lss, int& exit_code) {
   run_as(rate_verb, rate, set_bitrate, exit_code);
 
   const auto stored = std::make_shared<LssOptions>();
-  run_as(
-      add_verb(lss, "store", "makes one device store its configuration", Takes::one_device, stored),
-      stored, store, exit_code);
+  run_as(add_verb(lss, "store", "lets one device store its settings", Takes::one_device, stored),
+         stored, store, exit_code);
   const auto state = std::make_shared<LssOptions>();
-  auto* state_verb =
-      add_verb(lss, "switch", "switches the LSS state of all devices", Takes::nothing, state);
+  auto* state_verb = add_verb(lss, "switch", "switches all devices", Takes::nothing, state);
   state_verb->add_option("STATE", state->state, "config or waiting")
       ->required()
       ->check(one_of({"config", "waiting"}));
@@ -393,17 +385,14 @@ void add_settings(CLI::App& lss, int& exit_code) {
 }  // namespace
 
 void add_lss(CLI::App& app, int& exit_code) {
-  auto* lss =
-      app.add_subcommand("lss", "sets node ids and bit rates of devices over the bus (CiA 305)");
+  auto* lss = app.add_subcommand("lss", "sets node ids and bit rates over the bus (CiA 305)");
   lss->require_subcommand(1);
   lss->footer(
-      "takt addresses one device: the device with all four numbers of the LSS address\n"
-      "(1018:1-4), or the only device without node id that has the given numbers, or with\n"
-      "--alone the only device on the bus. Devices with a node id should be in Stopped or\n"
-      "pre-operational (takt nmt stop).\n"
-      "Examples:\n"
-      "  takt lss find --bus can0\n"
-      "  takt lss set-id 5 --store\n"
+      "takt addresses the device with all four numbers of the LSS address (1018:1-4), or the only\n"
+      "device without node id that has the given numbers, or with --alone the only device. "
+      "Devices\n"
+      "with a node id should be in Stopped or pre-operational (takt nmt stop).\n"
+      "Examples:\n  takt lss find --bus can0\n  takt lss set-id 5 --store\n"
       "  takt lss set-id 6 --vendor 0x15A --product 2 --revision 3 --serial 17 --store\n"
       "  takt lss set-bitrate 500 --all --store --activate 1000 --bus can0");
   add_searches(*lss, exit_code);

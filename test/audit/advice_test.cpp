@@ -37,7 +37,7 @@ TEST(AuditAdvice, NamesNoAbortConnectionOptionThatTheDriveCanNotBeGiven) {
   EXPECT_EQ(drive.verdict, Failsafe::goes_on);
   EXPECT_EQ(drive.remedy, Lines{});
   EXPECT_TRUE(mentions(drive, "6007:00"));
-  EXPECT_TRUE(mentions(drive, "only its power, or a hardware enable, stops it"));
+  EXPECT_TRUE(mentions(drive, "only its power, or a hardware enable, stops the device"));
 }
 
 TEST(AuditAdvice, ChoosesAnAbortConnectionOptionWithinTheLimitsOfTheDrive) {
@@ -48,8 +48,10 @@ TEST(AuditAdvice, ChoosesAnAbortConnectionOptionWithinTheLimitsOfTheDrive) {
     return audit_of(network).nodes[0].remedy;
   };
 
-  EXPECT_EQ(advice(3), Lines{"sdo: [{index: 0x6007, value: 3}]   # beside what stands there"});
-  EXPECT_EQ(advice(2), Lines{"sdo: [{index: 0x6007, value: 1}]   # beside what stands there"});
+  EXPECT_EQ(advice(3),
+            Lines{"sdo: [{index: 0x6007, value: 3}]   # in addition to the present entries"});
+  EXPECT_EQ(advice(2),
+            Lines{"sdo: [{index: 0x6007, value: 1}]   # in addition to the present entries"});
   EXPECT_EQ(advice(0), Lines{});
 }
 
@@ -63,7 +65,7 @@ TEST(AuditAdvice, NamesNoErrorModeThatAnOutputCanNotBeGiven) {
 
   EXPECT_EQ(io.verdict, Failsafe::goes_on);
   EXPECT_EQ(io.remedy, Lines{});
-  EXPECT_TRUE(mentions(io, "its EDS does not let 6206:01 be changed"));
+  EXPECT_TRUE(mentions(io, "the EDS does not let 6206:01 be changed"));
 }
 
 TEST(AuditAdvice, NamesNoErrorBehaviourThatTheDeviceCanNotBeGiven) {
@@ -83,8 +85,8 @@ TEST(AuditAdvice, LetsTaktConfigureANodeThatIsOnlyWatchedBeforeItGivesItValues) 
                                               std::byte{0}};
 
   EXPECT_EQ(audit_of(network).nodes[0].remedy,
-            (Lines{"boot: true   # takt configures it",
-                   "sdo: [{index: 0x6007, value: 3}]   # beside what stands there"}));
+            (Lines{"boot: true   # takt configures the device",
+                   "sdo: [{index: 0x6007, value: 3}]   # in addition to the present entries"}));
 }
 
 /// Bus terminals that know guarding, here without a heartbeat consumer.
@@ -107,7 +109,7 @@ NodeAudit guarded_terminals(const std::string& keys) {
 
 TEST(AuditAdvice, SwitchesGuardingOnWhereOnlyTheRetryFactorKeepsItOff) {
   const Lines retry{
-      "retry_factor: 3   # with 0 the master does not guard; beside life_time_factor"};
+      "retry_factor: 3   # with 0 the master does not guard; in addition to life_time_factor"};
   const std::string complete = ", guard_time: 100, life_time_factor: 3";
 
   EXPECT_EQ(guarded_terminals(complete).remedy, Lines{});
@@ -116,7 +118,7 @@ TEST(AuditAdvice, SwitchesGuardingOnWhereOnlyTheRetryFactorKeepsItOff) {
 
 TEST(AuditAdvice, CompletesGuardingOfWhichOnlyTheLifeTimeFactorIsMissing) {
   EXPECT_EQ(guarded_terminals(", guard_time: 100").remedy,
-            Lines{"life_time_factor: 3   # life guarding: it misses the master"});
+            Lines{"life_time_factor: 3   # life guarding notices a dead master"});
 }
 
 TEST(AuditAdvice, RemovesTheEntryThatSwitchesTheHeartbeatConsumerOff) {
@@ -129,7 +131,8 @@ TEST(AuditAdvice, RemovesTheEntryThatSwitchesTheHeartbeatConsumerOff) {
   EXPECT_EQ(by_default.remedy, Lines{});
   EXPECT_TRUE(mentions(by_default, "`sdo` in the network file sets 1016:01"));
   EXPECT_FALSE(mentions(by_default, "can watch neither"));
-  EXPECT_EQ(unwanted.remedy, Lines{"heartbeat_consumer: true   # 1016: it watches the master"});
+  EXPECT_EQ(unwanted.remedy,
+            Lines{"heartbeat_consumer: true   # 1016: the device watches the master"});
   EXPECT_TRUE(mentions(unwanted, "`sdo` in the network file sets 1016:01"));
 }
 
@@ -144,13 +147,13 @@ Lines advice_of_second_entry(const std::string& master, const std::string& key) 
 
 TEST(AuditAdvice, KeepsTheTimeOfAHeartbeatConsumerOutOfItsNodeId) {
   EXPECT_EQ(advice_of_second_entry("node_id: 126, heartbeat_producer: 30000", "mandatory: true"),
-            Lines{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7EFFFF}]   # it watches the "
+            Lines{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7EFFFF}]   # watches the "
                   "master"});
 }
 
 TEST(AuditAdvice, CountsTheHeartbeatMultiplierOfTheNode) {
   EXPECT_EQ(advice_of_second_entry("heartbeat_producer: 100", "heartbeat_multiplier: 5"),
-            Lines{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F01F4}]   # it watches the "
+            Lines{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F01F4}]   # watches the "
                   "master"});
 }
 

@@ -25,26 +25,27 @@ TEST(Audit, TellsAMachineBuilderWhatEachDeviceDoes) {
       text_of(audit_of(network)),
       "bus 'lift' without its master (node 127, heartbeat every 100 ms): 1 safe by "
       "themselves, 1 with their last set-points for ever\n"
-      "as takt boots them, by EDS and network file\n"
+      "devices as takt boots them, by EDS and network file\n"
       "\n"
-      "node 5 axis (drive): KEEPS ITS LAST SET-POINTS for ever: nobody tells it\n"
-      "  master dies  never noticed: it watches neither heartbeat nor guarding of the master\n"
+      "node 5 axis (drive): KEEPS ITS LAST SET-POINTS for ever: the device does not notice\n"
+      "  master dies  never noticed: the device watches neither heartbeat nor guarding of the "
+      "master\n"
       "    drive      KEEPS its last set-points for ever\n"
-      "  cable cut    the same: it hears nothing of the master\n"
+      "  cable cut    the same: the device receives nothing from the master\n"
       "  bus-off      goes to PRE-OPERATIONAL (1029:01 = 0); fault (6007 = 1), along the "
       "quick-stop ramp (605E = 2)\n"
-      "  besides      SYNC is known to come every 10000 us (1006); whether its absence does "
-      "anything: see the manual\n"
+      "  besides      the device expects SYNC every 10000 us (1006); for the effect of a missing "
+      "SYNC see the manual\n"
       "  remedy       in the network file:\n"
       "    axis:\n"
-      "      heartbeat_consumer: true   # 1016: it watches the master\n"
+      "      heartbeat_consumer: true   # 1016: the device watches the master\n"
       "\n"
       "node 6 io: its outputs go to their error values, at the latest 300 ms later\n"
-      "  master dies  noticed after 300 ms: the master's heartbeat stays away (1016:01)\n"
+      "  master dies  noticed after 300 ms: no heartbeat of the master arrives (1016:01)\n"
       "    then       goes to PRE-OPERATIONAL (1029:01 = 0)\n"
       "    outputs    6200:01..02 goes to 0x00 (6206 = 0xFF); 6411:01..02 goes to 0 (6443 = "
       "1)\n"
-      "  cable cut    the same: it hears nothing of the master\n"
+      "  cable cut    the same: the device receives nothing from the master\n"
       "  bus-off      the same, at once\n");
 }
 
@@ -120,9 +121,9 @@ TEST(Audit, NamesAnotherEntryWhereOnlyTheFirstOneHoldsNoNodeId) {
   const NodeAudit drive = audit_of(network).nodes[0];
 
   EXPECT_EQ(drive.remedy,
-            std::vector<std::string>{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]   # it "
+            std::vector<std::string>{"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]   # "
                                      "watches the master"});
-  EXPECT_NE(text_of(audit_of(network)).find("its 1016:01 can't be written, or by the limits"),
+  EXPECT_NE(text_of(audit_of(network)).find("entry 1016:01 can't be written, or by the limits"),
             std::string::npos);
 }
 
@@ -130,7 +131,7 @@ TEST(Audit, NamesAnEntryThatWorks) {
   const auto network = two_nodes({"sdo: [{index: 0x1016, sub_index: 2, value: 0x7F012C}]"}, {});
 
   EXPECT_EQ(network.findings.size(), two_nodes({}, {}).findings.size());
-  EXPECT_NE(text_of(audit_of(network)).find("the master's heartbeat stays away (1016:02)"),
+  EXPECT_NE(text_of(audit_of(network)).find("no heartbeat of the master arrives (1016:02)"),
             std::string::npos);
 }
 
@@ -142,13 +143,13 @@ TEST(Audit, NamesEachOutputThatStays) {
 
   EXPECT_EQ(io.verdict, Failsafe::goes_on);
   EXPECT_EQ(io.outputs,
-            "6200:01 goes to 0x00 (6206 = 0xFF); 6200:02 STAYS but for its bits 0x0F, they go to "
+            "6200:01 goes to 0x00 (6206 = 0xFF); 6200:02 STAYS except for bits 0x0F, which go to "
             "0x00 (6206 = 0x0F); 6411:01 STAYS (6443 = 0); 6411:02 goes to 0 (6443 = 1)");
   ASSERT_EQ(io.remedy.size(), 1u);
   EXPECT_EQ(
       io.remedy[0],
       "sdo: [{index: 0x6206, sub_index: 2, value: 0xFF}, {index: 0x6443, sub_index: 1, value: "
-      "1}]   # beside what stands there");
+      "1}]   # in addition to the present entries");
 }
 
 /// What the remedy says, in place of the node's own lines of the same key.
@@ -207,10 +208,11 @@ TEST(AskDevices, BelievesTheDeviceAndTellsWhereItDiffers) {
   EXPECT_EQ(values.get({0x1016, 1}), 0u);
   EXPECT_EQ(values.get({0x605E, 0}), std::nullopt);
   EXPECT_EQ(values.get({0x6007, 0}), 1u) << "as its EDS says";
-  EXPECT_EQ(values.notes(), (std::vector<std::string>{
-                                "1016:01 is 0x00 in the device, 0x7F012C by network file and EDS",
-                                "6007:00 can't be read (not now): by EDS and network file",
-                                "605E:00 stands in the EDS; the device has none"}));
+  EXPECT_EQ(values.notes(),
+            (std::vector<std::string>{
+                "1016:01 is 0x00 in the device, but 0x7F012C by network file and EDS",
+                "6007:00 can't be read (not now): the value is that of EDS and network file",
+                "605E:00 is in the EDS, but the device does not have this object"}));
 }
 
 TEST(AskDevices, SaysWhatADeviceThatDoesNotAnswerIsJudgedBy) {

@@ -23,7 +23,8 @@ TEST(AuditOnTheBus, TellsOfDevicesThatNobodyHasConfigured) {
   } while (ended.output.find("answer") != std::string::npos && monotonic_now() < until);
 
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_NE(ended.output.find("as the devices are now, by SDO"), std::string::npos) << ended.output;
+  EXPECT_NE(ended.output.find("devices as they are now, read by SDO"), std::string::npos)
+      << ended.output;
   EXPECT_NE(ended.output.find("node 1 shoulder (drive): KEEPS ITS LAST SET-POINTS for ever"),
             std::string::npos)
       << ended.output;
@@ -51,7 +52,7 @@ TEST(AuditOnTheBus, AsksThroughARunningDaemon) {
       run({TAKT, "audit", network, "--live", "--lcm-url", daemon.lcm_url()}, folder.path());
 
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
-  EXPECT_NE(ended.output.find("3 safe by themselves\nas the devices are now, by SDO"),
+  EXPECT_NE(ended.output.find("3 safe by themselves\ndevices as they are now, read by SDO"),
             std::string::npos)
       << ended.output;
   EXPECT_EQ(ended.output.find("in the device,"), std::string::npos) << ended.output;
