@@ -17,7 +17,7 @@ std::expected<std::unique_ptr<Transport>, std::string> open_lcm(const std::strin
     return std::make_unique<TcpqClient>(hub->address, hub->port);
   }
   auto lcm = LcmTransport::create(parsed->text);
-  if (!lcm) return std::unexpected{"LCM does not accept " + parsed->text};
+  if (!lcm) return std::unexpected{"LCM does not accept the URL " + parsed->text};
   return lcm;
 }
 

@@ -190,8 +190,8 @@ bool BlackBox::write(const Tape& tape) {
   }
   writing_.store(false);
   previous_ = {};
-  say_("black box: nothing is written (" + head_.reason +
-           "), since no thread can be created: " + std::strerror(writer.error()),
+  say_("black box: no recording is written (" + head_.reason +
+           "), because no thread can be created: " + std::strerror(writer.error()),
        {});
   return false;
 }

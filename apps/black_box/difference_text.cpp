@@ -21,21 +21,21 @@ std::string_view call_text(Mark mark) noexcept {
     case Mark::send:
       return "sends frames";
     case Mark::news:
-      return "looks at the interface";
+      return "reads the state of the interface";
     case Mark::set_points:
       return "takes the set-points";
     case Mark::request:
       return "takes a request";
     case Mark::stop:
-      return "is told to stop";
+      return "receives a stop request";
     case Mark::replies_full:
-      return "can't give a reply";
+      return "can't pass on a reply";
     case Mark::event:
-      return "tells an event";
+      return "reports an event";
     case Mark::checkpoint:
-      return "keeps what it knows";
+      return "saves a checkpoint";
     case Mark::gap:
-      return "takes what was too long to be kept";
+      return "receives data that was too long to record";
   }
   return "does something unknown";
 }
@@ -65,7 +65,7 @@ std::string what_differs(const ReplayDifference& difference, const std::string& 
     case What::broken:
       return "the journal is damaged here";
     case What::missing:
-      return "a request or a receive was too long for the black box; it can't be replayed further";
+      return "a request or a receive was too long for the black box; the replay can't continue";
   }
   return {};
 }

@@ -36,7 +36,8 @@ Result<std::ifstream> open(const std::string& path) {
     return std::unexpected{path + ": cannot be read: " + std::strerror(why)};
   }
   if (size > most_bytes) {
-    return std::unexpected{fmt::format("{}: {} MiB are no recording of takt", path, size >> 20)};
+    return std::unexpected{
+        fmt::format("{}: a file of {} MiB is not a recording of takt", path, size >> 20)};
   }
   return file;
 }
@@ -47,10 +48,10 @@ Result<std::vector<std::uint64_t>> read_journal(const std::string& path) {
   const std::string bytes{std::istreambuf_iterator<char>{*file}, {}};
   const std::size_t begin = recording_format::magic.size();
   if (!bytes.starts_with(recording_format::magic)) {
-    return std::unexpected{path + ": not a journal of takt, or of another version"};
+    return std::unexpected{path + ": not a journal of takt, or a journal of another version"};
   }
   if ((bytes.size() - begin) % sizeof(std::uint64_t) != 0) {
-    return std::unexpected{path + ": cut off: its length is no number of words"};
+    return std::unexpected{path + ": cut off: the length is not a multiple of 8 bytes"};
   }
   std::vector<std::uint64_t> words((bytes.size() - begin) / sizeof(std::uint64_t));
   if (!words.empty()) std::memcpy(words.data(), bytes.data() + begin, bytes.size() - begin);
@@ -87,8 +88,8 @@ void read_events(std::istream& in, LoadedRecording& loaded, std::size_t& frames)
   const nlohmann::json json = nlohmann::json::parse(in);
   const int version = json.at("format").get<int>();
   if (version < 1 || version > recording_format::version) {
-    throw std::runtime_error{
-        fmt::format("format {}; this takt reads {}", version, recording_format::version)};
+    throw std::runtime_error{fmt::format("the format is {}; this takt reads 1 to {}", version,
+                                         recording_format::version)};
   }
   loaded.head = {.bus = json.at("bus").get<std::string>(),
                  .interface = json.at("interface").get<std::string>(),
@@ -122,9 +123,9 @@ Result<LoadedRecording> read_part(const std::string& stem) {
   auto frames = read_log(log);
   if (!frames) return std::unexpected{frames.error()};
   if (frames->size() != count) {
-    return std::unexpected{
-        fmt::format("{}: {} frames, {} were recorded: change them, but leave none out", log,
-                    frames->size(), count)};
+    return std::unexpected{fmt::format(
+        "{}: {} frames, but {} were recorded: change frames, but do not add or remove any", log,
+        frames->size(), count)};
   }
   loaded.parts.push_back({.words = std::move(*words), .frames = std::move(*frames)});
   loaded.logs.push_back(log);
@@ -151,7 +152,7 @@ void read_earlier(const std::filesystem::path& folder, LoadedRecording& loaded) 
   std::string follows = loaded.head.follows;
   while (!is_from_start(loaded.parts.front())) {
     if (follows.empty()) {
-      loaded.fault = "it begins in the middle of the run";
+      loaded.fault = "the recording begins in the middle of the run";
       return;
     }
     const auto name = std::filesystem::path{follows}.filename().string();
@@ -159,8 +160,8 @@ void read_earlier(const std::filesystem::path& folder, LoadedRecording& loaded) 
                        ? read_part((folder / name).string())
                        : std::unexpected{fmt::format("more than {} recordings", most_parts)};
     if (!earlier || name.empty()) {
-      loaded.fault = "it follows " + name +
-                     ", and that can't be used: " + (earlier ? "no name" : earlier.error());
+      loaded.fault = "the recording follows " + name +
+                     ", which can't be used: " + (earlier ? "no name" : earlier.error());
       return;
     }
     follows = earlier->head.follows;
@@ -179,7 +180,7 @@ std::expected<LoadedRecording, std::string> read_recording(const std::filesystem
   if (begin_with_checkpoint(*loaded)) {
     loaded->fault.reset();
   } else {
-    *loaded->fault += "; and it has no moment in which nothing was under way, to begin with";
+    *loaded->fault += "; and the recording has no checkpoint at which a replay could begin";
   }
   return loaded;
 }

@@ -40,8 +40,8 @@ class Replay {
     }
     if (!loop_.resume(recording_.checkpoint)) {
       outcome_.difference =
-          "it begins in the middle of a run, and the network file has other nodes or PDOs, or this "
-          "takt is of another version: what the master knew then can't be used";
+          "the recording begins in the middle of a run, and the network file has other nodes or "
+          "PDOs, or this is another version of takt: the checkpoint can't be used";
       return false;
     }
     end_cycle();
@@ -66,7 +66,8 @@ class Replay {
     }
     if (port_.difference()) {
       outcome_.difference = difference_text(*port_.difference(), recording_.logs);
-      if (!event_differs.empty()) *outcome_.difference += "\nit leads to " + event_differs;
+      if (!event_differs.empty())
+        *outcome_.difference += "\nthe difference leads to " + event_differs;
     } else if (!event_differs.empty()) {
       outcome_.difference = event_differs;
     }
@@ -85,7 +86,7 @@ class Replay {
     if (outcome_.decisions < recording_.decisions.size()) {
       outcome_.difference = lack_text(recording_.decisions[outcome_.decisions]);
     } else if (!port_.over()) {
-      outcome_.difference = "the master has stopped, and the recording goes on";
+      outcome_.difference = "the master has stopped, but the recording continues";
     }
   }
 

@@ -18,7 +18,7 @@ std::string up_command(const std::string& name, std::uint32_t bitrate) {
 }
 
 std::string bitrate_text(const CanLink& link) {
-  if (!link.bitrate || *link.bitrate == 0) return "no bit rate of its own";
+  if (!link.bitrate || *link.bitrate == 0) return "no bit rate";
   return std::to_string(*link.bitrate / 1000) + " kbit/s";
 }
 
@@ -26,10 +26,10 @@ std::string bitrate_text(const CanLink& link) {
 
 Remark check_can_support() {
   const FileDescriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)};
-  if (socket) return {Verdict::good, "SocketCAN", "the kernel has it"};
+  if (socket) return {Verdict::good, "SocketCAN", "the kernel supports it"};
   return {Verdict::bad, "SocketCAN",
           std::string{"no CAN sockets: "} + std::strerror(errno) +
-              "; without it there is still `--bus sim` and `--bus unix:PATH`",
+              "; without SocketCAN only `--bus sim` and `--bus unix:PATH` work",
           "modprobe can-raw"};
 }
 
@@ -42,12 +42,12 @@ std::vector<Remark> check_interface(const std::string& name, std::optional<std::
           : std::string{};
   return {{Verdict::bad, name,
            link.error().message.substr(name.size() + 2) +
-               (command.empty() ? "; `ip -br link` lists what there is" : ""),
+               (command.empty() ? "; `ip -br link` lists the interfaces" : ""),
            command}};
 }
 
 std::vector<Remark> judge_link(const CanLink& link, std::optional<std::uint32_t> bitrate) {
-  if (!link.is_can) return {{Verdict::bad, link.name, "is no CAN interface"}};
+  if (!link.is_can) return {{Verdict::bad, link.name, "is not a CAN interface"}};
   const bool has_bitrate = link.kind == "can";
   if (!link.up) {
     const std::string command =

@@ -23,7 +23,7 @@ Remark check_route(const LcmUrl& url) {
 Remark check_buffer(const std::filesystem::path& root) {
   std::ifstream file{root / "proc/sys/net/core/rmem_max"};
   std::uint64_t bytes = 0;
-  if (!(file >> bytes)) return {Verdict::good, "socket buffers", "not told"};
+  if (!(file >> bytes)) return {Verdict::good, "socket buffers", "unknown"};
   if (bytes >= wanted_buffer) {
     return {Verdict::good, "socket buffers", "up to " + std::to_string(bytes >> 10U) + " KiB"};
   }

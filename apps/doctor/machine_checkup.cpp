@@ -34,10 +34,10 @@ Remark check_clock(const fs::path& root) {
   if (clock == "hpet" || clock == "acpi_pm" || clock == "jiffies") {
     return {Verdict::hint, "clock",
             clock +
-                " is slow to read: `clocksource=tsc` on the kernel's command line, where the "
-                "processor has a steady one"};
+                " is slow to read; if the processor has a steady TSC, put `clocksource=tsc` on the "
+                "kernel's command line"};
   }
-  return {Verdict::good, "clock", clock.empty() ? "not told" : clock};
+  return {Verdict::good, "clock", clock.empty() ? "unknown" : clock};
 }
 
 Remark check_governor(const fs::path& root) {

@@ -102,7 +102,7 @@ int scan(const LssOptions& options) {
   const auto serials = lss_range(options.parts[3]);
   const auto vendor = lss_number(options.parts[0]);
   const auto product = lss_number(options.parts[1]);
-  if (!vendor || !product || !revisions || !serials) return complain("an LSS number is missing", 2);
+  if (!vendor || !product || !revisions || !serials) return complain("a number is missing", 2);
   auto access = LssAccess::open(options.access);
   if (!access) return failed(access.error());
   std::vector<LssAddress> devices;
@@ -389,9 +389,8 @@ void add_lss(CLI::App& app, int& exit_code) {
   lss->require_subcommand(1);
   lss->footer(
       "takt addresses the device with all four numbers of the LSS address (1018:1-4), or the only\n"
-      "device without node id that has the given numbers, or with --alone the only device. "
-      "Devices\n"
-      "with a node id should be in Stopped or pre-operational (takt nmt stop).\n"
+      "device without node id that has the given numbers, or with --alone the only device.\n"
+      "Devices with a node id should be in Stopped or pre-operational (takt nmt stop).\n"
       "Examples:\n  takt lss find --bus can0\n  takt lss set-id 5 --store\n"
       "  takt lss set-id 6 --vendor 0x15A --product 2 --revision 3 --serial 17 --store\n"
       "  takt lss set-bitrate 500 --all --store --activate 1000 --bus can0");

@@ -246,7 +246,8 @@ TEST(Replay, WithoutStartAndCheckpointIsRefusedWithTheReason) {
 
   ASSERT_TRUE(recording);
   ASSERT_TRUE(recording->fault);
-  EXPECT_NE(recording->fault->find("it begins in the middle of the run"), std::string::npos);
+  EXPECT_NE(recording->fault->find("the recording begins in the middle of the run"),
+            std::string::npos);
   EXPECT_GT(recording->parts.front().frames.size(), 200U);
 }
 
