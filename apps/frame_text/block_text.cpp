@@ -39,7 +39,7 @@ std::string BlockText::from_sink(const Frame& frame, const std::string& name) {
   if (is_block_confirm(frame)) return confirm(frame);
   if (is_block_upload_start(frame)) {
     segments_ = true;
-    return fmt::format("block upload {}: go on", name);
+    return fmt::format("block upload {}: start", name);
   }
   if (is_block_end_confirm(frame)) {
     running_ = false;

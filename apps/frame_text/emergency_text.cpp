@@ -11,7 +11,7 @@ namespace takt {
 namespace {
 
 std::string code_text(const FrameNames& names, const Emcy& emcy) {
-  if (emcy.code == 0 && emcy.error_register != 0) return "an error is gone, others remain";
+  if (emcy.code == 0 && emcy.error_register != 0) return "one error is reset, others remain";
   return std::string{names.emcy(emcy.node.value(), emcy.code)};
 }
 
@@ -20,7 +20,7 @@ std::string text_of(const FrameNames& names, const Emcy& emcy, const Frame& fram
   if (frame.rtr) return who + " remote request";
   if (frame.length == 0) return who + " empty (the boot-up message of devices before CiA 301)";
   if (frame.length == 1) {
-    return fmt::format("{} of 1 byte (always 8), too short for an error code: {}", who,
+    return fmt::format("{} has 1 byte instead of 8, too short for an error code: {}", who,
                        bytes_text(frame.payload()));
   }
   std::string text = fmt::format("{} {:04X} {}, error register {:02X} ({})", who, emcy.code,
@@ -28,7 +28,7 @@ std::string text_of(const FrameNames& names, const Emcy& emcy, const Frame& fram
                                  error_register_text(emcy.error_register));
   const bool vendor = emcy.manufacturer != std::array<std::uint8_t, 5>{};
   if (vendor) text += ", vendor " + bytes_text(emcy.manufacturer);
-  if (frame.length != 8) text += fmt::format(" ({} bytes, always 8)", frame.length);
+  if (frame.length != 8) text += fmt::format(" ({} bytes instead of 8)", frame.length);
   return text;
 }
 

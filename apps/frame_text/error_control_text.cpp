@@ -24,11 +24,11 @@ std::string state_text(unsigned state) {
 
 FrameMeaning ErrorControlText::request(unsigned node, const std::string& name) {
   Guarding& guarding = nodes_[node & 0x7F];
-  const char* before = guarding.asked ? " again, its answer is missing" : "";
+  const char* before = guarding.asked ? " again, the last answer is missing" : "";
   guarding.asked = true;
   return {.service = "GUARD",
           .node = node,
-          .text = fmt::format("{} asked for its state{}", name, before)};
+          .text = fmt::format("{} is asked for its state{}", name, before)};
 }
 
 FrameMeaning ErrorControlText::answer(unsigned node, const std::string& name, std::uint8_t byte) {
@@ -48,7 +48,7 @@ FrameMeaning ErrorControlText::meaning(unsigned node, const std::string& name, c
   if (frame.length != 1) {
     return {.service = "HEARTBEAT",
             .node = node,
-            .text = fmt::format("{} of {} bytes (always 1)", name, frame.length)};
+            .text = fmt::format("{} has {} bytes instead of 1", name, frame.length)};
   }
   Guarding& guarding = nodes_[node & 0x7F];
   if (frame.data[0] == 0) {
@@ -60,7 +60,7 @@ FrameMeaning ErrorControlText::meaning(unsigned node, const std::string& name, c
   return {.service = "HEARTBEAT",
           .node = node,
           .text = fmt::format("{} {}{}", name, state_text(frame.data[0] & 0x7F),
-                              toggle ? ", toggle 1 (guarding; its request was not recorded)" : "")};
+                              toggle ? ", toggle 1 (guarding; the request was not recorded)" : "")};
 }
 
 }  // namespace takt

@@ -22,8 +22,8 @@ struct Bit {
 
 constexpr std::array<Bit, 6> classes{{
     {0x001, "a frame could not be sent in time"},
-    {0x010, "transceiver trouble (wire broken or shorted?)"},
-    {0x020, "nobody acknowledged a frame (alone on the bus, or the wrong bit rate?)"},
+    {0x010, "transceiver fault (wire broken or shorted?)"},
+    {0x020, "no node acknowledged a frame (alone on the bus, or the wrong bit rate?)"},
     {0x040, "BUS-OFF: the controller has left the bus"},
     {0x080, "bus error"},
     {0x100, "the controller was restarted"},
@@ -106,7 +106,7 @@ std::string error_frame_text(std::uint32_t error_class, std::span<const std::uin
   }
   if ((error_class & controller) != 0) {
     std::string text = bits_text(byte(1), controller_bits);
-    told.push_back(text.empty() ? "controller trouble" : std::move(text));
+    told.push_back(text.empty() ? "controller fault" : std::move(text));
   }
   if ((error_class & protocol) != 0) told.push_back(protocol_text(byte(2), byte(3)));
   std::string rest = bits_text(error_class, classes);

@@ -34,7 +34,7 @@ std::string_view command_text(NmtCommand command) {
 /// 7.1.6.6.
 std::string time_text(const Frame& frame) {
   const auto time = decode_time(frame);
-  if (!time) return fmt::format("of {} bytes (always 6)", frame.length);
+  if (!time) return fmt::format("has {} bytes instead of 6", frame.length);
   const std::chrono::sys_days day{std::chrono::days{unix_time(*time) / std::chrono::days{1}}};
   const std::chrono::year_month_day date{day};
   const std::string clock =
@@ -56,7 +56,7 @@ std::string_view master_text(std::uint32_t id) {
     case 0x073:
       return "who is the active master?";
     case 0x074:
-      return "a master answers that it is there";
+      return "a master answers that it is present";
     case 0x075:
       return "is there a master?";
     case 0x076:
@@ -75,14 +75,14 @@ FrameMeaning FrameText::nmt(const Frame& frame) const {
   if (!message) return {.service = "NMT", .text = "not a command: " + bytes_text(frame.payload())};
   const std::string who = message->node == 0 ? "all nodes" : names_.node(message->node);
   std::string text = fmt::format("{} {}", command_text(message->command), who);
-  if (frame.length > 2) text += fmt::format(" ({} bytes; CiA 301 has 2)", frame.length);
+  if (frame.length > 2) text += fmt::format(" ({} bytes instead of 2)", frame.length);
   return {.service = "NMT", .node = message->node, .text = std::move(text)};
 }
 
 FrameMeaning FrameText::sync(const Frame& frame) const {
   std::string text = frame.length == 0 ? "" : fmt::format("{}", frame.data[0]);
   if (frame.rtr) text = "remote request";
-  if (frame.length > 1) text += fmt::format(" ({} bytes, at most 1)", frame.length);
+  if (frame.length > 1) text += fmt::format(" ({} bytes instead of at most 1)", frame.length);
   return {.service = "SYNC", .text = std::move(text)};
 }
 

@@ -29,8 +29,8 @@ std::string_view error_text(lss::Service service, std::uint8_t error) {
   if (service == lss::Service::configure_bit_timing && error == 1) {
     return "the device does not have this bit rate";
   }
-  if (service == lss::Service::store && error == 1) return "the device can't store it";
-  if (service == lss::Service::store && error == 2) return "its memory can't be written";
+  if (service == lss::Service::store && error == 1) return "the device can't store settings";
+  if (service == lss::Service::store && error == 2) return "the memory can't be written";
   return "a reserved error code";
 }
 
@@ -72,7 +72,7 @@ std::string switch_text(std::uint8_t mode) {
 
 std::string activate_text(const Frame& frame) {
   const unsigned delay = word(frame) & 0xFFFF;
-  return fmt::format("activate the bit rate after {} ms of silence, speak again after {} ms", delay,
+  return fmt::format("activate the bit rate after {} ms of silence, send again after {} ms", delay,
                      2 * delay);
 }
 
@@ -119,8 +119,8 @@ std::string of_device(const Frame& frame) {
   const auto service = static_cast<lss::Service>(code);
   if (code >= 0x5A && code <= 0x5D) return inquire_text(code, frame, false);
   if (service == lss::Service::selected) return "selected";
-  if (service == lss::Service::identified) return "here (identify or fastscan)";
-  if (service == lss::Service::unconfigured) return "here, without node id";
+  if (service == lss::Service::identified) return "a device answers (identify or fastscan)";
+  if (service == lss::Service::unconfigured) return "a device without node id answers";
   if (service == lss::Service::inquire_node_id) {
     return "node id is " + node_id_text(frame.data[1]);
   }
@@ -133,7 +133,7 @@ std::string of_device(const Frame& frame) {
 std::string lss_text(const Frame& frame, bool from_master) {
   if (frame.rtr) return "remote request";
   if (frame.length != 8) {
-    return fmt::format("of {} bytes (always 8): {}", frame.length, bytes_text(frame.payload()));
+    return fmt::format("has {} bytes instead of 8: {}", frame.length, bytes_text(frame.payload()));
   }
   return from_master ? of_master(frame) : of_device(frame);
 }

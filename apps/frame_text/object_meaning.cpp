@@ -37,10 +37,10 @@ std::string transmission(unsigned type) {
   if (type == 0) return "with the next SYNC after an event";
   if (type == 1) return "every SYNC";
   if (type <= 240) return fmt::format("every {} SYNCs", type);
-  if (type == 252) return "asked for, sampled at SYNC";
-  if (type == 253) return "asked for";
-  if (type == 254) return "event, of the manufacturer";
-  return type == 255 ? "event, of the profile" : "reserved type";
+  if (type == 252) return "on remote request, sampled at SYNC";
+  if (type == 253) return "on remote request";
+  if (type == 254) return "event, manufacturer-specific";
+  return type == 255 ? "event, by the device profile" : "reserved type";
 }
 
 std::string nmt_request(const FrameNames& names, unsigned target, unsigned value) {
@@ -80,10 +80,10 @@ std::string of_32_bits(const FrameNames& names, unsigned node, ObjectKey key, st
   }
   switch (key.index) {
     case 0x1005:
-      return identifier(raw) + ((raw & bit_30) != 0 ? ", makes SYNC" : "");
+      return identifier(raw) + ((raw & bit_30) != 0 ? ", produces SYNC" : "");
     case 0x1012:
-      return identifier(raw) + ((raw & bit_30) != 0 ? ", makes TIME" : "") +
-             ((raw & bit_31) != 0 ? ", takes TIME" : "");
+      return identifier(raw) + ((raw & bit_30) != 0 ? ", produces TIME" : "") +
+             ((raw & bit_31) != 0 ? ", consumes TIME" : "");
     case 0x1014:
       return pdo_cob_id(raw, false);
     case 0x1010:

@@ -75,7 +75,8 @@ std::string channel_text(bool tpdo, const Frame& frame) {
   if (!tpdo && word == 1) return fmt::format(": read parameter 0x{:04X}", second);
   if (!tpdo && word == 2) return fmt::format(": write parameter 0x{:04X} = {}", second, value);
   const auto answer = parameter_channel::answer(frame.payload());
-  if (!tpdo || !answer) return ": no request, " + bytes_text(frame.payload());
+  if (!tpdo || !answer)
+    return ": not a parameter request or answer, " + bytes_text(frame.payload());
   if (answer->done) return fmt::format(": done, value {}", answer->value);
   return fmt::format(": refused, {} ({})", parameter_channel::error_text(answer->error),
                      answer->error);
@@ -85,7 +86,7 @@ std::string content_text(const FrameNames& names, const Found& found, const Fram
   const BusPlan& plan = *names.plan();
   const PdoRow& row = *found.row;
   if (frame.length < row.length) {
-    return fmt::format(": {} bytes, its mapping has {}", frame.length, row.length);
+    return fmt::format(": {} bytes, but the mapping has {}", frame.length, row.length);
   }
   std::string text;
   if (row.multiplexed()) {
@@ -98,7 +99,7 @@ std::string content_text(const FrameNames& names, const Found& found, const Fram
     text = fields_text(plan, row, frame);
   }
   if (frame.length > row.length) {
-    text += fmt::format("  ({} bytes, its mapping has {})", frame.length, row.length);
+    text += fmt::format("  ({} bytes, but the mapping has {})", frame.length, row.length);
   }
   return text;
 }
@@ -115,7 +116,7 @@ std::optional<FrameMeaning> planned_pdo(const FrameNames& names, const Frame& fr
       .service = found.tpdo ? "TPDO" : "RPDO",
       .node = node,
       .text = fmt::format("{} {}{}", found.row->number, names.node(node),
-                          frame.rtr ? " asked for" : content_text(names, found, frame))};
+                          frame.rtr ? " remote request" : content_text(names, found, frame))};
 }
 
 FrameMeaning predefined_pdo(const FrameNames& names, const Frame& frame) {
@@ -124,7 +125,7 @@ FrameMeaning predefined_pdo(const FrameNames& names, const Frame& frame) {
   return {.service = function % 2 == 1 ? "TPDO" : "RPDO",
           .node = node,
           .text = fmt::format("{} {}{}", (function - 1) / 2, names.node(node),
-                              frame.rtr ? " asked for" : "")};
+                              frame.rtr ? " remote request" : "")};
 }
 
 }  // namespace takt

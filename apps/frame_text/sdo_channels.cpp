@@ -84,7 +84,7 @@ std::optional<FrameMeaning> SdoChannels::meaning(const Frame& frame) {
   if (frame.rtr) return FrameMeaning{"SDO", found->node, who + " remote request"};
   return FrameMeaning{.service = "SDO",
                       .node = found->node,
-                      .text = asks ? who + " asked: " + found->text.request(frame)
+                      .text = asks ? who + " is asked: " + found->text.request(frame)
                                    : who + " answers: " + found->text.answer(frame)};
 }
 

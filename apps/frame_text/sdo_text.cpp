@@ -39,7 +39,7 @@ std::string_view SdoText::toggle_text(std::optional<bool>& last, const Frame& fr
   const bool toggle = sdo_toggle(frame);
   const bool wrong = toggle != !last.value_or(true);
   last = toggle;
-  return wrong ? ", its toggle bit is wrong" : "";
+  return wrong ? ", the toggle bit is wrong" : "";
 }
 
 /// Describes the frame that names the object and, in an expedited transfer, holds its value.
@@ -63,7 +63,7 @@ std::string SdoText::segment(const Frame& frame, std::string_view toggled, const
   std::string length;
   if (transfer_.announced && *transfer_.announced != transfer_.length) {
     length =
-        fmt::format(", {} bytes where {} were announced", transfer_.length, *transfer_.announced);
+        fmt::format(", {} bytes, but {} were announced", transfer_.length, *transfer_.announced);
   }
   if (transfer_.truncated) return text + ", the last" + length;
   return fmt::format("{} {} = {} (last segment{}{})", verb, object(),
@@ -108,7 +108,7 @@ void SdoText::lose_block() noexcept {
 }
 
 std::string SdoText::request(const Frame& frame) {
-  if (frame.length != 8) return fmt::format("of {} bytes (always 8)", frame.length);
+  if (frame.length != 8) return fmt::format("frame of {} bytes instead of 8", frame.length);
   const SdoRequest command = sdo_request(frame);
   const bool segments = block_.in_segments() && !block_.is_over(frame);
   const bool part = block_.uploads()
@@ -141,7 +141,7 @@ std::string SdoText::request(const Frame& frame) {
 }
 
 std::string SdoText::answer(const Frame& frame) {
-  if (frame.length != 8) return fmt::format("of {} bytes (always 8)", frame.length);
+  if (frame.length != 8) return fmt::format("frame of {} bytes instead of 8", frame.length);
   const SdoAnswer command = sdo_answer(frame);
   const bool part = block_.uploads() ? block_.in_segments() || command == SdoAnswer::block_upload
                                      : command == SdoAnswer::block_download;

@@ -196,7 +196,7 @@ void ignore_children(std::vector<Row>& rows) {
     if (parent.leaf) continue;
     const bool wrong = parent.unknown || (parent.key.fate == KeyFate::wrong && parent.wrong_type);
     if (parent.key.fate != KeyFate::ignored && !wrong) continue;
-    const std::string why = wrong ? "stands in `" + parent.key.path + "`" : parent.key.why;
+    const std::string why = wrong ? "is part of `" + parent.key.path + "`" : parent.key.why;
     for (Row& row : rows) {
       if (is_within(row, parent.key.path)) ignore(row, why);
     }
@@ -248,7 +248,7 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
       if (count == nodes.size()) {
         ignore(row, "each node has its own `" + pair.key + "`, which replaces this one as a whole");
       } else if (row.leaf && row.key.fate == KeyFate::used) {
-        row.key.why = why_used(row) + "; not of " + own + " with its own `" + pair.key + "`";
+        row.key.why = why_used(row) + "; not for " + own + " with its own `" + pair.key + "`";
       }
     }
   }
@@ -305,9 +305,9 @@ void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
       ImportedKey& key = found->second->key;
       key.fate = KeyFate::suspicious;
       key.why =
-          "takt takes this one; ros2_canopen (cogen) lets the one of `defaults` win: the machine "
-          "has run with " +
-          (value_text(*common).empty() ? "that" : '`' + value_text(*common) + '`');
+          "takt uses this value; ros2_canopen (cogen) uses that of `defaults`: the machine has run "
+          "with " +
+          (value_text(*common).empty() ? "that value" : '`' + value_text(*common) + '`');
     }
   }
 }

@@ -107,7 +107,7 @@ class Importer {
       wrong({}, "no-topology",
             "there is no [" +
                 (number_ <= 1 ? std::string{"Topology"} : "Topology" + std::to_string(number_)) +
-                "]: this is no nodelist.cpj of CiA 306-3, or has no such network");
+                "]: the file is not a nodelist.cpj of CiA 306-3, or has no such network");
       return finish();
     }
     for (const IniEntry& entry : file.entries(*topology)) read(entry);
@@ -131,8 +131,8 @@ class Importer {
       const bool other = name.starts_with("topology");
       report_.note(section.pos, "unused-key",
                    "[" + to_utf8(section.name) + "] " +
-                       (other ? "is another network: `--network` names it"
-                              : "is not of a nodelist.cpj; it was left out"));
+                       (other ? "is another network; `--network` chooses a network"
+                              : "is not a section of a nodelist.cpj; takt left it out"));
     }
     return found;
   }
@@ -160,7 +160,7 @@ class Importer {
       count_ = values_.read_count(entry.value, 127, entry.key, entry.pos());
       count_row_ = add(entry, KeyFate::used, "compared with the nodes that are listed");
     } else if (key == "netrefd") {
-      add(entry, KeyFate::ignored, "a reference for people");
+      add(entry, KeyFate::ignored, "a reference for readers");
     } else if (key == "edsbasename") {
       base_ = slashes(to_utf8(entry.value));
       add(entry, KeyFate::used, "second folder for device files");
@@ -182,13 +182,13 @@ class Importer {
     if (what == "present") {
       node.is_present = values_.read_flag(entry.value, entry.key, entry.pos());
       node.present = add(entry, node.is_present ? KeyFate::used : KeyFate::ignored,
-                         node.is_present ? "" : "the node is not there: it was left out");
+                         node.is_present ? "" : "the node is not present; takt left it out");
     } else if (what == "name") {
       node.name = add(entry, KeyFate::used, "name of the node");
     } else if (what == "dcfname") {
-      node.dcf = add(entry, KeyFate::used, "its device file");
+      node.dcf = add(entry, KeyFate::used, "device file of the node");
     } else if (what == "refd") {
-      add(entry, KeyFate::ignored, "a reference for people");
+      add(entry, KeyFate::ignored, "a reference for readers");
     } else {
       add(entry, KeyFate::ignored, "not a key of CiA 306-3");
     }
@@ -199,7 +199,7 @@ class Importer {
         std::ranges::count_if(nodes_, [](const auto& node) { return node.second.is_present; }));
     const bool same = count_ && (*count_ == listed || *count_ == nodes_.size());
     if (same) return;
-    const std::string why = "there are " + std::to_string(listed) + " nodes that are present";
+    const std::string why = "the file lists " + std::to_string(listed) + " nodes as present";
     if (count_row_) {
       rows_[*count_row_].fate = KeyFate::suspicious;
       rows_[*count_row_].why = why;
@@ -225,7 +225,7 @@ class Importer {
     if (!node.dcf) {
       wrong(node.pos, "missing-key",
             "node " + std::to_string(id) + " has no Node" + std::to_string(id) +
-                "DCFName: taktd needs its DCF or EDS");
+                "DCFName: taktd needs the DCF or EDS of the node");
       return;
     }
     find_file(id, node);
@@ -267,12 +267,12 @@ class Importer {
     const auto& said = file.dictionary.commissioning;
     if (said.node_id && said.node_id->value() != id) {
       row.fate = KeyFate::suspicious;
-      row.why = "its NodeID is " + std::to_string(said.node_id->value()) + "; the project's " +
-                std::to_string(id) + " counts";
+      row.why = "the NodeID of the file is " + std::to_string(said.node_id->value()) +
+                "; takt uses node id " + std::to_string(id) + " of the project";
     }
     if (said.manager) {
       row.fate = KeyFate::ignored;
-      row.why = "CANopenManager=1: this is the master, which takt is";
+      row.why = "CANopenManager=1: this is the master, whose place takt takes";
       master_ = id;
       node.is_present = false;
       return;
@@ -293,7 +293,8 @@ class Importer {
 
   void write() {
     const auto master = master_id();
-    if (!master) return wrong({}, "no-free-id", "all 127 ids are taken: none is left for takt");
+    if (!master)
+      return wrong({}, "no-free-id", "all 127 node ids are taken: no id is left for takt");
     yaml_ = "# from " + cpj_.filename().string() + ", [" + to_utf8(title_) + "]\n";
     yaml_ += "bus:\n  name: " + plain_name(name_, "bus") + "\n" + bitrate_line();
     yaml_ += "master:\n  node_id: " + std::to_string(*master) +
@@ -316,11 +317,11 @@ class Importer {
       return "  bitrate_kbit: " + std::to_string(*bitrates_.begin()) + "  # Baudrate of the DCFs\n";
     }
     const bool none = bitrates_.empty();
-    report_.warning({}, "bitrate",
-                    std::string{none ? "no DCF says its Baudrate" : "the DCFs differ in Baudrate"} +
-                        ": `bitrate_kbit` was set to " +
-                        std::to_string(none ? default_bitrate : *bitrates_.rbegin()) +
-                        "; correct it");
+    report_.warning(
+        {}, "bitrate",
+        std::string{none ? "no DCF contains a Baudrate" : "the DCFs differ in Baudrate"} +
+            ": `bitrate_kbit` was set to " +
+            std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "; correct this value");
     return "  bitrate_kbit: " + std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "\n";
   }
 

@@ -19,9 +19,9 @@ std::string_view key_of(ObjectKey object) {
 }
 
 std::string_view remedy(std::string_view key) {
-  if (key == "heartbeat_producer") return "`heartbeat_producer: 0`: none";
-  if (key == "heartbeat_consumer") return "`heartbeat_consumer: false`: it does not";
-  return "an entry in `sdo` has a value of its own";
+  if (key == "heartbeat_producer") return "`heartbeat_producer: 0` switches it off";
+  if (key == "heartbeat_consumer") return "`heartbeat_consumer: false` switches it off";
+  return "an entry in `sdo` sets another value";
 }
 
 class Unasked {
@@ -54,7 +54,7 @@ class Unasked {
     if (said || plan_.master_heartbeat == Time{}) return {};
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(plan_.master_heartbeat);
     return {"the master: heartbeat every " + std::to_string(ms.count()) +
-            " ms; `heartbeat_producer: 0`: none"};
+            " ms; `heartbeat_producer: 0` switches it off"};
   }
 
   void add(const NodePlan& node, const BootStep& step) {

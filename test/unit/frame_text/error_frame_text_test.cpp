@@ -31,7 +31,7 @@ TEST(ErrorFrameText, ChangesOfTheControllersStateAreTold) {
 TEST(ErrorFrameText, ErrorsOfSingleFramesNameTheirPlace) {
   EXPECT_EQ(read("(1.0) can0 20000002#0B00000000000000"), "arbitration lost in bit 11");
   EXPECT_EQ(read("(1.0) can0 20000020#0000000000000000"),
-            "nobody acknowledged a frame (alone on the bus, or the wrong bit rate?)");
+            "no node acknowledged a frame (alone on the bus, or the wrong bit rate?)");
   EXPECT_EQ(read("(1.0) can0 20000088#00000408000000A0"),
             "protocol error: bit stuffing, in the CRC; bus error");
   EXPECT_EQ(read("(1.0) can0 20000008#0000800A00000000"),
@@ -42,7 +42,7 @@ TEST(ErrorFrameText, WhatIsCutShortOrUnknownIsNoHarm) {
   EXPECT_EQ(error_frame_text(0, {}), "error frame of the controller");
   EXPECT_EQ(error_frame_text(0x00000002, {}), "arbitration lost");
   EXPECT_EQ(error_frame_text(0x00000004, std::array<std::uint8_t, 1>{0x55}),
-            "controller trouble; error counters: transmit 0, receive 0");
+            "controller fault; error counters: transmit 0, receive 0");
 }
 
 TEST(ErrorFrameText, TheLineKeepsItsFlag) {

@@ -29,7 +29,7 @@ TEST_F(LssTextTest, EveryRequestOfTheLssMasterIsNamed) {
   EXPECT_EQ(plain(0x7E5, {0x13, 0x00, 0x09, 0, 0, 0, 0, 0}),
             "LSS bit rate := found by the device itself (table 0, entry 9)");
   EXPECT_EQ(plain(0x7E5, {0x15, 0xE8, 0x03, 0, 0, 0, 0, 0}),
-            "LSS activate the bit rate after 1000 ms of silence, speak again after 2000 ms");
+            "LSS activate the bit rate after 1000 ms of silence, send again after 2000 ms");
   EXPECT_EQ(plain(0x7E5, {0x17, 0, 0, 0, 0, 0, 0, 0}), "LSS store configuration");
   EXPECT_EQ(plain(0x7E5, {0x5B, 0, 0, 0, 0, 0, 0, 0}), "LSS inquire product code");
   EXPECT_EQ(plain(0x7E5, {0x5E, 0, 0, 0, 0, 0, 0, 0}), "LSS inquire node id");
@@ -37,7 +37,7 @@ TEST_F(LssTextTest, EveryRequestOfTheLssMasterIsNamed) {
   EXPECT_EQ(plain(0x7E5, {0x4B, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0}),
             "LSS identify serial to 0xFFFFFFFF");
   EXPECT_EQ(plain(0x7E5, {0x4C, 0, 0, 0, 0, 0, 0, 0}), "LSS who has no node id?");
-  EXPECT_EQ(plain(0x7E5, {0x04, 0x01}), "LSS of 2 bytes (always 8): 04 01");
+  EXPECT_EQ(plain(0x7E5, {0x04, 0x01}), "LSS has 2 bytes instead of 8: 04 01");
 }
 
 TEST_F(LssTextTest, EveryAnswerOfAnLssSlaveIsNamed) {
@@ -46,13 +46,14 @@ TEST_F(LssTextTest, EveryAnswerOfAnLssSlaveIsNamed) {
   EXPECT_EQ(plain(0x7E4, {0x13, 0x01, 0, 0, 0, 0, 0, 0}),
             "LSS bit rate: refused, the device does not have this bit rate (error 1)");
   EXPECT_EQ(plain(0x7E4, {0x17, 0x02, 0, 0, 0, 0, 0, 0}),
-            "LSS store configuration: refused, its memory can't be written (error 2)");
+            "LSS store configuration: refused, the memory can't be written (error 2)");
   EXPECT_EQ(plain(0x7E4, {0x17, 0xFF, 0x2A, 0, 0, 0, 0, 0}),
             "LSS store configuration: refused, device error 42");
   EXPECT_EQ(plain(0x7E4, {0x5D, 0xA5, 0, 0, 0, 0, 0, 0}), "LSS serial number is 0x000000A5");
   EXPECT_EQ(plain(0x7E4, {0x5E, 0xFF, 0, 0, 0, 0, 0, 0}), "LSS node id is none (255)");
-  EXPECT_EQ(plain(0x7E4, {0x4F, 0, 0, 0, 0, 0, 0, 0}), "LSS here (identify or fastscan)");
-  EXPECT_EQ(plain(0x7E4, {0x50, 0, 0, 0, 0, 0, 0, 0}), "LSS here, without node id");
+  EXPECT_EQ(plain(0x7E4, {0x4F, 0, 0, 0, 0, 0, 0, 0}),
+            "LSS a device answers (identify or fastscan)");
+  EXPECT_EQ(plain(0x7E4, {0x50, 0, 0, 0, 0, 0, 0, 0}), "LSS a device without node id answers");
 }
 
 TEST_F(LssTextTest, AFastscanTellsWhatItAsks) {

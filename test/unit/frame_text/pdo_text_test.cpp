@@ -13,7 +13,7 @@ TEST_F(PdoTextTest, AMappedPdoShowsNamesValuesAndUnits) {
 }
 
 TEST_F(PdoTextTest, APdoThatIsTooShortSaysSo) {
-  EXPECT_EQ(named(0x185, {0x37, 0x06}), "TPDO 1 shoulder: 2 bytes, its mapping has 7");
+  EXPECT_EQ(named(0x185, {0x37, 0x06}), "TPDO 1 shoulder: 2 bytes, but the mapping has 7");
 }
 
 TEST_F(PdoTextTest, WithoutANetworkPdosAreThoseOfThePredefinedSet) {
@@ -26,7 +26,7 @@ TEST_F(PdoTextTest, WithoutANetworkPdosAreThoseOfThePredefinedSet) {
 TEST_F(PdoTextTest, APdoThatIsTooLongShowsItsMappedPart) {
   EXPECT_EQ(named(0x185, {0x37, 0x06, 0, 0, 0, 0, 0x08, 0xFF}),
             "TPDO 1 shoulder  statusword=0x0637  position_actual_value=0 rad  "
-            "modes_of_operation_display=8  (8 bytes, its mapping has 7)");
+            "modes_of_operation_display=8  (8 bytes, but the mapping has 7)");
 }
 
 TEST_F(PdoTextTest, MultiplexedPdosNameTheirObject) {

@@ -26,7 +26,7 @@ TEST_F(Import, ADefaultThatEachNodeReplacesIsIgnored) {
   EXPECT_EQ(key(bus, "defaults.sdo[1]").fate, KeyFate::ignored);
   EXPECT_THAT(key(bus, "defaults.sdo[1]").why, HasSubstr("each node has its own `sdo`"));
   EXPECT_EQ(key(bus, "defaults.tpdo.2.enabled").fate, KeyFate::used);
-  EXPECT_THAT(key(bus, "defaults.tpdo.2.enabled").why, HasSubstr("not of `arm`"));
+  EXPECT_THAT(key(bus, "defaults.tpdo.2.enabled").why, HasSubstr("not for `arm`"));
   EXPECT_EQ(key(bus, "defaults.dcf").fate, KeyFate::used);
 }
 
@@ -150,13 +150,13 @@ TEST_F(Import, TellsWhatIsDoneWithoutAWord) {
 
   EXPECT_THAT(bus.unasked,
               testing::ElementsAre(
-                  "the master: heartbeat every 100 ms; `heartbeat_producer: 0`: none",
+                  "the master: heartbeat every 100 ms; `heartbeat_producer: 0` switches it off",
                   "1016:01 of `arm`, `neck`: the device watches the master (node 1) for 300 ms; "
-                  "`heartbeat_consumer: false`: it does not",
+                  "`heartbeat_consumer: false` switches it off",
                   "60C2:01 of `arm`, `leg`: interpolation period = SYNC period; an entry in `sdo` "
-                  "has a value of its own",
-                  "1017:00 of `leg`, `neck`: heartbeat every 100 ms; `heartbeat_producer: 0`: "
-                  "none"));
+                  "sets another value",
+                  "1017:00 of `leg`, `neck`: heartbeat every 100 ms; `heartbeat_producer: 0` "
+                  "switches it off"));
 }
 
 TEST_F(Import, ATaktFileThatSaysAllHasNothingUnasked) {

@@ -127,7 +127,8 @@ TEST_F(Nodelist, AWrongCountAndTwoEqualNamesAreTold) {
   EXPECT_TRUE(imported.report.usable);
   EXPECT_EQ(key(imported.report, "TOPOLOGY.Nodes").fate, KeyFate::suspicious);
   EXPECT_THAT(imported.yaml, HasSubstr("  io_6:\n    node_id: 6\n"));
-  EXPECT_THAT(key(imported.report, "TOPOLOGY.Node6DCFName").why, HasSubstr("its NodeID is 5"));
+  EXPECT_THAT(key(imported.report, "TOPOLOGY.Node6DCFName").why,
+              HasSubstr("the NodeID of the file is 5"));
 }
 
 }  // namespace
