@@ -83,7 +83,7 @@ bool DeviceFiles::add_file(const fs::path& file, Findings& findings) {
                         {},
                         Severity::error,
                         "no-device-file",
-                        fs::is_directory(file, ignored) ? "is a folder: that is for --eds-dir"
+                        fs::is_directory(file, ignored) ? "is a folder: give folders with --eds-dir"
                                                         : "can't be read as an EDS or DCF"});
     return false;
   }

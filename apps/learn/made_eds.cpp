@@ -261,7 +261,7 @@ std::string made_eds(const LearnedNode& node, const std::string& recording,
         objects, [&](const Object& o) { return o.index >= first && o.index < first + 0x200; });
   };
   std::string text = fmt::format(
-      "; What a recording shows of node {}; the vendor's EDS says more.\n"
+      "; Objects of node {} that a recording shows; the vendor's EDS has more.\n"
       "[FileInfo]\nFileName={}\nFileVersion=1\nFileRevision=0\nEDSVersion=4.0\n"
       "Description=made by takt learn from {}\n\n",
       node.id, file_name, recording);

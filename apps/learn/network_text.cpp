@@ -115,12 +115,12 @@ class NetworkText {
       heartbeat_ms_ = heartbeat_of_master(bus_.nodes.at(*own));
     } else {
       tell(Severity::note, "no-master-id", 0,
-           fmt::format("nothing in the recording says which node id the master has: {} is taken",
+           fmt::format("the recording does not show the node id of the master: takt uses {}",
                        master_id_));
     }
     if (const auto strangers = bus_.strangers(); !strangers.empty()) {
       tell(Severity::note, "nobody-there", bus_.nodes.at(strangers.front()).first_line,
-           fmt::format("{} asked by SDO and never heard ({}{}): {} left out",
+           fmt::format("{} asked by SDO, but sent no frame ({}{}): {} left out",
                        strangers.size() == 1 ? "1 node id was"
                                              : fmt::format("{} node ids were", strangers.size()),
                        fmt::join(strangers | std::views::take(8), ", "),
@@ -152,8 +152,8 @@ class NetworkText {
     names_[node.id] = name;
     out_.made_files[name] = text;
     tell(Severity::warning, "made-device-file", node.first_line,
-         fmt::format("node {}: no device file fits (vendor 0x{:08X}, product 0x{:08X}); {} is made "
-                     "of what the recording shows. With the vendor's: --eds {}=FILE or --eds-dir",
+         fmt::format("node {}: no device file fits (vendor 0x{:08X}, product 0x{:08X}); takt made "
+                     "{} from the recording. To use the vendor's file: --eds {}=FILE or --eds-dir",
                      node.id, identity.vendor_id, identity.product_code, name, node.id));
   }
 
@@ -179,7 +179,7 @@ class NetworkText {
     }
     if (match.other_revision) {
       tell(Severity::note, "other-revision", node.first_line,
-           fmt::format("node {}: the device says revision 0x{:08X}, {} is of another", node.id,
+           fmt::format("node {}: the device has revision 0x{:08X}, {} has another", node.id,
                        identity.revision_number, match.path.string()));
     }
   }
@@ -222,11 +222,11 @@ class NetworkText {
     const std::string few =
         fmt::format("{} frames of SYNC do not show `sync_period`", seen.frames.count());
     if (sync_.period_us == 0) {
-      tell(Severity::warning, "few-frames", 0, few + ": it is left out");
+      tell(Severity::warning, "few-frames", 0, few + ": takt left the key out");
     } else {
       tell(Severity::note, "few-frames", 0,
-           few + (written != 0 ? ": it is what was written to 0x1006"
-                               : ": it is the shortest time between two"));
+           few + (written != 0 ? ": takt uses the value that was written to 0x1006"
+                               : ": takt uses the shortest time between two frames"));
     }
   }
 
@@ -252,12 +252,13 @@ class NetworkText {
         fmt::format("{} frames of TIME do not show `time_period`: ", bus_.time.count());
     if (ms < shortest_time_ms || ms > longest_time_ms) {
       tell(Severity::warning, "few-frames", 0,
-           count + fmt::format("{} ms is none that it can be, it is left out", ms));
+           count + fmt::format("{} ms is out of range, so takt left the key out", ms));
       return;
     }
     time_ms_ = ms;
     if (!period) {
-      tell(Severity::note, "few-frames", 0, count + "it is the shortest time between two");
+      tell(Severity::note, "few-frames", 0,
+           count + "takt uses the shortest time between two frames");
     }
   }
 
@@ -329,8 +330,8 @@ class NetworkText {
     }
     if (listed != 0) {
       tell(Severity::warning, "unknown-traffic", 0,
-           fmt::format("frames of {} identifiers are explained by nothing in the recording; the "
-                       "network file lists them",
+           fmt::format("nothing in the recording explains the frames of {} identifiers; the "
+                       "network file lists these identifiers",
                        listed));
     }
     if (bus_.time.count() != 0 && time_ms_ == 0) {
@@ -339,7 +340,7 @@ class NetworkText {
     }
     if (bus_.lss != 0) out_.text += fmt::format("# {} frames of LSS (0x7E5, 0x7E4).\n", bus_.lss);
     if (bus_.more_traffic != 0) {
-      out_.text += fmt::format("# {} frames of still more identifiers.\n", bus_.more_traffic);
+      out_.text += fmt::format("# {} frames of further identifiers.\n", bus_.more_traffic);
     }
     if (bus_.error_frames != 0) {
       out_.text += fmt::format("# {} error frames.\n", bus_.error_frames);
@@ -354,7 +355,7 @@ class NetworkText {
     const unsigned node = id.id() & 0x7FU;
     if (node == 0) return {};
     return fmt::format(
-        " ({}PDO{} of node {} by the predefined set, its mapping is not in the "
+        " ({}PDO{} of node {} by the predefined connection set, the mapping is not in the "
         "recording)",
         function % 2 == 0 ? 'T' : 'R', function / 2 + 1, node);
   }

@@ -131,9 +131,9 @@ class NodeText {
     } else if (measured && !node_.guarded()) {
       const auto ms = as_configured_ms(measured);
       line("heartbeat_producer: {}   # {}", ms.value_or(0),
-           ms ? "as measured" : "measured is none that 0x1017 can hold");
+           ms ? "as measured" : "0x1017 can't hold the measured time");
     } else {
-      line("heartbeat_producer: 0   # none in the recording");
+      line("heartbeat_producer: 0   # no heartbeat in the recording");
     }
   }
 
@@ -150,7 +150,7 @@ class NodeText {
       const std::uint64_t ms = entry & 0xFFFFU;
       if (producer == 0 || ms == 0) continue;
       if (producer != what_.master_id) {
-        line("# {} was {}: it watches node {} for {} ms", to_string(key),
+        line("# {} was {}: the device watches node {} for {} ms", to_string(key),
              value.written ? "written" : "read", producer, ms);
         continue;
       }
@@ -187,7 +187,7 @@ class NodeText {
     if (unmapped_.empty()) return;
     tell(Severity::note, "no-mapping", node_.first_line,
          "the mapping of" + unmapped_ + " is not in the recording: " +
-             (what_.made ? "the vendor's EDS may have it" : "that of the device file is taken"));
+             (what_.made ? "the vendor's EDS may have it" : "takt uses that of the device file"));
   }
 
   void write_pdo(const LearnedPdo& pdo) {
@@ -222,7 +222,7 @@ class NodeText {
     const bool unknown = mapping.empty() && what_.made;
     if (!mapping.empty()) add(mapping);
     text_ += fmt::format("      {}{}: {{{}}}{}\n", unknown ? "# " : "", pdo.number, keys,
-                         unknown ? "  its mapping is not in the recording" : "");
+                         unknown ? "  the mapping is not in the recording" : "");
   }
 
   /// Adds `event_timer` to an event-driven RPDO that the master sends at a steady period.
@@ -296,7 +296,8 @@ class NodeText {
     if (sub->access == Access::ro || sub->access == Access::constant) {
       return "read-only in " + what_.dcf;
     }
-    if (!sdo_value_text(write.transfer.value, sub->type)) return "no value of a network file";
+    if (!sdo_value_text(write.transfer.value, sub->type))
+      return "a network file can't hold this value";
     return {};
   }
 
@@ -321,11 +322,12 @@ class NodeText {
       return fmt::format("{:08X} {}", *write.transfer.abort_code,
                          abort_text(*write.transfer.abort_code));
     });
-    comment_writes(node_.later, "written while OPERATIONAL, so no part of the boot",
+    comment_writes(node_.later, "written while OPERATIONAL, so not part of the boot",
                    [](const LearnedWrite&) { return std::string{}; });
     if (!node_.boots.empty() && !node_.boots.back().started && !node_.boots.back().writes.empty()) {
       tell(Severity::warning, "not-started", node_.first_line,
-           "it was not started in this recording: its configuration may go on after the end");
+           "the master did not start the node in this recording: the configuration may continue "
+           "after its end");
     }
   }
 

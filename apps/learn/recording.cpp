@@ -73,7 +73,7 @@ void Recording::add(std::string_view text, std::uint32_t line) {
   if (!parsed) {
     if (!is_remark(text) && ++strange_ <= 3) {
       tell(Severity::warning, "not-candump", line,
-           "not a frame of candump, .trc or .asc (or CAN FD), left out");
+           "not a frame of candump, .trc or .asc, or a CAN FD frame; line left out");
     }
     return;
   }
@@ -268,12 +268,12 @@ LearnedBus Recording::take() {
   if (!early_.empty()) choose(early_.front().interface);
   if (strange_ > 3) {
     tell(Severity::warning, "not-candump", 0,
-         std::to_string(strange_) + " lines are no frames and were left out");
+         std::to_string(strange_) + " lines hold no frame and were left out");
   }
   if (backward_ >= 4 && backward_ > bus_.frames / 8) {
     tell(Severity::error, "no-times", 0,
-         "the times go back again and again, as differences do (candump -td): no period is right; "
-         "record with `candump -L`");
+         "the times go back repeatedly, as time differences do (candump -td), so no period is "
+         "right; record with `candump -L`");
   }
   if (foreign_ != 0) {
     tell(Severity::note, "other-interface", 0,

@@ -64,7 +64,7 @@ bool MoveRun::hear_bus() {
   while (stop_ == 0 && Clock::now() < until) {
     if (group_.wait(std::chrono::milliseconds{50}) == Input::fresh) return true;
   }
-  progress_.say(group_.bus().empty() ? "no bus heard: is taktd running, with the same LCM URL?"
+  progress_.say(group_.bus().empty() ? "no bus was heard: is taktd running, with the same LCM URL?"
                                      : "bus " + group_.bus() + " sends no image");
   return false;
 }
@@ -78,7 +78,7 @@ bool MoveRun::fits() {
   }
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
     if (axes_.signals(i).position && axes_.signals(i).target_position) continue;
-    progress_.say(axes_.name(i) + " can't be moved: 6064 and 607A are not both in its PDOs");
+    progress_.say(axes_.name(i) + " can't be moved: its PDOs do not contain both 6064 and 607A");
     return false;
   }
   const auto targets = static_cast<AxisControl::Index>(options_.to.size());
@@ -129,7 +129,7 @@ bool MoveRun::devices_answer() {
   if (hold_until(all_answer, options_.wait_seconds)) return true;
   if (stop_ != 0) return false;
   for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-    if (!answers(i)) progress_.say(axes_.name(i) + ": no sign of the device (did it boot?)");
+    if (!answers(i)) progress_.say(axes_.name(i) + ": the device does not answer (did it boot?)");
   }
   return false;
 }
@@ -194,7 +194,7 @@ bool MoveRun::swing(double seconds) {
     reduced += fmt::format("{}{} {:.4g} {}", reduced.empty() ? "" : ", ", axes_.name(i), within,
                            units_[axis]);
   }
-  if (!reduced.empty()) progress_.say("amplitude reduced to keep to the limits: " + reduced);
+  if (!reduced.empty()) progress_.say("amplitude reduced to stay within the limits: " + reduced);
   const double longer = sine.duration() - seconds;
   progress_.say(fmt::format(
       "sine of {:g} Hz, {:.2f} s{}", options_.frequency, sine.duration(),
@@ -256,9 +256,10 @@ Hold MoveRun::take_input(Input input) {
                      (holding_ == Hold::yes && input == Input::nothing);
   if (stale && holding_ == Hold::no) {
     ++holds_;
-    progress_.say(fmt::format("input is older than {} cycles: holding", options_.stale_cycles));
+    progress_.say(
+        fmt::format("the input is older than {} cycles: the motion holds", options_.stale_cycles));
   } else if (!stale && holding_ == Hold::yes) {
-    progress_.say("input is fresh again: going on");
+    progress_.say("the input is fresh again: the motion continues");
   }
   holding_ = stale ? Hold::yes : Hold::no;
   return stale || stop_ != 0 ? Hold::yes : Hold::no;
@@ -266,8 +267,8 @@ Hold MoveRun::take_input(Input input) {
 
 bool MoveRun::not_taken() {
   progress_.say(
-      fmt::format("images show for {:g} s that no set-point is sent: stopping (takt "
-                  "status shows who holds the axes)",
+      fmt::format("the images show for {:g} s that no set-point is sent: stopping (takt "
+                  "status shows which program holds the axes)",
                   longest_refusal));
   return false;
 }
@@ -317,7 +318,7 @@ std::string MoveRun::verdict() const {
   if (following_.samples() == 0) return "The axes never moved.";
   if (!too_far().empty()) return "The axes did NOT follow: " + too_far() + ".";
   return good_ ? "The axes followed."
-               : "The motion did not come to its end; as far as it went, the axes followed.";
+               : "The motion did not reach its end; up to that point the axes followed.";
 }
 
 int MoveRun::sum_up() const {

@@ -19,15 +19,16 @@ std::string finite(const std::string& text) {
 CLI::Validator positive() { return CLI::PositiveNumber & CLI::Validator{finite, ""}; }
 
 void add_motion_options(CLI::App& app, MoveOptions& options) {
-  app.add_option("--amplitude", options.amplitude, "of the sine")->check(positive());
-  app.add_option("--frequency", options.frequency, "of the sine, Hz")->check(positive());
-  app.add_option("--velocity", options.velocity, "limit, unit/s")->check(positive());
-  app.add_option("--acceleration", options.acceleration, "limit, unit/s^2")->check(positive());
-  app.add_option("--jerk", options.jerk, "limit, unit/s^3")->check(positive());
+  app.add_option("--amplitude", options.amplitude, "amplitude of the sine")->check(positive());
+  app.add_option("--frequency", options.frequency, "frequency of the sine, Hz")->check(positive());
+  app.add_option("--velocity", options.velocity, "velocity limit, unit/s")->check(positive());
+  app.add_option("--acceleration", options.acceleration, "acceleration limit, unit/s^2")
+      ->check(positive());
+  app.add_option("--jerk", options.jerk, "jerk limit, unit/s^3")->check(positive());
   app.add_option("--following-limit", options.following_limit,
                  "largest following error for exit code 0")
       ->check(positive());
-  app.add_option("--stale", options.stale_cycles, "hold when the image is older, cycles")
+  app.add_option("--stale", options.stale_cycles, "hold if the image is older than this, cycles")
       ->check(CLI::Range(1, 100000));
 }
 
@@ -40,28 +41,28 @@ ParsedMove parse_move(int argc, char** argv) {
                "takt-move"};
   app.footer(
       "Example:  takt-move lift --to 1.57,0.5 --sine --for 20s\n"
-      "Lengths are in the unit of each axis (rad, m; counts where none is configured).\n"
-      "Exit codes: 0 the axes followed, 1 they did not, or not to the end, 2 wrong use, or "
-      "no axis to move, 3 no daemon heard.");
+      "Lengths are in the unit of each axis (rad, m; counts if no unit is configured).\n"
+      "Exit codes: 0 the axes followed, 1 the axes did not follow or did not reach the end,\n"
+      "2 wrong use or no axis to move, 3 no daemon was heard.");
   app.set_version_flag("--version", "takt-move " TAKT_VERSION);
-  app.add_option("bus", options.bus, "name of the bus (default: the first that is heard)");
-  app.add_option("--lcm-url", options.lcm_url, "as LCM_DEFAULT_URL");
-  app.add_option("--keys", options.keys, "key file, where the daemon has one; else TAKT_KEYS")
+  app.add_option("bus", options.bus, "name of the bus (default: the first bus that is heard)");
+  app.add_option("--lcm-url", options.lcm_url, "LCM URL of the daemon; default: LCM_DEFAULT_URL");
+  app.add_option("--keys", options.keys, "key file, if the daemon has one; default: TAKT_KEYS")
       ->type_name("FILE")
       ->envname("TAKT_KEYS");
   app.add_flag("--check-images", options.check_images,
-               "believe only what the daemon has signed (`authenticate: images`); else "
-               "TAKT_CHECK_IMAGES=true")
+               "accept only messages that the daemon has signed (see\n"
+               "`authenticate: images`); TAKT_CHECK_IMAGES=true does the same")
       ->envname("TAKT_CHECK_IMAGES");
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");
   to->delimiter(',')->check(finite);
-  app.add_flag("--sine", only_sine, "a sine (without --to: only a sine)");
-  app.add_option("--for", options.seconds, "time of all motion")
+  app.add_flag("--sine", only_sine, "move in a sine (without --to: only in a sine)");
+  app.add_option("--for", options.seconds, "duration of the whole motion")
       ->transform(CLI::AsNumberWithUnit(
           std::map<std::string, double>{{"s", 1.0}, {"ms", 1e-3}, {"min", 60.0}},
           CLI::AsNumberWithUnit::CASE_INSENSITIVE, "TIME"))
       ->check(positive());
-  app.add_option("--wait", options.wait_seconds, "for the daemon and its devices, s")
+  app.add_option("--wait", options.wait_seconds, "longest wait for the daemon and its devices, s")
       ->check(positive());
   add_motion_options(app, options);
   if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty()) {

@@ -15,7 +15,7 @@ In each cycle of the bus, the daemon publishes an image of all inputs. This prog
 set-point for each axis from it and sends all of them in one command.
 
 If the following error of an axis exceeds its limit, or an axis leaves Operation enabled, or its PDOs
-stay away, all axes are disabled in order and the program ends with a message. It does the same after
+stop, all axes are disabled in order and the program ends with a message. It does the same after
 Ctrl-C or SIGTERM, but first slows the motion down; a second signal ends it at once. However it ends,
 it releases its outputs, and the drives take the fallback of the network file.
 
@@ -24,9 +24,9 @@ ends. It first waits up to 2 s, because the daemon holds the axes of a program t
 time to live of its last command has run out.
 
 Exit codes: 0 the axes moved, 1 an axis did not follow, another program holds it, or the motion did not
-come to its end, 2 wrong use, no axis to move or another schema, 3 no daemon heard.
+come to its end, 2 wrong use, no axis to move or another schema, 3 no daemon was heard.
 
-If the bus has keys (share/doc/security.md): TAKT_KEYS=FILE, and TAKT_CHECK_IMAGES=true to believe
+If the bus has keys (share/doc/security.md): TAKT_KEYS=FILE, and TAKT_CHECK_IMAGES=true to accept
 only images that the daemon has signed.
 """
 import argparse

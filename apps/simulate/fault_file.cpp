@@ -106,7 +106,7 @@ class Reader {
       const auto key = item.first.as<std::string>("");
       has_kind |= key == "kind";
       if (!item.second.IsScalar()) {
-        error(item.second.Mark(), "fault-value", "`" + key + "` wants a single value");
+        error(item.second.Mark(), "fault-value", "`" + key + "` needs a single value");
         continue;
       }
       read_key(fault, key, item.second, item.first.Mark());
@@ -127,7 +127,7 @@ class Reader {
     if (applications_ == 0) {
       error(entry.Mark(), "fault-kind",
             "`" + std::string{name(kind)} +
-                "` happens to programs, and there is none: add `--applications 1`");
+                "` concerns programs, but there is no program: add `--applications 1`");
     }
     for (const auto& item : entry) {
       const auto key = item.first.as<std::string>("");
@@ -145,7 +145,7 @@ class Reader {
         read_application(fault, text, mark);
       } else {
         error(item.first.Mark(), "unknown-key",
-              "`" + key + "` says nothing about `" + std::string{name(kind)} + "`");
+              "`" + key + "` has no meaning for `" + std::string{name(kind)} + "`");
       }
     }
     settle_end(fault.at, fault.until);
@@ -161,7 +161,7 @@ class Reader {
   void read_application(ProgramFault& fault, const std::string& text, const YAML::Mark& mark) {
     const auto number = integer(text);
     if (!number || *number < 1 || (applications_ != 0 && *number > applications_)) {
-      return refuse(mark, text, "an application; they are counted from 1");
+      return refuse(mark, text, "the number of an application, counted from 1");
     }
     fault.application = *number - 1;
   }

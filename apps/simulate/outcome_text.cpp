@@ -30,14 +30,14 @@ void print_bus(std::ostream& out, const SimulationOutcome& outcome) {
                      100 * bits / (rate * seconds(outcome.simulated)),
                      100 * worst / (rate * seconds(outcome.period)));
   if (outcome.wire.lost + outcome.wire.duplicated + outcome.wire.overflowed != 0) {
-    out << fmt::format("  faults       {} frames lost, {} doubled, {} found a full queue\n",
+    out << fmt::format("  faults       {} frames lost, {} duplicated, {} dropped by a full queue\n",
                        outcome.wire.lost, outcome.wire.duplicated, outcome.wire.overflowed);
   }
 }
 
 void print_sync(std::ostream& out, const SyncOnWire& sync) {
   if (sync.count < 2) {
-    out << "  SYNC         none on the wire\n";
+    out << "  SYNC         no SYNC on the wire\n";
     return;
   }
   out << fmt::format(
@@ -64,20 +64,19 @@ void print_front(std::ostream& out, const FrontOutcome& front, std::size_t axes_
       << fmt::format("  front thread {} images published, {} commands taken, {} refused{}\n",
                      front.images, front.commands_taken, refused, refusals_text(front))
       << fmt::format(
-             "               {} gaps, {} damaged messages, {} found its queue full, {} outputs "
-             "took "
-             "their fallback, {} starts\n",
+             "               {} gaps, {} damaged messages, {} dropped by a full queue, {} outputs "
+             "took their fallback, {} starts\n",
              front.gaps, front.damaged, front.lost, front.fallbacks, front.starts);
   for (const ApplicationOutcome& one : front.applications) {
     out << fmt::format(
-        "  {:12} {} images used, {} commands sent, {} messages found its queue full\n", one.name,
+        "  {:12} {} images used, {} commands sent, {} messages dropped by a full queue\n", one.name,
         one.images, one.commands, one.lost);
   }
 }
 
 void print_stop(std::ostream& out, const SimulationOutcome& outcome) {
   const bool confirmed = outcome.stop == StopResult::confirmed;
-  const char* const said = !outcome.stopped ? "NOT in its time"
+  const char* const said = !outcome.stopped ? "NOT in time"
                            : confirmed      ? "in order"
                                             : "NOT confirmed";
   out << fmt::format("  stop         {}\n", said);

@@ -119,9 +119,9 @@ void VirtualApplication::judge_hearing(Time now) {
   if (heard_++ == 0) heard_since_ = now;
   const auto enough = static_cast<std::uint64_t>(longest_deafness / plan_.cycle.period);
   if (!options_.deaf || heard_ < enough || now - heard_since_ < longest_deafness) return;
-  options_.deaf("program " + std::to_string(options_.number) + " has heard " +
-                std::to_string(heard_) + " times images in " +
-                std::to_string((now - heard_since_) / 1ms) + " ms and used none");
+  options_.deaf("program " + std::to_string(options_.number) + " has received images " +
+                std::to_string(heard_) + " times in " + std::to_string((now - heard_since_) / 1ms) +
+                " ms, but used no image");
 }
 
 void VirtualApplication::follow_image() {

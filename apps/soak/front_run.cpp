@@ -212,7 +212,7 @@ class Run {
     excused_until_ = std::max(excused_until_, in_time);
     if (daemon_.stalled_until() > image.publish_time || now <= excused_until_) return;
     verdict_.blame("each wait of the front thread ends in time",
-                   "image " + std::to_string(image.cycle) + " lay there for " +
+                   "image " + std::to_string(image.cycle) + " waited for " +
                        std::to_string((now - image.publish_time) / 1us) + " us");
   }
 
@@ -241,7 +241,7 @@ class Run {
     for (const auto& application : applications_) {
       if (leads(application)) continue;
       verdict_.blame("every application leads its axes again",
-                     application->text() + " did not within 60 s");
+                     application->text() + " does not lead all axes after 60 s");
     }
   }
 
@@ -254,7 +254,8 @@ class Run {
       cycle();
       stop_.look();
     }
-    if (!daemon_.finished()) verdict_.blame("the ordered stop ends in time", "it did not");
+    if (!daemon_.finished())
+      verdict_.blame("the ordered stop ends in time", "the stop did not end");
     for (const Time until = world_.now() + 1s; world_.now() < until;) port_.sleep_until(until);
     StatusSnapshot status;
     daemon_.master().status(status);

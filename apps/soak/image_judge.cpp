@@ -78,7 +78,7 @@ void ImageJudge::judge(const ImageView& image) {
     if (row.multiplexed() || unchanged(row, image) || find(row, rows_[i], image)) continue;
     verdict_.blame("no torn image", "TPDO" + std::to_string(row.number) + " of node " +
                                         std::to_string(row.node.value()) +
-                                        " shows values that came with no single frame");
+                                        " shows values that no single frame carried");
   }
   std::ranges::copy(image.values, last_.begin());
   cycle_ = image.cycle;

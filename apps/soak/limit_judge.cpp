@@ -195,7 +195,7 @@ void LimitJudge::judge_range(const Place& place, double value) {
     }
   }
   if (value >= low && value <= high) return;
-  blame(place, value, place.limit->range, "it is outside the range");
+  blame(place, value, place.limit->range, "the value is outside the range");
 }
 
 void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
@@ -205,8 +205,9 @@ void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
     const double most = std::ceil(rate * way.cycles) + rounding;
     if (counts <= most || !std::isfinite(rate)) return;
     blame(place, value, kind,
-          "it is " + std::to_string(std::llround(counts)) + " counts away from the one before, " +
-              std::to_string(std::llround(most)) + " are allowed");
+          "the value is " + std::to_string(std::llround(counts)) +
+              " counts away from the one before, " + std::to_string(std::llround(most)) +
+              " are allowed");
   };
   judge(place.limit->step, LimitKind::step);
   judge(place.limit->rate, place.limit->rate_of);
@@ -235,7 +236,7 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
   if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
   if (!too_sharp(place, way)) return;
   blame(place, value, LimitKind::acceleration,
-        "it is " + std::to_string(std::llround(way.length)) + " counts away in " +
+        "the value is " + std::to_string(std::llround(way.length)) + " counts away in " +
             std::to_string(way.cycles) + " cycles, after " +
             std::to_string(std::llround(place.last_way->length)) + " in " +
             std::to_string(place.last_way->cycles));
@@ -262,7 +263,7 @@ void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time n
   if (way && !free) judge_way(place, value, *way);
   if (way && !free && follows(place)) judge_bend(place, value, *way);
   if (!place.value && !free && place.limit->feedback) {
-    blame(place, value, LimitKind::step, "it is the first one, and far from the actual position");
+    blame(place, value, LimitKind::step, "the first value is far from the actual position");
   }
   place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;

@@ -46,7 +46,7 @@ void OutputJudge::sent(std::span<const Frame> frames, Time now) {
 void OutputJudge::judge_sync(const Frame& frame, Time now) {
   if (last_sync_ > Time{} && now - last_sync_ < plan_.cycle.period * 45 / 100) {
     verdict_.blame("no burst of SYNCs",
-                   std::to_string((now - last_sync_).count()) + " ns after the one before");
+                   std::to_string((now - last_sync_).count()) + " ns after the SYNC before");
   }
   last_sync_ = now;
   if (plan_.cycle.sync_overflow < 2 || frame.length == 0) return;
@@ -84,7 +84,7 @@ void OutputJudge::judge_counter(std::uint8_t counter, Time now) {
     restarted_ = never;
   } else if (now - restarted_ > patience) {
     restarted_ = never;
-    verdict_.blame("the SYNC counter has no gap", "it started at 1 without a reason");
+    verdict_.blame("the SYNC counter has no gap", "the counter restarted at 1 without a reason");
   }
 }
 
@@ -112,11 +112,11 @@ void OutputJudge::judge_pdo(const PdoRow& row, const Frame& frame, Time now) {
     const Signal& signal = plan_.layout.signals[field.signal];
     const std::uint64_t value = bits_of(frame, field.bit_offset, field.bits);
     if (lasting(signal, value) || fresh(field.signal - plan_.layout.inputs, value, now)) continue;
-    verdict_.blame("no stale output", "RPDO" + std::to_string(row.number) + " of node " +
-                                          std::to_string(row.node.value()) + " sends " +
-                                          signal.name + " = " +
-                                          hex(static_cast<std::uint32_t>(value)) +
-                                          ", which nobody has commanded within its time to live");
+    verdict_.blame("no stale output",
+                   "RPDO" + std::to_string(row.number) + " of node " +
+                       std::to_string(row.node.value()) + " sends " + signal.name + " = " +
+                       hex(static_cast<std::uint32_t>(value)) +
+                       ", which no program has commanded within its time to live");
   }
 }
 

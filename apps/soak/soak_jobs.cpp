@@ -127,12 +127,12 @@ struct Worker {
 void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
               const std::function<void(const SoakReport&)>& told) {
   std::array<int, 2> ends{};
-  if (::pipe(ends.data()) != 0) throw std::runtime_error{"no pipe for the workers"};
+  if (::pipe(ends.data()) != 0) throw std::runtime_error{"can't create a pipe for the workers"};
   std::fflush(nullptr);
   std::vector<Worker> workers(plan.jobs);
   for (std::uint32_t i = 0; i < plan.jobs; ++i) {
     workers[i].pid = ::fork();
-    if (workers[i].pid < 0) throw std::runtime_error{"no process for a worker"};
+    if (workers[i].pid < 0) throw std::runtime_error{"can't create a process for a worker"};
     if (workers[i].pid != 0) continue;
     ::close(ends[0]);
     work(network, plan, i, ends[1]);

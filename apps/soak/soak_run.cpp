@@ -151,7 +151,7 @@ class Run {
     } while (!settled() && world_.now() < limit && verdict_.good());
     if (user_.unanswered() != 0) {
       verdict_.blame("every request is answered once",
-                     std::to_string(user_.unanswered()) + " have no answer");
+                     std::to_string(user_.unanswered()) + " requests have no answer");
     }
     for (const Time until = world_.now() + 200ms; world_.now() < until;) cycle();
     nodes_.judge_end(status_);
@@ -161,7 +161,7 @@ class Run {
     loop_.request_stop();
     const Time limit = world_.now() + plan_.stop_timeout + plan_.cycle.period;
     while (!loop_.done() && world_.now() <= limit) cycle();
-    if (!loop_.done()) verdict_.blame("the ordered stop ends in time", "it did not");
+    if (!loop_.done()) verdict_.blame("the ordered stop ends in time", "the stop did not end");
   }
 
   const BusPlan& plan_;

@@ -44,7 +44,7 @@ void StopJudge::judge(StopResult result) {
   const bool any = std::ranges::any_of(axes_, &Axis::blamed);
   if (any && result == StopResult::confirmed) {
     verdict_.blame("no stop claims more than was seen",
-                   "it is confirmed, and an axis is told as not stopped");
+                   "the stop is confirmed, but an axis is reported as not stopped");
   }
   for (const Axis& axis : axes_) {
     if (axis.blamed || !axis.was_powered) continue;
@@ -54,8 +54,8 @@ void StopJudge::judge(StopResult result) {
     if (!moved && !axis.powered) continue;
     verdict_.blame(
         "no stop claims more than was seen",
-        axis.node->name + (axis.powered ? " is confirmed, and its power stage is on"
-                                        : " is confirmed, and was disabled at " +
+        axis.node->name + (axis.powered ? " is confirmed, but its power stage is on"
+                                        : " is confirmed, but was disabled at " +
                                               std::to_string(axis.speed_then) + " counts/s"));
   }
 }

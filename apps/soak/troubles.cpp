@@ -133,7 +133,7 @@ void Troubles::kill_application(Time now) {
 void Troubles::bring_rival(Time now) {
   if (cast_.rival.runs()) return;
   const Time stay = span();
-  tell(now, "a second program of the same name comes", stay);
+  tell(now, "a second program of the same name starts", stay);
   cast_.rival.start();
   agenda_.add(now + stay, [this] { cast_.rival.kill(); });
 }

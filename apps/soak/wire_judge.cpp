@@ -122,7 +122,7 @@ void WireJudge::judge_holder(const Signal& signal, const Known& known, Time now)
   if (holder.sender != 0 && holder.sender != known.senders && now < holder.until) {
     verdict_.blame("no sender moves what another holds",
                    plan_.nodes[signal.node_index].name + " is moved by program " +
-                       std::to_string(std::countr_zero(known.senders)) + ", program " +
+                       std::to_string(std::countr_zero(known.senders)) + ", but program " +
                        std::to_string(std::countr_zero(holder.sender)) + " holds it for another " +
                        std::to_string((holder.until - now) / 1us) + " us");
   }
@@ -138,7 +138,7 @@ void WireJudge::blame_stale(const Signal& signal, std::uint64_t value, const Kno
   std::string what = plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
                      hex(static_cast<std::uint32_t>(value)) + " is sent, which ";
   if (known == nullptr) {
-    what += "nobody has commanded";
+    what += "no program has commanded";
   } else if (known->senders == 0) {
     what += "is forged";
   } else {

@@ -57,7 +57,7 @@ void tell(const Arguments& arguments, const SoakReport& report) {
               << 1e-9 * static_cast<double>(violation.when.count())
               << " s): violated: " << violation.invariant << ": " << violation.what;
   }
-  std::cout << "\n  again: takt soak " << arguments.network << " --seeds " << outcome.seed
+  std::cout << "\n  repeat with: takt soak " << arguments.network << " --seeds " << outcome.seed
             << " --part " << arguments.part << " --for " << arguments.run_for << " --verbose"
             << std::endl;
 }

@@ -198,10 +198,10 @@ TEST(MovingApplication, HoldsWhileNoImageComesAndGoesOn) {
   ASSERT_TRUE(move.says("sine of")) << move.output();
 
   daemon.signal(SIGSTOP);
-  EXPECT_TRUE(move.says("cycles: holding")) << move.output();
+  EXPECT_TRUE(move.says("cycles: the motion holds")) << move.output();
 
   daemon.signal(SIGCONT);
-  EXPECT_TRUE(move.says("fresh again: going on")) << move.output();
+  EXPECT_TRUE(move.says("fresh again: the motion continues")) << move.output();
 }
 
 TEST(MovingApplication, EndsOnASecondSignalWhereNoAxisAnswers) {
@@ -218,7 +218,7 @@ TEST(MovingApplication, EndsOnASecondSignalWhereNoAxisAnswers) {
                folder / "move"};
   ASSERT_TRUE(move.says("sine of")) << move.output();
   devices.reset();
-  ASSERT_TRUE(move.says("holding")) << move.output();
+  ASSERT_TRUE(move.says("the motion holds")) << move.output();
 
   move.signal(SIGINT);
   ASSERT_TRUE(move.says("disabling the axes")) << move.output();

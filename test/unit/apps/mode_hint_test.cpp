@@ -35,12 +35,14 @@ std::string hint_for(Mapped mapped, std::int64_t shown, std::vector<std::int32_t
 }
 
 TEST(ModeHint, SaysWhatSetsAModeThatNobodySets) {
-  EXPECT_THAT(hint_for(Mapped::display, 0),
-              AllOf(HasSubstr("no mode of operation is set (0x6061 shows 0)"),
-                    HasSubstr("0x6060 is in no RPDO: map 0x6060 into an RPDO, or write 8 to 0x6060 "
-                              "under `sdo:`")));
-  EXPECT_THAT(hint_for(Mapped::display, 1), HasSubstr("shows mode 1 instead of 8, and 0x6060 is in "
-                                                      "no RPDO: map 0x6060 into an RPDO"));
+  EXPECT_THAT(
+      hint_for(Mapped::display, 0),
+      AllOf(HasSubstr("no mode of operation is set (0x6061 shows 0)"),
+            HasSubstr("no RPDO contains 0x6060: map 0x6060 into an RPDO, or write 8 to 0x6060 "
+                      "under `sdo:`")));
+  EXPECT_THAT(hint_for(Mapped::display, 1),
+              HasSubstr("shows mode 1 instead of 8, and no RPDO contains "
+                        "0x6060: map 0x6060 into an RPDO"));
 }
 
 TEST(ModeHint, SaysThatTheDriveDoesNotTakeTheModeThatIsCommanded) {
@@ -50,8 +52,9 @@ TEST(ModeHint, SaysThatTheDriveDoesNotTakeTheModeThatIsCommanded) {
 }
 
 TEST(ModeHint, SaysThatTheModeHasNotCome) {
-  EXPECT_THAT(hint_for(Mapped::display, 8, {1}), HasSubstr("0x6061 has not come, and 0x6060 is"));
-  EXPECT_THAT(hint_for(Mapped::both, 8, {1}), HasSubstr("0x6061 has not come"));
+  EXPECT_THAT(hint_for(Mapped::display, 8, {1}),
+              HasSubstr("0x6061 has not arrived, and no RPDO contains"));
+  EXPECT_THAT(hint_for(Mapped::both, 8, {1}), HasSubstr("0x6061 has not arrived"));
 }
 
 TEST(ModeHint, IsSilentInTheMode) {

@@ -51,7 +51,7 @@ TEST(IncompleteRecording, APdoThatIsOnWithoutAMappingIsNotTaken) {
   EXPECT_THAT(
       learned(log).text,
       HasSubstr(
-          "      # 1: {cob_id: 0x186, transmission: 1}  its mapping is not in the recording\n"));
+          "      # 1: {cob_id: 0x186, transmission: 1}  the mapping is not in the recording\n"));
   EXPECT_THAT(learned(log).text, Not(HasSubstr("mapping: []")));
 }
 
@@ -94,7 +94,7 @@ TEST(IncompleteRecording, AnEntryThatNoPdoHoldsIsNoMapping) {
                                "(1.4) can0 606#23001A01C8004160\n(1.5) can0 586#60001A0100000000\n")
                                .text;
 
-  EXPECT_THAT(text, HasSubstr("# 1: {}  its mapping is not in the recording\n"));
+  EXPECT_THAT(text, HasSubstr("# 1: {}  the mapping is not in the recording\n"));
 }
 
 TEST(IncompleteRecording, ADeviceThatMakesSyncHasAPeriodThatCanBeSet) {
@@ -155,7 +155,7 @@ TEST(IncompleteRecording, HeartbeatsThatAreTooRareForAPeriodDoNotSayIt) {
   EXPECT_THAT(learned(boot + watched + beats("77F", 5, 9)).text,
               HasSubstr("  heartbeat_producer: 5000\n"));
   EXPECT_THAT(learned(boot + beats("706", 100, 9)).text,
-              HasSubstr("    heartbeat_producer: 0   # measured is none that 0x1017 can hold\n"));
+              HasSubstr("    heartbeat_producer: 0   # 0x1017 can't hold the measured time\n"));
 
   std::string guarding = boot;
   for (int i = 1; i < 9; ++i) guarding += "(" + std::to_string(i) + "00.0) can0 706#R1\n";

@@ -146,11 +146,13 @@ TEST(Learn, SaysWhatIsNoPartOfTheBoot) {
   const LearnedNetwork network = learned(whole(data + "python_canopen.log"), our_files());
 
   EXPECT_THAT(network.text, HasSubstr("#   1081:60 = A0 86 01 00  06020000 object does not exist"));
-  EXPECT_THAT(network.text, HasSubstr("# written while OPERATIONAL, so no part of the boot:\n"
+  EXPECT_THAT(network.text, HasSubstr("# written while OPERATIONAL, so not part of the boot:\n"
                                       "    #   6040:00 = 06"));
-  EXPECT_THAT(network.text,
-              HasSubstr("#   0x2A0 (TPDO2 of node 32 by the predefined set, its mapping is not in "
-                        "the recording): 1 frames of 5 bytes"));
+  EXPECT_THAT(
+      network.text,
+      HasSubstr(
+          "#   0x2A0 (TPDO2 of node 32 by the predefined connection set, the mapping is not in "
+          "the recording): 1 frames of 5 bytes"));
   EXPECT_THAT(rules(network.findings), HasSubstr("[unknown-traffic]"));
 }
 
@@ -215,7 +217,7 @@ TEST(Learn, WhereSyncsAreTooFewThePeriodIsThatOfAnSdoWrite) {
       "(2.000) can0 080#\n");
 
   EXPECT_THAT(network.text, HasSubstr("  sync_period: 2000\n"));
-  EXPECT_THAT(rules(network.findings), HasSubstr("what was written to 0x1006"));
+  EXPECT_THAT(rules(network.findings), HasSubstr("takt uses the value that was written to 0x1006"));
 }
 
 TEST(Learn, OneSyncAloneIsListed) {

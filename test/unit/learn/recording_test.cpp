@@ -74,7 +74,7 @@ TEST(Learn, WhoSendsEmcyOrTpdosIsThereThoughItsSdoServerIsSilent) {
   EXPECT_THAT(learned(asked + "(1.2) can0 206#0102\n").text, Not(HasSubstr("node_6:")));
   EXPECT_THAT(learned(asked + "(1.2) can0 186#R\n").text, Not(HasSubstr("node_6:")));
   EXPECT_THAT(rules(learned(asked).findings),
-              HasSubstr("1 node id was asked by SDO and never heard (6): it is left out"));
+              HasSubstr("1 node id was asked by SDO, but sent no frame (6): it is left out"));
 }
 
 TEST(Learn, ATpdoOfAnotherNodeDoesNotMakeANode) {
@@ -95,7 +95,7 @@ TEST(Learn, NodeIdsThatAScanAsksInVainAreNoNodes) {
   EXPECT_THAT(network.text, Not(HasSubstr("node_2:")));
   EXPECT_EQ(network.made_files.size(), 1u);
   EXPECT_THAT(rules(network.findings),
-              HasSubstr("2 node ids were asked by SDO and never heard (2, 4)"));
+              HasSubstr("2 node ids were asked by SDO, but sent no frame (2, 4)"));
 }
 
 TEST(Learn, ANodeThatTheMasterCommandsByNameIsOneWithoutAnAnswerToo) {
