@@ -24,7 +24,7 @@ struct NodeAudit {
   /// Longest time until the device notices the death of the master or a cut cable. Empty if no
   /// timer of the device notices that.
   std::optional<Time> notices{};
-  std::string how{};  ///< how the device notices, "the master's heartbeat stays away (1016:01)"
+  std::string how{};  ///< how the device notices, "no heartbeat of the master arrives (1016:01)"
   ErrorState state = ErrorState::preoperational;
   std::string then{};                  ///< change of the NMT state by 0x1029; empty if none
   std::string outputs{};               ///< reaction of the drive or of the outputs

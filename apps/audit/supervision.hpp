@@ -17,7 +17,7 @@ struct Supervision {
   std::optional<Time> after{};
   /// True if the device reacts to missing SYNC, after a time that depends on 0x1006.
   bool by_sync = false;
-  std::string how{};  ///< "the master's heartbeat stays away (1016:01)"
+  std::string how{};  ///< "no heartbeat of the master arrives (1016:01)"
   /// Further remarks, for example on deadlines that report errors but ensure no reaction.
   std::vector<std::string> besides{};
 };

@@ -54,7 +54,7 @@ std::string_view master_text(std::uint32_t id) {
     case 0x072:
       return "negotiation: a master offers itself";
     case 0x073:
-      return "who is the active master?";
+      return "which master is active?";
     case 0x074:
       return "a master answers that it is present";
     case 0x075:

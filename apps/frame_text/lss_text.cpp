@@ -66,8 +66,8 @@ std::string configure_text(lss::Service service, const Frame& frame, bool of_mas
 }
 
 std::string switch_text(std::uint8_t mode) {
-  if (mode > 1) return fmt::format("all to unknown mode {}", mode);
-  return mode == 0 ? "all to waiting" : "all to configuration";
+  if (mode > 1) return fmt::format("all devices to unknown mode {}", mode);
+  return mode == 0 ? "all devices to waiting state" : "all devices to configuration state";
 }
 
 std::string activate_text(const Frame& frame) {
@@ -85,7 +85,7 @@ std::string inquire_text(std::uint8_t code, const Frame& frame, bool of_master) 
 /// Describes a question of the scan: do the upper bits of a part of the LSS address agree?
 std::string fast_scan_text(const Frame& frame) {
   const std::uint8_t bit = frame.data[5];
-  if (bit == lss::FastScan::everybody) return "fastscan: who has no node id?";
+  if (bit == lss::FastScan::everybody) return "fastscan: which device has no node id?";
   const std::uint8_t part = frame.data[6];
   const std::uint8_t next = frame.data[7];
   if (bit > 31) return fmt::format("fastscan with unknown bit number {}", bit);
@@ -107,7 +107,7 @@ std::string of_master(const Frame& frame) {
   if (code >= 0x5A && code <= 0x5D) return inquire_text(code, frame, true);
   if (service == lss::Service::switch_global) return switch_text(frame.data[1]);
   if (service == lss::Service::activate_bit_timing) return activate_text(frame);
-  if (service == lss::Service::identify_unconfigured) return "who has no node id?";
+  if (service == lss::Service::identify_unconfigured) return "which device has no node id?";
   if (service == lss::Service::fast_scan) return fast_scan_text(frame);
   if (service == lss::Service::inquire_node_id) return "inquire node id";
   if (code == 0x11 || code == 0x13 || code == 0x17) return configure_text(service, frame, true);

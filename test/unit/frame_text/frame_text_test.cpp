@@ -122,7 +122,7 @@ TEST_F(FrameTextTest, RequestsToAnNmtMasterAreTold) {
             "SDO master is asked: write 1F82:05 request NMT = 5: start shoulder");
   EXPECT_EQ(named(0x67F, {0x2F, 0x82, 0x1F, 0x80, 0x06, 0, 0, 0}),
             "SDO master is asked: write 1F82:80 request NMT = 6: reset all nodes");
-  EXPECT_EQ(plain(0x073, {}), "MASTER who is the active master?");
+  EXPECT_EQ(plain(0x073, {}), "MASTER which master is active?");
   EXPECT_EQ(plain(0x071, {0x02, 0x7F}), "MASTER the active master answers: 02 7F");
   EXPECT_EQ(plain(0x075, {}), "MASTER is there a master?");
 }

@@ -7,7 +7,7 @@ namespace {
 class LssTextTest : public test::FrameTextFixture {};
 
 TEST_F(LssTextTest, LssIsNamed) {
-  EXPECT_EQ(plain(0x7E5, {0x04, 0x01, 0, 0, 0, 0, 0, 0}), "LSS all to configuration");
+  EXPECT_EQ(plain(0x7E5, {0x04, 0x01, 0, 0, 0, 0, 0, 0}), "LSS all devices to configuration state");
   EXPECT_EQ(plain(0x7E5, {0x40, 0x5A, 0x01, 0, 0, 0, 0, 0}), "LSS select vendor id 0x0000015A");
   EXPECT_EQ(plain(0x7E5, {0x11, 0x05, 0, 0, 0, 0, 0, 0}), "LSS node id := 5");
   EXPECT_EQ(plain(0x7E4, {0x11, 0x01, 0, 0, 0, 0, 0, 0}),
@@ -17,7 +17,7 @@ TEST_F(LssTextTest, LssIsNamed) {
 }
 
 TEST_F(LssTextTest, EveryRequestOfTheLssMasterIsNamed) {
-  EXPECT_EQ(plain(0x7E5, {0x04, 0x00, 0, 0, 0, 0, 0, 0}), "LSS all to waiting");
+  EXPECT_EQ(plain(0x7E5, {0x04, 0x00, 0, 0, 0, 0, 0, 0}), "LSS all devices to waiting state");
   EXPECT_EQ(plain(0x7E5, {0x41, 0x02, 0, 0, 0, 0, 0, 0}), "LSS select product code 0x00000002");
   EXPECT_EQ(plain(0x7E5, {0x42, 0x03, 0, 0x01, 0, 0, 0, 0}), "LSS select revision 0x00010003");
   EXPECT_EQ(plain(0x7E5, {0x43, 0xA5, 0, 0, 0, 0, 0, 0}), "LSS select serial number 0x000000A5");
@@ -36,7 +36,7 @@ TEST_F(LssTextTest, EveryRequestOfTheLssMasterIsNamed) {
   EXPECT_EQ(plain(0x7E5, {0x48, 0, 0, 0x01, 0, 0, 0, 0}), "LSS identify revision from 0x00010000");
   EXPECT_EQ(plain(0x7E5, {0x4B, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0}),
             "LSS identify serial to 0xFFFFFFFF");
-  EXPECT_EQ(plain(0x7E5, {0x4C, 0, 0, 0, 0, 0, 0, 0}), "LSS who has no node id?");
+  EXPECT_EQ(plain(0x7E5, {0x4C, 0, 0, 0, 0, 0, 0, 0}), "LSS which device has no node id?");
   EXPECT_EQ(plain(0x7E5, {0x04, 0x01}), "LSS has 2 bytes instead of 8: 04 01");
 }
 
@@ -57,7 +57,8 @@ TEST_F(LssTextTest, EveryAnswerOfAnLssSlaveIsNamed) {
 }
 
 TEST_F(LssTextTest, AFastscanTellsWhatItAsks) {
-  EXPECT_EQ(plain(0x7E5, {0x51, 0, 0, 0, 0, 0x80, 0, 0}), "LSS fastscan: who has no node id?");
+  EXPECT_EQ(plain(0x7E5, {0x51, 0, 0, 0, 0, 0x80, 0, 0}),
+            "LSS fastscan: which device has no node id?");
   EXPECT_EQ(plain(0x7E5, {0x51, 0x50, 0x01, 0, 0, 0x03, 0, 0}),
             "LSS fastscan: vendor id 0x00000150 in bits 31 to 3?");
   EXPECT_EQ(plain(0x7E5, {0x51, 0x5A, 0x01, 0, 0, 0x00, 0, 1}),
