@@ -9,9 +9,6 @@ namespace takt {
 /// Sets scale, offset and unit of a signal from `units:` of its node.
 void apply_units(const NodeSource& node, Signal& signal);
 
-/// Shortest time to live of commands that the network file can configure.
-inline constexpr std::uint32_t fewest_fallback_cycles = 3;
-
 /// Sets the fallback of an output, for the time when its command is too old, and its safe value.
 /// `cia402` means that the node is a drive; the default of a drive is a quick stop after 3 cycles.
 /// Other nodes hold their outputs, and their commands expire after 100 ms, so that another sender

@@ -3,8 +3,8 @@
 #include <cctype>
 
 #include "eds_parser/network_file/sections.hpp"
-#include "eds_parser/signal_rules.hpp"
 #include "eds_parser/table/firmware.hpp"
+#include "eds_parser/table/image_layout.hpp"
 #include "eds_parser/table/sim_names.hpp"
 
 namespace takt {

@@ -40,6 +40,9 @@ struct Signal {
   std::optional<SignalIndex> seeded_from;  ///< input that provides the first value (6064 -> 607A)
 };
 
+/// Shortest time to live of commands that a network file can configure.
+inline constexpr std::uint32_t fewest_fallback_cycles = 3;
+
 /// Order and meaning of all values of a bus. Inputs come first, then outputs. Each group is sorted
 /// by object and then by node, so that the same object of all axes is one contiguous column.
 struct ImageLayout {

@@ -129,8 +129,8 @@ enum class EventKind : std::uint8_t {
                  ///< value: RPDO number; detail: index of the signal whose actual position a
                  ///< limited set-point waits for, plus 1; 0 means it waits for none
   limit_exceeded,  ///< A command is not sent, and the outputs of its node take their fallback.
-                   ///< value: the raw command; detail: signal << 8 | LimitKind; bytes: the measured
-                   ///< value and its limit, each a float in SI units
+                   ///< value: the raw command; detail: signal << 8 | LimitKind, and held_set_point;
+                   ///< bytes: the measured value and its limit, each a float in SI units
   // CAN controller and interface
   bus_error_passive,
   bus_error_active,
@@ -175,6 +175,10 @@ enum class RefusedBecause : std::uint8_t {
   out_of_range,
   observing,
 };
+
+/// Bit of Event::detail of `limit_exceeded`: the command brought no set-point. It would have put
+/// the set-point in force that was sent before, by enabling the axis or by changing its mode.
+inline constexpr std::uint32_t held_set_point = 0x80;
 
 /// One event. It is trivially copyable: the bus thread makes it, and the front thread reports it.
 struct Event {

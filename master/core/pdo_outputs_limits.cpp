@@ -3,7 +3,6 @@
 #include <cstring>
 #include <optional>
 
-#include "master/core/limit_text.hpp"
 #include "master/core/pdo_outputs.hpp"
 
 namespace takt {

@@ -12,8 +12,8 @@
 #include "eds_parser/table/run_options.hpp"
 #include "master/gateway/lcm_transport.hpp"
 #include "master/gateway/lcm_url.hpp"
-#include "master/gateway/notice.hpp"
 #include "master/gateway/transport.hpp"
+#include "master/gateway/weight.hpp"
 
 namespace takt {
 

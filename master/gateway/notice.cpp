@@ -67,18 +67,6 @@ Weight weight_of(EventKind kind) noexcept {
   return Weight::error;
 }
 
-std::string_view name(Weight weight) noexcept {
-  switch (weight) {
-    case Weight::note:
-      return "note";
-    case Weight::warning:
-      return "warning";
-    case Weight::error:
-      return "error";
-  }
-  return "error";
-}
-
 Notice to_notice(const BusPlan& plan, const Event& event) {
   // CiA 301, 7.2.7.1: error code 0 reports that an error has gone.
   const bool all_clear =

@@ -8,11 +8,9 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/core/event.hpp"
+#include "master/gateway/weight.hpp"
 
 namespace takt {
-
-/// Severity of an event, with the codes of event_t.
-enum class Weight : std::int16_t { note = 0, warning = 1, error = 2 };
 
 /// One message for stderr, the event file and LCM. It comes from the bus thread (an Event) or from
 /// the gateway itself.
@@ -31,7 +29,6 @@ struct Notice {
 using NoticeSink = std::function<void(const Notice&)>;
 
 Weight weight_of(EventKind kind) noexcept;
-std::string_view name(Weight weight) noexcept;  ///< "note", "warning", "error"
 
 /// Describes the event in words.
 Notice to_notice(const BusPlan& plan, const Event& event);
