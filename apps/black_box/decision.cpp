@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "apps/black_box/recording_file.hpp"
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 #include "master/core/boot_report.hpp"
 
 namespace takt {

@@ -8,9 +8,9 @@
 
 #include "apps/import/key_table.hpp"
 #include "apps/import/unasked.hpp"
+#include "eds_parser/ini/number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
-#include "eds_parser/number.hpp"
 
 namespace takt {
 namespace {

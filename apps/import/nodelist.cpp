@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
-#include "eds_parser/eds.hpp"
-#include "eds_parser/ini.hpp"
-#include "eds_parser/text.hpp"
-#include "eds_parser/value_reader.hpp"
+#include "eds_parser/ini/ini.hpp"
+#include "eds_parser/ini/value_reader.hpp"
+#include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

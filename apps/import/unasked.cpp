@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "eds_parser/object_units.hpp"
+#include "eds_parser/specification/object_units.hpp"
 
 namespace takt {
 namespace {

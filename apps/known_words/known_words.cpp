@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/suggest.hpp"
+#include "eds_parser/report/suggest.hpp"
 
 namespace takt {
 namespace {

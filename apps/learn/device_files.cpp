@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
-#include "eds_parser/eds.hpp"
-#include "eds_parser/integer_of.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace takt {
 namespace {

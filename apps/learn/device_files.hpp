@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/learn/learned_bus.hpp"
-#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
 
 namespace takt {
 

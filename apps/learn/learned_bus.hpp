@@ -8,7 +8,7 @@
 
 #include "apps/learn/period_meter.hpp"
 #include "apps/learn/sdo_observer.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {

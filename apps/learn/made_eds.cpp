@@ -7,7 +7,7 @@
 
 #include "apps/learn/device_files.hpp"
 #include "apps/learn/learned_pdos.hpp"
-#include "eds_parser/standard_types.hpp"
+#include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
 namespace takt {

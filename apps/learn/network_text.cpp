@@ -10,8 +10,8 @@
 #include "apps/learn/made_eds.hpp"
 #include "apps/learn/node_text.hpp"
 #include "apps/learn/yaml_text.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace takt {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "apps/learn/device_files.hpp"
 #include "apps/learn/learned_bus.hpp"
-#include "eds_parser/device_data.hpp"
+#include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
 

@@ -7,8 +7,8 @@
 #include "apps/learn/learned_pdos.hpp"
 #include "apps/learn/sdo_value_text.hpp"
 #include "apps/learn/yaml_text.hpp"
-#include "eds_parser/integer_of.hpp"
-#include "eds_parser/object_units.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/specification/object_units.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {

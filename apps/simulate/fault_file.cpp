@@ -9,8 +9,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include "apps/duration/duration.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/suggest.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/report/suggest.hpp"
 
 namespace takt {
 namespace {

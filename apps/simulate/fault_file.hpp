@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/simulate/program_faults.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/sim/faults.hpp"
 

@@ -11,7 +11,7 @@
 #include "apps/takt/live_arguments.hpp"
 #include "eds_parser/budget/left_out.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
-#include "eds_parser/print/budget.hpp"
+#include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
 namespace {

@@ -8,9 +8,9 @@
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/check/rule_list.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/print/findings_json.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "master/gateway/printable_text.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
 #include "apps/takt/whole_number.hpp"
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "eds_parser/write/configured_values.hpp"
 
 namespace takt {

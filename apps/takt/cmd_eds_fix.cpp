@@ -5,8 +5,8 @@
 #include "apps/takt/eds_commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
-#include "eds_parser/ini.hpp"
-#include "eds_parser/text_diff.hpp"
+#include "eds_parser/ini/ini.hpp"
+#include "eds_parser/report/text_diff.hpp"
 #include "eds_parser/write/eds_fix.hpp"
 
 namespace takt {

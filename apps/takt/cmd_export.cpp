@@ -5,11 +5,11 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/text_file.hpp"
+#include "eds_parser/export/cpp_header.hpp"
+#include "eds_parser/export/dbc.hpp"
+#include "eds_parser/export/lcm_text.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/print/plan.hpp"
-#include "eds_parser/write/cpp_header.hpp"
-#include "eds_parser/write/dbc.hpp"
-#include "eds_parser/write/lcm_text.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 
 namespace takt {
 namespace {

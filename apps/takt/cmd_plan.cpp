@@ -5,9 +5,9 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/print/plan.hpp"
-#include "eds_parser/print/plan_diff.hpp"
-#include "eds_parser/print/plan_diff_json.hpp"
+#include "eds_parser/print/plan/plan_diff.hpp"
+#include "eds_parser/print/plan/plan_diff_json.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 
 namespace takt {
 namespace {

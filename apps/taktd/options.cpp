@@ -6,7 +6,7 @@
 
 #include "apps/duration/duration.hpp"
 #include "apps/known_words/known_words.hpp"
-#include "eds_parser/table/lcm_url.hpp"
+#include "eds_parser/lcm/lcm_url.hpp"
 
 namespace takt {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "eds_parser/budget/cycle_bounds.hpp"
-#include "eds_parser/cycle_compiler.hpp"
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
 namespace {

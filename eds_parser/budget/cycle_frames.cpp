@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
 namespace {

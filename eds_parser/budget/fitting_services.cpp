@@ -1,6 +1,6 @@
 #include "eds_parser/budget/fitting_services.hpp"
 
-#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
 
 namespace takt {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 
 namespace takt {
 

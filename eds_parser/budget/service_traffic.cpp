@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "eds_parser/cycle_compiler.hpp"
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "eds_parser/budget/load.hpp"
 #include "eds_parser/budget/service_traffic.hpp"
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
 namespace {

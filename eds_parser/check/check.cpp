@@ -1,7 +1,7 @@
 #include "eds_parser/check/check.hpp"
 
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/integer_of.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
 
 namespace takt {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "eds_parser/object_dictionary.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/report/source.hpp"
 
 namespace takt {
 

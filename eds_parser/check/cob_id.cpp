@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

@@ -1,5 +1,5 @@
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

@@ -2,7 +2,7 @@
 #include <span>
 #include <string_view>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 
 namespace takt {
 

@@ -1,7 +1,7 @@
 #pragma once
-#include "eds_parser/object_dictionary.hpp"
-#include "eds_parser/pdo_description.hpp"
-#include "eds_parser/report.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/report/report.hpp"
 
 namespace takt {
 

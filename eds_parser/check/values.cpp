@@ -3,9 +3,9 @@
 #include <charconv>
 
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/eds_limits.hpp"
-#include "eds_parser/integer_of.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/dictionary/eds_limits.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "eds_parser/check/rules.hpp"
-#include "eds_parser/integer_of.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
 
 namespace takt {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include "eds_parser/budget/what_if.hpp"
-#include "eds_parser/network_spec.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
+#include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {
 

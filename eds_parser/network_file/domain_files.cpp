@@ -4,7 +4,7 @@
 #include <fstream>
 #include <span>
 
-#include "eds_parser/text.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

@@ -12,9 +12,7 @@
 
 #include "eds_parser/budget/fitting_services.hpp"
 #include "eds_parser/check/check.hpp"
-#include "eds_parser/concise_dcf.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/network_compiler.hpp"
+#include "eds_parser/dictionary/concise_dcf.hpp"
 #include "eds_parser/network_file/apply_changes.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
 #include "eds_parser/network_file/domain_files.hpp"
@@ -22,6 +20,8 @@
 #include "eds_parser/network_file/read_network.hpp"
 #include "eds_parser/network_file/shared_lines.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/plan/network_compiler.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace takt {
 namespace {

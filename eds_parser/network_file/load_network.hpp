@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "eds_parser/table/device_table.hpp"
 #include "eds_parser/table/run_options.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "eds_parser/suggest.hpp"
+#include "eds_parser/report/suggest.hpp"
 
 namespace takt {
 namespace {

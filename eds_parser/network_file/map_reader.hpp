@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "eds_parser/network_file/yaml_tree.hpp"
-#include "eds_parser/network_report.hpp"
-#include "eds_parser/network_spec.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/network_report.hpp"
+#include "eds_parser/report/source.hpp"
+#include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {
 

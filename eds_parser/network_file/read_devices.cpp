@@ -4,7 +4,7 @@
 
 #include "eds_parser/network_file/map_reader.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
-#include "eds_parser/pdo_compiler.hpp"
+#include "eds_parser/plan/pdo/pdo_compiler.hpp"
 
 namespace takt {
 namespace {

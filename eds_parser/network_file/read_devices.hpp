@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/device_data.hpp"
+#include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
 

@@ -8,7 +8,7 @@
 
 #include "eds_parser/network_file/sections.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
-#include "eds_parser/suggest.hpp"
+#include "eds_parser/report/suggest.hpp"
 
 namespace takt {
 namespace {

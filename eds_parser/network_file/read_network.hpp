@@ -2,8 +2,8 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/network_spec.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
+#include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {
 

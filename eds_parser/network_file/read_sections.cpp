@@ -3,8 +3,8 @@
 #include <cctype>
 #include <charconv>
 
+#include "eds_parser/lcm/lcm_url.hpp"
 #include "eds_parser/network_file/sections.hpp"
-#include "eds_parser/table/lcm_url.hpp"
 
 namespace takt {
 namespace {

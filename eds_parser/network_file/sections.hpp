@@ -1,6 +1,6 @@
 #pragma once
 #include "eds_parser/network_file/map_reader.hpp"
-#include "eds_parser/network_spec.hpp"
+#include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 
 namespace takt {
 

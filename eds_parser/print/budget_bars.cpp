@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 namespace takt {
 namespace {

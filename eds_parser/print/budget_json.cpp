@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "eds_parser/print/budget.hpp"
+#include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
 namespace {

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <ostream>
 
-#include "eds_parser/print/budget.hpp"
 #include "eds_parser/print/budget_bars.hpp"
+#include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/cycle_compiler.hpp"
-#include "eds_parser/print/budget.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/print/print_budget.hpp"
 
 namespace takt {
 namespace {

@@ -2,11 +2,11 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "eds_parser/pdo_description.hpp"
-#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/print/names.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/table/access_name.hpp"
-#include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {

@@ -2,12 +2,12 @@
 #include <charconv>
 #include <ostream>
 
-#include "eds_parser/integer_of.hpp"
-#include "eds_parser/pdo_description.hpp"
-#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/print/names.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/table/access_name.hpp"
-#include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 
 namespace takt {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <set>
 
-#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
 
 namespace takt {
 

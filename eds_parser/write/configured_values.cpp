@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "eds_parser/integer_of.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

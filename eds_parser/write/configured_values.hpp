@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "eds_parser/concise_dcf.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/object_dictionary.hpp"
-#include "eds_parser/report.hpp"
+#include "eds_parser/dictionary/concise_dcf.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/report.hpp"
 
 namespace takt {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <map>
 
-#include "eds_parser/decimal_subs.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/eds_limits.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/pdo_description.hpp"
-#include "eds_parser/text.hpp"
-#include "eds_parser/value_reader.hpp"
+#include "eds_parser/dictionary/eds_limits.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/ini/decimal_subs.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/ini/value_reader.hpp"
+#include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/write/object_sections.hpp"
 #include "eds_parser/write/section_index.hpp"
 #include "eds_parser/write/text_edits.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/source.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {

@@ -5,11 +5,11 @@
 #include <set>
 #include <span>
 
-#include "eds_parser/decimal_subs.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/suggest.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/ini/decimal_subs.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/suggest.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/write/changed_objects.hpp"
 #include "eds_parser/write/entry_counts.hpp"
 #include "eds_parser/write/list_fix.hpp"

@@ -4,9 +4,9 @@
 #include <set>
 #include <string_view>
 
-#include "eds_parser/eds_lists.hpp"
-#include "eds_parser/eds_section.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/ini/eds_lists.hpp"
+#include "eds_parser/ini/eds_section.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "eds_parser/ini.hpp"
+#include "eds_parser/ini/ini.hpp"
 
 namespace takt {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/eds_lists.hpp"
-#include "eds_parser/number.hpp"
+#include "eds_parser/ini/eds_lists.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/table/ids.hpp"
-#include "eds_parser/text.hpp"
 
 namespace takt {
 namespace {

@@ -3,8 +3,8 @@
 #include <set>
 #include <vector>
 
-#include "eds_parser/ini.hpp"
-#include "eds_parser/source.hpp"
+#include "eds_parser/ini/ini.hpp"
+#include "eds_parser/report/source.hpp"
 #include "eds_parser/write/section_index.hpp"
 #include "eds_parser/write/text_edits.hpp"
 

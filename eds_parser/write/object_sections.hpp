@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
 
 namespace takt {
 

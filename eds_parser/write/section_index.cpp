@@ -1,7 +1,7 @@
 #include "eds_parser/write/section_index.hpp"
 
-#include "eds_parser/eds_lists.hpp"
-#include "eds_parser/text.hpp"
+#include "eds_parser/ini/eds_lists.hpp"
+#include "eds_parser/report/text.hpp"
 
 namespace takt {
 

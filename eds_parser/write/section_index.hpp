@@ -3,8 +3,8 @@
 #include <optional>
 #include <string_view>
 
-#include "eds_parser/eds_section.hpp"
-#include "eds_parser/ini.hpp"
+#include "eds_parser/ini/eds_section.hpp"
+#include "eds_parser/ini/ini.hpp"
 #include "eds_parser/table/ids.hpp"
 
 namespace takt {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
-#include "eds_parser/eds_lists.hpp"
-#include "eds_parser/eds_section.hpp"
-#include "eds_parser/number.hpp"
-#include "eds_parser/object_words.hpp"
+#include "eds_parser/ini/eds_lists.hpp"
+#include "eds_parser/ini/eds_section.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/read/object_words.hpp"
+#include "eds_parser/report/text.hpp"
 #include "eds_parser/table/access_name.hpp"
-#include "eds_parser/text.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
 namespace takt {

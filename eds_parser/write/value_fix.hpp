@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/ini.hpp"
-#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
+#include "eds_parser/ini/ini.hpp"
 
 namespace takt {
 

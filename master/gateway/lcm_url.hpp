@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/table/lcm_url.hpp"
+#include "eds_parser/lcm/lcm_url.hpp"
 
 namespace takt {
 

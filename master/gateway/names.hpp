@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/table/lcm_channel.hpp"
+#include "eds_parser/lcm/lcm_channel.hpp"
 
 namespace takt {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "eds_parser/table/lcm_channel.hpp"
+#include "eds_parser/lcm/lcm_channel.hpp"
 #include "master/gateway/printable_text.hpp"
 #include "master/gateway/random_number.hpp"
 

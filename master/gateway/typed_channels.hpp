@@ -8,7 +8,7 @@
 #include <takt/command_t.hpp>
 #include <vector>
 
-#include "eds_parser/table/typed_message.hpp"
+#include "eds_parser/lcm/typed_message.hpp"
 #include "master/gateway/messages.hpp"
 #include "master/gateway/transport.hpp"
 #include "master/gateway/units.hpp"

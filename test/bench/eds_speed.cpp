@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace {
 

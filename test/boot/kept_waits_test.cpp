@@ -1,4 +1,4 @@
-#include "eds_parser/print/plan_waits.hpp"
+#include "eds_parser/print/plan/plan_waits.hpp"
 #include "master/core/lss_command.hpp"
 #include "test/boot/plant.hpp"
 

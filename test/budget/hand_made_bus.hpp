@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 
 namespace takt {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "eds_parser/print/budget.hpp"
+#include "eds_parser/print/print_budget.hpp"
 #include "test/budget/hand_made_bus.hpp"
 
 namespace takt {

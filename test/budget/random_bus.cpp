@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
 
 namespace takt {
 namespace {

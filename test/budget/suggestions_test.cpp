@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "eds_parser/print/budget.hpp"
+#include "eds_parser/print/print_budget.hpp"
 #include "test/budget/changed_plan.hpp"
 #include "test/budget/random_bus.hpp"
 

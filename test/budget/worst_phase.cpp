@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 #include "master/sim/frame_bits.hpp"
 #include "master/sim/virtual_bus.hpp"
 #include "test/budget/plan_traffic.hpp"

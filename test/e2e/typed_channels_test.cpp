@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "eds_parser/lcm/typed_message.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/table/typed_message.hpp"
 #include "master/linux/clock.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "eds_parser/check/check.hpp"
-#include "eds_parser/concise_dcf.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/dictionary/concise_dcf.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "eds_parser/write/configured_values.hpp"
 #include "eds_parser/write/dcf_writer.hpp"
 #include "eds_parser/write/eds_fix.hpp"

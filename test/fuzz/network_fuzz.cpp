@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/eds.hpp"
-#include "eds_parser/network_compiler.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/network_file/read_network.hpp"
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/plan/network_compiler.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace {
 

@@ -11,9 +11,9 @@
 #include "apps/learn/device_files.hpp"
 #include "apps/learn/network_text.hpp"
 #include "apps/learn/recording.hpp"
-#include "eds_parser/eds.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "test/fuzz/input.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "apps/axis/state402.hpp"
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "master/gateway/messages.hpp"
 
 int main(int argc, char** argv) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "eds_parser/report.hpp"
+#include "eds_parser/report/report.hpp"
 #include "test/support/counted_new.hpp"
 #include "test/unit/eds/eds_text.hpp"
 

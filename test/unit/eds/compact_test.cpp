@@ -1,8 +1,8 @@
-#include "eds_parser/compact.hpp"
+#include "eds_parser/read/compact.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {

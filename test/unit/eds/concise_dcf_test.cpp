@@ -1,4 +1,4 @@
-#include "eds_parser/concise_dcf.hpp"
+#include "eds_parser/dictionary/concise_dcf.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
-#include "eds_parser/pdo_description.hpp"
-#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
 #include "test/unit/eds/device_files.hpp"
 #include "test/unit/eds/eds_text.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "test/unit/eds/device_files.hpp"
 #include "test/unit/eds/plain_ini.hpp"
 

@@ -1,4 +1,4 @@
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "eds_parser/check/check.hpp"
-#include "eds_parser/eds.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace takt::test {
 

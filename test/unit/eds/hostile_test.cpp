@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "eds_parser/compact.hpp"
-#include "eds_parser/print/dictionary.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
+#include "eds_parser/read/compact.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "eds_parser/ini.hpp"
+#include "eds_parser/ini/ini.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "eds_parser/print/dictionary.hpp"
 #include "eds_parser/print/findings_json.hpp"
+#include "eds_parser/print/print_dictionary.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {

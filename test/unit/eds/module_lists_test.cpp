@@ -1,4 +1,4 @@
-#include "eds_parser/module_lists.hpp"
+#include "eds_parser/read/module_lists.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "eds_parser/modules.hpp"
+#include "eds_parser/read/modules.hpp"
 
 #include <gtest/gtest.h>
 

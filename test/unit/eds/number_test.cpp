@@ -1,8 +1,8 @@
-#include "eds_parser/number.hpp"
+#include "eds_parser/ini/number.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eds_parser/object_dictionary.hpp"
+#include "eds_parser/dictionary/object_dictionary.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "eds_parser/pdo_description.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "test/unit/eds/eds_text.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "eds_parser/text_diff.hpp"
+#include "eds_parser/report/text_diff.hpp"
 
 #include <charconv>
 #include <gtest/gtest.h>

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/device_compiler.hpp"
-#include "eds_parser/eds.hpp"
+#include "eds_parser/plan/device/device_compiler.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "master/sim/device.hpp"
 
 namespace takt::sim {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "eds_parser/table/typed_message.hpp"
+#include "eds_parser/lcm/typed_message.hpp"
 #include "master/gateway/bridge.hpp"
 #include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"

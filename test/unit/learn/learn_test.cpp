@@ -8,8 +8,8 @@
 #include "apps/learn/network_text.hpp"
 #include "apps/learn/recording.hpp"
 #include "apps/simulate/simulation.hpp"
-#include "eds_parser/eds.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "apps/learn/network_text.hpp"
-#include "eds_parser/eds.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

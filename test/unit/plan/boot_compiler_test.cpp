@@ -1,9 +1,9 @@
-#include "eds_parser/boot_compiler.hpp"
+#include "eds_parser/plan/boot/boot_compiler.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eds_parser/print/plan_names.hpp"
+#include "eds_parser/print/plan/plan_names.hpp"
 #include "test/unit/plan/boot_text.hpp"
 
 namespace takt {

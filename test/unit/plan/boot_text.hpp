@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/print/plan_names.hpp"
+#include "eds_parser/print/plan/plan_names.hpp"
 #include "test/unit/plan/tiny_network.hpp"
 
 namespace takt::test {

@@ -1,4 +1,4 @@
-#include "eds_parser/cycle_compiler.hpp"
+#include "eds_parser/plan/cycle_compiler.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "eds_parser/write/dbc.hpp"
+#include "eds_parser/export/dbc.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eds_parser/write/cpp_header.hpp"
-#include "eds_parser/write/dbc_text.hpp"
+#include "eds_parser/export/cpp_header.hpp"
+#include "eds_parser/export/dbc_text.hpp"
 
 namespace takt {
 namespace {

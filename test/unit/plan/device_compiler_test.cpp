@@ -1,4 +1,4 @@
-#include "eds_parser/device_compiler.hpp"
+#include "eds_parser/plan/device/device_compiler.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

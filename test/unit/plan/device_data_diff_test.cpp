@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eds_parser/print/plan_diff.hpp"
+#include "eds_parser/print/plan/plan_diff.hpp"
 #include "test/unit/plan/device_data_network.hpp"
 
 namespace takt {

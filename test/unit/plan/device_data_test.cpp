@@ -1,4 +1,4 @@
-#include "eds_parser/device_data.hpp"
+#include "eds_parser/specification/device_data.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 #include "test/unit/plan/device_data_network.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 #include "test/unit/plan/device_data_network.hpp"
 
 namespace takt {

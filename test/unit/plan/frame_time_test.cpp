@@ -1,4 +1,4 @@
-#include "eds_parser/frame_time.hpp"
+#include "eds_parser/plan/frame_time.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "eds_parser/layout_compiler.hpp"
+#include "eds_parser/plan/image/layout_compiler.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 #include "test/unit/plan/tiny_network.hpp"
 
 namespace takt::test {

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "eds_parser/check/check.hpp"
-#include "eds_parser/eds.hpp"
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
+#include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

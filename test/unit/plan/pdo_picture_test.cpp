@@ -1,4 +1,4 @@
-#include "eds_parser/print/pdo_picture.hpp"
+#include "eds_parser/print/plan/pdo_picture.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "eds_parser/print/plan_diff.hpp"
+#include "eds_parser/print/plan/plan_diff.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/print/plan_diff_json.hpp"
+#include "eds_parser/print/plan/plan_diff_json.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "eds_parser/print/plan_waits.hpp"
+#include "eds_parser/print/plan/plan_waits.hpp"
 
 #include <algorithm>
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "eds_parser/print/plan.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
 #include "test/unit/plan/tiny_network.hpp"
 
 namespace takt {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "eds_parser/eds.hpp"
-#include "eds_parser/network_compiler.hpp"
 #include "eds_parser/network_file/read_network.hpp"
+#include "eds_parser/plan/network_compiler.hpp"
+#include "eds_parser/read/eds.hpp"
 
 namespace takt::test {
 

@@ -1,10 +1,10 @@
-#include "eds_parser/table/typed_message.hpp"
+#include "eds_parser/lcm/typed_message.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eds_parser/export/lcm_text.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "eds_parser/write/lcm_text.hpp"
 
 namespace takt {
 namespace {

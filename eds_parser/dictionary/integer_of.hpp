@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "eds_parser/dictionary/object_dictionary.hpp"
+
+namespace takt {
+
+/// Returns std::nullopt if there is no value or the value is no integer.
+inline std::optional<std::int64_t> integer_of(const std::optional<Value>& value) noexcept {
+  return value ? as_integer(*value) : std::nullopt;
+}
+
+/// Returns the value that the file gives to an object; see SubObject::value().
+inline std::optional<std::int64_t> integer_of(const ObjectDictionary& dictionary,
+                                              ObjectKey key) noexcept {
+  const SubObject* sub = dictionary.find(key);
+  return sub == nullptr ? std::nullopt : integer_of(sub->value());
+}
+
+}  // namespace takt

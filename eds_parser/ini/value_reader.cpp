@@ -1,0 +1,350 @@
+#include "eds_parser/ini/value_reader.hpp"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+#include "eds_parser/ini/fitted_number.hpp"
+#include "eds_parser/ini/number.hpp"
+#include "eds_parser/report/text.hpp"
+
+namespace takt {
+namespace {
+
+using Expected = std::expected<ParsedNumber, NumberFault>;
+
+struct QuirkText {
+  NumberQuirk quirk;
+  Severity severity;
+  std::string_view rule;
+  std::string_view message;
+};
+
+constexpr QuirkText quirk_texts[] = {
+    {NumberQuirk::octal, Severity::warning, "octal-number",
+     "leading zero: read as octal, as CiA 306 says; write 0x... or no leading zero"},
+    {NumberQuirk::decimal_zero, Severity::warning, "leading-zero",
+     "leading zero would mean octal, but has an 8 or 9: read as decimal; drop the zero"},
+    {NumberQuirk::suffix, Severity::warning, "number-suffix",
+     "suffix of a programming language was left out; remove the suffix"},
+    {NumberQuirk::node_id_not_first, Severity::warning, "nodeid-not-first",
+     "CiA 306 requires $NODEID as the first term, other tools drop it here; write $NODEID+number"},
+    {NumberQuirk::node_id_no_dollar, Severity::warning, "nodeid-without-dollar",
+     "NODEID was read as $NODEID; write $NODEID+number"},
+    {NumberQuirk::hex_without_prefix, Severity::warning, "hex-without-prefix",
+     "read as hexadecimal; write 0x in front"},
+    {NumberQuirk::fraction, Severity::warning, "integer-with-fraction",
+     "decimal point in an integer value; remove the decimal point"},
+    {NumberQuirk::comment, Severity::warning, "inline-comment",
+     "text behind ';' or '#' was read as a comment; CiA 306 has no comments behind values"},
+    {NumberQuirk::word, Severity::warning, "boolean-word", "read as a boolean; write 0 or 1"},
+};
+
+void say(Report& report, Severity severity, SourcePos pos, std::string_view rule,
+         std::string message) {
+  switch (severity) {
+    case Severity::note:
+      return report.note(pos, rule, std::move(message));
+    case Severity::warning:
+      return report.warning(pos, rule, std::move(message));
+    case Severity::error:
+      return report.error(pos, rule, std::move(message));
+  }
+}
+
+/// Reads `true` and similar words, which occur in files written by hand.
+std::optional<bool> boolean_word(std::string_view text) noexcept {
+  for (const auto* word : {"true", "yes", "on"}) {
+    if (same_word(text, word)) return true;
+  }
+  for (const auto* word : {"false", "no", "off"}) {
+    if (same_word(text, word)) return false;
+  }
+  return std::nullopt;
+}
+
+/// Returns true for bit patterns of 0 and of normal numbers. 0xFFFF in a REAL32 would be 9.2e-41;
+/// an author who means such a number writes all digits.
+bool is_pattern(std::uint64_t bits, DataType type) noexcept {
+  const unsigned fraction = type == DataType::real32 ? 23 : 52;
+  return bits == 0 || bits >> fraction != 0;
+}
+
+double real_of(std::uint64_t bits, DataType type) noexcept {
+  return type == DataType::real32 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
+                                  : std::bit_cast<double>(bits);
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.begin(), text.end(), value).ptr};
+}
+
+}  // namespace
+
+std::string to_string(const ValuePlace& place) {
+  return to_string(place.key) + ' ' + std::string{place.what};
+}
+
+std::optional<Value> ValueReader::read(std::string_view text, DataType type,
+                                       const ValuePlace& place) {
+  if (text.empty()) return std::nullopt;
+  switch (type) {
+    case DataType::visible_string:
+      return std::string{text};
+    case DataType::unicode_string:
+      return to_utf8(text);
+    case DataType::octet_string:
+    case DataType::domain:
+      return read_bytes(text, place);
+    case DataType::real32:
+    case DataType::real64:
+      return read_real(text, type, place);
+    case DataType::time_of_day:
+    case DataType::time_difference:
+      return read_time(text, type, place);
+    case DataType::unknown:
+      return read_untyped(text);
+    default:
+      return read_integer(text, type, place);
+  }
+}
+
+std::optional<Value> ValueReader::read_integer(std::string_view text, DataType type,
+                                               const ValuePlace& place) {
+  auto number = parse_number(text);
+  if (!number && type == DataType::boolean) {
+    if (const auto word = boolean_word(without_comment(text))) {
+      number = ParsedNumber{.magnitude = *word ? 1U : 0U};
+      number->quirks = static_cast<std::uint16_t>(NumberQuirk::word);
+    }
+  }
+  if (!number) {
+    if (number.error() == NumberFault::empty) return std::nullopt;
+    if (number.error() == NumberFault::not_a_number) {
+      unreadable(text, name(type), place);
+    } else if (number.error() == NumberFault::too_big) {
+      exceeds(text, type, place);
+    } else {
+      report_.error(place.pos, "value-unreadable",
+                    to_string(place) + ": " + quoted(text) +
+                        " contains a name other than $NODEID; the value is dropped");
+    }
+    return std::nullopt;
+  }
+  if (number->quirks != 0) tell_quirks(number->quirks, text, place);
+  if (number->relative() && !node_) return std::nullopt;
+  if (!resolve(*number, node_)) {
+    exceeds(text, type, place);
+    return std::nullopt;
+  }
+  const unsigned bits = bit_width(type);
+  auto fitted = is_signed(type) ? fit_signed(*number, bits) : fit_unsigned(*number, bits);
+  if (!fitted.value) exceeds(text, type, place);
+  if (fitted.wrapped) tell_wrapped(text, type, *fitted.value, place);
+  return fitted.value;
+}
+
+std::optional<Value> ValueReader::read_real(std::string_view text, DataType type,
+                                            const ValuePlace& place) {
+  const auto bare = without_told_comment(text, place);
+  if (bare.size() > 2 && bare[0] == '0' && fold(bare[1]) == 'x') {
+    const auto pattern = parse_number(bare);
+    const bool fits =
+        pattern && !pattern->relative() && pattern->magnitude <= highest_unsigned(bit_width(type));
+    if (!fits) {
+      unreadable(text, name(type), place);
+      return std::nullopt;
+    }
+    const bool all_digits = bare.size() - 2 >= bit_width(type) / 4;
+    const bool as_bits = all_digits || is_pattern(pattern->magnitude, type);
+    const double value =
+        as_bits ? real_of(pattern->magnitude, type) : static_cast<double>(pattern->magnitude);
+    report_.warning(place.pos, "real-bit-pattern",
+                    to_string(place) + ": hexadecimal was read as " +
+                        (as_bits ? "the bit pattern of " : "") + shortest(value) +
+                        "; write a decimal number");
+    return value;
+  }
+  if (bare.empty()) return std::nullopt;
+  const auto value = parse_real(bare);
+  if (!value) unreadable(text, name(type), place);
+  if (!value) return std::nullopt;
+  if (fold(bare.back()) == 'f' && std::isfinite(*value)) {
+    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::suffix), text, place);
+  }
+  if (type == DataType::real64 || !std::isfinite(*value)) return *value;
+  const auto fitted = fit_real32(*value);
+  if (!fitted) exceeds(text, type, place);
+  return fitted;
+}
+
+std::optional<Value> ValueReader::read_bytes(std::string_view text, const ValuePlace& place) {
+  auto digits = without_told_comment(text, place);
+  // Some tools write an empty value in this way.
+  if (digits == "0" || digits == "0x0") return std::nullopt;
+  bool odd_form = false;
+  if (digits.size() >= 2 && digits[0] == '0' && fold(digits[1]) == 'x') {
+    digits.remove_prefix(2);
+    odd_form = true;
+  }
+  std::string bytes;
+  bytes.reserve(digits.size() / 2);
+  int high = -1;
+  for (const char c : digits) {
+    if (is_blank(c)) {
+      odd_form = true;
+      continue;
+    }
+    const int digit = hex_digit(c);
+    if (digit < 0) {
+      unreadable(text, "a row of hex byte pairs", place);
+      return std::nullopt;
+    }
+    if (high >= 0) bytes += static_cast<char>(high << 4 | digit);
+    high = high >= 0 ? -1 : digit;
+  }
+  if (high >= 0) {
+    unreadable(text, "a row of hex byte pairs (one digit is left over)", place);
+    return std::nullopt;
+  }
+  if (odd_form) {
+    report_.warning(place.pos, "octet-string-form",
+                    to_string(place) + ": 0x and blanks were left out; write bare hex byte pairs");
+  }
+  return bytes;
+}
+
+/// Reads days and milliseconds since midnight as two numbers, or the 48 bits as one number. CiA 306
+/// defines no form for times. Other tools write the days first, so this order applies if both
+/// orders fit.
+std::optional<Value> ValueReader::read_time(std::string_view text, DataType type,
+                                            const ValuePlace& place) {
+  const auto bare = without_comment(text);
+  const auto gap = bare.find_first_of(" \t");
+  if (gap == std::string_view::npos) return read_integer(text, type, place);
+  without_told_comment(text, place);
+  const auto first = parse_number(bare.substr(0, gap));
+  const auto second = parse_number(bare.substr(gap));
+  const auto in_bits = [](const Expected& number, unsigned bits) {
+    return number && !number->negative && !number->relative() && number->magnitude >> bits == 0;
+  };
+  if (in_bits(first, 16) && in_bits(second, 28)) return second->magnitude | first->magnitude << 32;
+  if (in_bits(first, 28) && in_bits(second, 16)) return first->magnitude | second->magnitude << 32;
+  unreadable(text, "days and milliseconds", place);
+  return std::nullopt;
+}
+
+/// Reads a value of unknown type. An integer is kept, so that it can be displayed.
+std::optional<Value> ValueReader::read_untyped(std::string_view text) {
+  auto number = parse_number(text);
+  if (!number || !resolve(*number, node_)) return std::nullopt;
+  if (!number->negative) return number->magnitude;
+  return fit_signed(*number, 64).value;
+}
+
+std::optional<std::uint32_t> ValueReader::read_count(std::string_view text, std::uint32_t highest,
+                                                     std::string_view key, SourcePos pos) {
+  if (text.empty()) return std::nullopt;  // Most keys are missing.
+  auto number = parse_number(text);
+  if (!number && number.error() == NumberFault::empty) return std::nullopt;
+  const bool good =
+      number && !number->negative && !number->relative() && number->magnitude <= highest;
+  if (!good) {
+    report_.warning(pos, "number-unreadable",
+                    std::string{key} + ": " + quoted(text) + " is not a number of 0.." +
+                        std::to_string(highest) + "; it was left out");
+    return std::nullopt;
+  }
+  if (number->has(NumberQuirk::comment)) {
+    report_.warning(
+        pos, "inline-comment",
+        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
+  }
+  if (number->has(NumberQuirk::octal)) {
+    report_.warning(pos, "octal-number",
+                    std::string{key} + ": " + quoted(text) + " was read as octal, " +
+                        std::to_string(number->magnitude) + ", as CiA 306 says; drop the zero");
+  }
+  for (const auto& known : quirk_texts) {
+    const bool told = known.quirk == NumberQuirk::comment || known.quirk == NumberQuirk::octal;
+    if (told || !number->has(known.quirk)) continue;
+    report_.warning(pos, known.rule,
+                    std::string{key} + ": " + quoted(text) + ": " + std::string{known.message});
+  }
+  return static_cast<std::uint32_t>(number->magnitude);
+}
+
+bool ValueReader::read_flag(std::string_view text, std::string_view key, SourcePos pos) {
+  if (const auto number = parse_number(text)) return flag_of(*number, text, key, pos);
+  const auto bare = without_comment(text);
+  if (bare.empty()) return false;
+  const auto word = boolean_word(bare);
+  report_.warning(pos, "boolean-word",
+                  std::string{key} + ": " + quoted(text) + " was read as " +
+                      (word.value_or(false) ? "1" : "0") + "; write 0 or 1");
+  return word.value_or(false);
+}
+
+bool ValueReader::flag_of(const ParsedNumber& number, std::string_view text, std::string_view key,
+                          SourcePos pos) {
+  const bool set = number.magnitude != 0 || number.relative();
+  if (number.magnitude > 1 || number.negative || number.relative()) {
+    report_.warning(pos, "boolean-word",
+                    std::string{key} + ": " + quoted(text) + " was read as " + (set ? "1" : "0") +
+                        "; write 0 or 1");
+  } else if (number.has(NumberQuirk::comment)) {
+    report_.warning(
+        pos, "inline-comment",
+        std::string{key} + ": text behind ';' or '#' was read as a comment: " + quoted(text));
+  }
+  return set;
+}
+
+void ValueReader::tell_quirks(std::uint16_t quirks, std::string_view text,
+                              const ValuePlace& place) {
+  for (const auto& known : quirk_texts) {
+    if ((quirks & static_cast<std::uint16_t>(known.quirk)) == 0) continue;
+    if (!report_.wants(known.rule)) continue;
+    say(report_, known.severity, place.pos, known.rule,
+        to_string(place) + ": " + quoted(text) + ": " + std::string{known.message});
+  }
+}
+
+std::string_view ValueReader::without_told_comment(std::string_view text, const ValuePlace& place) {
+  const auto bare = without_comment(text);
+  if (bare.size() != trim(text).size()) {
+    tell_quirks(static_cast<std::uint16_t>(NumberQuirk::comment), text, place);
+  }
+  return bare;
+}
+
+void ValueReader::exceeds(std::string_view text, DataType type, const ValuePlace& place) {
+  say(report_, place.misfit, place.pos, "value-exceeds-type",
+      to_string(place) + ": " + quoted(text) + " does not fit " + std::string{name(type)} +
+          "; the value is dropped, not cut to fit");
+}
+
+void ValueReader::tell_wrapped(std::string_view text, DataType type, const Value& value,
+                               const ValuePlace& place) {
+  const auto start = to_string(place) + ": " + quoted(text);
+  if (const auto* number = std::get_if<std::int64_t>(&value)) {
+    report_.note(place.pos, "bit-pattern",
+                 start + " is the bit pattern of " + std::to_string(*number) + " in " +
+                     std::string{name(type)});
+  } else {
+    report_.warning(place.pos, "negative-unsigned",
+                    start + " in " + std::string{name(type)} + " was read as the bit pattern " +
+                        std::to_string(std::get<std::uint64_t>(value)));
+  }
+}
+
+void ValueReader::unreadable(std::string_view text, std::string_view wanted,
+                             const ValuePlace& place) {
+  say(report_, place.unreadable, place.pos, "value-unreadable",
+      to_string(place) + ": " + quoted(text) + " is not " + std::string{wanted} +
+          "; the value is dropped");
+}
+
+}  // namespace takt

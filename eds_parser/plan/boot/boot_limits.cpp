@@ -1,0 +1,112 @@
+#include "eds_parser/plan/boot/boot_limits.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/pdo/mapping_compiler.hpp"
+
+namespace takt {
+namespace {
+
+struct Limits {
+  std::optional<std::int64_t> low;
+  std::optional<std::int64_t> high;
+
+  bool hold(std::int64_t value) const {
+    return (!low || value >= *low) && (!high || value <= *high);
+  }
+  /// Returns false for limits that are both 0 or inverted. An editor fills them in; they are not
+  /// meant.
+  bool mean_something() const { return !low || !high || *low < *high; }
+  std::string text() const {
+    return (low ? std::to_string(*low) : "") + ".." + (high ? std::to_string(*high) : "");
+  }
+};
+
+Limits limits_of(const SubObject& sub) {
+  return {integer_of(sub.low_limit), integer_of(sub.high_limit)};
+}
+
+/// Returns true for a step that writes a parameter, but not for the store and restore commands.
+bool writes(const BootStep& step) {
+  const bool command = step.object.index == 0x1010 || step.object.index == 0x1011;
+  const bool write =
+      step.action == BootAction::write || step.action == BootAction::write_if_differs;
+  return write && !command;
+}
+
+/// Returns the number in `bytes`, or std::nullopt if the type is no integer.
+std::optional<std::int64_t> number_of(std::span<const std::byte> bytes, DataType type) {
+  if (is_real(type) || is_bytes(type) || bytes.empty() || bytes.size() > 8) return {};
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+  }
+  const unsigned unused = 64 - 8 * static_cast<unsigned>(bytes.size());
+  if (!is_signed(type)) return static_cast<std::int64_t>(number);
+  return static_cast<std::int64_t>(number << unused) >> unused;
+}
+
+class LimitJudge {
+ public:
+  LimitJudge(const NodePdos& node, NetworkReport& report)
+      : node_{node}, spec_{*node.node.spec}, dictionary_{*node.node.dictionary}, report_{report} {}
+
+  void judge(BootStep& step) {
+    const SubObject* sub = dictionary_.find(step.object);
+    if (sub == nullptr) return;
+    const auto value = number_of(step.value, sub->type);
+    const Limits limits = limits_of(*sub);
+    if (!value || limits.hold(*value) || !limits.mean_something()) return;
+    if (integer_of(sub->default_value) == value) return;
+    step.purpose += " (outside the limits " + limits.text() + " of the device file)";
+    if (!told_.insert(step.object).second) return;
+    report_.warning(pos_of(step.object), "limits",
+                    source(*sub, step.object, *value) + label(dictionary_, step.object) + " = " +
+                        std::to_string(*value) + " is outside the limits " + limits.text() +
+                        " of " + dictionary_.file + "; the device may refuse it");
+  }
+
+ private:
+  const SdoSpec* configured(ObjectKey key) const {
+    const auto found = std::ranges::find(spec_.sdo, key, &SdoSpec::object);
+    return found == spec_.sdo.end() ? nullptr : &*found;
+  }
+
+  SourcePos pos_of(ObjectKey key) const {
+    if (const SdoSpec* sdo = configured(key)) return sdo->value_pos;
+    for (const EffectivePdo& pdo : node_.pdos) {
+      if (pdo.communication_index() == key.index || pdo.mapping_index() == key.index) {
+        return pdo.pos;
+      }
+    }
+    return spec_.pos;
+  }
+
+  std::string source(const SubObject& sub, ObjectKey key, std::int64_t value) const {
+    const std::string node = "node `" + spec_.name + "`";
+    if (configured(key) != nullptr) return "`sdo` of " + node + ": ";
+    const bool of_dcf = integer_of(sub.parameter_value) == value;
+    if (!of_dcf) return node + ": ";
+    return node + ", ParameterValue in line " + std::to_string(sub.parameter_pos.line) + " of " +
+           dictionary_.file + ": ";
+  }
+
+  const NodePdos& node_;
+  const NodeSpec& spec_;
+  const ObjectDictionary& dictionary_;
+  NetworkReport& report_;
+  std::set<ObjectKey> told_;
+};
+
+}  // namespace
+
+void judge_limits(const NodePdos& node, BootPlan& plan, NetworkReport& report) {
+  LimitJudge judge{node, report};
+  for (BootStep& step : plan.steps) {
+    if (writes(step)) judge.judge(step);
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,25 @@
+#include "eds_parser/plan/device/node_objects.hpp"
+
+#include <variant>
+
+#include "eds_parser/dictionary/integer_of.hpp"
+
+namespace takt {
+
+std::optional<std::int64_t> written_object(const NodeSource& node, ObjectKey object) {
+  const auto& list = node.spec->sdo;
+  for (auto sdo = list.rbegin(); sdo != list.rend(); ++sdo) {
+    if (sdo->object != object) continue;
+    if (const auto* value = std::get_if<std::int64_t>(&sdo->value)) return *value;
+    return std::nullopt;
+  }
+  const SubObject* sub = node.dictionary->find(object);
+  return sub == nullptr ? std::nullopt : integer_of(sub->parameter_value);
+}
+
+std::optional<std::int64_t> configured_object(const NodeSource& node, ObjectKey object) {
+  if (const auto written = written_object(node, object)) return written;
+  return integer_of(*node.dictionary, object);
+}
+
+}  // namespace takt

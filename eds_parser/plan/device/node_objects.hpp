@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "eds_parser/plan/pdo/effective_pdo.hpp"
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// Returns the integer that `sdo:` of the node or its DCF writes into an object in each boot.
+std::optional<std::int64_t> written_object(const NodeSource& node, ObjectKey object);
+/// Returns the same integer, else the default of the device file.
+std::optional<std::int64_t> configured_object(const NodeSource& node, ObjectKey object);
+
+}  // namespace takt

@@ -1,0 +1,169 @@
+#include "eds_parser/plan/drive_questions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "eds_parser/dictionary/profile_of.hpp"
+#include "eds_parser/plan/device/node_objects.hpp"
+#include "eds_parser/specification/object_units.hpp"
+
+namespace takt {
+namespace {
+
+/// Set-points that act only in some modes of operation.
+constexpr std::array<std::uint16_t, 3> targets{0x607A, 0x60FF, 0x6071};
+
+bool is_target(ObjectKey object) {
+  return std::ranges::find(targets, first_axis(object.index)) != targets.end();
+}
+
+/// Returns the object 0x6060 of the axis that an object belongs to.
+ObjectKey mode_of(ObjectKey object) {
+  const auto axis = static_cast<std::uint16_t>(object.index - first_axis(object.index));
+  return {static_cast<std::uint16_t>(0x6060 + axis), 0};
+}
+
+bool is_sent(const NodePdos& node, ObjectKey object) {
+  return std::ranges::any_of(node.pdos, [object](const EffectivePdo& pdo) {
+    const bool sent = !pdo.is_tpdo && (pdo.use == PdoUse::exchanged || pdo.use == PdoUse::linked);
+    return sent &&
+           std::ranges::find(pdo.mapping, object, &EffectiveEntry::object) != pdo.mapping.end();
+  });
+}
+
+/// Returns true if `sdo:` or a value of a DCF writes the object.
+bool is_written(const NodePdos& node, ObjectKey object) {
+  const auto& list = node.node.spec->sdo;
+  if (std::ranges::find(list, object, &SdoSpec::object) != list.end()) return true;
+  const SubObject* sub = node.node.dictionary->find(object);
+  return node.node.dictionary->is_dcf && sub != nullptr && sub->parameter_value.has_value();
+}
+
+void ask_for_mode(const NodePdos& node, NetworkReport& report) {
+  std::vector<ObjectKey> asked;
+  for (const EffectivePdo& pdo : node.pdos) {
+    if (pdo.is_tpdo || pdo.use != PdoUse::exchanged) continue;
+    for (const EffectiveEntry& entry : pdo.mapping) {
+      const ObjectKey mode = mode_of(entry.object);
+      const bool open = is_target(entry.object) && node.node.dictionary->find(mode) != nullptr &&
+                        !is_sent(node, mode) && !is_written(node, mode);
+      if (!open || std::ranges::find(asked, mode) != asked.end()) continue;
+      asked.push_back(mode);
+      report.warning(entry.pos, "mode",
+                     pdo.label() + " of node `" + node.node.spec->name + "` carries " +
+                         to_string(entry.object) + ", but nothing sets the mode of operation, " +
+                         to_string(mode) + ": the drive may ignore the set-points. Map " +
+                         hex(mode.index, 4) + " into an RPDO, or write `sdo: [{index: " +
+                         hex(mode.index, 4) + ", value: 8}]` (cyclic synchronous position)");
+    }
+  }
+}
+
+void ask_for_loss(std::span<const NodePdos> nodes, NetworkReport& report) {
+  const NodeSpec* first = nullptr;
+  std::string names;
+  std::size_t drives = 0;
+  for (const NodePdos& node : nodes) {
+    if (!is_cia402(node.node)) continue;
+    ++drives;
+    if (node.node.spec->on_loss.given) continue;
+    if (first == nullptr) first = node.node.spec;
+    names += (names.empty() ? "`" : ", `") + node.node.spec->name + "`";
+  }
+  if (drives < 2 || first == nullptr) return;
+  report.warning(first->pos, "on-loss",
+                 "the file does not say what the other drives do when one of " + names +
+                     " is lost: they would continue. Write `on_loss: quick_stop` for them (the "
+                     "drives of its group stop; without `group` all drives), or `on_loss: report` "
+                     "if they shall continue");
+}
+
+constexpr std::uint16_t axis_step = 0x800;
+constexpr unsigned most_axes = 8;
+constexpr std::int64_t quick_stop_command = 3;  // value of 0x6007, CiA 402-2
+
+/// Returns the object 0x6007 of each axis of the node for which it is not configured as 3. NMT stop
+/// ends the exchange of PDOs. With the value 3 the drive then makes a quick stop.
+std::vector<ObjectKey> axes_without_quick_stop(const NodeSource& node) {
+  std::vector<ObjectKey> objects;
+  for (unsigned axis = 0; axis < most_axes; ++axis) {
+    const auto offset = static_cast<std::uint16_t>(axis * axis_step);
+    const ObjectKey option{static_cast<std::uint16_t>(0x6007 + offset), 0};
+    const ObjectKey controlword{static_cast<std::uint16_t>(0x6040 + offset), 0};
+    if (node.dictionary->find(controlword) == nullptr) continue;
+    if (configured_object(node, option) != quick_stop_command) objects.push_back(option);
+  }
+  return objects;
+}
+
+bool is_stopped_with(const NodeSpec& node, const NodeSpec& lost) {
+  if (&node == &lost) return true;
+  return *lost.on_loss == LossReaction::stop_group && lost.group.given && node.group.given &&
+         *node.group == *lost.group;
+}
+
+/// Returns the text with which a network file sets these objects to 3.
+std::string written_as_quick_stop(const std::set<std::uint16_t>& objects) {
+  std::string entries;
+  for (const std::uint16_t index : objects) {
+    entries += (entries.empty() ? "" : ", ") + std::string{"{index: "} + hex(index) + ", value: 3}";
+  }
+  return entries.empty() ? "" : "`sdo: [" + entries + "]`, or ";
+}
+
+/// Warns of drives whose reaction to NMT stop is unknown. `on_loss: stop_node` and `stop_group`
+/// send NMT stop at once, and the configuration of a moving drive decides what the drive does then.
+void ask_for_stopped_drives(const NodeSpec& lost, std::span<const NodePdos> nodes,
+                            NetworkReport& report) {
+  std::string names;
+  std::string missing;
+  std::set<std::uint16_t> writable;
+  for (const NodePdos& node : nodes) {
+    if (!is_cia402(node.node) || !is_stopped_with(*node.node.spec, lost)) continue;
+    const std::string name = "`" + node.node.spec->name + "`";
+    bool lacks = false;
+    const std::vector<ObjectKey> axes = axes_without_quick_stop(node.node);
+    for (const ObjectKey object : axes) {
+      if (node.node.dictionary->find(object) == nullptr) {
+        lacks = true;
+      } else {
+        writable.insert(object.index);
+      }
+    }
+    if (!axes.empty()) names += (names.empty() ? "" : ", ") + name;
+    if (lacks) missing += (missing.empty() ? "" : ", ") + name;
+  }
+  if (names.empty()) return;
+  if (!missing.empty()) missing = " (not in the device file of " + missing + ")";
+  report.warning(lost.on_loss.pos, "on-loss",
+                 "when node `" + lost.name + "` is lost, the master sends NMT stop to " + names +
+                     " at once, without a quick stop: a moving drive reacts as its 0x6007 says" +
+                     missing +
+                     ", and takt does not know whether this object is 3 (quick stop). Write " +
+                     written_as_quick_stop(writable) + "`on_loss: quick_stop`");
+}
+
+}  // namespace
+
+bool is_cia402(const NodeSource& node) {
+  if (node.spec->profile.given) return *node.spec->profile == "cia402";
+  return profile_of(*node.dictionary) == 402 && has_drive_words(*node.dictionary);
+}
+
+void ask_about_drives(std::span<const NodePdos> nodes, NetworkReport& report) {
+  for (const NodePdos& node : nodes) {
+    if (is_cia402(node.node)) ask_for_mode(node, report);
+  }
+  ask_for_loss(nodes, report);
+  for (const NodePdos& node : nodes) {
+    const LossReaction reaction = *node.node.spec->on_loss;
+    if (reaction == LossReaction::stop_node || reaction == LossReaction::stop_group) {
+      ask_for_stopped_drives(*node.node.spec, nodes, report);
+    }
+  }
+}
+
+}  // namespace takt

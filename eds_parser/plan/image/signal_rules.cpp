@@ -1,0 +1,170 @@
+#include "eds_parser/plan/image/signal_rules.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/specification/object_units.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::int64_t quick_stop_command = 0x0002;
+constexpr std::int64_t disable_voltage_command = 0x0000;
+constexpr std::chrono::milliseconds default_time_to_live{50};
+
+enum class Role : std::uint8_t { other, controlword, mode, position_target, rate_target };
+
+Role role_of(ObjectKey object) {
+  switch (first_axis(object.index)) {
+    case 0x6040:
+      return Role::controlword;
+    case 0x6060:
+      return Role::mode;
+    case 0x607A:
+    case 0x60C1:
+      return Role::position_target;
+    case 0x6042:  // vl target velocity
+    case 0x6071:  // target torque
+    case 0x60B0:  // offsets of position, velocity, torque
+    case 0x60B1:
+    case 0x60B2:
+    case 0x60FF:  // target velocity
+      return Role::rate_target;
+    default:
+      return Role::other;
+  }
+}
+
+/// Returns a configured value in the form of the process image: reals as their bit pattern.
+std::int64_t raw_value(const SdoSpec& sdo, DataType type) {
+  if (const auto* integer = std::get_if<std::int64_t>(&sdo.value)) {
+    if (type == DataType::real32) {
+      return std::bit_cast<std::int32_t>(static_cast<float>(*integer));
+    }
+    if (type == DataType::real64) return std::bit_cast<std::int64_t>(static_cast<double>(*integer));
+    return *integer;
+  }
+  if (const auto* real = std::get_if<double>(&sdo.value)) {
+    if (type == DataType::real32) return std::bit_cast<std::int32_t>(static_cast<float>(*real));
+    if (type == DataType::real64) return std::bit_cast<std::int64_t>(*real);
+    return std::abs(*real) < 0x1p63 ? static_cast<std::int64_t>(*real) : 0;
+  }
+  return 0;
+}
+
+std::optional<std::int64_t> written_value(const std::vector<SdoSpec>& list, const Signal& signal) {
+  for (auto sdo = list.rbegin(); sdo != list.rend(); ++sdo) {
+    if (sdo->object == signal.object) return raw_value(*sdo, signal.type);
+  }
+  return {};
+}
+
+/// Returns the value of an output before its first command: the entry of `safe_values`. Without
+/// one, the controlword and the rates of a drive are 0, and other outputs get the value that `sdo:`
+/// or the DCF writes. A target position of a drive comes only from `safe_values`; otherwise it is
+/// the position where the axis is.
+std::optional<std::int64_t> safe_value(const NodeSource& node, bool cia402, const Signal& signal) {
+  if (auto value = written_value(node.spec->safe_values, signal)) return value;
+  const Role role = role_of(signal.object);
+  if (cia402 && role == Role::position_target) return {};
+  if (cia402 && (role == Role::controlword || role == Role::rate_target)) return 0;
+  if (auto value = written_value(node.spec->sdo, signal)) return value;
+  const SubObject* sub = node.dictionary->find(signal.object);
+  return sub == nullptr ? std::nullopt : integer_of(sub->parameter_value);
+}
+
+void set_value(Signal& signal, std::int64_t value) {
+  signal.fallback = Fallback::value;
+  signal.fallback_value = value;
+}
+
+void stop_axis(Signal& signal, std::int64_t controlword) {
+  const Role role = role_of(signal.object);
+  if (role == Role::controlword) set_value(signal, controlword);
+  if (role == Role::rate_target) set_value(signal, 0);
+}
+
+}  // namespace
+
+void apply_units(const NodeSource& node, Signal& signal) {
+  for (const ObjectUnitSpec& object : node.spec->units.objects) {
+    if (object.object != signal.object) continue;
+    signal.scale = *object.unit.scale * object.unit.sign;
+    signal.offset = object.unit.offset;
+    signal.unit = object.unit.unit;
+    return;
+  }
+  const auto quantity = quantity_of(signal.object);
+  if (!quantity) return;
+  const auto& unit = node.spec->units.of(quantity->quantity);
+  if (!unit) return;
+  signal.scale = *unit->scale * (quantity->directed ? unit->sign : 1);
+  signal.offset = quantity->absolute || quantity->quantity != Quantity::position ? unit->offset : 0;
+  signal.unit = unit->unit;
+}
+
+/// Returns the time to live of commands in cycles. 0 means no limit.
+std::uint32_t fallback_cycles(const TimeoutSpec& timeout, Time period) {
+  const Time after =
+      timeout.after.given ? std::chrono::milliseconds{*timeout.after} : Time{default_time_to_live};
+  const std::uint32_t cycles =
+      timeout.after_cycles.given ? *timeout.after_cycles
+                                 : static_cast<std::uint32_t>((after + period - Time{1}) / period);
+  return cycles == 0 ? 0 : std::max(fewest_fallback_cycles, cycles);
+}
+
+void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal) {
+  const TimeoutSpec& timeout = node.spec->on_timeout;
+  const auto policy =
+      timeout.fallback.value_or(cia402 ? FallbackPolicy::quick_stop : FallbackPolicy::hold);
+  signal.fallback_cycles = fallback_cycles(timeout, period);
+  signal.safe_value = safe_value(node, cia402, signal);
+  switch (policy) {
+    case FallbackPolicy::hold:
+      break;
+    case FallbackPolicy::quick_stop:
+      stop_axis(signal, quick_stop_command);
+      break;
+    case FallbackPolicy::disable:
+      stop_axis(signal, disable_voltage_command);
+      break;
+    case FallbackPolicy::zero: {
+      const Role role = role_of(signal.object);
+      const bool keeps = cia402 && (role == Role::position_target || role == Role::mode);
+      if (!keeps) set_value(signal, 0);
+      break;
+    }
+    case FallbackPolicy::safe:
+      if (signal.safe_value) set_value(signal, *signal.safe_value);
+      break;
+  }
+}
+
+std::uint16_t seed_object(std::uint16_t output_index) noexcept {
+  const std::uint16_t first = first_axis(output_index);
+  const auto axis = static_cast<std::uint16_t>(output_index - first);
+  if (first == 0x607A) return static_cast<std::uint16_t>(0x6064 + axis);
+  if (first == 0x6060) return static_cast<std::uint16_t>(0x6061 + axis);
+  return 0;
+}
+
+void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report) {
+  const auto& fallback = node.spec->on_timeout.fallback;
+  const bool needs_drive =
+      *fallback == FallbackPolicy::quick_stop || *fallback == FallbackPolicy::disable;
+  if (fallback.given && needs_drive && !cia402) {
+    report.error(fallback.pos, "fallback",
+                 "node `" + node.spec->name +
+                     "` is not a CiA 402 drive and has no quick stop or disable: write hold, zero "
+                     "or safe (`profile: cia402` makes the node a drive)");
+  }
+  if (fallback.given && *fallback == FallbackPolicy::safe && node.spec->safe_values.empty()) {
+    report.error(fallback.pos, "fallback",
+                 "`fallback: safe` of node `" + node.spec->name +
+                     "` needs `safe_values: [{index: ..., sub_index: ..., value: ...}]`");
+  }
+}
+
+}  // namespace takt

@@ -1,0 +1,25 @@
+#pragma once
+#include "eds_parser/plan/pdo/effective_pdo.hpp"
+#include "eds_parser/report/network_report.hpp"
+#include "eds_parser/table/image_layout.hpp"
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// Sets scale, offset and unit of a signal from `units:` of its node.
+void apply_units(const NodeSource& node, Signal& signal);
+
+/// Sets the fallback of an output, for the time when its command is too old, and its safe value.
+/// `cia402` means that the node is a drive; the default of a drive is a quick stop after 3 cycles.
+/// Other nodes hold their outputs, and their commands expire after 100 ms, so that another sender
+/// can take over.
+void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal);
+
+/// Returns the index of the input that gives an output its first value, on the same axis (6064 for
+/// 607A, 6061 for 6060). 0 means that there is none.
+std::uint16_t seed_object(std::uint16_t output_index) noexcept;
+
+/// Reports errors in `on_timeout` and `safe_values` that concern the node as a whole.
+void check_fallback(const NodeSource& node, bool cia402, NetworkReport& report);
+
+}  // namespace takt

@@ -1,0 +1,100 @@
+#include <cmath>
+
+#include "eds_parser/plan/limits/axis_limits.hpp"
+
+// Limits that are read from a drive in each boot, for kinds that the network file does not limit.
+
+namespace takt {
+
+bool AxisLimits::tells(ObjectKey object) const {
+  const SubObject* sub = node_.dictionary->find(object);
+  if (sub == nullptr || sub->access == Access::wo) return false;
+  return bit_width(sub->type) == 32 && !is_real(sub->type);
+}
+
+LimitLine& AxisLimits::device_line(LimitKind kind, ObjectKey object, double scale) {
+  LimitLine& entry = line(kind, LimitSource::device);
+  entry.object = object;
+  entry.scale = std::abs(scale);
+  return entry;
+}
+
+void AxisLimits::read_at_boot(LimitLine& entry, SignalIndex signal, DeviceBound bound,
+                              double factor) {
+  OutputLimit& row = table_.row(signal);
+  if (bound == DeviceBound::range || bound == DeviceBound::size) row.range = entry.kind;
+  if (bound == DeviceBound::rate) row.rate_of = entry.kind;
+  entry.signals.push_back(signal);
+  const auto place = static_cast<std::uint16_t>(plan_.limits.lines.size() - 1);
+  plan_.limits.device.push_back({.node_index = static_cast<std::uint8_t>(node_index_),
+                                 .object = entry.object,
+                                 .signal = signal,
+                                 .bound = bound,
+                                 .factor = factor,
+                                 .line = place});
+}
+
+/// 607D has the unit of 607A.
+bool AxisLimits::device_position() {
+  const ObjectKey low = object(0x607D, 1);
+  if (!tells(low) || !tells(object(0x607D, 2))) return false;
+  const Signal& first = table_.signal(positions_[0]);
+  LimitLine& entry = device_line(LimitKind::position, low, 1.0);
+  entry.scale = first.scale;
+  entry.offset = first.offset;
+  for (const SignalIndex signal : positions_) {
+    read_at_boot(entry, signal, DeviceBound::range, 1.0);
+  }
+  add_offset(entry);
+  return true;
+}
+
+/// 607F has the unit of 60FF. Positions are compared with it only if `units:` defines how
+/// velocities and positions relate.
+bool AxisLimits::device_velocity() {
+  const ObjectKey most = object(0x607F);
+  const auto& unit = node_.spec->units.velocity;
+  const bool comparable =
+      unit && !unit->unit.empty() && !positions_.empty() && follows_position(LimitKind::velocity);
+  if (!tells(most) || (velocities_.empty() && !comparable)) return false;
+  LimitLine& entry = device_line(LimitKind::velocity, most, unit ? *unit->scale : 1.0);
+  for (const SignalIndex signal : positions_) {
+    if (!comparable) break;
+    const double counts = std::abs(*unit->scale / table_.signal(signal).scale);
+    read_at_boot(entry, signal, DeviceBound::rate, counts * cycle_seconds());
+  }
+  add_offset(entry);
+  for (const SignalIndex signal : velocities_) {
+    read_at_boot(entry, signal, DeviceBound::size, 1.0);
+  }
+  return true;
+}
+
+/// 60C5 has the unit of 6083, so `units:` must define how it relates to the commanded values.
+bool AxisLimits::device_acceleration() {
+  const ObjectKey most = object(0x60C5);
+  const auto& unit = node_.spec->units.acceleration;
+  const auto& speed = node_.spec->units.velocity;
+  if (!unit || unit->unit.empty() || !tells(most)) return false;
+  const bool of_positions = !positions_.empty() && follows_position(LimitKind::acceleration);
+  const bool of_velocities = speed && !velocities_.empty() &&
+                             (is_limit_rate(unit->unit, speed->unit, LimitKind::velocity) ||
+                              (of_positions && follows_position(LimitKind::velocity)));
+  if (!of_positions && !of_velocities) return false;
+  LimitLine& entry = device_line(LimitKind::acceleration, most, *unit->scale);
+  const auto counts = [&](SignalIndex signal) {
+    return std::abs(*unit->scale / table_.signal(signal).scale) * cycle_seconds();
+  };
+  for (const SignalIndex signal : positions_) {
+    if (!of_positions) break;
+    read_at_boot(entry, signal, DeviceBound::bend, counts(signal) * cycle_seconds());
+  }
+  add_offset(entry);
+  for (const SignalIndex signal : velocities_) {
+    if (!of_velocities) break;
+    read_at_boot(entry, signal, DeviceBound::rate, counts(signal));
+  }
+  return true;
+}
+
+}  // namespace takt

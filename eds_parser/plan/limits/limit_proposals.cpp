@@ -1,0 +1,111 @@
+#include "eds_parser/plan/limits/limit_proposals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "eds_parser/plan/device/node_objects.hpp"
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+class Proposal {
+ public:
+  Proposal(LimitLine& line, const NodeSource& node, const BusPlan& plan, const LimitTable& table)
+      : line_{line}, node_{node}, plan_{plan}, table_{table} {}
+
+  void make() {
+    switch (line_.kind) {
+      case LimitKind::position:
+        return position();
+      case LimitKind::velocity:
+        return quantity(LimitKind::velocity, {0x607F, 0x6081}, node_.spec->units.velocity);
+      case LimitKind::acceleration:
+        return quantity(LimitKind::acceleration, {0x60C5, 0x6083}, node_.spec->units.acceleration);
+      case LimitKind::torque:
+        return quantity(LimitKind::torque, {0x6072, 0x6072}, node_.spec->units.torque);
+      case LimitKind::step:
+        return step();
+      case LimitKind::jerk:
+      case LimitKind::range:
+        return;
+    }
+  }
+
+ private:
+  ObjectKey object(std::uint16_t index, std::uint8_t sub = 0) const {
+    return {static_cast<std::uint16_t>(index + (line_.axis - 1) * 0x800), sub};
+  }
+
+  void words(const std::string& because) {
+    line_.proposal = std::string{name(line_.kind)} + ": ...";
+    line_.because = because;
+  }
+
+  void position() {
+    const auto signal = table_.find(line_.node_index, object(0x607A), true);
+    const auto low = configured_object(node_, object(0x607D, 1));
+    const auto high = configured_object(node_, object(0x607D, 2));
+    if (!signal || table_.signal(*signal).unit.empty()) return words("give positions a unit first");
+    if (!low || !high || !plausible_range(*low, *high))
+      return words("enter the travel of the machine");
+    const Signal& what = table_.signal(*signal);
+    double first = static_cast<double>(*low) * what.scale + what.offset;
+    double last = static_cast<double>(*high) * what.scale + what.offset;
+    if (first > last) std::swap(first, last);
+    line_.proposal = "position: [" + number(first) + ", " + number(last) + "]";
+    line_.because = "607D";
+  }
+
+  void quantity(LimitKind kind, std::array<std::uint16_t, 2> indices,
+                const std::optional<UnitSpec>& unit) {
+    if (!unit) return words("give it a unit first, then enter what the machine withstands");
+    for (const std::uint16_t index : indices) {
+      const auto value = configured_object(node_, object(index));
+      if (!value || !plausible_size(*value)) continue;
+      line_.proposal =
+          std::string{name(kind)} + ": " + number(static_cast<double>(*value) * *unit->scale);
+      line_.because = to_string(object(index));
+      return;
+    }
+    words("enter what the machine withstands");
+  }
+
+  /// Proposes the distance that the axis travels in one cycle at its velocity limit.
+  void step() {
+    const double seconds = std::chrono::duration<double>(plan_.cycle.period).count();
+    for (const LimitLine& other : plan_.limits.lines) {
+      const bool mine = other.node_index == line_.node_index && other.axis == line_.axis;
+      if (!mine || other.kind != LimitKind::velocity || !other.high) continue;
+      line_.proposal = "step: " + number(*other.high * seconds);
+      line_.because = "velocity in one cycle";
+      return;
+    }
+    words("enter the distance in one cycle at full speed");
+  }
+
+  LimitLine& line_;
+  const NodeSource& node_;
+  const BusPlan& plan_;
+  const LimitTable& table_;
+};
+
+}  // namespace
+
+void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
+                   const LimitTable& table) {
+  if (line.source != LimitSource::none) return;
+  Proposal{line, node, plan, table}.make();
+}
+
+}  // namespace takt

@@ -1,0 +1,157 @@
+#include "eds_parser/plan/limits/limits_compiler.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+
+#include "eds_parser/plan/limits/axis_limits.hpp"
+#include "eds_parser/plan/limits/limit_table.hpp"
+
+namespace takt {
+namespace {
+
+/// Returns the limits of `common`, overridden by those that `own` gives.
+AxisLimitsSpec merged(const AxisLimitsSpec& common, const AxisLimitsSpec& own) {
+  AxisLimitsSpec out = common;
+  const auto take = [](auto& to, const auto& from) {
+    if (from.given) to = from;
+  };
+  take(out.position, own.position);
+  take(out.velocity, own.velocity);
+  take(out.acceleration, own.acceleration);
+  take(out.jerk, own.jerk);
+  take(out.step, own.step);
+  take(out.torque, own.torque);
+  take(out.modulo, own.modulo);
+  return out;
+}
+
+/// Returns the place of the first limit of an axis, or std::nullopt if there is none.
+std::optional<SourcePos> first_place(const AxisLimitsSpec& limits) {
+  if (limits.position.given) return limits.position.pos;
+  for (const auto* limit : {&limits.velocity, &limits.acceleration, &limits.jerk, &limits.step,
+                            &limits.torque, &limits.modulo}) {
+    if (limit->given) return limit->pos;
+  }
+  return std::nullopt;
+}
+
+class LimitsCompiler {
+ public:
+  LimitsCompiler(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report)
+      : nodes_{nodes}, plan_{plan}, report_{report}, table_{plan, report} {}
+
+  void run() {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) node(i);
+    table_.finish();
+  }
+
+ private:
+  void node(std::size_t index) {
+    const NodeSource& source = nodes_[index].node;
+    const LimitsSpec& limits = source.spec->limits;
+    const std::set<std::uint8_t> axes = axes_of(index);
+    for (const AxisOverrideSpec& own : limits.axes) {
+      if (axes.contains(own.axis)) continue;
+      report_.error(own.pos, "limits",
+                    "no RPDO of node `" + source.spec->name + "` carries a set-point of axis " +
+                        std::to_string(own.axis));
+    }
+    const auto place = first_place(limits.all);
+    if (place && axes.empty() && every_output_is_mapped(nodes_[index])) {
+      report_.error(*place, "limits",
+                    "no RPDO of node `" + source.spec->name +
+                        "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits "
+                        "of other outputs under `objects: [{index: ..., min: ..., max: ...}]`");
+    }
+    for (const std::uint8_t axis : axes) {
+      AxisLimitsSpec own = limits.all;
+      for (const AxisOverrideSpec& entry : limits.axes) {
+        if (entry.axis == axis) own = merged(own, entry.limits);
+      }
+      AxisLimits{source, index, axis, plan_, table_, report_}.compile(own);
+    }
+    for (const ObjectLimitSpec& limit : limits.objects) object(index, limit);
+  }
+
+  /// Returns false if a mapping has errors. They are already reported, and no limit is to blame.
+  static bool every_output_is_mapped(const NodePdos& node) {
+    return std::ranges::all_of(node.node.spec->rpdos, [&](const PdoSpec& written) {
+      const auto pdo = std::ranges::find_if(node.pdos, [&](const EffectivePdo& one) {
+        return !one.is_tpdo && one.number == written.number;
+      });
+      return !written.mapping.given ||
+             (pdo != node.pdos.end() && pdo->mapping.size() >= written.mapping->size());
+    });
+  }
+
+  /// Returns the axes that have a set-point in an RPDO.
+  std::set<std::uint8_t> axes_of(std::size_t node_index) const {
+    constexpr std::array<std::uint16_t, 7> set_points{0x607A, 0x60C1, 0x60FF, 0x6071,
+                                                      0x60B0, 0x60B1, 0x60B2};
+    std::set<std::uint8_t> axes;
+    if (!plan_.nodes[node_index].cia402) return axes;
+    for (const Signal& signal : plan_.layout.signals) {
+      const std::uint16_t index = signal.object.index;
+      if (signal.node_index != node_index || !signal.output || index < 0x6000 || index >= 0xA000) {
+        continue;
+      }
+      const auto first = static_cast<std::uint16_t>(0x6000 + index % 0x800);
+      if (std::ranges::find(set_points, first) == set_points.end()) continue;
+      axes.insert(static_cast<std::uint8_t>((index - 0x6000) / 0x800 + 1));
+    }
+    return axes;
+  }
+
+  void object(std::size_t node_index, const ObjectLimitSpec& limit) {
+    const auto signal = table_.find(node_index, limit.object, true);
+    if (!signal) {
+      report_.error(limit.pos, "limits",
+                    "`limits` of node `" + plan_.nodes[node_index].name + "`: no RPDO carries " +
+                        to_string(limit.object) + ", so no command can contain this object");
+      return;
+    }
+    const auto bound = [](const Sourced<double>& value) {
+      return value.given ? std::optional{*value} : std::nullopt;
+    };
+    LimitLine& line = plan_.limits.lines.emplace_back();
+    line.node_index = static_cast<std::uint8_t>(node_index);
+    line.object = limit.object;
+    line.source = LimitSource::file;
+    line.low = bound(limit.min);
+    line.high = bound(limit.max);
+    line.unit = table_.signal(*signal).unit;
+    line.signals = {*signal};
+    if (limit.min.given || limit.max.given) {
+      table_.narrow(*signal, table_.raw_range(*signal, line.low, line.high), LimitKind::range,
+                    limit.pos);
+    } else {
+      plan_.limits.lines.pop_back();
+    }
+    if (!limit.step.given) return;
+    OutputLimit& row = table_.row(*signal);
+    row.step = std::min(row.step, table_.raw_size(*signal, *limit.step));
+    LimitLine& step = plan_.limits.lines.emplace_back();
+    step.node_index = static_cast<std::uint8_t>(node_index);
+    step.object = limit.object;
+    step.kind = LimitKind::step;
+    step.source = LimitSource::file;
+    step.high = *limit.step;
+    step.unit = table_.signal(*signal).unit;
+    step.signals = {*signal};
+  }
+
+  std::span<const NodePdos> nodes_;
+  BusPlan& plan_;
+  NetworkReport& report_;
+  LimitTable table_;
+};
+
+}  // namespace
+
+void compile_limits(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report) {
+  LimitsCompiler{nodes, plan, report}.run();
+}
+
+}  // namespace takt

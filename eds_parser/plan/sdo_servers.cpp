@@ -1,0 +1,194 @@
+#include "eds_parser/plan/sdo_servers.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/specification/device_data.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::uint32_t off_flag = 0x8000'0000;
+constexpr std::uint32_t extended_flag = 0x2000'0000;
+constexpr std::uint16_t first_further = 0x1201;
+constexpr std::uint16_t last_further = 0x127F;
+
+bool is_relative(const SubObject& sub) {
+  constexpr std::string_view formula = "$nodeid";
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return !std::ranges::search(sub.default_text, formula, same).empty();
+}
+
+bool is_configured(const ObjectDictionary& dictionary, const SubObject& sub) {
+  return dictionary.is_dcf && sub.parameter_value;
+}
+
+/// Returns the number in the file, whichever node it is valid for. Returns std::nullopt if there is
+/// no such entry or it is no number.
+std::optional<std::int64_t> number_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
+  const SubObject* sub = dictionary.find(key);
+  if (sub == nullptr) return std::nullopt;
+  return integer_of(is_configured(dictionary, *sub) ? sub->parameter_value : sub->default_value);
+}
+
+/// Returns std::nullopt if the COB-ID is off.
+std::optional<CobId> cob_id_of(std::int64_t value) {
+  const auto raw = static_cast<std::uint32_t>(value);
+  if (value <= 0 || (raw & off_flag) != 0) return std::nullopt;
+  const CobId id = (raw & extended_flag) != 0 ? CobId::extended(raw) : CobId::base(raw);
+  return id.id() == 0 ? std::nullopt : std::optional{id};
+}
+
+class SdoServers {
+ public:
+  explicit SdoServers(const NodeSource& node) : node_{node} {}
+
+  std::vector<SdoServer> active() const {
+    std::vector<SdoServer> servers;
+    for (std::uint16_t index = first_further; index <= last_further; ++index) {
+      if (const auto server = at(index)) servers.push_back(*server);
+    }
+    return servers;
+  }
+
+ private:
+  std::optional<SdoServer> at(std::uint16_t index) const {
+    const SdoSpec* own_request = written({index, 1});
+    const SdoSpec* own_answer = written({index, 2});
+    const auto request = cob_id({index, 1}, own_request);
+    const auto answer = cob_id({index, 2}, own_answer);
+    const bool configured = own_request != nullptr || own_answer != nullptr;
+    if (!request || !answer) return configured ? std::nullopt : of_factory(index);
+    const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
+    return SdoServer{.index = index,
+                     .channel = {.request = *request, .answer = *answer},
+                     .pos = own != nullptr ? own->pos : node_.spec->pos,
+                     .doubt = {}};
+  }
+
+  /// Returns the server that the device has at delivery according to its device data, unless a DCF
+  /// states its configuration.
+  std::optional<SdoServer> of_factory(std::uint16_t index) const {
+    const SubObject* sub = node_.dictionary->find(ObjectKey{index, 1});
+    const bool left_off = sub != nullptr && is_configured(*node_.dictionary, *sub);
+    if (node_.data == nullptr || left_off) return std::nullopt;
+    const auto& facts = node_.data->sdo_servers;
+    const auto found = std::ranges::find(facts, index, &SdoServerFact::index);
+    if (found == facts.end()) return std::nullopt;
+    const auto id = [this](std::uint32_t base) { return CobId::base(base + node_.id.value()); };
+    return SdoServer{.index = index,
+                     .channel = {.request = id(found->request), .answer = id(found->answer)},
+                     .pos = node_.spec->pos,
+                     .doubt = node_.data->cite(found->fact)};
+  }
+
+  /// Returns the last write of the object. Entries of `configuration_file` come before those of
+  /// `sdo`.
+  const SdoSpec* written(ObjectKey key) const {
+    const SdoSpec* last_one = nullptr;
+    for (const SdoSpec& sdo : node_.spec->sdo) {
+      if (sdo.object == key) last_one = &sdo;
+    }
+    return last_one;
+  }
+
+  std::optional<CobId> cob_id(ObjectKey key, const SdoSpec* own) const {
+    if (own == nullptr) return cob_id_of(cob_id_of_file(*node_.dictionary, key));
+    return cob_id_of(number_of(own->value));
+  }
+
+  /// Returns the value as a number. Values of a concise DCF are little-endian bytes.
+  static std::int64_t number_of(const decltype(SdoSpec::value)& value) {
+    if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
+    const auto* bytes = std::get_if<std::vector<std::byte>>(&value);
+    if (bytes == nullptr || bytes->size() != 4) return 0;
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      number |= std::to_integer<std::uint32_t>((*bytes)[i]) << (8 * i);
+    }
+    return number;
+  }
+
+  const NodeSource& node_;
+};
+
+/// The further SDO servers of a device file, of which the master's channel may name one.
+class ServersOfFile {
+ public:
+  ServersOfFile(const ObjectDictionary& dictionary, const SdoChannel& wanted) {
+    for (std::uint16_t index = first_further; index <= last_further; ++index) {
+      if (dictionary.find(ObjectKey{index, 1}) == nullptr) continue;
+      const auto request = number_of_file(dictionary, {index, 1}).value_or(0);
+      const auto answer = number_of_file(dictionary, {index, 2}).value_or(0);
+      has_ = has_ || (cob_id_of(request) == wanted.request && cob_id_of(answer) == wanted.answer);
+      if (first_ == 0) first_ = index;
+      list_ += (list_.empty() ? "" : ", ") + hex(index, 4) + ": " + state(request, answer);
+    }
+  }
+
+  bool has_wanted() const noexcept { return has_; }
+  std::uint16_t first() const noexcept { return first_; }  ///< 0 means that there is none
+  const std::string& list() const noexcept { return list_; }
+
+ private:
+  static std::string state(std::int64_t request, std::int64_t answer) {
+    const auto from_client = cob_id_of(request);
+    const auto from_server = cob_id_of(answer);
+    if (!from_client || !from_server) return "off";
+    return to_string(*from_client) + " and " + to_string(*from_server);
+  }
+
+  bool has_ = false;
+  std::uint16_t first_ = 0;
+  std::string list_;
+};
+
+}  // namespace
+
+std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
+  const SubObject* sub = dictionary.find(key);
+  if (sub == nullptr) return 0;
+  const std::int64_t id = number_of_file(dictionary, key).value_or(0);
+  const bool meant =
+      is_configured(dictionary, *sub) || is_relative(*sub) || (id & extended_flag) != 0;
+  return meant ? id : 0;
+}
+
+std::vector<SdoServer> active_sdo_servers(const NodeSource& node) {
+  return SdoServers{node}.active();
+}
+
+void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
+  const Sourced<SdoChannel>& wanted = node.spec->sdo_channel;
+  if (!wanted.given || *wanted == default_sdo_channel(node.id)) return;
+  const ServersOfFile servers{*node.dictionary, *wanted};
+  const auto of_device_data = [&](const SdoServer& server) {
+    return !server.doubt.empty() && server.channel == *wanted;
+  };
+  if (servers.has_wanted()) return;
+  if (std::ranges::any_of(active_sdo_servers(node), of_device_data)) return;
+  const std::string request = to_string(wanted->request);
+  const std::string start = "`sdo_channel` of node `" + node.spec->name + "`: ";
+  const std::string& file = node.dictionary->file;
+  if (servers.first() == 0) {
+    report.warning(
+        wanted.pos, "no-sdo-server",
+        start + file +
+            " has no SDO server besides the first (no 0x1201 to 0x127F), so the device may not "
+            "answer on " +
+            request +
+            "; leave `sdo_channel` out, or name a device file that contains such a server");
+    return;
+  }
+  const std::string object = hex(servers.first(), 4);
+  report.warning(
+      wanted.pos, "no-sdo-server",
+      start + "no SDO server of " + file + " is on " + request + " and " +
+          to_string(wanted->answer) + " (" + servers.list() +
+          "); correct `sdo_channel`, or leave it out and switch the server on by `sdo` (" + object +
+          ":01 and 02) and store it in the device (`store_configuration`)");
+}
+
+}  // namespace takt

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "eds_parser/plan/pdo/cob_ids.hpp"
+#include "eds_parser/table/sdo_access.hpp"
+
+namespace takt {
+
+/// A further SDO server of a device, in addition to the default server: 0x1201..0x127F. CiA 301,
+/// 7.5.2.33.
+struct SdoServer {
+  std::uint16_t index = 0;
+  SdoChannel channel;
+  SourcePos pos;  ///< place in the network file
+  /// Statement of the device data if only these say that the server is on, else empty.
+  std::string doubt;
+};
+
+/// Returns the further SDO servers that are on according to the network file, else the device file,
+/// else the device data.
+std::vector<SdoServer> active_sdo_servers(const NodeSource& node);
+
+/// Returns a COB-ID entry of the device file for this node. Returns 0 if there is no such entry. A
+/// plain number in an EDS also gives 0, because it is that of the node from which the EDS was
+/// taken.
+std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key);
+
+/// Warns if no SDO server of the device file or the device data has the COB-IDs of `sdo_channel`.
+void check_sdo_channel(const NodeSource& node, NetworkReport& report);
+
+}  // namespace takt

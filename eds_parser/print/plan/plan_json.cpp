@@ -1,0 +1,273 @@
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "eds_parser/plan/cycle_compiler.hpp"
+#include "eds_parser/print/plan/plan_names.hpp"
+#include "eds_parser/print/plan/plan_waits.hpp"
+#include "eds_parser/print/plan/print_plan.hpp"
+#include "eds_parser/print/plan/step_frames.hpp"
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double us(Time time) { return static_cast<double>(time.count()) / 1000.0; }
+
+std::string source_of_sync(const CyclePlan& cycle) {
+  if (!cycle.sync) return "none";
+  if (!cycle.sync_followed) return "master";
+  return cycle.sync_producer ? "node " + std::to_string(cycle.sync_producer->value()) : "external";
+}
+
+Json cycle_json(const BusPlan& plan) {
+  const CyclePlan& c = plan.cycle;
+  const TimeBudget budget = time_budget(plan);
+  return {{"period_us", us(c.period)},
+          {"sync", c.sync},
+          {"sync_cob_id", c.sync_cob_id.id()},
+          {"sync_overflow", c.sync_overflow},
+          {"time_period_us", us(plan.time.period)},
+          {"time_cob_id", plan.time.cob_id.id()},
+          {"sync_source", source_of_sync(c)},
+          {"sync_timeout_us", us(c.sync_timeout)},
+          {"receive_window_us", us(c.receive_window)},
+          {"output_deadline_us", us(c.output_deadline)},
+          {"quiet_before_sync_us", us(c.quiet_before_sync)},
+          {"sync_window_us", us(c.sync_window)},
+          {"service_frames", c.service_frames},
+          {"inputs_wire_us", us(budget.inputs_wire)},
+          {"outputs_wire_us", us(budget.outputs_wire)},
+          {"compute_from_us", us(budget.earliest)},
+          {"compute_until_us", us(budget.latest)},
+          {"acts_at_sync", budget.next_sync ? "k+1" : "k+2"}};
+}
+
+Json pdo_json(const BusPlan& plan, const PdoRow& row) {
+  Json fields = Json::array();
+  for (std::uint16_t i = 0; i < row.field_count; ++i) {
+    const PdoField& field = plan.pdos.fields[row.first_field + i];
+    const Signal& signal = plan.layout.signals[field.signal];
+    fields.push_back({{"signal", field.signal},
+                      {"name", signal.name},
+                      {"index", signal.object.index},
+                      {"sub", signal.object.sub},
+                      {"bit_offset", field.bit_offset},
+                      {"bits", field.bits}});
+  }
+  return {{"number", row.number},
+          {"cob_id", row.cob_id.id()},
+          {"extended", row.cob_id.is_extended()},
+          {"transmission_type", row.transmission},
+          {"length", row.length},
+          {"sync_start", row.sync_start},
+          {"inhibit_us", us(row.inhibit)},
+          {"event_timer_us", us(row.event_timer)},
+          {"deadline_us", us(row.deadline)},
+          {"poll_us", us(row.poll)},
+          {"poll_syncs", row.poll_syncs},
+          {"late", row.drop_late ? "drop" : "use"},
+          {"on_request", row.on_request},
+          {"mpdo_header", row.header},
+          {"fields", std::move(fields)}};
+}
+
+Json pdos_json(const BusPlan& plan, const std::vector<PdoRow>& rows, std::size_t node_index) {
+  Json list = Json::array();
+  for (const PdoRow& row : rows) {
+    if (row.node_index == node_index) list.push_back(pdo_json(plan, row));
+  }
+  return list;
+}
+
+Json step_json(const BootStep& step, std::size_t number, const StepFrames& frames) {
+  Json out{{"step", number},
+           {"action", action_name(step.action)},
+           {"letter", std::string(1, step.letter)},
+           {"purpose", step.purpose},
+           {"timeout_us", us(step.timeout)}};
+  if (step.action == BootAction::nmt) out["command"] = command_name(step.command);
+  const bool jumps =
+      step.action == BootAction::skip_if_same || step.action == BootAction::await_alive;
+  if (jumps) out["target"] = step.target + 1;
+  if (step.object.index != 0) {
+    out["index"] = step.object.index;
+    out["sub"] = step.object.sub;
+  }
+  if (!step.value.empty()) out["value"] = value_text(step);
+  if (step.mask != 0xFFFF'FFFF) out["mask"] = step.mask;
+  if (step.optional) out["optional"] = true;
+  if (!frames.first.empty()) out["frame"] = frames.first;
+  if (!frames.write.empty()) out["write_frame"] = frames.write;
+  return out;
+}
+
+/// Returns the object's key in `identity`, or nullptr if it is another object.
+const char* identity_key(ObjectKey object) {
+  if (object == ObjectKey{0x1000, 0}) return "device_type";
+  if (object == ObjectKey{0x1018, 1}) return "vendor_id";
+  if (object == ObjectKey{0x1018, 2}) return "product_code";
+  if (object == ObjectKey{0x1018, 3}) return "revision_number";
+  if (object == ObjectKey{0x1018, 4}) return "serial_number";
+  return nullptr;
+}
+
+/// Returns the identity that the boot expects: `{"device_type": 131474, "vendor_id": 59}`.
+Json identity_json(const BootPlan& boot) {
+  Json out = Json::object();
+  for (const BootStep& step : boot.steps) {
+    const char* key = identity_key(step.object);
+    if (step.action != BootAction::expect || key == nullptr || step.value.size() > 4) continue;
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < step.value.size(); ++i) {
+      value |= std::to_integer<std::uint32_t>(step.value[i]) << (8 * i);
+    }
+    out[key] = value;
+  }
+  return out;
+}
+
+std::string_view loss_name(LossReaction reaction) {
+  switch (reaction) {
+    case LossReaction::report:
+      return "report";
+    case LossReaction::stop_node:
+      return "stop_node";
+    case LossReaction::stop_group:
+      return "stop_group";
+    case LossReaction::quick_stop:
+      return "quick_stop";
+  }
+  return "";
+}
+
+Json node_json(const BusPlan& plan, std::size_t index) {
+  const NodePlan& node = plan.nodes[index];
+  Json steps = Json::array();
+  const std::vector<StepFrames> frames = step_frames(node);
+  for (std::size_t i = 0; i < node.boot_plan.steps.size(); ++i) {
+    steps.push_back(step_json(node.boot_plan.steps[i], i + 1, frames[i]));
+  }
+  return {{"id", node.id.value()},
+          {"name", node.name},
+          {"file", node.description_file},
+          {"product_name", node.product_name},
+          {"identity", identity_json(node.boot_plan)},
+          {"boot", node.boot},
+          {"mandatory", node.mandatory},
+          {"cia402", node.cia402},
+          {"heartbeat_timeout_us", us(node.heartbeat_timeout)},
+          {"guard_time_us", us(node.guard.period)},
+          {"guard_life_time_us", us(node.guard.life_time())},
+          {"emcy_cob_id", node.emcy_cob_id.value_or(CobId::base(0x080U + node.id.value())).id()},
+          {"on_loss", loss_name(node.on_loss)},
+          {"group", node.group == 0 ? "" : plan.groups[node.group - 1U]},
+          {"sdo_request_cob_id", node.sdo.channel_of(node.id).request.id()},
+          {"sdo_answer_cob_id", node.sdo.channel_of(node.id).answer.id()},
+          {"sdo_timeout_us", us(node.sdo_timeout)},
+          {"reboot_delay_us", us(node.reboot_delay)},
+          {"reboot_delay_max_us", us(node.longest_reboot_delay)},
+          {"lss", node.lss.has_value()},
+          {"device_data", node.device_data},
+          {"device_data_file", node.device_data_file},
+          {"device_notes", node.device_notes},
+          {"tpdos", pdos_json(plan, plan.pdos.tpdos, index)},
+          {"rpdos", pdos_json(plan, plan.pdos.rpdos, index)},
+          {"boot_plan", std::move(steps)}};
+}
+
+Json signal_json(const BusPlan& plan, std::size_t index) {
+  const Signal& signal = plan.layout.signals[index];
+  Json out{{"signal", index},
+           {"node", plan.nodes[signal.node_index].name},
+           {"node_id", signal.node.value()},
+           {"name", signal.name},
+           {"index", signal.object.index},
+           {"sub", signal.object.sub},
+           {"direction", signal.output ? "out" : "in"},
+           {"data_type", name(signal.type)},
+           {"bits", signal.bits},
+           {"unit", signal.unit},
+           {"scale", signal.scale},
+           {"offset", signal.offset}};
+  if (!signal.output) return out;
+  out["fallback"] = signal.fallback == Fallback::hold ? "hold" : "value";
+  if (signal.fallback == Fallback::value) out["fallback_value"] = signal.fallback_value;
+  out["fallback_cycles"] = signal.fallback_cycles;
+  out["safe_value"] = signal.safe_value ? Json(*signal.safe_value) : Json(nullptr);
+  out["seeded_from"] = signal.seeded_from ? Json(*signal.seeded_from) : Json(nullptr);
+  return out;
+}
+
+Json limit_json(const BusPlan& plan, const LimitLine& line) {
+  const auto value = [](const std::optional<double>& number) {
+    return number ? Json(*number) : Json(nullptr);
+  };
+  Json out{{"node", plan.nodes[line.node_index].name},
+           {"axis", line.axis == 0 ? Json(nullptr) : Json(line.axis)},
+           {"index", line.object.index == 0 ? Json(nullptr) : Json(line.object.index)},
+           {"sub", line.object.index == 0 ? Json(nullptr) : Json(line.object.sub)},
+           {"limit", name(line.kind)},
+           {"source", name(line.source)},
+           {"low", value(line.low)},
+           {"high", value(line.high)},
+           {"unit", line.unit},
+           {"signals", line.signals}};
+  if (line.source == LimitSource::none) {
+    out["proposal"] = line.proposal;
+    out["because"] = line.because;
+  }
+  return out;
+}
+
+Json waits_json(const BusPlan& plan) {
+  Json list = Json::array();
+  for (const PlanWait& wait : plan_waits(plan)) {
+    list.push_back({{"wait", wait.wait}, {"limit_us", us(wait.limit)}, {"what", wait.what}});
+  }
+  return list;
+}
+
+}  // namespace
+
+void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& what) {
+  Json nodes = Json::array();
+  Json signals = Json::array();
+  Json channels = Json::array();
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    if (!what.node || *what.node == plan.nodes[i].id) nodes.push_back(node_json(plan, i));
+  }
+  for (std::size_t i = 0; i < plan.layout.signals.size(); ++i) {
+    const bool wanted = !what.node || *what.node == plan.layout.signals[i].node;
+    if (wanted) signals.push_back(signal_json(plan, i));
+  }
+  Json limits = Json::array();
+  for (const LimitLine& line : plan.limits.lines) {
+    if (!what.node || *what.node == plan.nodes[line.node_index].id) {
+      limits.push_back(limit_json(plan, line));
+    }
+  }
+  for (const LcmChannel& channel : lcm_channels(plan, what.lcm)) {
+    channels.push_back({{"channel", channel.name}, {"type", channel.type}});
+  }
+  const Json document{{"bus", plan.name},
+                      {"interface", plan.interface},
+                      {"bitrate", plan.bitrate},
+                      {"master_id", plan.master_id.value()},
+                      {"master_heartbeat_us", us(plan.master_heartbeat)},
+                      {"start_nodes", plan.start_nodes},
+                      {"cycle", cycle_json(plan)},
+                      {"waits", waits_json(plan)},
+                      {"nodes", std::move(nodes)},
+                      {"image",
+                       {{"inputs", plan.layout.inputs},
+                        {"outputs", plan.layout.outputs()},
+                        {"hash", plan.layout.hash},
+                        {"signals", std::move(signals)}}},
+                      {"limits", std::move(limits)},
+                      {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}};
+  out << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+}  // namespace takt

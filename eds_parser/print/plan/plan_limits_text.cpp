@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <string>
+
+#include "eds_parser/print/plan/plan_sections.hpp"
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+std::string number(double value) { return fmt::format("{:.6g}", value); }
+
+std::string owner(const BusPlan& plan, const LimitLine& line) {
+  const std::string& node = plan.nodes[line.node_index].name;
+  if (line.axis == 0) return node + " " + to_string(line.object);
+  return line.axis == 1 ? node : fmt::format("{}.{}", node, line.axis);
+}
+
+/// Returns for example `-1.5 .. 1.5 rad`, `2 rad/s` or `from 3 V`.
+std::string value(const LimitLine& line) {
+  if (line.source == LimitSource::none) return "none";
+  const bool bounds = line.kind == LimitKind::position || line.kind == LimitKind::range;
+  std::string text;
+  if (!line.low && !line.high) {
+    text = "as the device says";
+  } else if (!bounds) {
+    text = number(line.high.value_or(0.0));
+  } else if (line.low && line.high) {
+    text = number(*line.low) + " .. " + number(*line.high);
+  } else {
+    text = line.low ? "from " + number(*line.low) : "up to " + number(*line.high);
+  }
+  return line.unit.empty() ? text : text + " " + line.unit;
+}
+
+std::string source(const LimitLine& line) {
+  const std::string unchecked = line.kind == LimitKind::jerk
+                                    ? ", used for planned motion only"
+                                    : ", not checked: no output carries this value";
+  switch (line.source) {
+    case LimitSource::none:
+      return fmt::format("proposal: `{}` ({})", line.proposal, line.because);
+    case LimitSource::file:
+      return "from the network file" + (line.signals.empty() ? unchecked : "");
+    case LimitSource::device:
+      return "read from the device at boot, " + to_string(line.object);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeId>& only) {
+  const auto wanted = [&](const LimitLine& line) {
+    return !only || *only == plan.nodes[line.node_index].id;
+  };
+  if (std::ranges::none_of(plan.limits.lines, wanted)) return;
+  lines.line("");
+  lines.line(
+      "limits of commands; the master does not send values outside them, and the node takes its "
+      "fallback:");
+  std::size_t widest_owner = 0;
+  std::size_t widest_value = 0;
+  for (const LimitLine& line : plan.limits.lines) {
+    if (!wanted(line)) continue;
+    widest_owner = std::max(widest_owner, owner(plan, line).size());
+    widest_value = std::max(widest_value, value(line).size());
+  }
+  for (const LimitLine& line : plan.limits.lines) {
+    if (!wanted(line)) continue;
+    lines.line("  {:<{}}  {:<12}  {:<{}}  {}", owner(plan, line), widest_owner, name(line.kind),
+               value(line), widest_value, source(line));
+  }
+}
+
+}  // namespace takt

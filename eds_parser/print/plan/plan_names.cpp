@@ -1,0 +1,143 @@
+#include "eds_parser/print/plan/plan_names.hpp"
+
+#include <algorithm>
+
+#include "eds_parser/lcm/lcm_channel.hpp"
+#include "eds_parser/lcm/typed_message.hpp"
+
+namespace takt {
+namespace {
+
+void add_byte(std::string& out, unsigned value) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  out += digits[(value >> 4) & 0xF];
+  out += digits[value & 0xF];
+}
+
+}  // namespace
+
+std::string_view action_name(BootAction action) noexcept {
+  switch (action) {
+    case BootAction::nmt:
+      return "NMT";
+    case BootAction::await_bootup:
+      return "await boot-up";
+    case BootAction::probe:
+      return "probe";
+    case BootAction::expect:
+      return "expect";
+    case BootAction::compare:
+      return "compare";
+    case BootAction::skip_if_same:
+      return "skip if same";
+    case BootAction::disable_pdo:
+      return "disable PDO";
+    case BootAction::write:
+      return "write";
+    case BootAction::enable_pdo:
+      return "enable PDO";
+    case BootAction::verify:
+      return "verify";
+    case BootAction::write_if_differs:
+      return "write if differs";
+    case BootAction::await_heartbeat:
+      return "await heartbeat";
+    case BootAction::await_guarding:
+      return "await guarding";
+    case BootAction::await_operational:
+      return "await OPERATIONAL";
+    case BootAction::await_alive:
+      return "await life";
+    case BootAction::await_value:
+      return "await value";
+    case BootAction::download_program:
+      return "download";
+    case BootAction::write_if_changed:
+      return "write if changed";
+    case BootAction::read_serial:
+      return "read serial";
+    case BootAction::read_firmware:
+      return "read firmware";
+    case BootAction::read_limit:
+      return "read limit";
+    case BootAction::pause:
+      return "pause";
+  }
+  return "";
+}
+
+std::string_view command_name(NmtCommand command) noexcept {
+  switch (command) {
+    case NmtCommand::start:
+      return "start";
+    case NmtCommand::stop:
+      return "stop";
+    case NmtCommand::enter_preoperational:
+      return "enter pre-operational";
+    case NmtCommand::reset_node:
+      return "reset node";
+    case NmtCommand::reset_communication:
+      return "reset communication";
+  }
+  return "";
+}
+
+std::string value_text(const BootStep& step) {
+  if (step.value.empty()) return {};
+  std::string out;
+  if (step.value.size() <= 8) {
+    std::uint64_t number = 0;
+    for (std::size_t i = 0; i < step.value.size(); ++i) {
+      number |= std::to_integer<std::uint64_t>(step.value[i]) << (8 * i);
+    }
+    for (std::size_t i = step.value.size(); i-- > 0;) {
+      add_byte(out, static_cast<unsigned>(number >> (8 * i)));
+    }
+    return "0x" + out;
+  }
+  constexpr std::size_t longest = 64;
+  if (step.value.size() > longest) return std::to_string(step.value.size()) + " bytes";
+  for (const std::byte byte : step.value) add_byte(out, std::to_integer<unsigned>(byte));
+  return out;
+}
+
+std::string us_text(Time time) {
+  return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) +
+         " us";
+}
+
+std::string span_text(Time time) {
+  if (time % std::chrono::milliseconds{1} != Time{}) return us_text(time);
+  return std::to_string(time / std::chrono::milliseconds{1}) + " ms";
+}
+
+std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& options) {
+  const auto channel = [&](std::string_view what) { return channel_name(plan.name, what); };
+  std::vector<LcmChannel> channels{
+      {channel("IMAGE"), "takt.image_t",
+       "every cycle: all values, raw, in the order of the layout"},
+      {channel("LAYOUT"), "takt.layout_t", "at start and once a second: the meaning of the values"},
+      {channel("COMMAND"), "takt.command_t", "set-points from applications"},
+      {channel("STATUS"), "takt.status_t", "10 Hz: nodes, boot steps, bus load, errors"},
+      {channel("SYNC"), "takt.sync_status_t",
+       "10 Hz: the producer of SYNC, and whether the cycle follows SYNC"},
+      {channel("PDOS"), "takt.pdo_status_t", "2 Hz: age, count and faults of each PDO"},
+      {channel("TIMING"), "takt.timing_t", "1 Hz: histograms of jitter and latency"},
+      {channel("EVENT"), "takt.event_t", "boot reports, EMCY, state changes, faults"},
+      {channel("REQUEST"), "takt.request_t", "SDO and NMT on behalf of applications"},
+      {channel("REPLY"), "takt.reply_t", "answers to these requests"},
+      {channel("TRANSFER"), "takt.transfer_t", "files to and from domains of devices, in parts"},
+      {channel("TRANSFER_STATE"), "takt.transfer_state_t",
+       "progress of these transfers, and data that were read"},
+  };
+  if (!options.typed) return channels;
+  for (const TypedMessage& message : typed_messages(plan)) {
+    channels.push_back({message.channel, message.package + '.' + message.name,
+                        message.command
+                            ? "set-points for this node alone, in SI if it has units"
+                            : "every cycle: inputs of this node, in SI if it has units"});
+  }
+  return channels;
+}
+
+}  // namespace takt

@@ -1,0 +1,43 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "eds_parser/report/source.hpp"
+
+namespace takt {
+
+/// Collects the findings of one network file, up to `max_findings`.
+class NetworkReport {
+ public:
+  static constexpr std::size_t max_findings = 1000;
+
+  NetworkReport(std::string file, Findings& findings)
+      : file_{std::move(file)}, findings_{findings} {}
+
+  void error(SourcePos pos, std::string_view rule, std::string message) {
+    add(pos, Severity::error, rule, std::move(message));
+  }
+  void warning(SourcePos pos, std::string_view rule, std::string message) {
+    add(pos, Severity::warning, rule, std::move(message));
+  }
+  void note(SourcePos pos, std::string_view rule, std::string message) {
+    add(pos, Severity::note, rule, std::move(message));
+  }
+  const std::string& file() const noexcept { return file_; }
+
+ private:
+  void add(SourcePos pos, Severity severity, std::string_view rule, std::string message) {
+    if (findings_.size() < max_findings) {
+      findings_.push_back({file_, pos, severity, rule, std::move(message)});
+    } else if (findings_.size() == max_findings) {
+      findings_.push_back({file_, pos, Severity::error, "too-many",
+                           "there are more findings; correct these first"});
+    }
+  }
+
+  std::string file_;
+  Findings& findings_;
+};
+
+}  // namespace takt

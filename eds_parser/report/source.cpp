@@ -1,0 +1,40 @@
+#include "eds_parser/report/source.hpp"
+
+#include <algorithm>
+
+namespace takt {
+
+std::string_view name(Severity severity) noexcept {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "error";
+}
+
+std::string to_string(const Finding& finding) {
+  std::string text = finding.file;
+  if (finding.pos.line != 0) {
+    text += ':' + std::to_string(finding.pos.line) + ':' + std::to_string(finding.pos.column);
+  }
+  text += ": ";
+  text += name(finding.severity);
+  text += ": " + finding.message + " [";
+  text += finding.rule;
+  text += ']';
+  // Names in a file may contain any character. Line breaks belong to the message.
+  std::ranges::replace_if(
+      text, [](char c) { return (c >= 0 && c < 0x20 && c != '\n') || c == 0x7F; }, '?');
+  return text;
+}
+
+bool has_error(const Findings& findings) noexcept {
+  return std::ranges::any_of(
+      findings, [](const Finding& finding) { return finding.severity == Severity::error; });
+}
+
+}  // namespace takt

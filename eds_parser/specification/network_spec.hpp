@@ -1,0 +1,293 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "eds_parser/report/source.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/ids.hpp"
+#include "eds_parser/table/run_options.hpp"
+#include "eds_parser/table/sdo_access.hpp"
+
+namespace takt {
+
+/// A value of the network file and its place in the file. `given` is false for a default.
+template <class T>
+struct Sourced {
+  T value{};
+  SourcePos pos;
+  bool given = false;
+
+  const T& operator*() const noexcept { return value; }
+  const T* operator->() const noexcept { return &value; }
+  T value_or(T fallback) const { return given ? value : fallback; }
+};
+
+/// One entry of `mapping: [{index: 0x6041, sub_index: 0}]`.
+struct MappingSpec {
+  ObjectKey object;
+  std::optional<std::uint8_t> bits;  ///< empty means the width of the object
+  SourcePos pos;
+};
+
+/// Addressing of a multiplexed PDO: by destination or by source. CiA 301, 7.2.3.
+enum class Mpdo : std::uint8_t { none, dam, sam };
+
+/// One entry of `tpdo: {1: {...}}` or `rpdo:`; the directions are those of the device. Members that
+/// are not given keep the value of the EDS.
+struct PdoSpec {
+  std::uint16_t number = 1;  ///< 1..512
+  SourcePos pos;
+  Sourced<bool> enabled{.value = true, .pos = {}};
+  /// COB-ID with the flags of bits 29..31 as in 0x1800:01. Empty means `auto`.
+  Sourced<std::optional<std::uint32_t>> cob_id;
+  Sourced<std::uint8_t> transmission;
+  Sourced<std::uint16_t> inhibit_time;    ///< 100 us
+  Sourced<std::uint16_t> event_timer;     ///< ms
+  Sourced<std::uint16_t> event_deadline;  ///< ms
+  Sourced<std::uint8_t> sync_start;
+  Sourced<std::uint32_t> poll_ms{};     ///< period of the remote requests of the master
+  Sourced<std::uint16_t> poll_syncs{};  ///< a remote request at every n-th SYNC
+  Sourced<bool> drop_late{};            ///< `late: drop`
+  Sourced<bool> on_request{};           ///< `request: true`
+  Sourced<Mpdo> mpdo{};
+  Sourced<std::vector<MappingSpec>> mapping;
+};
+
+/// One entry of `sdo: [{index: 0x6083, sub_index: 0, value: 10000}]`. The boot writes the entries
+/// in this order.
+struct SdoSpec {
+  ObjectKey object;
+  std::variant<std::int64_t, double, std::string, std::vector<std::byte>> value;
+  SourcePos pos;
+  SourcePos value_pos;
+  std::optional<std::string> quoted{};  ///< text as written, if it is in quotes
+};
+
+/// SI value = sign * counts * scale + offset.
+struct UnitSpec {
+  Sourced<double> scale{.value = 1.0, .pos = {}};
+  double offset = 0.0;
+  int sign = 1;
+  std::string unit;
+  SourcePos pos;
+};
+
+/// Groups of objects that share a unit.
+enum class Quantity : std::uint8_t { position, velocity, acceleration, torque };
+
+struct ObjectUnitSpec {
+  ObjectKey object;
+  UnitSpec unit;
+};
+
+/// `units:` of a node.
+struct UnitsSpec {
+  std::optional<UnitSpec> position;
+  std::optional<UnitSpec> velocity;
+  std::optional<UnitSpec> acceleration;
+  std::optional<UnitSpec> torque;
+  std::vector<ObjectUnitSpec> objects;  ///< `objects: [{index, sub_index, scale, unit}]`
+
+  const std::optional<UnitSpec>& of(Quantity quantity) const noexcept {
+    switch (quantity) {
+      case Quantity::position:
+        return position;
+      case Quantity::velocity:
+        return velocity;
+      case Quantity::acceleration:
+        return acceleration;
+      case Quantity::torque:
+        return torque;
+    }
+    return position;
+  }
+};
+
+/// The lowest and the highest value.
+struct RangeSpec {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The limits of the commands to an axis, in the units of `units:`.
+struct AxisLimitsSpec {
+  Sourced<RangeSpec> position;
+  Sourced<double> velocity;
+  Sourced<double> acceleration;
+  Sourced<double> jerk;
+  Sourced<double> step;  ///< largest change of a position set-point from one cycle to the next
+  Sourced<double> torque;
+  Sourced<double> modulo;  ///< length of the range after which the position starts again
+};
+
+struct AxisOverrideSpec {
+  std::uint8_t axis = 1;
+  SourcePos pos;
+  AxisLimitsSpec limits;
+};
+
+/// One entry of `objects: [{index, sub_index, min, max, step}]`.
+struct ObjectLimitSpec {
+  ObjectKey object;
+  SourcePos pos;
+  Sourced<double> min;
+  Sourced<double> max;
+  Sourced<double> step;
+};
+
+/// `limits:` of a node.
+struct LimitsSpec {
+  AxisLimitsSpec all;  ///< limits of every axis of the device
+  /// `axes: {2: {...}}`; each given limit overrides the same limit of `all`.
+  std::vector<AxisOverrideSpec> axes;
+  std::vector<ObjectLimitSpec> objects;
+};
+
+/// The reaction of outputs when their command is too old.
+enum class FallbackPolicy : std::uint8_t { quick_stop, hold, zero, safe, disable };
+
+struct TimeoutSpec {
+  Sourced<FallbackPolicy> fallback;
+  Sourced<std::uint32_t> after;         ///< ms; 0 means no limit
+  Sourced<std::uint32_t> after_cycles;  ///< 0 means no limit
+};
+
+/// The reset that the master sends to a node before it communicates with the node.
+enum class ResetPolicy : std::uint8_t {
+  communication,
+  node,
+  none,
+  /// `communication`, unless the node is OPERATIONAL; then the master leaves the node as it is.
+  keep_alive,
+};
+
+struct SimSpec {
+  std::string model;
+  Sourced<std::string> firmware;  ///< "15.02"
+  std::vector<std::string> quirks;
+};
+
+struct NodeSpec {
+  std::string name;
+  SourcePos pos;
+  Sourced<std::uint8_t> id;  ///< 1..127 if given
+  Sourced<std::string> dcf;
+  Sourced<std::string> dcf_path;
+
+  // The expected identity. 0 means that the value is not checked.
+  Sourced<std::uint32_t> device_type;
+  Sourced<std::uint32_t> vendor_id;
+  Sourced<std::uint32_t> product_code;
+  Sourced<std::uint32_t> revision_number;
+  Sourced<std::uint32_t> serial_number;
+  /// Entry of the device data, or "none"; if not given, the identity selects the entry.
+  Sourced<std::string> device;
+  Sourced<std::string> firmware;  ///< "16.00.00"
+
+  Sourced<bool> lss;  ///< The node gets its node-ID by LSS if it has none.
+  /// The node stores the node-ID that it gets by LSS.
+  Sourced<bool> lss_store{.value = true, .pos = {}};
+
+  Sourced<bool> boot{.value = true, .pos = {}};
+  Sourced<bool> mandatory;
+  Sourced<ResetPolicy> reset;
+  Sourced<std::uint8_t> restore;            ///< sub-index of 0x1011; 0 means no restore
+  Sourced<std::uint8_t> store;              ///< sub-index of 0x1010; 0 means no store
+  Sourced<std::uint32_t> software_version;  ///< 0x1F55; 0 means that the version is not checked
+  Sourced<std::string> software_file;
+  std::vector<std::byte> program;           ///< content of `software_file`
+  Sourced<std::string> configuration_file;  ///< concise DCF; `sdo` contains its values
+  /// 0x1F26 and 0x1F27: days since 1984-01-01, ms since midnight. An empty date is derived from the
+  /// content.
+  Sourced<std::optional<std::uint32_t>> configuration_date;
+  Sourced<std::uint32_t> configuration_time;
+  Sourced<std::uint32_t> boot_timeout_ms;
+  Sourced<std::uint32_t> sdo_timeout_ms;
+  Sourced<std::uint32_t> reboot_delay_ms;
+  Sourced<std::uint32_t> reboot_delay_max_ms;
+  Sourced<SdoBlockUse> sdo_block;
+  Sourced<SdoChannel> sdo_channel;
+  std::vector<SdoObjectTimeout> sdo_timeouts;
+
+  /// The device watches the heartbeat of the master.
+  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};
+  Sourced<std::uint16_t> heartbeat_producer;  ///< ms
+  Sourced<double> heartbeat_multiplier;
+  Sourced<std::uint16_t> guard_time;         ///< ms; 0x100C
+  Sourced<std::uint8_t> life_time_factor;    ///< 0x100D; the device watches the master
+  Sourced<std::uint8_t> retry_factor;        ///< The master watches the device.
+  std::vector<SdoSpec> error_behavior;       ///< entries of 0x1029 by sub-index
+  Sourced<std::uint32_t> emcy_cob_id;        ///< 0x1014
+  Sourced<std::uint16_t> emcy_inhibit_time;  ///< 0x1015, 100 us
+  /// 0x1012 with its flags; bit 31 means that the device consumes TIME.
+  Sourced<std::uint32_t> time_cob_id{};
+  Sourced<LossReaction> on_loss;
+  Sourced<std::string> group;
+
+  Sourced<std::string> profile;  ///< "cia402", "cia401", "none"; if not given, the EDS decides
+  UnitsSpec units;
+  LimitsSpec limits;
+  TimeoutSpec on_timeout;
+  std::vector<SdoSpec> safe_values;
+  SimSpec sim;
+  std::vector<PdoSpec> tpdos;
+  std::vector<PdoSpec> rpdos;
+  std::vector<SdoSpec> sdo;
+};
+
+struct MasterSpec {
+  SourcePos pos;
+  Sourced<std::uint8_t> node_id{.value = 127, .pos = {}};
+  Sourced<std::uint32_t> baudrate_kbit{.value = 1000, .pos = {}};
+  Sourced<std::uint32_t> sync_period_us;
+  Sourced<std::uint32_t> sync_window_us;
+  Sourced<std::uint8_t> sync_overflow;
+  Sourced<std::uint32_t> sync_cob_id{.value = 0x80, .pos = {}};
+  Sourced<std::string> sync_source;        ///< "master", "external" or the name of a node
+  Sourced<std::uint32_t> sync_timeout_us;  ///< timeout of a SYNC that another device produces
+  Sourced<SyncLoss> on_sync_loss{.value = SyncLoss::fallback, .pos = {}};
+  /// Cycle of the process image if there is no SYNC.
+  Sourced<std::uint32_t> cycle_us{.value = 10'000, .pos = {}};
+  Sourced<std::uint16_t> heartbeat_producer{.value = 100, .pos = {}};  ///< ms; 0 means no heartbeat
+  Sourced<double> heartbeat_multiplier;
+  /// The master watches the heartbeat of the nodes.
+  Sourced<bool> heartbeat_consumer{.value = true, .pos = {}};
+  Sourced<std::uint32_t> time_period_ms;  ///< period of TIME; 0 means that the master produces none
+  Sourced<std::uint32_t> time_cob_id{.value = 0x100, .pos = {}};  ///< same format as in 0x1012
+  Sourced<bool> start_nodes{.value = true, .pos = {}};
+  Sourced<bool> start{.value = true, .pos = {}};  ///< The master becomes OPERATIONAL by itself.
+  Sourced<bool> start_all_nodes;
+  Sourced<bool> reset_all_nodes;  ///< applies if a mandatory node is lost
+  Sourced<bool> stop_all_nodes;   ///< applies if a mandatory node is lost
+  Sourced<std::uint32_t> boot_time_ms;
+  Sourced<std::uint16_t> nmt_inhibit_time;  ///< 100 us
+  Sourced<std::uint32_t> stop_timeout_ms;   ///< if not given, the value is derived from the drives
+  Sourced<StopDisarm> stop_disarm{.value = StopDisarm::sdo, .pos = {}};
+  Sourced<std::uint16_t> service_frames;  ///< largest number of SDO and NMT frames in one cycle
+};
+
+struct BusSpec {
+  Sourced<std::string> name;
+  Sourced<std::string> interface;
+};
+
+/// The content of a network file as written. It contains no data of the devices yet.
+struct NetworkSpec {
+  std::string file;
+  BusSpec bus;
+  Sourced<std::string> dcf_path;
+  Sourced<double> heartbeat_multiplier{.value = 3.0, .pos = {}};
+  Sourced<std::uint8_t> retry_factor{.value = 3, .pos = {}};  ///< default for guarding
+  MasterSpec master;
+  RealtimeOptions realtime;
+  Sourced<std::uint32_t> receive_window_us;
+  LcmOptions lcm;
+  RecordingOptions recording;   ///< The folder is as written in the file.
+  std::vector<NodeSpec> nodes;  ///< in the order of the file
+};
+
+}  // namespace takt

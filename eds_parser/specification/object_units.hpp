@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+#include "eds_parser/specification/network_spec.hpp"
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// How the raw counts of a CiA 402 object relate to its quantity.
+struct ObjectQuantity {
+  Quantity quantity = Quantity::position;
+  /// `sign` applies. If false, the value is a magnitude, such as a limit or a window.
+  bool directed = true;
+  /// `offset` of a position applies. If false, the position is a difference. The offset of any
+  /// other quantity always applies.
+  bool absolute = false;
+};
+
+/// Returns the quantity of a CiA 402 object of any axis of a device (0x6000 + 0x800 n), or
+/// std::nullopt if the object has none.
+std::optional<ObjectQuantity> quantity_of(ObjectKey object) noexcept;
+
+/// Returns the index of the same object for axis 1 (0x607A for 0x687A). Other indices are returned
+/// unchanged.
+constexpr std::uint16_t first_axis(std::uint16_t index) noexcept {
+  return index >= 0x6000 && index < 0xA000 ? static_cast<std::uint16_t>(0x6000 + index % 0x800)
+                                           : index;
+}
+
+}  // namespace takt
