@@ -10,7 +10,7 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/rt/exchange.hpp"
+#include "master/rt/exchange/exchange.hpp"
 
 namespace takt {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {

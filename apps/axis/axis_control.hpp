@@ -9,7 +9,7 @@
 #include "apps/axis/drive_sequence.hpp"
 #include "apps/axis/image_input.hpp"
 #include "apps/axis/set_point_handshake.hpp"
-#include "master/gateway/units.hpp"
+#include "master/gateway/message/units.hpp"
 
 namespace takt {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "master/gateway/messages.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/random_number.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/random_number.hpp"
 
 namespace takt {
 namespace {

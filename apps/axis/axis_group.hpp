@@ -11,8 +11,8 @@
 
 #include "apps/axis/axis_control.hpp"
 #include "apps/axis/image_input.hpp"
-#include "master/gateway/envelope.hpp"
-#include "master/gateway/transport.hpp"
+#include "master/lcm/envelope/envelope.hpp"
+#include "master/lcm/transport.hpp"
 
 namespace takt {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {

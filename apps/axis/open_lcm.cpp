@@ -1,8 +1,8 @@
 #include "apps/axis/open_lcm.hpp"
 
-#include "master/gateway/lcm_transport.hpp"
-#include "master/gateway/lcm_url.hpp"
-#include "master/gateway/tcpq_client.hpp"
+#include "master/lcm/link/lcm_transport.hpp"
+#include "master/lcm/link/lcm_url.hpp"
+#include "master/lcm/tcpq/tcpq_client.hpp"
 
 namespace takt {
 

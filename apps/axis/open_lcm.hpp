@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "master/gateway/transport.hpp"
+#include "master/lcm/transport.hpp"
 
 namespace takt {
 

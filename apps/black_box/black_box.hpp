@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "apps/black_box/recording_file.hpp"
-#include "master/rt/journal.hpp"
+#include "master/rt/journal/journal.hpp"
 
 namespace takt {
 

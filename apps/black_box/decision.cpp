@@ -3,7 +3,7 @@
 
 #include "apps/black_box/recording_file.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 
 namespace takt {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "apps/black_box/recording_file.hpp"
-#include "master/rt/replay_port.hpp"
+#include "master/rt/journal/replay_port.hpp"
 
 namespace takt {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <span>
 
-#include "master/rt/recorded_port.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
-#include "master/rt/replay_port.hpp"
+#include "master/rt/journal/replay_port.hpp"
 
 namespace takt {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-#include "master/rt/recorded_port.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "eds_parser/table/time.hpp"
 #include "master/core/event.hpp"
-#include "master/rt/journal.hpp"
+#include "master/rt/journal/journal.hpp"
 
 namespace takt {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "master/linux/can_link.hpp"
+#include "master/linux/can/can_link.hpp"
 #include "master/linux/rt_thread.hpp"
 
 namespace takt {

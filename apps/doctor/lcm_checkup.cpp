@@ -1,7 +1,7 @@
 #include <fstream>
 
 #include "apps/doctor/checkup.hpp"
-#include "master/gateway/lcm_url.hpp"
+#include "master/lcm/link/lcm_url.hpp"
 
 namespace takt {
 namespace {

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "apps/frame_text/value_text.hpp"
+#include "master/explain/emcy_text.hpp"
 #include "master/wire/emcy.hpp"
-#include "master/wire/emcy_text.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <fmt/format.h>
 
-#include "master/wire/emcy_text.hpp"
+#include "master/explain/emcy_text.hpp"
 
 namespace takt {
 namespace {

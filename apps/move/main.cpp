@@ -8,8 +8,8 @@
 #include "apps/axis/open_lcm.hpp"
 #include "apps/move/move_run.hpp"
 #include "apps/move/options.hpp"
-#include "master/gateway/checked_transport.hpp"
-#include "master/gateway/key_file.hpp"
+#include "master/lcm/envelope/checked_transport.hpp"
+#include "master/lcm/envelope/key_file.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <string>
 
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 

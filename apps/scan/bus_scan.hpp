@@ -10,7 +10,7 @@
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
 #include "master/core/machine.hpp"
-#include "master/core/sdo_client.hpp"
+#include "master/core/sdo/sdo_client.hpp"
 #include "master/wire/nmt.hpp"
 
 namespace takt {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/simulate/wire_statistics.hpp"
-#include "master/sim/wire_frame.hpp"
+#include "master/sim/bus/wire_frame.hpp"
 
 namespace takt {
 

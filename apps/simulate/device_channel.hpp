@@ -1,8 +1,8 @@
 #pragma once
 #include <utility>
 
-#include "master/linux/frame_channel.hpp"
-#include "master/sim/frame_channel.hpp"
+#include "master/linux/bus/frame_channel.hpp"
+#include "master/sim/bus/world_channel.hpp"
 
 namespace takt {
 

@@ -6,7 +6,7 @@
 #include "apps/simulate/program_faults.hpp"
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/sim/faults.hpp"
+#include "master/sim/bus/faults.hpp"
 
 namespace takt {
 

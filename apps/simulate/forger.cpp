@@ -4,7 +4,7 @@
 #include <array>
 #include <chrono>
 
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/simulate/outcome_ledger.hpp"
 #include "apps/simulate/program_troubles.hpp"
 #include "apps/simulate/staged_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 namespace {

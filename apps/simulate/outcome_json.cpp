@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/simulate/outcome_report.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 
 namespace takt {
 namespace {

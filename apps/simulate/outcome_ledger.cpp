@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "master/core/boot_report.hpp"
-#include "master/core/stop_text.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/explain/stop_text.hpp"
 
 namespace takt {
 namespace {

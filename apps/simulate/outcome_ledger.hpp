@@ -3,8 +3,8 @@
 
 #include "apps/simulate/simulation.hpp"
 #include "apps/simulate/wire_statistics.hpp"
-#include "master/rt/status_board.hpp"
-#include "master/sim/world.hpp"
+#include "master/rt/exchange/status_board.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "apps/simulate/outcome_report.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 
 namespace takt {
 namespace {

@@ -10,7 +10,7 @@
 #include "apps/simulate/virtual_application.hpp"
 #include "apps/simulate/virtual_daemon.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
-#include "master/sim/faults.hpp"
+#include "master/sim/bus/faults.hpp"
 
 namespace takt {
 

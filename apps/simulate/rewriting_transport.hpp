@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "master/gateway/messages.hpp"
-#include "master/gateway/transport.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/transport.hpp"
 
 namespace takt {
 

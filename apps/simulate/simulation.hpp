@@ -9,10 +9,10 @@
 #include "apps/simulate/wire_statistics.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/core/event.hpp"
-#include "master/gateway/commands.hpp"
-#include "master/rt/status_board.hpp"
-#include "master/sim/faults.hpp"
-#include "master/sim/virtual_bus.hpp"
+#include "master/gateway/command/commands.hpp"
+#include "master/rt/exchange/status_board.hpp"
+#include "master/sim/bus/faults.hpp"
+#include "master/sim/bus/virtual_bus.hpp"
 
 namespace takt {
 

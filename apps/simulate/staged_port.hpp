@@ -5,8 +5,8 @@
 
 #include "apps/simulate/stage.hpp"
 #include "master/rt/port.hpp"
-#include "master/sim/remote_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/remote_port.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "eds_parser/table/ids.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {

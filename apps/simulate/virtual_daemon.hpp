@@ -8,8 +8,8 @@
 #include "apps/simulate/staged_port.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
 #include "master/gateway/bridge.hpp"
-#include "master/gateway/clocks.hpp"
 #include "master/gateway/front_round.hpp"
+#include "master/lcm/clocks.hpp"
 #include "master/master.hpp"
 #include "master/sim/random.hpp"
 

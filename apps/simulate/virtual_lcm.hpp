@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "master/gateway/transport.hpp"
+#include "master/lcm/transport.hpp"
+#include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
-#include "master/sim/world.hpp"
 
 namespace takt {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/sim/wire_frame.hpp"
+#include "master/sim/bus/wire_frame.hpp"
 
 namespace takt {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/sim/faults.hpp"
+#include "master/sim/bus/faults.hpp"
 #include "master/sim/random.hpp"
 
 namespace takt {

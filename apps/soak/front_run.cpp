@@ -16,7 +16,7 @@
 #include "apps/soak/stop_judge.hpp"
 #include "apps/soak/troubles.hpp"
 #include "apps/soak/wire_judge.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 namespace {

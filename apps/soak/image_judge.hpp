@@ -4,8 +4,8 @@
 
 #include "apps/soak/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/rt/process_image.hpp"
-#include "master/sim/wire_frame.hpp"
+#include "master/rt/exchange/process_image.hpp"
+#include "master/sim/bus/wire_frame.hpp"
 
 namespace takt {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "eds_parser/table/bus_plan.hpp"
+#include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
-#include "master/sim/world.hpp"
 
 namespace takt {
 

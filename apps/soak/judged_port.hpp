@@ -3,7 +3,7 @@
 
 #include "apps/soak/intruder.hpp"
 #include "apps/soak/output_judge.hpp"
-#include "master/sim/sim_port.hpp"
+#include "master/sim/bus/sim_port.hpp"
 
 namespace takt {
 

@@ -8,7 +8,7 @@
 
 #include "apps/soak/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {

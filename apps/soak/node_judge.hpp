@@ -5,7 +5,7 @@
 
 #include "apps/soak/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/rt/status_board.hpp"
+#include "master/rt/exchange/status_board.hpp"
 
 namespace takt {
 

@@ -5,7 +5,7 @@
 #include "apps/simulate/sine_motion.hpp"
 #include "apps/soak/output_judge.hpp"
 #include "apps/soak/verdict.hpp"
-#include "master/rt/exchange.hpp"
+#include "master/rt/exchange/exchange.hpp"
 #include "master/sim/random.hpp"
 
 namespace takt {

@@ -13,9 +13,9 @@
 #include "apps/soak/node_judge.hpp"
 #include "apps/soak/output_judge.hpp"
 #include "apps/soak/restless_user.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/sim/sim_port.hpp"
+#include "master/sim/bus/sim_port.hpp"
 
 namespace takt {
 namespace {

@@ -5,8 +5,8 @@
 #include "apps/soak/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
-#include "master/core/ordered_stop.hpp"
-#include "master/sim/world.hpp"
+#include "master/core/network/ordered_stop.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 

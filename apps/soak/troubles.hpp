@@ -9,8 +9,8 @@
 #include "apps/simulate/virtual_application.hpp"
 #include "apps/simulate/virtual_daemon.hpp"
 #include "apps/simulate/virtual_lcm.hpp"
+#include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
-#include "master/sim/world.hpp"
 
 namespace takt {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/sim/device.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
+#include "master/sim/device/device.hpp"
 
 namespace takt {
 

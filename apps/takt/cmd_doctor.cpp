@@ -9,7 +9,7 @@
 #include "apps/takt/json_text.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/whole_number.hpp"
-#include "master/gateway/lcm_url.hpp"
+#include "master/lcm/link/lcm_url.hpp"
 
 namespace takt {
 namespace {

@@ -24,8 +24,8 @@
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 
 namespace takt {
 namespace {

@@ -11,7 +11,7 @@
 #include "eds_parser/print/findings_json.hpp"
 #include "eds_parser/print/print_dictionary.hpp"
 #include "eds_parser/read/eds.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

@@ -13,12 +13,12 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
 #include "apps/takt/json_text.hpp"
-#include "master/gateway/emcy_log.hpp"
-#include "master/gateway/messages.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/explain/emcy_text.hpp"
+#include "master/gateway/notice/emcy_log.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
-#include "master/wire/emcy_text.hpp"
 
 namespace takt {
 namespace {

@@ -13,7 +13,7 @@
 #include "apps/takt/live_arguments.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

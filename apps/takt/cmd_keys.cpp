@@ -4,7 +4,7 @@
 
 #include "apps/takt/commands.hpp"
 #include "apps/takt/live_arguments.hpp"
-#include "master/gateway/key_file.hpp"
+#include "master/lcm/envelope/key_file.hpp"
 
 namespace takt {
 namespace {

@@ -13,8 +13,8 @@
 #include "apps/takt/json_text.hpp"
 #include "apps/takt/lss_selection.hpp"
 #include "apps/takt/whole_number.hpp"
-#include "master/linux/frame_witness.hpp"
-#include "master/linux/interface_bitrate.hpp"
+#include "master/linux/bus/frame_witness.hpp"
+#include "master/linux/can/interface_bitrate.hpp"
 #include "master/wire/lss.hpp"
 
 namespace takt {

@@ -7,7 +7,7 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/daemon_client.hpp"
 #include "eds_parser/table/boot_plan.hpp"
-#include "master/linux/frame_channel.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 
 namespace takt {
 namespace {

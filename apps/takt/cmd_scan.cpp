@@ -14,8 +14,8 @@
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
 #include "apps/takt/whole_number.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 
 namespace takt {
 namespace {

@@ -15,8 +15,8 @@
 #include "apps/takt/transfer_progress.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "master/core/request.hpp"
-#include "master/gateway/printable_text.hpp"
-#include "master/gateway/value_text.hpp"
+#include "master/gateway/message/value_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

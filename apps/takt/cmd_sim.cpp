@@ -10,7 +10,7 @@
 #include "apps/takt/commands.hpp"
 #include "apps/takt/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/sim/realtime_world.hpp"
+#include "master/sim/bus/realtime_world.hpp"
 
 namespace takt {
 namespace {

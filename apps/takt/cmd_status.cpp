@@ -11,8 +11,8 @@
 #include "apps/takt/pdo_table.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

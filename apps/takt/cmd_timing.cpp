@@ -10,8 +10,8 @@
 #include "apps/takt/image_delay.hpp"
 #include "apps/takt/json_text.hpp"
 #include "apps/takt/timing_table.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

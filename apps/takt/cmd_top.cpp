@@ -9,7 +9,7 @@
 #include "apps/takt/daemon_client.hpp"
 #include "apps/takt/screen.hpp"
 #include "apps/takt/top_frame.hpp"
-#include "master/gateway/names.hpp"
+#include "master/lcm/channel_names.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <unistd.h>
 
-#include "master/gateway/key_file.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/printable_text.hpp"
-#include "master/gateway/random_number.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/envelope/key_file.hpp"
+#include "master/lcm/printable_text.hpp"
+#include "master/lcm/random_number.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

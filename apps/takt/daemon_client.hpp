@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "apps/takt/live_arguments.hpp"
-#include "master/gateway/bus_view.hpp"
-#include "master/gateway/envelope.hpp"
-#include "master/gateway/lcm_client.hpp"
+#include "master/gateway/message/bus_view.hpp"
+#include "master/lcm/envelope/envelope.hpp"
+#include "master/lcm/link/lcm_client.hpp"
 
 namespace takt {
 

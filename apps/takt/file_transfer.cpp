@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "apps/takt/interrupt.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/transfers.hpp"
+#include "master/gateway/command/transfers.hpp"
+#include "master/lcm/channel_names.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "master/gateway/status_messages.hpp"
+#include "master/gateway/message/status_messages.hpp"
 
 namespace takt {
 namespace {

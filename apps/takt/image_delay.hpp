@@ -4,8 +4,8 @@
 #include <takt/histogram_t.hpp>
 
 #include "eds_parser/table/time.hpp"
-#include "master/gateway/messages.hpp"
-#include "master/rt/histogram.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/rt/exchange/histogram.hpp"
 
 namespace takt {
 

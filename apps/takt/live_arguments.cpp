@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/takt/lss_reply.hpp"
-#include "master/core/lss_runner.hpp"
+#include "master/core/lss/lss_runner.hpp"
 #include "master/linux/clock.hpp"
 #include "master/wire/lss.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/takt/daemon_client.hpp"
-#include "master/core/lss_command.hpp"
-#include "master/linux/frame_channel.hpp"
+#include "master/core/lss/lss_command.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 
 namespace takt {
 

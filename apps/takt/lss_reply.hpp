@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "master/core/lss_command.hpp"
+#include "master/core/lss/lss_command.hpp"
 
 namespace takt {
 

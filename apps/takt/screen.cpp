@@ -9,7 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

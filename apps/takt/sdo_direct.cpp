@@ -4,10 +4,10 @@
 
 #include "apps/takt/interrupt.hpp"
 #include "master/core/request.hpp"
-#include "master/core/sdo_client.hpp"
-#include "master/gateway/requests.hpp"
+#include "master/core/sdo/sdo_client.hpp"
+#include "master/gateway/command/requests.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 
 namespace takt {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 

@@ -9,7 +9,7 @@
 
 #include "apps/takt/timing_table.hpp"
 #include "master/core/node_status.hpp"
-#include "master/rt/status_board.hpp"
+#include "master/rt/exchange/status_board.hpp"
 
 namespace takt {
 namespace {

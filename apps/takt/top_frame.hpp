@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/takt/screen.hpp"
-#include "master/gateway/bus_view.hpp"
+#include "master/gateway/message/bus_view.hpp"
 
 namespace takt {
 

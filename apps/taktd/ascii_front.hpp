@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "master/gateway/ascii_gateway.hpp"
-#include "master/gateway/ascii_server.hpp"
+#include "master/gateway/ascii/ascii_gateway.hpp"
+#include "master/gateway/ascii/ascii_server.hpp"
 #include "master/gateway/bridge.hpp"
 #include "master/master.hpp"
 

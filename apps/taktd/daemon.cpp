@@ -9,8 +9,8 @@
 
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/summary.hpp"
-#include "master/core/boot_report.hpp"
-#include "master/gateway/random_number.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/lcm/random_number.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/start_thread.hpp"
 

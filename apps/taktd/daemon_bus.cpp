@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "master/linux/bus_name.hpp"
-#include "master/linux/can_link.hpp"
+#include "master/linux/can/can_link.hpp"
 
 namespace takt {
 

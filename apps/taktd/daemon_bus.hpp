@@ -9,10 +9,10 @@
 
 #include "apps/taktd/simulated_bus.hpp"
 #include "eds_parser/table/device_table.hpp"
-#include "master/linux/diagnostic_socket.hpp"
-#include "master/linux/open_bus.hpp"
+#include "master/linux/bus/diagnostic_socket.hpp"
+#include "master/linux/bus/open_bus.hpp"
 #include "master/master.hpp"
-#include "master/rt/recorded_port.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {
 

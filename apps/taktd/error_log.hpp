@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/taktd/line_writer.hpp"
-#include "master/gateway/notice.hpp"
+#include "master/gateway/notice/notice.hpp"
 
 namespace spdlog {
 class logger;

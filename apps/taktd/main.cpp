@@ -11,8 +11,8 @@
 #include "apps/taktd/summary.hpp"
 #include "eds_parser/budget/budget.hpp"
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/gateway/key_file.hpp"
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/envelope/key_file.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

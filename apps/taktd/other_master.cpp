@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {

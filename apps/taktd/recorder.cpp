@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "apps/taktd/stop_signal.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -8,7 +8,7 @@
 
 #include "apps/black_box/black_box.hpp"
 #include "master/gateway/bridge.hpp"
-#include "master/gateway/notice.hpp"
+#include "master/gateway/notice/notice.hpp"
 
 namespace takt {
 

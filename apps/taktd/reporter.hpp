@@ -7,7 +7,7 @@
 #include "apps/taktd/error_log.hpp"
 #include "apps/taktd/line_writer.hpp"
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/gateway/notice.hpp"
+#include "master/gateway/notice/notice.hpp"
 
 namespace takt {
 

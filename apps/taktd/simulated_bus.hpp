@@ -6,7 +6,7 @@
 #include "eds_parser/table/device_table.hpp"
 #include "master/linux/clock.hpp"
 #include "master/rt/port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 

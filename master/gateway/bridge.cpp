@@ -4,13 +4,13 @@
 #include <chrono>
 #include <utility>
 
-#include "master/core/boot_report.hpp"
-#include "master/core/stop_text.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/pdo_messages.hpp"
-#include "master/gateway/printable_text.hpp"
-#include "master/gateway/random_number.hpp"
-#include "master/gateway/sync_message.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/explain/stop_text.hpp"
+#include "master/gateway/message/pdo_messages.hpp"
+#include "master/gateway/message/sync_message.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/printable_text.hpp"
+#include "master/lcm/random_number.hpp"
 #include "master/wire/bytes.hpp"
 
 namespace takt {

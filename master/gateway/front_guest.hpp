@@ -1,7 +1,7 @@
 #pragma once
 #include "master/core/event.hpp"
 #include "master/core/request.hpp"
-#include "master/rt/process_image.hpp"
+#include "master/rt/exchange/process_image.hpp"
 
 namespace takt {
 

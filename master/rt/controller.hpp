@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "eds_parser/table/pdo_table.hpp"
-#include "master/core/pdo_outputs.hpp"
-#include "master/rt/process_image.hpp"
+#include "master/core/pdo/pdo_outputs.hpp"
+#include "master/rt/exchange/process_image.hpp"
 
 namespace takt {
 

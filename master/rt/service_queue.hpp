@@ -5,8 +5,8 @@
 #include <span>
 
 #include "master/core/machine.hpp"
-#include "master/rt/wire_time.hpp"
 #include "master/wire/frame.hpp"
+#include "master/wire/wire_time.hpp"
 
 namespace takt {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "master/sim/object_store.hpp"
+#include "master/sim/dictionary/object_store.hpp"
 #include "test/audit/audited.hpp"
 
 // The master is killed, and the simulated devices do what the audit said.

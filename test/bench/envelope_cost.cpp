@@ -3,7 +3,7 @@
 #include <chrono>
 #include <vector>
 
-#include "master/gateway/envelope.hpp"
+#include "master/lcm/envelope/envelope.hpp"
 
 namespace takt {
 namespace {

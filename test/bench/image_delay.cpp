@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "master/gateway/lcm_client.hpp"
-#include "master/gateway/messages.hpp"
-#include "master/gateway/names.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/link/lcm_client.hpp"
+#include "master/lcm/messages.hpp"
 #include "master/linux/clock.hpp"
 
 namespace {

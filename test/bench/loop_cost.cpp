@@ -13,7 +13,7 @@
 #include <valgrind/callgrind.h>
 
 #include "master/rt/bus_loop.hpp"
-#include "master/rt/recorded_port.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 #include "test/bench/eight_u8.hpp"
 #include "test/bench/memory_port.hpp"
 #include "test/proof/allocation_trap.hpp"

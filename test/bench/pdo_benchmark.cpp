@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "master/core/pdo_exchange.hpp"
+#include "master/core/pdo/pdo_exchange.hpp"
 #include "test/bench/eight_u8.hpp"
 
 namespace takt {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "master/linux/rt_thread.hpp"
-#include "master/linux/unix_bus.hpp"
+#include "master/linux/unix_bus/unix_bus.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "test/bench/eight_u8.hpp"
 

@@ -10,7 +10,7 @@
 #include "apps/black_box/replay.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/sim/sim_port.hpp"
+#include "master/sim/bus/sim_port.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt::test {

@@ -1,5 +1,5 @@
 #include "eds_parser/print/plan/plan_waits.hpp"
-#include "master/core/lss_command.hpp"
+#include "master/core/lss/lss_command.hpp"
 #include "test/boot/plant.hpp"
 
 // The master gives up after the time that the plan prints: not earlier, and not later than the

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/sim/device.hpp"
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt::test {

@@ -4,8 +4,8 @@
 #include <deque>
 
 #include "eds_parser/plan/frame_time.hpp"
-#include "master/sim/frame_bits.hpp"
-#include "master/sim/virtual_bus.hpp"
+#include "master/sim/bus/frame_bits.hpp"
+#include "master/sim/bus/virtual_bus.hpp"
 #include "test/budget/plan_traffic.hpp"
 
 namespace takt {

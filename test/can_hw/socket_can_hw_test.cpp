@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <thread>
 
-#include "master/linux/can_filters.hpp"
-#include "master/linux/can_link.hpp"
+#include "master/linux/can/can_filters.hpp"
+#include "master/linux/can/can_link.hpp"
+#include "master/linux/can/socket_can.hpp"
 #include "master/linux/rt_thread.hpp"
-#include "master/linux/socket_can.hpp"
 #include "test/support/patience.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 

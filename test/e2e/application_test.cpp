@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "master/core/node_status.hpp"
-#include "master/gateway/messages.hpp"
-#include "master/gateway/names.hpp"
-#include "master/gateway/tcpq_broker.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
 #include "master/linux/clock.hpp"
 #include "test/support/patience.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "master/gateway/bus_view.hpp"
-#include "master/gateway/lcm_client.hpp"
+#include "master/gateway/message/bus_view.hpp"
+#include "master/lcm/link/lcm_client.hpp"
 #include "master/linux/clock.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"

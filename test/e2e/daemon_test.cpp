@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "master/gateway/names.hpp"
+#include "master/lcm/channel_names.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"
 

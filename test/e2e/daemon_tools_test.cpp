@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "master/core/node_status.hpp"
-#include "master/gateway/lcm_client.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/lcm/link/lcm_client.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"

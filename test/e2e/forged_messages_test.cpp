@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "master/gateway/messages.hpp"
-#include "master/gateway/tcpq_broker.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
 #include "test/e2e/process.hpp"
 #include "test/support/folder.hpp"
 

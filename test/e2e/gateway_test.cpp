@@ -5,7 +5,7 @@
 #include <string>
 #include <sys/socket.h>
 
-#include "master/linux/unix_address.hpp"
+#include "master/linux/unix_bus/unix_address.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"
 #include "test/support/patience.hpp"

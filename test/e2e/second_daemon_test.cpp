@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "master/linux/clock.hpp"
-#include "master/linux/unix_bus.hpp"
+#include "master/linux/unix_bus/unix_bus.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/support/folder.hpp"
 

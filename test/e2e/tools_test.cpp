@@ -5,8 +5,8 @@
 #include <regex>
 #include <string>
 
+#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
-#include "master/linux/frame_channel.hpp"
 #include "test/e2e/daemon_process.hpp"
 #include "test/e2e/process.hpp"
 #include "test/e2e/terminal.hpp"

@@ -6,8 +6,8 @@
 #include <sys/socket.h>
 #include <vector>
 
-#include "master/gateway/tcpq_broker.hpp"
-#include "master/gateway/tcpq_parser.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
+#include "master/lcm/tcpq/tcpq_parser.hpp"
 #include "master/linux/file_descriptor.hpp"
 #include "test/fuzz/input.hpp"
 

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "master/master.hpp"
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
 #include "test/fuzz/input.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 #include "test/fuzz/input.hpp"
 #include "test/fuzz/virtual_master.hpp"
 

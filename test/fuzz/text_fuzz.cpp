@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "master/gateway/ascii_gateway.hpp"
+#include "master/gateway/ascii/ascii_gateway.hpp"
 #include "test/fuzz/input.hpp"
 #include "test/fuzz/virtual_master.hpp"
 

@@ -1,9 +1,9 @@
 #pragma once
 #include "eds_parser/network_file/load_network.hpp"
-#include "master/gateway/clocks.hpp"
+#include "master/lcm/clocks.hpp"
 #include "master/master.hpp"
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt::fuzz {
 

@@ -191,7 +191,7 @@ def main(argument):
     if argument == "--self-test":
         return 1 if self_test() else 0
     root = pathlib.Path(argument)
-    headers = sorted(path for part in ("core", "rt") for path in (root / "master" / part).glob("*.hpp"))
+    headers = sorted(path for part in ("core", "rt") for path in (root / "master" / part).rglob("*.hpp"))
     complaints, known = check([(path.relative_to(root), path.read_text()) for path in headers], NOT_KEPT)
     if len(known) < 20:
         complaints.append(f"only {len(known)} machines with a keep() were found")

@@ -25,10 +25,10 @@
 #include <unistd.h>
 #include <utility>
 
-#include "master/linux/socket_can.hpp"
-#include "master/linux/unix_bus.hpp"
+#include "master/linux/can/socket_can.hpp"
+#include "master/linux/unix_bus/unix_bus.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/rt/recorded_port.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 #include "test/proof/allocation_trap.hpp"
 #include "test/proof/syscall_trap.hpp"
 #include "test/unit/rt/small_plan.hpp"

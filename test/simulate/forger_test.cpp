@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/simulate/virtual_daemon.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {

@@ -6,8 +6,8 @@
 
 #include "apps/simulate/sine_motion.hpp"
 #include "master/rt/bus_loop.hpp"
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 namespace {

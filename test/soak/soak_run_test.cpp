@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/soak/soak_jobs.hpp"
-#include "master/rt/exchange.hpp"
-#include "master/sim/world.hpp"
+#include "master/rt/exchange/exchange.hpp"
+#include "master/sim/bus/world.hpp"
 
 namespace takt {
 namespace {

@@ -1,6 +1,6 @@
-#include "master/linux/can_link.hpp"
-#include "master/linux/diagnostic_socket.hpp"
-#include "master/linux/socket_can.hpp"
+#include "master/linux/bus/diagnostic_socket.hpp"
+#include "master/linux/can/can_link.hpp"
+#include "master/linux/can/socket_can.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 
 namespace takt {

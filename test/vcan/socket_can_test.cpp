@@ -1,7 +1,7 @@
-#include "master/linux/socket_can.hpp"
+#include "master/linux/can/socket_can.hpp"
 
-#include "master/linux/can_filters.hpp"
-#include "master/linux/frame_channel.hpp"
+#include "master/linux/bus/frame_channel.hpp"
+#include "master/linux/can/can_filters.hpp"
 #include "test/support/patience.hpp"
 #include "test/vcan/vcan_fixture.hpp"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {

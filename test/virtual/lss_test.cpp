@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "master/core/boot_report.hpp"
-#include "master/core/lss_command.hpp"
-#include "master/sim/device.hpp"
+#include "master/core/lss/lss_command.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt::test {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/pdo_matrix_preset.hpp"
 #include "test/virtual/pdo_matrix_table.hpp"
 

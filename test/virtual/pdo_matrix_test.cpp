@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "master/sim/world.hpp"
+#include "master/sim/bus/world.hpp"
 #include "test/virtual/pdo_matrix_device.hpp"
 #include "test/virtual/rig.hpp"
 

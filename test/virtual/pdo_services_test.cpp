@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <optional>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "master/master.hpp"
-#include "master/sim/sim_port.hpp"
+#include "master/sim/bus/sim_port.hpp"
 #include "test/unit/rt/small_plan.hpp"
 #include "test/unit/sim/sample_device.hpp"
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-#include "master/core/boot_report.hpp"
-#include "master/sim/device.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 // delay the outputs.
 #include <gtest/gtest.h>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "master/core/lss_runner.hpp"
-#include "master/sim/device.hpp"
+#include "master/core/lss/lss_runner.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt::test {

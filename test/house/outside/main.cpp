@@ -3,7 +3,7 @@
 
 #include "apps/axis/state402.hpp"
 #include "eds_parser/read/eds.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

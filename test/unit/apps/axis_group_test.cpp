@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 #include "test/unit/apps/messages_for_tests.hpp"
 
 namespace takt {

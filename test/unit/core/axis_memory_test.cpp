@@ -1,4 +1,4 @@
-#include "master/core/axis_memory.hpp"
+#include "master/core/network/axis_memory.hpp"
 
 #include <gtest/gtest.h>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>

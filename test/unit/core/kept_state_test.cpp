@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "master/core/twin_watch.hpp"
+#include "master/core/node/twin_watch.hpp"
 
 namespace takt {
 namespace {

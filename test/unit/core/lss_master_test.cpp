@@ -1,10 +1,10 @@
-#include "master/core/lss_master.hpp"
+#include "master/core/lss/lss_master.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/lss_runner.hpp"
+#include "master/core/lss/lss_runner.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "master/core/lss_scan.hpp"
+#include "master/core/lss/lss_scan.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

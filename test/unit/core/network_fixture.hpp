@@ -1,7 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "master/core/network.hpp"
+#include "master/core/network/network.hpp"
 #include "test/unit/core/network_rig.hpp"
 
 namespace takt {

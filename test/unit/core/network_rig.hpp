@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "master/core/network.hpp"
+#include "master/core/network/network.hpp"
 #include "test/unit/core/fake_node.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "master/core/network.hpp"
+#include "master/core/network/network.hpp"
 
 #include <gtest/gtest.h>
 #include <set>

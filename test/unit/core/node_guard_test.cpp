@@ -1,4 +1,4 @@
-#include "master/core/node_guard.hpp"
+#include "master/core/node/node_guard.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "master/core/node_watch.hpp"
+#include "master/core/node/node_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <map>
 #include <random>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/core/network_rig.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/core/boot_rig.hpp"
 
 // If a device answers wrongly instead of keeping silent, the report names what it does.

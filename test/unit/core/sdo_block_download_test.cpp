@@ -1,4 +1,4 @@
-#include "master/core/sdo_block_download.hpp"
+#include "master/core/sdo/sdo_block_download.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "master/core/sdo_block_upload.hpp"
+#include "master/core/sdo/sdo_block_upload.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/sdo_client.hpp"
+#include "master/core/sdo/sdo_client.hpp"
 #include "test/unit/core/script.hpp"
 
 namespace takt {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "master/core/sdo_client.hpp"
+#include "master/core/sdo/sdo_client.hpp"
 #include "test/unit/core/script.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/sdo_client.hpp"
+#include "master/core/sdo/sdo_client.hpp"
 #include "test/unit/core/script.hpp"
 
 // Servers that answer late, with too few bytes, or with something else than the client has asked

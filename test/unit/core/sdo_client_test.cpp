@@ -1,4 +1,4 @@
-#include "master/core/sdo_client.hpp"
+#include "master/core/sdo/sdo_client.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

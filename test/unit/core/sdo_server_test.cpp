@@ -1,4 +1,4 @@
-#include "master/core/sdo_server.hpp"
+#include "master/core/sdo/sdo_server.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "master/core/twin_watch.hpp"
+#include "master/core/node/twin_watch.hpp"
 
 #include <gtest/gtest.h>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/core/network_rig.hpp"
 
 namespace takt {

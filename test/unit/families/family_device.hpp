@@ -7,7 +7,7 @@
 
 #include "eds_parser/plan/device/device_compiler.hpp"
 #include "eds_parser/read/eds.hpp"
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 
 namespace takt::sim {
 

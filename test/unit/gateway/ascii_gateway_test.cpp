@@ -1,4 +1,4 @@
-#include "master/gateway/ascii_gateway.hpp"
+#include "master/gateway/ascii/ascii_gateway.hpp"
 
 #include <deque>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include <random>
 #include <sstream>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt::test {

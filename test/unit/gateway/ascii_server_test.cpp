@@ -1,4 +1,4 @@
-#include "master/gateway/ascii_server.hpp"
+#include "master/gateway/ascii/ascii_server.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "master/linux/unix_address.hpp"
+#include "master/linux/unix_bus/unix_address.hpp"
 #include "test/support/folder.hpp"
 #include "test/support/no_descriptor_left.hpp"
 #include "test/support/step_clock.hpp"

@@ -1,4 +1,4 @@
-#include "master/gateway/bus_view.hpp"
+#include "master/gateway/message/bus_view.hpp"
 
 #include <gtest/gtest.h>
 #include <initializer_list>

@@ -1,4 +1,4 @@
-#include "master/gateway/channel_patterns.hpp"
+#include "master/lcm/channel_patterns.hpp"
 
 #include <gtest/gtest.h>
 #include <string>

@@ -1,4 +1,4 @@
-#include "master/gateway/checked_transport.hpp"
+#include "master/lcm/envelope/checked_transport.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <utility>
 
-#include "master/gateway/names.hpp"
+#include "master/lcm/channel_names.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "master/gateway/commands.hpp"
+#include "master/gateway/command/commands.hpp"
 
 #include <cstdint>
 #include <gtest/gtest.h>
@@ -227,9 +227,9 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
   EXPECT_TRUE(take(fresh, 103));
 
   EXPECT_FALSE(take(release(102), 103)) << "a later command has overtaken it";
-  EXPECT_TRUE(
-      told("node 5 (shoulder): the command is older than the newest one of the node: it is computed "
-           "from cycle 102"));
+  EXPECT_TRUE(told(
+      "node 5 (shoulder): the command is older than the newest one of the node: it is computed "
+      "from cycle 102"));
   EXPECT_FALSE(take(release(0), 103));
   EXPECT_TRUE(told("is computed from cycle 0"));
   EXPECT_FALSE(take(release(105), 103));
@@ -247,7 +247,8 @@ TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
 
   EXPECT_FALSE(take(end, 103));
 
-  EXPECT_TRUE(told("the command is too old: it is computed from cycle 100, the present cycle is 103"));
+  EXPECT_TRUE(
+      told("the command is too old: it is computed from cycle 100, the present cycle is 103"));
   EXPECT_EQ(commands.holder(0, 103), "move");
 }
 
@@ -272,7 +273,8 @@ TEST_F(CommandsTest, AnOlderCommandDoesNotOvertakeANewerOne) {
   EXPECT_FALSE(take(command({1}, {1}), 102)) << "a copy of the first one, within its time to live";
 
   EXPECT_EQ(outputs[1], 2);
-  EXPECT_TRUE(told("the command is older than the newest one of the node: it is computed from cycle 100"));
+  EXPECT_TRUE(
+      told("the command is older than the newest one of the node: it is computed from cycle 100"));
   for (int i = 0; i < 100; ++i) take(command({1}, {1}), 102);
   EXPECT_EQ(notices.size(), 1U) << "at most one a second";
   newer.values = {3};

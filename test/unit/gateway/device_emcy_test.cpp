@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/gateway/a_plan.hpp"
 
 namespace takt {

@@ -1,10 +1,10 @@
-#include "master/gateway/diagnosis.hpp"
+#include "master/gateway/message/diagnosis.hpp"
 
 #include <cerrno>
 #include <gtest/gtest.h>
 
-#include "master/gateway/emcy_history.hpp"
-#include "master/gateway/status_messages.hpp"
+#include "master/gateway/message/status_messages.hpp"
+#include "master/gateway/notice/emcy_history.hpp"
 
 namespace takt {
 namespace {

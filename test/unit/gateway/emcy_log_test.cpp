@@ -1,4 +1,4 @@
-#include "master/gateway/emcy_log.hpp"
+#include "master/gateway/notice/emcy_log.hpp"
 
 #include <gtest/gtest.h>
 

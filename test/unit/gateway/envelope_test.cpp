@@ -1,4 +1,4 @@
-#include "master/gateway/envelope.hpp"
+#include "master/lcm/envelope/envelope.hpp"
 
 #include <chrono>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "master/gateway/bridge.hpp"
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/unit/gateway/rig_clocks.hpp"
 #include "test/virtual/rig.hpp"
 

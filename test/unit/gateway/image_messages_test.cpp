@@ -1,11 +1,11 @@
-#include "master/gateway/image_messages.hpp"
+#include "master/gateway/message/image_messages.hpp"
 
 #include <array>
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/gateway/bus_view.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/gateway/message/bus_view.hpp"
+#include "master/lcm/messages.hpp"
 #include "test/unit/gateway/a_plan.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "master/gateway/key_file.hpp"
+#include "master/lcm/envelope/key_file.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -1,9 +1,9 @@
-#include "master/gateway/lcm_link.hpp"
+#include "master/lcm/link/lcm_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "master/gateway/tcpq_broker.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "master/gateway/lcm_transport.hpp"
+#include "master/lcm/link/lcm_transport.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "master/gateway/lcm_url.hpp"
+#include "master/lcm/link/lcm_url.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "master/gateway/lease.hpp"
+#include "master/gateway/command/lease.hpp"
 
 #include <gtest/gtest.h>
 

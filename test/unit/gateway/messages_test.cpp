@@ -1,4 +1,4 @@
-#include "master/gateway/messages.hpp"
+#include "master/lcm/messages.hpp"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,6 +1,6 @@
-#include "master/gateway/names.hpp"
-
 #include <gtest/gtest.h>
+
+#include "master/lcm/channel_names.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "master/gateway/notice_limit.hpp"
+#include "master/gateway/notice/notice_limit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "master/gateway/pdo_messages.hpp"
+#include "master/gateway/message/pdo_messages.hpp"
 
 #include <gtest/gtest.h>
 
-#include "master/gateway/bus_view.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/gateway/message/bus_view.hpp"
+#include "master/lcm/messages.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {

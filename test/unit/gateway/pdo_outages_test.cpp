@@ -1,4 +1,4 @@
-#include "master/gateway/pdo_outages.hpp"
+#include "master/gateway/notice/pdo_outages.hpp"
 
 #include <gtest/gtest.h>
 #include <string>

@@ -1,4 +1,4 @@
-#include "master/gateway/printable_text.hpp"
+#include "master/lcm/printable_text.hpp"
 
 #include <gtest/gtest.h>
 #include <string>

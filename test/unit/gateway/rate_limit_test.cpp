@@ -1,4 +1,4 @@
-#include "master/gateway/rate_limit.hpp"
+#include "master/lcm/rate_limit.hpp"
 
 #include <gtest/gtest.h>
 

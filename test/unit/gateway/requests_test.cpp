@@ -1,4 +1,4 @@
-#include "master/gateway/requests.hpp"
+#include "master/gateway/command/requests.hpp"
 
 #include <chrono>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "master/rt/port.hpp"
-#include "master/sim/sim_port.hpp"
+#include "master/sim/bus/sim_port.hpp"
 
 namespace takt::test {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "master/gateway/clocks.hpp"
+#include "master/lcm/clocks.hpp"
 #include "test/virtual/rig.hpp"
 
 namespace takt::test {

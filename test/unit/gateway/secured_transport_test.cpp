@@ -1,4 +1,4 @@
-#include "master/gateway/secured_transport.hpp"
+#include "master/lcm/envelope/secured_transport.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -1,9 +1,9 @@
-#include "master/gateway/sync_message.hpp"
+#include "master/gateway/message/sync_message.hpp"
 
 #include <gtest/gtest.h>
 
-#include "master/gateway/bus_view.hpp"
-#include "master/gateway/messages.hpp"
+#include "master/gateway/message/bus_view.hpp"
+#include "master/lcm/messages.hpp"
 
 namespace takt {
 namespace {

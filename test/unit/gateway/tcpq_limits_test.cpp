@@ -6,8 +6,8 @@
 #include <sys/socket.h>
 #include <vector>
 
-#include "master/gateway/tcpq_broker.hpp"
-#include "master/gateway/tcpq_parser.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
+#include "master/lcm/tcpq/tcpq_parser.hpp"
 #include "test/support/no_descriptor_left.hpp"
 #include "test/support/step_clock.hpp"
 

@@ -7,9 +7,9 @@
 #include <sys/socket.h>
 #include <vector>
 
-#include "master/gateway/tcpq_broker.hpp"
-#include "master/gateway/tcpq_client.hpp"
-#include "master/gateway/tcpq_parser.hpp"
+#include "master/lcm/tcpq/tcpq_broker.hpp"
+#include "master/lcm/tcpq/tcpq_client.hpp"
+#include "master/lcm/tcpq/tcpq_parser.hpp"
 
 namespace takt {
 namespace {

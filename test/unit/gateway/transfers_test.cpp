@@ -1,4 +1,4 @@
-#include "master/gateway/transfers.hpp"
+#include "master/gateway/command/transfers.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

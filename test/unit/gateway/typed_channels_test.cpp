@@ -1,4 +1,4 @@
-#include "master/gateway/typed_channels.hpp"
+#include "master/gateway/message/typed_channels.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "master/gateway/units.hpp"
+#include "master/gateway/message/units.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "master/linux/bus_claim.hpp"
+#include "master/linux/bus/bus_claim.hpp"
 
 #include <filesystem>
 #include <gtest/gtest.h>

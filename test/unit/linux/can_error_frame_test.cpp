@@ -1,4 +1,4 @@
-#include "master/linux/can_error_frame.hpp"
+#include "master/linux/can/can_error_frame.hpp"
 
 #include <gtest/gtest.h>
 

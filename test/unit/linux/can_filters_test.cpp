@@ -1,4 +1,4 @@
-#include "master/linux/can_filters.hpp"
+#include "master/linux/can/can_filters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "master/linux/can_link.hpp"
+#include "master/linux/can/can_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

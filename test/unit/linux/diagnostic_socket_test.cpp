@@ -1,11 +1,11 @@
-#include "master/linux/diagnostic_socket.hpp"
+#include "master/linux/bus/diagnostic_socket.hpp"
 
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <vector>
 
-#include "master/linux/unix_bus.hpp"
+#include "master/linux/unix_bus/unix_bus.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,9 +1,9 @@
-#include "master/linux/frame_witness.hpp"
+#include "master/linux/bus/frame_witness.hpp"
 
 #include <gtest/gtest.h>
 #include <string>
 
-#include "master/linux/interface_bitrate.hpp"
+#include "master/linux/can/interface_bitrate.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,5 +1,5 @@
 // The checks of `takt lss set-bitrate --activate` before it sends the first frame.
-#include "master/linux/interface_bitrate.hpp"
+#include "master/linux/can/interface_bitrate.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "master/linux/intruder_watch.hpp"
+#include "master/linux/bus/intruder_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <memory>

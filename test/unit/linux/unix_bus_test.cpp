@@ -1,4 +1,4 @@
-#include "master/linux/unix_bus.hpp"
+#include "master/linux/unix_bus/unix_bus.hpp"
 
 #include <fcntl.h>
 #include <filesystem>
@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "master/linux/frame_channel.hpp"
-#include "master/linux/unix_address.hpp"
-#include "master/linux/unix_bus_hub.hpp"
+#include "master/linux/bus/frame_channel.hpp"
+#include "master/linux/unix_bus/unix_address.hpp"
+#include "master/linux/unix_bus/unix_bus_hub.hpp"
 #include "test/support/folder.hpp"
 #include "test/support/patience.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/rt/limited_axes.hpp"
 
 namespace takt::test {

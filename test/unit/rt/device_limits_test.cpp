@@ -1,7 +1,7 @@
 // Limits that the boot has read from a drive, checked when the outputs are packed.
 #include <gtest/gtest.h>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/rt/limited_axes.hpp"
 
 namespace takt::test {

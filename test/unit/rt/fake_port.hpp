@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "master/core/network.hpp"
+#include "master/core/network/network.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt::test {

@@ -1,11 +1,11 @@
-#include "master/rt/journal.hpp"
+#include "master/rt/journal/journal.hpp"
 
 #include <atomic>
 #include <gtest/gtest.h>
 #include <thread>
 
-#include "master/rt/journal_request.hpp"
-#include "master/rt/replay_port.hpp"
+#include "master/rt/journal/journal_request.hpp"
+#include "master/rt/journal/replay_port.hpp"
 
 namespace takt {
 namespace {

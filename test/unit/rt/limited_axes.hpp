@@ -3,7 +3,7 @@
 #include <cstring>
 #include <vector>
 
-#include "master/core/pdo_exchange.hpp"
+#include "master/core/pdo/pdo_exchange.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt::test {

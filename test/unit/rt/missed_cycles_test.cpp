@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/boot_report.hpp"
 #include "master/core/bus_trouble.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/rt/bus_loop_rig.hpp"
 
 namespace takt {

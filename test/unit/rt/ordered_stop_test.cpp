@@ -1,4 +1,4 @@
-#include "master/core/ordered_stop.hpp"
+#include "master/core/network/ordered_stop.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

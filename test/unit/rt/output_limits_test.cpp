@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/boot_report.hpp"
+#include "master/explain/boot_report.hpp"
 #include "test/unit/rt/limited_axes.hpp"
 
 namespace takt::test {

@@ -1,4 +1,4 @@
-#include "master/core/pdo_fields.hpp"
+#include "master/core/pdo/pdo_fields.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

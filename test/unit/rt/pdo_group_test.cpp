@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "master/core/pdo_exchange.hpp"
+#include "master/core/pdo/pdo_exchange.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {

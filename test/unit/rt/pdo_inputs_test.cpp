@@ -1,4 +1,4 @@
-#include "master/core/pdo_inputs.hpp"
+#include "master/core/pdo/pdo_inputs.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,9 +1,9 @@
-#include "master/core/pdo_outputs.hpp"
+#include "master/core/pdo/pdo_outputs.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "master/core/pdo_exchange.hpp"
+#include "master/core/pdo/pdo_exchange.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {

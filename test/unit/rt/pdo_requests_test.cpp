@@ -1,4 +1,4 @@
-#include "master/core/pdo_requests.hpp"
+#include "master/core/pdo/pdo_requests.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

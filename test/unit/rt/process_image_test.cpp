@@ -1,4 +1,4 @@
-#include "master/rt/process_image.hpp"
+#include "master/rt/exchange/process_image.hpp"
 
 #include <gtest/gtest.h>
 #include <thread>

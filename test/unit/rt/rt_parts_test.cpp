@@ -7,13 +7,13 @@
 
 #include "master/rt/arrival_prediction.hpp"
 #include "master/rt/beat_clock.hpp"
-#include "master/rt/histogram.hpp"
+#include "master/rt/exchange/histogram.hpp"
+#include "master/rt/exchange/spsc_ring.hpp"
+#include "master/rt/exchange/status_board.hpp"
 #include "master/rt/port_watch.hpp"
 #include "master/rt/service_queue.hpp"
-#include "master/rt/spsc_ring.hpp"
-#include "master/rt/status_board.hpp"
 #include "master/rt/sync_gate.hpp"
-#include "master/rt/wire_time.hpp"
+#include "master/wire/wire_time.hpp"
 
 namespace takt {
 namespace {

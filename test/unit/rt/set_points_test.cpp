@@ -1,4 +1,4 @@
-#include "master/rt/set_points.hpp"
+#include "master/rt/exchange/set_points.hpp"
 
 #include <atomic>
 #include <gtest/gtest.h>

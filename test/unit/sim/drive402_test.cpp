@@ -1,4 +1,4 @@
-#include "master/sim/drive402.hpp"
+#include "master/sim/model/drive402.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

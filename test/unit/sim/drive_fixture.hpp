@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <initializer_list>
 
-#include "master/sim/drive402.hpp"
-#include "master/sim/emcy_producer.hpp"
-#include "master/sim/object_store.hpp"
+#include "master/sim/dictionary/object_store.hpp"
+#include "master/sim/model/drive402.hpp"
+#include "master/sim/service/emcy_producer.hpp"
 #include "test/unit/sim/sample_drive.hpp"
 
 namespace takt::sim {

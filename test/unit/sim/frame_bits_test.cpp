@@ -1,4 +1,4 @@
-#include "master/sim/frame_bits.hpp"
+#include "master/sim/bus/frame_bits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "master/sim/lss_slave.hpp"
+#include "master/sim/service/lss_slave.hpp"
 
 #include <gtest/gtest.h>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/unit/sim/sample_device.hpp"
 
 namespace takt::sim {

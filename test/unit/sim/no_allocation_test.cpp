@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
 #include "test/support/counted_new.hpp"
 #include "test/unit/sim/sample_device.hpp"
 

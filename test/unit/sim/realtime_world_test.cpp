@@ -1,4 +1,4 @@
-#include "master/sim/realtime_world.hpp"
+#include "master/sim/bus/realtime_world.hpp"
 
 #include <condition_variable>
 #include <deque>

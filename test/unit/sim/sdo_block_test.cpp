@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/unit/sim/sample_device.hpp"
 
 namespace takt::sim {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/unit/sim/sample_device.hpp"
 
 namespace takt::sim {

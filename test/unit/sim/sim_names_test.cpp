@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "master/sim/faults.hpp"
+#include "master/sim/bus/faults.hpp"
 
 namespace takt::sim {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "master/sim/device.hpp"
+#include "master/sim/device/device.hpp"
 #include "master/wire/bytes.hpp"
 #include "test/unit/sim/sample_device.hpp"
 

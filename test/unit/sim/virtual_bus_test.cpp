@@ -1,4 +1,4 @@
-#include "master/sim/virtual_bus.hpp"
+#include "master/sim/bus/virtual_bus.hpp"
 
 #include <algorithm>
 #include <cmath>

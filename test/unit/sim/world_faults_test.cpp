@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "master/sim/device.hpp"
-#include "master/sim/sim_port.hpp"
-#include "master/sim/world.hpp"
+#include "master/sim/bus/sim_port.hpp"
+#include "master/sim/bus/world.hpp"
+#include "master/sim/device/device.hpp"
 #include "test/unit/sim/sample_device.hpp"
 
 namespace takt::sim {

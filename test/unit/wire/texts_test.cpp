@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-#include "master/wire/emcy_text.hpp"
+#include "master/explain/emcy_text.hpp"
 #include "master/wire/sdo_abort.hpp"
 
 namespace takt {

@@ -1,0 +1,213 @@
+#include "master/core/lss/lss_master.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "eds_parser/table/waits.hpp"
+
+namespace takt {
+
+void LssMaster::begin(const LssCommand& command, Time timeout, Time now) noexcept {
+  command_ = command;
+  result_ = {.op = command.op};
+  timeout_ = timeout > Time{} ? timeout : default_timeout(command.op);
+  send_at_ = std::max(send_at_, now);
+  patient_ = false;
+  slowest_ = Time{};
+  if (command.op == LssOp::fast_scan) {
+    const auto& numbers = command.numbers;
+    fast_ = LssFastScan{{numbers[0], numbers[1], numbers[2], numbers[3]},
+                        {numbers[4], numbers[5], numbers[6], numbers[7]}};
+  } else if (command.op == LssOp::slow_scan) {
+    std::array<std::uint32_t, 6> ranges{};
+    std::copy_n(command.numbers.begin(), ranges.size(), ranges.begin());
+    slow_ = LssSlowScan{ranges};
+  }
+  ask();
+}
+
+/// Prepares the frames of the next question.
+void LssMaster::ask() noexcept {
+  using lss::Service;
+  count_ = next_ = 0;
+  answered_ = false;
+  phase_ = Phase::sending;
+  wait_for_ = command_.several ? Wait::all_answers : Wait::first_answer;
+  const auto& numbers = command_.numbers;
+  switch (command_.op) {
+    case LssOp::switch_global:
+      wait_for_ = Wait::none;
+      return put(lss::request(Service::switch_global, command_.a));
+    case LssOp::activate_bit_timing:
+      wait_for_ = Wait::none;
+      return put(lss::request(Service::activate_bit_timing, numbers[0]));
+    case LssOp::configure_node_id:
+      return put(lss::request(Service::configure_node_id, command_.a));
+    case LssOp::configure_bit_timing:
+      return put(
+          lss::request(Service::configure_bit_timing, command_.a | std::uint32_t{command_.b} << 8));
+    case LssOp::store:
+      return put(lss::request(Service::store));
+    case LssOp::switch_selective:
+      wait_for_ = Wait::first_answer;
+      for (std::uint8_t i = 0; i < 4; ++i) put(lss::request(Service::select, numbers[i], i));
+      return;
+    case LssOp::identify_unconfigured:
+      wait_for_ = Wait::all_answers;
+      return put(lss::request(Service::identify_unconfigured));
+    case LssOp::inquire_vendor:
+    case LssOp::inquire_product:
+    case LssOp::inquire_revision:
+    case LssOp::inquire_serial:
+    case LssOp::inquire_node_id:
+      return put(lss::request(static_cast<Service>(command_.op)));
+    case LssOp::identify:
+    case LssOp::fast_scan:
+    case LssOp::slow_scan:
+      return ask_scan();
+  }
+}
+
+void LssMaster::ask_scan() noexcept {
+  wait_for_ = Wait::all_answers;
+  if (command_.op == LssOp::fast_scan) return put(lss::request(fast_.question()));
+  for (std::uint8_t i = 0; i < 6; ++i) {
+    const std::uint32_t number =
+        command_.op == LssOp::slow_scan ? slow_.question()[i] : command_.numbers[i];
+    put(lss::request(lss::Service::identify, number, i));
+  }
+}
+
+bool LssMaster::expects(const lss::Answer& answer) const noexcept {
+  using lss::Service;
+  switch (command_.op) {
+    case LssOp::switch_global:
+    case LssOp::activate_bit_timing:
+      return false;
+    case LssOp::switch_selective:
+      return answer.is(Service::selected);
+    case LssOp::identify:
+    case LssOp::fast_scan:
+    case LssOp::slow_scan:
+      return answer.is(Service::identified);
+    case LssOp::identify_unconfigured:
+      return answer.is(Service::unconfigured);
+    case LssOp::configure_node_id:
+    case LssOp::configure_bit_timing:
+    case LssOp::store:
+    case LssOp::inquire_vendor:
+    case LssOp::inquire_product:
+    case LssOp::inquire_revision:
+    case LssOp::inquire_serial:
+    case LssOp::inquire_node_id:
+      return answer.is(static_cast<Service>(command_.op));
+  }
+  return false;
+}
+
+void LssMaster::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
+  if (phase_ != Phase::waiting) return;
+  const auto answer = lss::decode_answer(frame);
+  if (!answer || !expects(*answer)) return;
+  answered_ = true;
+  slowest_ = std::max(slowest_, now - asked_at_);
+  const bool configures = command_.op == LssOp::configure_node_id ||
+                          command_.op == LssOp::configure_bit_timing || command_.op == LssOp::store;
+  if (configures && result_.error == 0) {
+    result_.error = answer->error;
+    result_.specific = answer->specific;
+  } else if (!configures) {
+    result_.numbers[0] = answer->number;
+  }
+  if (command_.op == LssOp::inquire_node_id) result_.numbers[0] &= 0xFF;
+  if (wait_for_ == Wait::first_answer) on_reaction(now);
+}
+
+void LssMaster::on_time(Time now, Outbox& out) noexcept {
+  if (phase_ == Phase::waiting && now >= wait_until_) on_reaction(now);
+  if (phase_ != Phase::sending || now < send_at_ || !out.push(frames_[next_])) return;
+  ++next_;
+  ++result_.frames;
+  send_at_ = now + gap;
+  if (next_ == count_) sent_all(now);
+}
+
+void LssMaster::sent_all(Time now) noexcept {
+  asked_at_ = now;
+  if (wait_for_ == Wait::none) return finish(LssOutcome::done);
+  phase_ = Phase::waiting;
+  wait_until_ = now + wait();
+}
+
+Time LssMaster::wait() const noexcept {
+  const bool doubtful = command_.op == LssOp::fast_scan ? fast_.doubtful() : patient_;
+  if (!scans() || slowest_ == Time{} || doubtful) return timeout_;
+  return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
+}
+
+/// Evaluates the question: the time for answers is over, or the expected answer has come.
+void LssMaster::on_reaction(Time now) noexcept {
+  send_at_ = std::max(send_at_, now);
+  if (scans()) return on_scan_reaction();
+  if (answered_) return finish(result_.error == 0 ? LssOutcome::done : LssOutcome::refused);
+  const bool asks = command_.op == LssOp::identify || command_.op == LssOp::identify_unconfigured;
+  finish(asks ? LssOutcome::nobody : LssOutcome::silent);
+}
+
+void LssMaster::on_scan_reaction() noexcept {
+  if (command_.op == LssOp::fast_scan) {
+    fast_.on_reaction(answered_);
+    return end_scan(fast_.state(), fast_.address());
+  }
+  slow_.on_reaction(answered_);
+  if (slow_.state() == LssScanState::lost && !patient_) {
+    patient_ = true;
+    std::array<std::uint32_t, 6> ranges{};
+    std::copy_n(command_.numbers.begin(), ranges.size(), ranges.begin());
+    slow_ = LssSlowScan{ranges};
+  }
+  end_scan(slow_.state(), slow_.address());
+}
+
+void LssMaster::end_scan(LssScanState state, const LssAddress& address) noexcept {
+  switch (state) {
+    case LssScanState::running:
+      return ask();
+    case LssScanState::found:
+      result_.numbers = address;
+      return finish(LssOutcome::done);
+    case LssScanState::nobody:
+      result_.numbers = {};
+      return finish(LssOutcome::nobody);
+    case LssScanState::lost:
+      result_.numbers = {};
+      return finish(LssOutcome::lost);
+  }
+}
+
+void LssMaster::finish(LssOutcome outcome) noexcept {
+  result_.outcome = outcome;
+  phase_ = Phase::over;
+}
+
+std::optional<LssResult> LssMaster::take_result() noexcept {
+  if (phase_ != Phase::over) return {};
+  phase_ = Phase::idle;
+  return result_;
+}
+
+Time LssMaster::deadline() const noexcept {
+  switch (phase_) {
+    case Phase::idle:
+      return never;
+    case Phase::sending:
+      return send_at_;
+    case Phase::waiting:
+      return wait_until_;
+    case Phase::over:
+      return at_once;
+  }
+  return never;
+}
+
+}  // namespace takt

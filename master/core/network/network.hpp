@@ -1,0 +1,230 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/fixed_queue.hpp"
+#include "master/core/lss/lss_service.hpp"
+#include "master/core/machine.hpp"
+#include "master/core/network/network_start.hpp"
+#include "master/core/node/node_session.hpp"
+#include "master/core/node_status.hpp"
+#include "master/core/request.hpp"
+#include "master/core/request_table.hpp"
+#include "master/core/sdo/own_dictionary.hpp"
+#include "master/core/sdo/sdo_server.hpp"
+
+namespace takt {
+
+/// When the master sends an NMT command that ends the PDO exchange of axes.
+enum class NmtStop : std::uint8_t {
+  /// The command is sent at once.
+  immediate,
+  after_axes,  ///< The command is sent when axes_at_rest() reports that the axes which it reaches
+               ///< were stopped.
+};
+
+/// State of the axes for which an NMT command has waited.
+enum class AxesAtRest : std::uint8_t {
+  confirmed,    ///< Each axis was seen at standstill and disabled, or was disabled before.
+  unconfirmed,  ///< Some axis was not. The command is sent nevertheless, and its answer says so.
+};
+
+/// Options of a Network.
+struct NetworkOptions {
+  bool observe = false;  ///< The master only listens and sends nothing.
+  NmtStop nmt_stop = NmtStop::immediate;
+};
+
+/// The NMT master: owns the machines of all nodes, routes service frames to them and shares the
+/// frame budget between them. Bus thread only; nothing allocates after construction. `plan` must
+/// outlive the network.
+class Network {
+ public:
+  explicit Network(const BusPlan& plan, NetworkOptions options = {});
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
+
+  /// Begins to boot all nodes, unless the master only observes.
+  void start(Time now) noexcept;
+  /// Takes service frames of nodes (SDO and LSS answers, heartbeats, EMCY) and ignores all others.
+  /// O(1). The frames that the master sends in reaction leave with on_time(), within the budget;
+  /// `out` is not used.
+  void on_frame(const Frame& frame, Time now, Outbox& out) noexcept;
+  /// Handles time-outs, new SDO requests, the heartbeat of the master, NMT and LSS. Adds at most
+  /// `service_frames` frames, or fewer if `out` has less room.
+  void on_time(Time now, Outbox& out) noexcept;
+  /// The time at which on_time() has to be called. It is in the past while frames wait to be sent.
+  Time deadline() const noexcept;
+
+  /// Accepts a request. Returns false if the queue is full; then the caller answers the request.
+  /// Every accepted request is answered exactly once.
+  bool submit(const Request& request, Time now) noexcept;
+  /// Takes the next reply. Returns false if there is none.
+  bool take(Reply& reply) noexcept;
+  /// An SDO download to this object of the node is not answered yet.
+  bool writes(std::uint8_t node, ObjectKey object) const noexcept {
+    return requests_.has_download(node, object);
+  }
+  /// Cancels and answers the requests with this id of which nothing was sent so far.
+  void withdraw(std::uint64_t id) noexcept;
+  /// Takes the next event. Returns false if there is none.
+  bool take(Event& event) noexcept;
+  /// Number of events that were lost because the queue was full.
+  std::uint64_t events_lost() const noexcept { return events_.lost(); }
+
+  /// The status of all nodes, in the order of plan.nodes.
+  std::span<const NodeStatus> nodes() const noexcept;
+  /// The node is booted and, as far as is known, OPERATIONAL.
+  bool exchanges_pdos(std::size_t node_index) const noexcept;
+  /// The boot of the node has sent NMT start. The node may be OPERATIONAL some time before it
+  /// reports that state.
+  bool starts(std::size_t node_index) const noexcept;
+
+  /// See NodeSession::boot_refused.
+  bool boot_refused(std::size_t node_index) const noexcept {
+    return sessions_[node_index].boot_refused();
+  }
+
+  /// The limits that the newest boot of this node has read.
+  std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
+
+  /// The loss of some node of the plan stops drives.
+  bool stops_drives() const noexcept { return stops_drives_; }
+  /// A node is lost, and its loss demands a quick stop of the drives of this node.
+  /// LossReaction::quick_stop.
+  bool demands_quick_stop(std::size_t node_index) const noexcept;
+  /// A block transfer is under way; frames come without a request for each.
+  bool streams() const noexcept { return streaming_ != 0; }
+  /// Number of sub-blocks of block uploads that were requested, including requests that are still
+  /// to be sent.
+  std::size_t awaited_sub_blocks() const noexcept;
+  /// Number of SDO answers that are outstanding, including answers to frames that are still to be
+  /// sent.
+  std::size_t awaited_answers() const noexcept { return awaited_; }
+
+  /// The master has left the NMT state STOPPED or was reset, so the counter of its SYNC starts
+  /// at 1. The function returns true once. CiA 301, 7.2.5.2.
+  bool take_sync_restart() noexcept { return std::exchange(sync_restarts_, false); }
+
+  /// Handles the loss of the SYNC of another device: NMT stop goes to every other node.
+  /// SyncLoss::stop.
+  void on_sync_loss() noexcept;
+  /// Handles the return of that SYNC: the nodes are started again.
+  void on_sync_back() noexcept;
+
+  /// Tells that the bus thread did not run for this time, which does not count as silence of a
+  /// node.
+  void on_absence(Time away) noexcept;
+
+  /// NMT part of the ordered stop: answers all pending requests and sends the last command to the
+  /// nodes. Nodes with `keep_alive` go to PRE-OPERATIONAL in any case.
+  void begin_stop(Time now, NmtCommand last = NmtCommand::enter_preoperational) noexcept;
+  /// The node whose NMT stop or enter pre-operational command waits for axes_at_rest(). 0 stands
+  /// for a command to all nodes, or for an NMT stop of the master itself, which ends SYNC.
+  /// std::nullopt means that no command waits.
+  std::optional<std::uint8_t> awaits_axes() const noexcept { return awaits_axes_; }
+  /// Lets the waiting command go, because its axes were stopped or their time is over.
+  void axes_at_rest(AxesAtRest how) noexcept {
+    axes_at_rest_ = awaits_axes_;
+    rest_ = how;
+  }
+  /// Every axis was stopped by an ordered stop; until its end, no command waits for axes.
+  void every_axis_at_rest(AxesAtRest how) noexcept {
+    axes_at_rest_ = 0;
+    rest_ = how;
+  }
+  /// Answers and drops the NMT commands that wait until their axes stand still, because an ordered
+  /// stop begins.
+  void drop_awaiting() noexcept;
+  /// Gives up the boots of nodes that were never ready, because an ordered stop begins.
+  void give_up_boots(Time now) noexcept;
+  /// The NMT state of the master itself.
+  NmtState own_state() const noexcept { return own_state_; }
+  /// All frames of the stop have been passed to the outbox.
+  bool stopped() const noexcept;
+  /// Nothing is under way, so keep() covers the whole state.
+  bool idle() const noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(requests_, lss_, nmt_gate_, start_, sessions_, deadlines_, strangers_, own_state_,
+          sync_restarts_, heartbeat_at_);
+    state.position(turn_, std::max<std::size_t>(sessions_.size(), 1));
+    for (std::size_t i = 0; i < sessions_.size(); ++i) statuses_[i] = sessions_[i].status();
+  }
+
+ private:
+  static constexpr std::uint8_t no_session = 0xFF;
+
+  NodeSession* session(std::uint32_t node) noexcept;
+  void touched(std::size_t index, Time now) noexcept;
+  void send_heartbeat(Time now, Outbox& out) noexcept;
+  void send_commands(Time now, Outbox& out) noexcept;
+  bool send_command(const NmtMessage& message, Time now, Outbox& out) noexcept;
+  std::optional<std::uint8_t> axes_reached(const NmtMessage& message) const noexcept;
+  bool waits_for_axes(const NmtMessage& message) const noexcept;
+  void command_master(NmtCommand command) noexcept;
+  void send_own_commands(Time now, Outbox& out) noexcept;
+  void follow_start(Time now) noexcept;
+  void begin_anew(Time now) noexcept;
+  void on_loss(std::size_t index, Time now) noexcept;
+  void on_mandatory_loss(Time now) noexcept;
+  void halt_group(std::size_t index) noexcept;
+  void meet_stranger(const Frame& frame, Time now) noexcept;
+  void tell(EventKind kind, Time now, std::int64_t value, std::uint32_t detail,
+            std::uint8_t node = 0) noexcept;
+  NodeSession* emcy_sender(CobId id) noexcept;
+  void ask_own_dictionary(const Frame& frame, Time now) noexcept;
+  void serve_own_dictionary(Time now, Outbox& out) noexcept;
+  void run_sessions(Time now, Outbox& out) noexcept;
+  Time first_deadline() const noexcept;
+  std::size_t following(std::size_t index) const noexcept;
+
+  const BusPlan& plan_;
+  bool observe_;
+  NmtStop nmt_stop_;
+  std::optional<std::uint8_t> awaits_axes_;   // node of the command that waits for its axes
+  std::optional<std::uint8_t> axes_at_rest_;  // node of the command that may be sent
+  AxesAtRest rest_ = AxesAtRest::confirmed;   // belongs to axes_at_rest_
+  bool stopping_ = false;
+  bool stops_drives_ = false;  // the loss of some node stops drives
+  EventQueue events_;
+  RequestTable requests_;
+  LssService lss_;
+  NmtGate nmt_gate_;
+  NetworkStart start_;
+  FixedQueue<NmtMessage, 4> broadcasts_;  // broadcasts of the master itself
+  std::vector<NodeSession> sessions_;     // in the order of plan.nodes
+  // Copies of the statuses of the sessions, contiguous for the reader.
+  std::vector<NodeStatus> statuses_;
+  std::vector<bool> streams_;            // by session: a block transfer is under way
+  std::size_t streaming_ = 0;            // number of true entries in streams_
+  std::vector<bool> awaits_;             // by session: an SDO answer is outstanding
+  std::size_t awaited_ = 0;              // number of true entries in awaits_
+  std::vector<Time> deadlines_;          // by session, contiguous for the search
+  std::array<std::uint8_t, 128> index_;  // node-ID -> session
+  // COB-IDs of EMCYs other than 0x080 + node-ID, and their sessions.
+  std::vector<std::pair<CobId, std::uint8_t>> emcy_ids_;
+  std::bitset<128> strangers_;              // unlisted node-IDs that were reported
+  std::array<std::uint8_t, 2048> answers_;  // COB-ID of an SDO answer -> session
+  OwnDictionary dictionary_;
+  SdoServer server_;
+  std::size_t turn_ = 0;            // session that may send first (round robin)
+  RequestSlot* command_ = nullptr;  // NMT request that waits to be sent
+  NmtState own_state_ = NmtState::bootup;
+  bool sync_restarts_ = false;
+  Time heartbeat_at_ = never;
+};
+static_assert(Machine<Network>);
+
+}  // namespace takt

@@ -1,0 +1,218 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/machine.hpp"
+#include "master/core/node/boot_runner.hpp"
+#include "master/core/node/node_guard.hpp"
+#include "master/core/node/node_watch.hpp"
+#include "master/core/node/twin_watch.hpp"
+#include "master/core/node_status.hpp"
+#include "master/core/request_table.hpp"
+#include "master/core/sdo/sdo_client.hpp"
+
+namespace takt {
+
+/// Keeps the inhibit time between NMT commands. 0x102A, CiA 302-2.
+class NmtGate {
+ public:
+  explicit NmtGate(Time inhibit) noexcept : inhibit_{inhibit} {}
+  /// The inhibit time is over, and a command may be sent.
+  bool open(Time now) const noexcept { return now >= next_; }
+  void sent(Time now) noexcept { next_ = now + inhibit_; }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(next_);
+  }
+
+ private:
+  Time inhibit_;
+  Time next_{};
+};
+
+/// Whether the master manages a node.
+enum class Managed : std::uint8_t {
+  no,   ///< The node is only watched; the master sends it nothing by itself.
+  yes,  ///< The master boots and starts the node, and boots it again when it comes back.
+};
+
+/// All work of the master for one node: it boots the node, watches it, boots it again after a loss
+/// or a restart, and serves the requests of applications in between. Bus thread only.
+class NodeSession {
+ public:
+  /// Objects that all sessions share; the network owns them.
+  struct Shared {
+    EventQueue& events;
+    RequestTable& requests;
+    NmtGate& nmt_gate;
+    std::uint8_t sub_block_segments;  ///< size of a sub-block of block uploads, in segments
+  };
+
+  NodeSession(const NodePlan& plan, Managed managed, Shared shared) noexcept;
+
+  void start(Time now) noexcept;
+  /// Takes a frame of the SDO server of the node.
+  void on_sdo_answer(const Frame& frame, Time now) noexcept;
+  /// Takes a heartbeat, guarding answer or boot-up message.
+  void on_heartbeat(const Heartbeat& sign, Time now) noexcept;
+  /// Takes an EMCY of any length.
+  void on_emcy(const Frame& frame, Time now) noexcept;
+  /// A request for this node has been accepted.
+  void on_request(Time now) noexcept;
+  /// Cancels and answers the active request if it has this id and nothing of it was sent so far.
+  /// Returns false if there is no such request.
+  bool withdraw(std::uint64_t id) noexcept;
+  /// An NMT command that covers this node has been sent for an application.
+  void on_commanded(NmtCommand command, Time now) noexcept;
+  /// Handles time-outs and sends frames. Returns false if nothing was sent, because there was
+  /// nothing to send or `out` has no room.
+  bool on_time(Time now, Outbox& out) noexcept;
+  Time deadline() const noexcept;
+  /// Extends all time-outs of answers and heartbeats by the time for which the master itself did
+  /// not run.
+  void excuse(Time away) noexcept;
+
+  /// The limits that the newest boot has read.
+  std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
+  /// The boot has sent NMT start and waits for the confirmation.
+  bool starts() const noexcept { return booting() && runner_.started(); }
+  /// The network is started. Nodes that boot later are started as soon as they are ready.
+  void on_network_start() noexcept { network_started_ = true; }
+  /// The network starts up again. No node is started until the network is complete.
+  void on_network_reset() noexcept { network_started_ = status_.boot_tried = false; }
+  /// Returns true once if the node was ready and has become silent.
+  bool take_loss() noexcept { return std::exchange(loss_, false); }
+  /// Sends NMT stop; the node is not booted until an application resets or starts it.
+  void halt() noexcept;
+  /// As halt(), but without the command, because a broadcast has stopped the node.
+  void await_command() noexcept;
+
+  /// An ordered stop has begun: a node that was never ready is no longer booted, so that the stop
+  /// can read the state of its axes.
+  void give_up_boot() noexcept;
+
+  /// Sends NMT stop to an OPERATIONAL node, until resume() starts it again.
+  void pause() noexcept;
+  void resume() noexcept;
+
+  /// Ends all running work and sends this last command to the node. A node with `keep_alive` goes
+  /// to PRE-OPERATIONAL in any case.
+  void begin_stop(NmtCommand last) noexcept;
+  /// begin_stop() was called, and the last command and all aborts were sent.
+  bool stopped() const noexcept;
+
+  /// A block transfer is under way.
+  bool streams() const noexcept { return client_.streams(); }
+  /// The node was requested to send a sub-block of a block upload, or is sending one.
+  bool awaits_sub_block() const noexcept { return client_.awaits_sub_block(); }
+  /// An answer of the SDO server is outstanding. Probes do not count, because the node may not
+  /// exist.
+  bool awaits_answer() const noexcept {
+    return client_.awaits_answer() && !(booting() && runner_.probing());
+  }
+  /// No boot has succeeded so far, and the newest one has failed because the device refused the SDO
+  /// transfer of NodeStatus::boot_step.
+  bool boot_refused() const noexcept {
+    return status_.boot == BootState::failed && status_.boot_count == 0 &&
+           last_failure_.fault == SdoFault::aborted_by_device &&
+           last_failure_.step == status_.boot_step;
+  }
+  const NodeStatus& status() const noexcept { return status_; }
+  /// No boot, no transfer and no command is under way.
+  bool idle() const noexcept {
+    return !booting() && active_ == nullptr && !own_command_ && client_.idle() && !stopping_ &&
+           !loss_;
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(status_, client_, watch_, guard_, twins_);
+    state(retry_at_, retry_from_, wanted_, heartbeats_out_, state_at_boot_, emcys_at_boot_);
+    state(same_failures_, failed_boots_, counter_excused_, serial_number_, progress_told_,
+          bootups_);
+    state(bootups_since_, silent_, halted_, paused_, network_started_);
+    BootFailure& last = last_failure_;  // The next failure is compared with these values.
+    state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
+  }
+
+ private:
+  void boot(BootRunner::From from, Time now) noexcept;
+  void advance(Time now) noexcept;
+  void follow_boot(Time now) noexcept;
+  void follow_request(Time now) noexcept;
+  void follow_transfer(Time now) noexcept;
+  void answer_request(const SdoResult& result) noexcept;
+  bool next_request() noexcept;
+  void begin_request(Time now) noexcept;
+  void on_boot_failed(Time now) noexcept;
+  void on_boot_done(Time now) noexcept;
+  void tell_progress(Time now) noexcept;
+  void tell_replaced(Time now) noexcept;
+  void tell_firmware(Time now) noexcept;
+  bool restless(Time now) noexcept;
+  void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
+  void on_bootup(Time now) noexcept;
+  bool take_guarding_answer(const Heartbeat& sign, Time now) noexcept;
+  void look_for_silence(Time now) noexcept;
+  void on_silence(EventKind kind, Time silence, Time now) noexcept;
+  void look_for_fall(NmtState state, Time now) noexcept;
+  void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
+  Time pause_before_retry() const noexcept;
+  bool was_absent() const noexcept;
+  void node_was_reset() noexcept;
+  void disarm() noexcept;
+  void assume(NmtState state, Time now) noexcept;
+  void want(NmtState state, Time now) noexcept;
+  void send_nmt(Time now, Outbox& out) noexcept;
+  void send_guarding(Time now, Outbox& out) noexcept;
+  void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+  bool booting() const noexcept { return status_.boot == BootState::booting; }
+  bool waits_to_boot() const noexcept {
+    return managed_ == Managed::yes && !stopping_ && !halted_ &&
+           (status_.boot == BootState::failed || status_.boot == BootState::lost);
+  }
+
+  const NodePlan* plan_;
+  Managed managed_;
+  Shared shared_;
+  NodeStatus status_;
+  SdoClient client_;
+  BootRunner runner_;
+  NodeWatch watch_;
+  NodeGuard guard_;
+  RequestSlot* active_ = nullptr;
+  Time next_look_ = never;  // when to look next whether the sender still wants the transfer
+  Time retry_at_ = never;
+  BootRunner::From retry_from_ = BootRunner::From::beginning;
+  NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands
+  // Heartbeats in a row in which a ready node is not OPERATIONAL although it should be.
+  int heartbeats_out_ = 0;
+  NmtState state_at_boot_ = NmtState::unknown;
+  std::uint32_t emcys_at_boot_ = 0;
+  std::uint32_t same_failures_ = 0;  // failures in a row by the same cause
+  std::uint8_t failed_boots_ = 0;    // failures in a row since a boot-up message or a command
+  // The node was booted again because a SYNC with counter came too early.
+  bool counter_excused_ = false;
+  BootFailure last_failure_;
+  TwinWatch twins_;
+  std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
+  std::uint32_t progress_told_ = 0;             // tenths of the program that were reported
+  std::uint32_t bootups_ = 0;                   // number of boot-up messages since bootups_since_
+  Time bootups_since_{};
+  // Command that is not in the boot plan and waits to be sent.
+  std::optional<NmtCommand> own_command_;
+  bool silent_ = false;  // the heartbeat is lost
+  bool stopping_ = false;
+  bool halted_ = false;
+  bool paused_ = false;
+  bool loss_ = false;
+  bool network_started_ = false;
+};
+
+}  // namespace takt

@@ -1,0 +1,368 @@
+#include "master/core/pdo/output_limits.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time longest_gap = std::chrono::milliseconds{50};
+constexpr double fewest_cycles = 3;       // least number of cycles for longest_gap
+constexpr double from_actual_cycles = 1;  // cycles of a step that begins at the actual position
+constexpr std::int64_t enable_operation = 0x0F;  // bits of the controlword
+constexpr double rounding = 1e-6;                // rounding errors of the arithmetic, in counts
+
+LimitBreach breach(LimitKind kind, double measured, double limit) noexcept {
+  return {kind, static_cast<float>(measured), static_cast<float>(limit)};
+}
+
+}  // namespace
+
+OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const PdoInputs& inputs)
+    : plan_{plan},
+      image_{image},
+      inputs_{inputs},
+      limits_{plan.limits.outputs},
+      axes_(limits_.size()),
+      places_(plan.layout.signals.size(), no_place),
+      targets_(plan.layout.signals.size(), {no_place, no_place}),
+      slots_(limits_.size()),
+      held_(plan.nodes.size(), 0),
+      longest_gap_{fewest_cycles},
+      seconds_{std::chrono::duration<double>(plan.cycle.period).count()} {
+  if (plan.cycle.period > Time{0}) {
+    longest_gap_ = std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period));
+  }
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const auto place = static_cast<std::uint16_t>(i);
+    places_[limits_[i].signal] = place;
+    axes_[i] = axis_outputs(plan.layout, limits_[i].signal);
+    for (const auto& signal : {axes_[i].controlword, axes_[i].offset, limits_[i].mode}) {
+      if (!signal) continue;
+      auto& targets = targets_[*signal];
+      (targets[0] == no_place ? targets[0] : targets[1]) = place;
+    }
+    slots_[i] = fresh_slot(i);
+  }
+}
+
+void OutputLimits::open(std::size_t node_index) noexcept {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (signal_of(i).node_index != node_index) continue;
+    set_refused(i, false);
+    slots_[i] = fresh_slot(i);
+  }
+}
+
+OutputLimits::Slot OutputLimits::fresh_slot(std::size_t place) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  Slot slot;
+  slot.low = limit.low;
+  slot.high = limit.high;
+  slot.rate = limit.rate;
+  slot.bend = limit.bend;
+  slot.bounded = limit.low != -OutputLimit::none || limit.high != OutputLimit::none ||
+                 limit.step != OutputLimit::none || limit.rate != OutputLimit::none ||
+                 limit.bend != OutputLimit::none;
+  return slot;
+}
+
+bool OutputLimits::narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept {
+  const auto first = static_cast<std::int32_t>(low);
+  const auto last = static_cast<std::int32_t>(high);
+  const bool is_range = what.bound == DeviceBound::range;
+  if (is_range ? !plausible_range(first, last) : !plausible_size(high)) return false;
+  Slot& slot = slots_[places_[what.signal]];
+  slot.bounded = true;
+  const double size = high * what.factor;
+  switch (what.bound) {
+    case DeviceBound::range:
+      slot.low = std::max(slot.low, first * what.factor);
+      slot.high = std::min(slot.high, last * what.factor);
+      return true;
+    case DeviceBound::size:
+      slot.low = std::max(slot.low, -size);
+      slot.high = std::min(slot.high, size);
+      return true;
+    case DeviceBound::rate:
+      slot.rate = std::min(slot.rate, size);
+      return true;
+    case DeviceBound::bend:
+      slot.bend = std::min(slot.bend, size);
+      return true;
+  }
+  return false;
+}
+
+/// The value as the frame carries it: bits beyond the width of the object are cut off.
+double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexcept {
+  if (signal.type == DataType::real32) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
+  }
+  if (signal.type == DataType::real64) return std::bit_cast<double>(raw);
+  const unsigned spare = signal.bits == 0 || signal.bits > 64 ? 0U : 64U - signal.bits;
+  const auto top = static_cast<std::uint64_t>(raw) << spare;
+  if (is_signed(signal.type)) return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
+  return static_cast<double>(top >> spare);
+}
+
+/// The distance between two positions; for positions that wrap around, the shorter way. Two
+/// positions of one turn are less than a turn apart; whole turns beyond that are a distance that
+/// the axis would move.
+double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const double way = to - from;
+  const double modulus = limit.modulus > 0 ? limit.modulus
+                         : limit.wraps     ? std::ldexp(1.0, signal_of(place).bits)
+                                           : 0.0;
+  const double length = std::abs(way);
+  if (length <= modulus / 2 || length >= modulus) return way;
+  return way - std::copysign(modulus, way);
+}
+
+std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
+  const auto feedback = limits_[place].feedback;
+  if (!feedback || !inputs_.fresh(*feedback)) return std::nullopt;
+  return number(plan_.layout.signals[*feedback], image_.values[*feedback]);
+}
+
+/// The set-point that the axis would follow, in counts of the limited output.
+double OutputLimits::set_point(std::size_t place, const AxisCommand& command) const noexcept {
+  const Signal& signal = signal_of(place);
+  const double target = number(signal, command.value);
+  const auto offset = axes_[place].offset;
+  if (!offset || !follows_each(place, command.mode)) return target;
+  const Signal& other = plan_.layout.signals[*offset];
+  return target + number(other, command.offset) * (other.scale / signal.scale);
+}
+
+AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
+  const auto value = [&](std::optional<SignalIndex> signal) {
+    return signal ? image_.values[*signal] : 0;
+  };
+  return {.value = image_.values[limits_[place].signal],
+          .offset = value(axes_[place].offset),
+          .mode = value(limits_[place].mode),
+          .order = value(axes_[place].controlword)};
+}
+
+double OutputLimits::cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept {
+  if (cycle <= slot.cycle) return 1;
+  return std::min(static_cast<double>(cycle - slot.cycle), longest_gap_);
+}
+
+double OutputLimits::most(std::size_t place, double counts, double at) const noexcept {
+  const DataType type = signal_of(place).type;
+  if (type == DataType::real32) return counts + std::abs(at) * 0x1p-22;
+  if (type == DataType::real64) return counts + std::abs(at) * 0x1p-50;
+  return std::ceil(counts - rounding);
+}
+
+std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value,
+                                                 bool from_actual) const {
+  const OutputLimit& limit = limits_[place];
+  const Slot& slot = slots_[place];
+  if (value >= slot.low && value <= slot.high) return std::nullopt;
+  double low = slot.low;
+  double high = slot.high;
+  const auto reach = [&](double where) {
+    low = std::min(low, where);
+    high = std::max(high, where);
+  };
+  if (slot.known) reach(slot.value);
+  if (from_actual) {
+    if (const auto where = actual(place)) reach(*where);
+  }
+  if (value >= low && value <= high) return std::nullopt;
+  const Signal& signal = signal_of(place);
+  const double bound = value < low ? slot.low : slot.high;
+  return breach(limit.range, value * signal.scale + signal.offset,
+                bound * signal.scale + signal.offset);
+}
+
+std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& way) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const Slot& slot = slots_[place];
+  const double scale = std::abs(signal_of(place).scale);
+  const double length = std::abs(way.distance);
+  if (!(length <= most(place, limit.step * way.cycles, way.at))) {
+    return breach(LimitKind::step, length / way.cycles * scale, limit.step * scale);
+  }
+  if (!(length <= most(place, slot.rate * way.cycles, way.at))) {
+    const double per_second = scale / seconds_;
+    return breach(limit.rate_of, length / way.cycles * per_second, slot.rate * per_second);
+  }
+  const bool bent_only = limit.step == OutputLimit::none && slot.rate == OutputLimit::none;
+  const double reach = slot.bend * longest_gap_ * longest_gap_;
+  if (way.start == Start::standing && bent_only && !(length <= most(place, reach, way.at))) {
+    const double per_square = scale / (seconds_ * seconds_ * longest_gap_ * longest_gap_);
+    return breach(LimitKind::acceleration, length * per_square,
+                  slot.bend * scale / (seconds_ * seconds_));
+  }
+  return std::nullopt;
+}
+
+/// Checks the second difference. Each of the three values is rounded to a count, and this rounding
+/// can look like the acceleration `feigned`.
+std::optional<LimitBreach> OutputLimits::too_sharp(std::size_t place,
+                                                   const Way& way) const noexcept {
+  const Slot& slot = slots_[place];
+  const double bend = slot.bend;
+  if (bend == OutputLimit::none) return std::nullopt;
+  const double before = way.cycles < longest_gap_ ? slot.speed : 0.0;
+  const double apart = (way.cycles + slot.gap) / 2;
+  const double feigned = is_real(signal_of(place).type) ? most(place, 0, 2 * way.at) * 2
+                                                        : 1 / way.cycles + 1 / slot.gap;
+  const double found = std::abs(way.distance / way.cycles - before);
+  if (found <= bend * apart + feigned + rounding) return std::nullopt;
+  const double scale = std::abs(signal_of(place).scale) / (seconds_ * seconds_);
+  return breach(LimitKind::acceleration, found / apart * scale, bend * scale);
+}
+
+bool OutputLimits::lacks_start(std::size_t place, std::int64_t mode) const noexcept {
+  const Slot& slot = slots_[place];
+  const bool measured = limits_[place].step != OutputLimit::none ||
+                        slot.rate != OutputLimit::none || slot.bend != OutputLimit::none;
+  return measured && !slot.known && limits_[place].feedback &&
+         !inputs_.fresh(*limits_[place].feedback) && follows_each(place, mode);
+}
+
+/// The distance from the actual position; with `from_earlier` from the nearest of the last cycles.
+/// To be called only if there is an actual position.
+double OutputLimits::distance_from_actual(std::size_t place, double value,
+                                          bool from_earlier) const noexcept {
+  const Slot& slot = slots_[place];
+  double found = distance(place, actual(place).value_or(value), value);
+  for (std::size_t i = 0; from_earlier && i < slot.remembered; ++i) {
+    const double other = distance(place, slot.positions[i], value);
+    if (std::abs(other) < std::abs(found)) found = other;
+  }
+  return found;
+}
+
+std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisCommand& command,
+                                               Obeying obeying,
+                                               std::uint64_t cycle) const noexcept {
+  const Slot& slot = slots_[place];
+  const double value = set_point(place, command);
+  const bool each = follows_each(place, command.mode);
+  const bool follows = obeying == Obeying::yes && enabled(place);
+  const bool rests = starts_from_actual(place, command.order);
+  const bool from_last = slot.known && !rests && (!each || !slot.idle);
+  const bool from_actual = !follows || !from_last;
+  if (const auto found = outside(place, value, from_actual)) return found;
+  if (!each) return std::nullopt;
+  std::optional<LimitBreach> found;
+  if (from_last) {
+    if (command.age == SetPointAge::held) return std::nullopt;
+    const Way way{.distance = distance(place, slot.value, value),
+                  .cycles = follows ? cycles_since(slot, cycle) : 1.0,
+                  .at = value,
+                  .start = follows ? Start::moving : Start::standing};
+    found = too_far(place, way);
+    if (!found && follows) found = too_sharp(place, way);
+    if (!found) return std::nullopt;
+  }
+  if (!from_actual || !actual(place)) return found;
+  const bool computed = command.age == SetPointAge::commanded;
+  const bool lags = rests && computed && (command.order & enable_operation) != enable_operation;
+  return too_far(place, {.distance = distance_from_actual(place, value, lags),
+                         .cycles = from_actual_cycles,
+                         .at = value,
+                         .start = Start::standing});
+}
+
+void OutputLimits::remember() noexcept {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!limits_[i].feedback) continue;
+    Slot& slot = slots_[i];
+    const auto where = actual(i);
+    if (!where) {
+      slot.remembered = 0;
+      continue;
+    }
+    std::ranges::copy_backward(slot.positions.begin(), slot.positions.end() - 1,
+                               slot.positions.end());
+    slot.positions[0] = *where;
+    if (slot.remembered < cycles_remembered) ++slot.remembered;
+  }
+}
+
+void OutputLimits::set_refused(std::size_t place, bool refused) noexcept {
+  Slot& slot = slots_[place];
+  if (slot.refused == refused) return;
+  slot.refused = refused;
+  std::uint16_t& held = held_[signal_of(place).node_index];
+  if (refused) {
+    held_nodes_ += held++ == 0;
+  } else {
+    held_nodes_ -= --held == 0;
+  }
+}
+
+bool OutputLimits::refuse(std::size_t place, std::uint64_t cycle) noexcept {
+  const bool first = !slots_[place].refused;
+  set_refused(place, true);
+  slots_[place].refused_at = cycle;
+  return first;
+}
+
+void OutputLimits::forgive(std::size_t place, std::uint64_t cycle) noexcept {
+  if (slots_[place].refused && cycle > slots_[place].refused_at) set_refused(place, false);
+}
+
+void OutputLimits::expire(std::uint64_t cycle) noexcept {
+  constexpr Time longest = std::chrono::seconds{1};
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i].refused) continue;
+    std::uint64_t patience = signal_of(i).fallback_cycles;
+    if (patience == 0 && plan_.cycle.period > Time{0}) {
+      patience = static_cast<std::uint64_t>(longest / plan_.cycle.period);
+    }
+    if (cycle > slots_[i].refused_at + patience) set_refused(i, false);
+  }
+}
+
+void OutputLimits::admit(std::size_t place, const AxisCommand& command,
+                         std::uint64_t cycle) noexcept {
+  Slot& slot = slots_[place];
+  slot.news = true;
+  // An event-driven frame is not sent again for the same value, so the command counts as sent.
+  if (!slot.known || set_point(place, command) != slot.value) return;
+  slot.cycle = cycle;
+  slot.speed = 0;
+  slot.gap = 1;
+}
+
+void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
+  for (const std::uint16_t place : targets_[signal]) {
+    if (place == no_place) continue;
+    if (axes_[place].controlword == signal) slots_[place].order = image_.values[signal];
+    if (axes_[place].offset == signal && slots_[place].known) note_sent(place, cycle);
+  }
+  if (places_[signal] == no_place) return;
+  note_sent(places_[signal], cycle);
+  slots_[places_[signal]].known = true;
+}
+
+void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
+  Slot& slot = slots_[place];
+  const AxisCommand command = image_command(place);
+  const double value = set_point(place, command);
+  if (!slot.known || slot.news || value != slot.value) {
+    const double cycles = cycles_since(slot, cycle);
+    const bool moves = slot.known && slot.news && enabled(place);
+    slot.speed = moves ? distance(place, slot.value, value) / cycles : 0.0;
+    slot.gap = moves ? cycles : 1.0;
+    slot.value = value;
+    slot.cycle = cycle;
+  }
+  slot.news = false;
+  slot.idle = !follows_each(place, command.mode);
+}
+
+}  // namespace takt

@@ -1,0 +1,186 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/pdo/axis_outputs.hpp"
+#include "master/core/pdo/pdo_inputs.hpp"
+#include "master/core/pdo/working_image.hpp"
+
+namespace takt {
+
+/// The limit that a refused command would exceed, and the measured value. Values are in SI units.
+struct LimitBreach {
+  LimitKind kind = LimitKind::range;
+  float measured = 0;
+  float limit = 0;
+};
+
+/// Whether an axis follows its set-points now, so that it moves on from the value that was sent
+/// last.
+enum class Obeying : std::uint8_t { yes, no };
+
+/// Whether a command brings a new set-point, or puts the one in force that was sent before.
+enum class SetPointAge : std::uint8_t { commanded, held };
+
+/// What a command gives to a limited output and to the other outputs of its axis. Values are raw.
+struct AxisCommand {
+  std::int64_t value = 0;   ///< of the limited output
+  std::int64_t offset = 0;  ///< 60B0, if it is an output
+  std::int64_t mode = 0;    ///< 6060, if it is an output
+  std::int64_t order = 0;   ///< 6040, if it is an output
+  SetPointAge age = SetPointAge::commanded;
+};
+
+/// Checks commands against the limits of the plan. The position set-point of an axis is the sum of
+/// its target and of its position offset. A step is measured from the value that was sent last,
+/// over the cycles since that value was commanded. If an axis is not enabled and has sent its
+/// actual position, the step is measured from there, because the axis would start from there. An
+/// axis that was not commanded, or whose fallback is in force, may start from either of the two. If
+/// the last value or the actual position is outside the range, commands may come back towards the
+/// range but not go further away. In modes that do not follow each set-point, only the range is
+/// checked. Bus thread only.
+class OutputLimits {
+ public:
+  /// Result of place_of() for an output without limits.
+  static constexpr std::uint16_t no_place = 0xFFFF;
+
+  /// Keeps references to all three arguments.
+  OutputLimits(const BusPlan& plan, const WorkingImage& image, const PdoInputs& inputs);
+
+  bool empty() const noexcept { return slots_.empty(); }
+  std::size_t size() const noexcept { return slots_.size(); }
+  const OutputLimit& limit(std::size_t place) const noexcept { return limits_[place]; }
+  /// The place of the limits of this output.
+  std::uint16_t place_of(SignalIndex signal) const noexcept { return places_[signal]; }
+  /// The places of the position targets that this output concerns, because it is the controlword,
+  /// the mode of operation or the position offset of their axis. Unused elements are `no_place`.
+  const std::array<std::uint16_t, 2>& targets_of(SignalIndex signal) const noexcept {
+    return targets_[signal];
+  }
+  /// The controlword and the position offset that belong to a limited position target.
+  const AxisOutputs& axis(std::size_t place) const noexcept { return axes_[place]; }
+
+  /// The node exchanges PDOs from now on, and nothing was sent to it so far.
+  void open(std::size_t node_index) noexcept;
+
+  /// Takes a limit that was read from the device: a range from `low` to `high`, or else the value
+  /// `high`. It holds until open() is called again. Returns false, and ignores the limit, if it is
+  /// implausible.
+  bool narrow(const DeviceLimit& what, std::uint32_t low, std::uint32_t high) noexcept;
+  /// This output has a limit in the file or from the device.
+  bool bounds(std::size_t place) const noexcept { return slots_[place].bounded; }
+
+  /// Nothing was sent so far, and the device has not sent its actual position yet, so no distance
+  /// can be measured. `mode` is the commanded mode of operation of the axis.
+  bool lacks_start(std::size_t place, std::int64_t mode) const noexcept;
+  /// Checks a command. Returns std::nullopt if it may be sent.
+  std::optional<LimitBreach> judge(std::size_t place, const AxisCommand& command, Obeying obeying,
+                                   std::uint64_t cycle) const noexcept;
+  /// The controlword `order` asks an axis that is not enabled to enable operation.
+  bool begins(std::size_t place, std::int64_t order) const noexcept;
+  /// The controlword of the axis that was sent last; 0 if none was sent.
+  std::int64_t order(std::size_t place) const noexcept { return slots_[place].order; }
+  /// Notes the actual positions of this cycle. To be called once in each cycle.
+  void remember() noexcept;
+  /// Notes that a command was outside its limits. Returns true if the previous one was inside.
+  bool refuse(std::size_t place, std::uint64_t cycle) noexcept;
+  /// Notes that a command was inside its limits. From the next cycle on, this ends the refusal that
+  /// refuse() began.
+  void forgive(std::size_t place, std::uint64_t cycle) noexcept;
+  /// Ends refusals that were not repeated for the time to live of a command.
+  void expire(std::uint64_t cycle) noexcept;
+  /// A command to this node was outside its limits, and no later one was inside.
+  bool holds(std::size_t node_index) const noexcept { return held_[node_index] != 0; }
+  bool holds_any() const noexcept { return held_nodes_ != 0; }
+  /// Notes that the command is accepted and will be sent.
+  void admit(std::size_t place, const AxisCommand& command, std::uint64_t cycle) noexcept;
+  /// Notes that the value of an output was sent.
+  void sent(SignalIndex signal, std::uint64_t cycle) noexcept;
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(slots_, held_, held_nodes_);
+  }
+
+ private:
+  /// A command is computed from an image that is some cycles old. An axis that is pushed, or that
+  /// coasts, has moved on since.
+  static constexpr std::size_t cycles_remembered = 4;
+
+  struct Slot {
+    double low = -OutputLimit::none;
+    double high = OutputLimit::none;
+    double rate = OutputLimit::none;
+    double bend = OutputLimit::none;
+    bool bounded = false;  ///< there is a limit in the file or from the device
+    double value = 0;      ///< the value that was sent last
+    double speed = 0;      ///< speed of the last step, per cycle
+    double gap = 1;        ///< duration of the last step in cycles
+    std::uint64_t cycle = 0;
+    std::uint64_t refused_at = 0;
+    bool known = false;      ///< a value was sent since open()
+    bool news = false;       ///< a command was accepted and is not sent yet
+    bool refused = false;    ///< the newest command was outside its limits
+    bool idle = false;       ///< the value was sent in a mode that does not follow each set-point
+    std::int64_t order = 0;  ///< the controlword that was sent last
+    std::array<double, cycles_remembered> positions{};  ///< actual positions of the last cycles
+    std::uint8_t remembered = 0;                        ///< number of valid `positions`
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(low, high, rate, bend, bounded, value, speed, gap, cycle, refused_at, known, news,
+            refused, idle, order, positions, remembered);
+    }
+  };
+  enum class Start : std::uint8_t { moving, standing };
+  /// The step that a command would make.
+  struct Way {
+    double distance = 0;
+    double cycles = 1;
+    double at = 0;  ///< value at its end
+    Start start = Start::moving;
+  };
+
+  const Signal& signal_of(std::size_t place) const noexcept {
+    return plan_.layout.signals[limits_[place].signal];
+  }
+  double number(const Signal& signal, std::int64_t raw) const noexcept;
+  double distance(std::size_t place, double from, double to) const noexcept;
+  std::optional<double> actual(std::size_t place) const noexcept;
+  double set_point(std::size_t place, const AxisCommand& command) const noexcept;
+  AxisCommand image_command(std::size_t place) const noexcept;
+  double distance_from_actual(std::size_t place, double value, bool from_earlier) const noexcept;
+  void note_sent(std::size_t place, std::uint64_t cycle) noexcept;
+
+  // These functions are in output_limits_axis.cpp.
+  bool enabled(std::size_t place) const noexcept;
+  bool starts_from_actual(std::size_t place, std::int64_t order) const noexcept;
+  bool follows_each(std::size_t place, std::int64_t mode) const noexcept;
+  double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
+  /// The largest permitted difference, rounded to counts that the frame can carry.
+  double most(std::size_t place, double counts, double at) const noexcept;
+  std::optional<LimitBreach> outside(std::size_t place, double value, bool from_actual) const;
+  std::optional<LimitBreach> too_far(std::size_t place, const Way& way) const noexcept;
+  std::optional<LimitBreach> too_sharp(std::size_t place, const Way& way) const noexcept;
+  Slot fresh_slot(std::size_t place) const noexcept;
+  void set_refused(std::size_t place, bool refused) noexcept;
+
+  const BusPlan& plan_;
+  const WorkingImage& image_;
+  const PdoInputs& inputs_;
+  std::vector<OutputLimit> limits_;
+  std::vector<AxisOutputs> axes_;                      ///< parallel to limits_
+  std::vector<std::uint16_t> places_;                  ///< place of the limits, by signal
+  std::vector<std::array<std::uint16_t, 2>> targets_;  ///< see targets_of(); by signal
+  std::vector<Slot> slots_;                            ///< parallel to limits_
+  std::vector<std::uint16_t> held_;  ///< by node: number of outputs whose commands are refused
+  std::uint32_t held_nodes_ = 0;
+  double longest_gap_;  ///< longest time between two commands that counts for a step, in cycles
+  double seconds_;      ///< duration of a cycle in seconds
+};
+
+}  // namespace takt

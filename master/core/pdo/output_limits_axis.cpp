@@ -1,0 +1,68 @@
+#include "master/core/pdo/output_limits.hpp"
+
+namespace takt {
+namespace {
+
+// Values of the statusword, CiA 402-2, table of states.
+constexpr std::int64_t state_bits = 0x6F;
+constexpr std::int64_t operation_enabled = 0x27;
+constexpr std::int64_t short_state_bits = 0x4F;
+constexpr std::int64_t fault_reaction_active = 0x0F;
+constexpr std::int64_t fault = 0x08;
+constexpr std::int64_t switch_on_disabled = 0x40;
+
+constexpr std::int64_t enable_operation = 0x0F;  // bits of the controlword
+
+bool enables(std::int64_t order) noexcept { return (order & enable_operation) == enable_operation; }
+
+/// In these states, drives ignore a controlword that stays at "enable operation".
+bool ignores_enabling(std::int64_t statusword) noexcept {
+  const std::int64_t state = statusword & short_state_bits;
+  return state == fault_reaction_active || state == fault || state == switch_on_disabled;
+}
+
+/// The modes that move an axis without its position set-points, or that need a handshake for each
+/// of them: profile position, velocity, profile velocity, profile torque, homing, cyclic
+/// synchronous velocity and torque. CiA 402-2, object 0x6060.
+bool ignores_set_points(std::int64_t raw) noexcept {
+  const auto mode = static_cast<std::int8_t>(raw);
+  return (mode >= 1 && mode <= 4) || mode == 6 || mode == 9 || mode == 10;
+}
+
+}  // namespace
+
+/// Without a statusword, the axis is taken as enabled when the last controlword enables it.
+bool OutputLimits::enabled(std::size_t place) const noexcept {
+  const auto statusword = limits_[place].statusword;
+  if (statusword && inputs_.fresh(*statusword)) {
+    return (image_.values[*statusword] & state_bits) == operation_enabled;
+  }
+  return !axes_[place].controlword || enables(slots_[place].order);
+}
+
+/// The axis is not enabled, so that it would start from its actual position, and this position is
+/// known. A drive that has left Operation enabled by itself, while its application still commands a
+/// motion, can't be enabled without another controlword. Its set-points may go on until then.
+bool OutputLimits::starts_from_actual(std::size_t place, std::int64_t order) const noexcept {
+  if (enabled(place) || !actual(place)) return false;
+  const auto statusword = limits_[place].statusword;
+  const bool was_enabled = enables(order) && enables(slots_[place].order);
+  return !was_enabled || !statusword || !inputs_.fresh(*statusword) ||
+         !ignores_enabling(image_.values[*statusword]);
+}
+
+bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept {
+  return axes_[place].controlword && enables(order) && !enabled(place);
+}
+
+/// Returns false if neither the commanded mode nor the mode that the drive shows moves the axis to
+/// each set-point. While the drive changes the mode, it may still follow.
+bool OutputLimits::follows_each(std::size_t place, std::int64_t mode) const noexcept {
+  const OutputLimit& limit = limits_[place];
+  const bool commanded = limit.mode ? !ignores_set_points(mode) : !limit.profile;
+  if (!limit.mode_display) return commanded;
+  const bool shown = !ignores_set_points(image_.values[*limit.mode_display]);
+  return limit.mode ? commanded || shown : shown;
+}
+
+}  // namespace takt

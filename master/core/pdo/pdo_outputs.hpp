@@ -1,0 +1,267 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/event_queue.hpp"
+#include "master/core/pdo/output_limits.hpp"
+#include "master/core/pdo/pdo_fields.hpp"
+#include "master/core/pdo/pdo_inputs.hpp"
+#include "master/core/pdo/working_image.hpp"
+#include "master/core/pdo_status.hpp"
+#include "master/core/set_point.hpp"
+
+namespace takt {
+
+/// The moment at which a set of outputs is packed.
+struct OutputMoment {
+  std::uint64_t cycle = 0;
+  Time now{};
+};
+
+/// Makes RPDO frames from set-points. An RPDO is sent only if its node exchanges PDOs and each of
+/// its signals was commanded, has a safe value or is seeded by its feedback. RPDOs of the
+/// transmission types 1..240 are sent in each n-th cycle, the others when a value has changed; such
+/// an event is kept until its frame was sent. If one set of commands changes several synchronous
+/// RPDOs, they are sent in one cycle, those of type n out of turn, so that all take effect at the
+/// next SYNC.
+///
+/// A command outside the limits of its output is not sent, and the outputs of its node take their
+/// fallback at once. All commands to the node are then dropped until a later command to that output
+/// is inside, or until no command has come for its time to live. Bus thread only.
+class PdoOutputs {
+ public:
+  /// Keeps references to all four arguments.
+  PdoOutputs(const BusPlan& plan, WorkingImage& image, const PdoInputs& inputs, EventQueue& events);
+
+  /// Permits the RPDOs of the node from now on. Commands that were given before are forgotten.
+  void open(std::size_t node_index, std::span<const SetPoint> set_points) noexcept;
+  /// Ends the RPDOs of the node.
+  void shut(std::size_t node_index) noexcept;
+  /// Takes the limits that the boot has read from the node; call this after open(). Each limit is
+  /// reported, and implausible ones are ignored.
+  void learn(std::size_t node_index, std::span<const LimitReading> readings,
+             OutputMoment moment) noexcept;
+
+  /// Makes the frames that are due, in the order of the table. They are valid until the next call.
+  /// `set_points` holds one set-point for each output signal.
+  std::span<const Frame> pack(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// A value has changed and is not sent yet, for example because of an inhibit time.
+  bool pending() const noexcept {
+    return std::ranges::any_of(rows_, [](const Row& r) { return r.open && r.ready && r.pending; });
+  }
+  /// Selects frames if not all packed ones fit into `bits`: all synchronous frames, because they
+  /// belong together, and as many of the others as fit; these take turns. Returns an empty span if
+  /// the synchronous frames alone do not fit. The span is valid until the next pack().
+  std::span<const Frame> pack_less(std::int64_t bits,
+                                   std::int64_t (*bits_of)(const Frame&) noexcept) noexcept;
+  /// Notes that the first `count` of the packed frames were sent; the others are tried again.
+  void sent(std::size_t count, OutputMoment moment) noexcept;
+
+  /// Takes a command from within the bus thread. `signal` is the index in the whole layout;
+  /// `time_to_live` is in cycles, 0 means the configured one.
+  void command(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live,
+               OutputMoment moment) noexcept;
+
+  /// Lets every commanded output take its fallback, for an ordered stop or the loss of SYNC.
+  /// Commands are refused from now on, and none of them takes effect later.
+  void fall_back() noexcept;
+  /// Ends fall_back(). Each output keeps its fallback until its next command.
+  void hear_again() noexcept { stopping_ = false; }
+  /// The output has a value that can be sent.
+  bool known(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].known; }
+  /// The output was commanded, and its fallback is in force.
+  bool fallen(SignalIndex signal) const noexcept { return outputs_[output_of(signal)].fallen; }
+  /// Forces this value from now on and refuses commands to the output, for an ordered stop or the
+  /// loss of a node.
+  void force(SignalIndex signal, std::int64_t value) noexcept;
+  /// Ends force(). The output accepts its next command, but none that came before.
+  void release(SignalIndex signal) noexcept;
+
+  /// Number of commands that the last pack() has seen for the first time.
+  std::uint32_t fresh_commands() const noexcept { return fresh_commands_; }
+  /// Every signal of this RPDO has a value that can be sent.
+  bool ready(std::size_t row) const noexcept { return rows_[row].ready; }
+  /// Status of an RPDO; `row` is the index into PdoTable::rpdos.
+  RpdoStatus status(std::size_t row) const noexcept {
+    return {.sent = rows_[row].sent, .ready = rows_[row].ready};
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(outputs_, rows_, begun_, limits_, turn_, stopping_);
+    state.position(next_event_, rows_.size());
+  }
+
+ private:
+  static constexpr std::uint64_t no_end = ~0ULL;
+  std::uint32_t awaited_start(const PdoRow& pdo) const noexcept;
+
+  static constexpr std::uint8_t partial_limit = 10;  ///< cycles until `outputs_held` is reported
+
+  struct Output {
+    std::uint64_t expires = no_end;  ///< cycle in which the command expires
+    std::uint32_t generation = 0;
+    std::uint32_t limit = 0;  ///< configured time to live in cycles; 0 means no limit
+    bool known = false;       ///< the output has a value that can be sent
+    bool commanded = false;   ///< that value was commanded
+    bool fallen = false;      ///< the fallback is in force
+    bool forced = false;
+    bool released = false;  ///< the fallback is in force because the sender has released the output
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(expires, generation, limit, known, commanded, fallen, forced, released);
+    }
+  };
+  struct Row {
+    std::uint64_t word = 0;  ///< data of the last packed frame
+    Time last_sent{};
+    std::uint64_t last_cycle = 0;
+    std::uint32_t sent = 0;
+    bool open = false;
+    bool ready = false;
+    bool ever_sent = false;  ///< a frame was sent since open()
+    bool pending = false;    ///< a value has changed and is not sent yet
+    bool due = false;        ///< the frame is due and is not sent yet
+    bool held_told = false;
+    std::uint8_t partial = 0;
+    SignalIndex first_fallen = 0;
+    SignalIndex first_risen = 0;
+    std::uint16_t fallen = 0;  ///< signals that fell back in this pack
+    std::uint16_t risen = 0;   ///< signals that left their fallback in this pack
+
+    template <class Archive>
+    void keep(Archive& state) noexcept {
+      state(word, last_sent, last_cycle, sent, open, ready, ever_sent, pending, due, held_told,
+            partial);
+    }
+  };
+  struct Built {
+    std::uint64_t word = 0;
+    bool lacking = false;
+    bool commanded = false;  ///< a signal of the row has a new command
+  };
+
+  Built build(std::size_t row, std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  void take(Output& output, SignalIndex signal, const SetPoint& set_point,
+            OutputMoment moment) noexcept {
+    const std::uint32_t limit = limit_of(output, set_point);
+    output.generation = set_point.generation;
+    output.expires =
+        limit == 0 ? no_end : moment.cycle + limit - std::min(limit, age(set_point, moment));
+    output.known = true;
+    output.commanded = true;
+    output.fallen = false;
+    output.released = false;
+    image_.values[signal] = set_point.value;
+  }
+  /// The shorter of the two times to live; 0 means that neither is set.
+  static std::uint32_t limit_of(const Output& output, const SetPoint& set_point) noexcept {
+    const bool configured = output.limit != 0 && output.limit < set_point.time_to_live;
+    return set_point.time_to_live == 0 || configured ? output.limit : set_point.time_to_live;
+  }
+  /// The command has expired before the bus thread has seen it. A command without limit may wait
+  /// for one second.
+  bool is_late(const Output& output, const SetPoint& set_point,
+               OutputMoment moment) const noexcept {
+    const std::uint32_t waited = age(set_point, moment);
+    if (waited == 0) [[likely]] {
+      return false;
+    }
+    const std::uint32_t limit = limit_of(output, set_point);
+    if (limit != 0) return waited >= limit;
+    return waited >= std::chrono::seconds{1} / plan_.cycle.period;
+  }
+  /// Lets the output take its fallback, because its sender has released it.
+  void let_go(Output& output, SignalIndex signal) noexcept;
+  /// Cycles since the front thread has determined the age of the command. The result is 0 if that
+  /// was after the previous outputs, which may have been a quarter of a period early.
+  std::uint32_t age(const SetPoint& set_point, OutputMoment moment) const noexcept {
+    const Time period = plan_.cycle.period;
+    const Time passed = moment.now - set_point.when - period / 4;
+    if (passed < period) [[likely]] {
+      return 0;
+    }
+    constexpr std::int64_t most = 0xFFFF'FFFF;
+    return static_cast<std::uint32_t>(std::min(passed / period, most));
+  }
+  bool refuses(const Output& output) const noexcept { return stopping_ || output.forced; }
+
+  // These functions are in pdo_outputs_limits.cpp.
+  /// Drops those new commands of this pack that are outside their limits.
+  void check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  /// Checks one command from within the bus thread. Returns false if it is dropped.
+  bool within_limits(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// This command is new, and is accepted if it is inside its limits.
+  bool is_news(const Output& output, const SetPoint& set_point,
+               OutputMoment moment) const noexcept {
+    return set_point.generation != output.generation && set_point.time_to_live != output_released &&
+           !refuses(output) && !is_late(output, set_point, moment);
+  }
+  bool limited_row_open(std::size_t place) const noexcept;
+  Obeying obeying(SignalIndex signal) const noexcept;
+  void judge_news(std::size_t place, std::span<const SetPoint> set_points,
+                  OutputMoment moment) noexcept;
+  struct Newest {
+    std::int64_t value = 0;
+    bool news = false;  ///< a new command of this pack
+  };
+  Newest newest(std::optional<SignalIndex> signal, std::span<const SetPoint> set_points,
+                OutputMoment moment) const noexcept;
+  void admit_news(std::size_t place, std::span<const SetPoint> set_points,
+                  OutputMoment moment) noexcept;
+  bool awaits_sending(SignalIndex signal) const noexcept;
+  void take_back(SignalIndex signal, std::int64_t before) noexcept;
+  AxisCommand command_with(std::size_t place, SignalIndex signal,
+                           std::int64_t value) const noexcept;
+  bool suits_targets(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
+  /// The output that a refusal is reported for, and its raw value.
+  struct Cause {
+    SignalIndex signal = 0;
+    std::int64_t value = 0;
+  };
+  /// Returns false if the command is outside its limits; the outputs of its node have then taken
+  /// their fallback.
+  bool judge(std::size_t place, const AxisCommand& command, Cause cause,
+             OutputMoment moment) noexcept;
+  void drop_node(std::size_t node_index) noexcept;
+  /// Ends the refusal of commands to an output, after the fallback of its node was sent.
+  void forgive(std::size_t place, OutputMoment moment) noexcept;
+  void note_limited(std::size_t row, std::uint64_t cycle) noexcept;
+  void fall(Output& output, SignalIndex signal) noexcept;
+  void seed(Output& output, SignalIndex signal) noexcept;
+  /// Builds all rows. Returns true if one set of commands has changed several synchronous rows.
+  bool build_all(std::span<const SetPoint> set_points, OutputMoment moment) noexcept;
+  bool due(std::size_t row, OutputMoment moment) const noexcept;
+  const Frame& add_frame(std::size_t row) noexcept;
+  void tell_changes(std::size_t row, bool lacking, OutputMoment moment) noexcept;
+  void tell(EventKind kind, std::size_t row, std::int64_t value, OutputMoment moment,
+            std::uint32_t detail = 0) noexcept;
+  std::size_t output_of(SignalIndex signal) const noexcept { return signal - inputs_count_; }
+
+  const BusPlan& plan_;
+  WorkingImage& image_;
+  const PdoInputs& inputs_;
+  EventQueue& events_;
+  std::size_t inputs_count_;
+  std::vector<FieldProgram> fields_;
+  OutputLimits limits_;
+  std::vector<Output> outputs_;
+  std::vector<Row> rows_;
+  /// By node: an output was commanded, so seeds no longer follow the feedback.
+  std::vector<std::uint8_t> begun_;
+  std::vector<Frame> frames_;
+  std::vector<std::uint16_t> packed_;
+  std::size_t packed_count_ = 0;
+  std::size_t next_event_ = 0;  ///< event-driven row that is first if not all frames fit
+  /// Number of packs so far; the common phase of types 2..240 for all rows.
+  std::uint64_t turn_ = 0;
+  std::uint32_t fresh_commands_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace takt

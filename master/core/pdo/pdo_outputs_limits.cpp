@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+
+#include "master/core/pdo/pdo_outputs.hpp"
+
+namespace takt {
+namespace {
+
+std::optional<std::uint32_t> value_of(std::span<const LimitReading> readings,
+                                      ObjectKey object) noexcept {
+  const auto found = std::ranges::find(readings, object, &LimitReading::object);
+  return found == readings.end() ? std::nullopt : std::optional{found->value};
+}
+
+}  // namespace
+
+void PdoOutputs::learn(std::size_t node_index, std::span<const LimitReading> readings,
+                       OutputMoment moment) noexcept {
+  std::optional<std::uint16_t> told;
+  for (const DeviceLimit& limit : plan_.limits.device) {
+    if (limit.node_index != node_index) continue;
+    const bool is_range = limit.bound == DeviceBound::range;
+    const auto first = value_of(readings, limit.object);
+    const auto last = is_range ? value_of(readings, upper_object(limit)) : first;
+    if (!first || !last) continue;
+    const auto verdict =
+        limits_.narrow(limit, *first, *last) ? LimitVerdict::good : LimitVerdict::implausible;
+    if (told == limit.line) continue;
+    told = limit.line;
+    const auto low = static_cast<std::int32_t>(*first);
+    events_.push(
+        {.when = moment.now,
+         .cycle = moment.cycle,
+         .kind = EventKind::limit_read,
+         .node = plan_.nodes[node_index].id.value(),
+         .detail = std::uint32_t{limit.line} << 8U | static_cast<std::uint32_t>(verdict),
+         .value = is_range ? std::int64_t{low} * 0x1'0000'0000 + *last : std::int64_t{*first}});
+  }
+}
+
+bool PdoOutputs::limited_row_open(std::size_t place) const noexcept {
+  return rows_[plan_.layout.signals[limits_.limit(place).signal].row].open;
+}
+
+Obeying PdoOutputs::obeying(SignalIndex signal) const noexcept {
+  const Output& output = outputs_[output_of(signal)];
+  return output.commanded && !output.fallen ? Obeying::yes : Obeying::no;
+}
+
+/// Lets every commanded output of the node take its fallback.
+void PdoOutputs::drop_node(std::size_t node_index) noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const auto signal = static_cast<SignalIndex>(inputs_count_ + i);
+    if (plan_.layout.signals[signal].node_index != node_index) continue;
+    Output& output = outputs_[i];
+    if (output.commanded && !output.fallen && !output.forced) fall(output, signal);
+  }
+}
+
+bool PdoOutputs::judge(std::size_t place, const AxisCommand& command, Cause cause,
+                       OutputMoment moment) noexcept {
+  const SignalIndex target = limits_.limit(place).signal;
+  const auto found = limits_.judge(place, command, obeying(target), moment.cycle);
+  if (!found) return true;
+  const Signal& what = plan_.layout.signals[target];
+  if (limits_.refuse(place, moment.cycle)) {
+    const std::uint32_t held = command.age == SetPointAge::held ? held_set_point : 0U;
+    Event event{.when = moment.now,
+                .cycle = moment.cycle,
+                .kind = EventKind::limit_exceeded,
+                .node = what.node.value(),
+                .detail = std::uint32_t{cause.signal} << 8U | held |
+                          static_cast<std::uint32_t>(found->kind),
+                .value = cause.value};
+    std::memcpy(event.bytes.data(), &found->measured, 4);
+    std::memcpy(event.bytes.data() + 4, &found->limit, 4);
+    events_.push(event);
+  }
+  drop_node(what.node_index);
+  return false;
+}
+
+/// A cycle without outputs, or an inhibit time, may delay the fallback. Until the fallback is sent,
+/// the axis follows its set-points, but commands would be judged as those of an axis that does not
+/// follow. So the refusal lasts until then.
+void PdoOutputs::forgive(std::size_t place, OutputMoment moment) noexcept {
+  const std::size_t node_index = plan_.layout.signals[limits_.limit(place).signal].node_index;
+  if (!limits_.holds(node_index)) return;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    const bool waits = row.open && row.ready && row.pending;
+    if (waits && plan_.pdos.rpdos[i].node_index == node_index) return;
+  }
+  limits_.forgive(place, moment.cycle);
+}
+
+/// The newest value of an output of this pack: a new command, or else the value of the image.
+PdoOutputs::Newest PdoOutputs::newest(std::optional<SignalIndex> signal,
+                                      std::span<const SetPoint> set_points,
+                                      OutputMoment moment) const noexcept {
+  if (!signal) return {};
+  const SetPoint& set_point = set_points[output_of(*signal)];
+  const bool news = is_news(outputs_[output_of(*signal)], set_point, moment);
+  return {.value = news ? set_point.value : image_.values[*signal], .news = news};
+}
+
+/// A controller in the bus thread has commanded the controlword, and it is not sent yet.
+bool PdoOutputs::awaits_sending(SignalIndex signal) const noexcept {
+  const Output& output = outputs_[output_of(signal)];
+  return output.known && output.commanded && !output.fallen && !refuses(output);
+}
+
+/// Judges a new command. A new mode of operation is judged as well, because the position that it
+/// makes valid may be far away. The same is true of a controlword that enables the axis.
+void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
+                            OutputMoment moment) noexcept {
+  const OutputLimit& limit = limits_.limit(place);
+  const AxisOutputs& axis = limits_.axis(place);
+  const Newest target = newest(limit.signal, set_points, moment);
+  const Newest offset = newest(axis.offset, set_points, moment);
+  const Newest mode = newest(limit.mode, set_points, moment);
+  const Newest order = newest(axis.controlword, set_points, moment);
+  const bool begins = limits_.begins(place, order.value) &&
+                      (order.news || (!limits_.begins(place, limits_.order(place)) &&
+                                      awaits_sending(*axis.controlword)));
+  if (!target.news && !offset.news && !mode.news && !begins) return;
+  Output& output = outputs_[output_of(limit.signal)];
+  if (!target.news && !output.known) return;
+  if (target.news && limits_.lacks_start(place, mode.value)) {
+    output.generation = set_points[output_of(limit.signal)].generation;
+    return;
+  }
+  const bool held = !target.news && !offset.news;
+  const AxisCommand command{.value = target.value,
+                            .offset = offset.value,
+                            .mode = mode.value,
+                            .order = order.value,
+                            .age = held ? SetPointAge::held : SetPointAge::commanded};
+  const Cause cause = offset.news && !target.news ? Cause{*axis.offset, offset.value}
+                                                  : Cause{limit.signal, target.value};
+  if (judge(place, command, cause, moment)) {
+    if (target.news || offset.news) forgive(place, moment);
+  } else if (begins && !order.news) {
+    take_back(*axis.controlword, limits_.order(place));
+  }
+}
+
+/// Replaces a controlword that a controller in the bus thread has commanded by the one that was
+/// sent last, unless the fallback has replaced it.
+void PdoOutputs::take_back(SignalIndex signal, std::int64_t before) noexcept {
+  if (plan_.layout.signals[signal].fallback == Fallback::hold) image_.values[signal] = before;
+}
+
+void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_points,
+                            OutputMoment moment) noexcept {
+  const SignalIndex signal = limits_.limit(place).signal;
+  const Newest target = newest(signal, set_points, moment);
+  const Newest offset = newest(limits_.axis(place).offset, set_points, moment);
+  if (!target.news && !offset.news) return;
+  if (limits_.holds(plan_.layout.signals[signal].node_index)) return;
+  const Newest mode = newest(limits_.limit(place).mode, set_points, moment);
+  limits_.admit(place, {.value = target.value, .offset = offset.value, .mode = mode.value},
+                moment.cycle);
+}
+
+void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment moment) noexcept {
+  limits_.expire(moment.cycle);
+  limits_.remember();
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (limits_.bounds(i) && limited_row_open(i)) judge_news(i, set_points, moment);
+  }
+  for (std::size_t i = 0; i < limits_.size(); ++i) admit_news(i, set_points, moment);
+  if (!limits_.holds_any()) return;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const Signal& signal = plan_.layout.signals[inputs_count_ + i];
+    if (limits_.holds(signal.node_index)) outputs_[i].generation = set_points[i].generation;
+  }
+}
+
+/// The command that the image would be with this value of an output.
+AxisCommand PdoOutputs::command_with(std::size_t place, SignalIndex signal,
+                                     std::int64_t value) const noexcept {
+  const OutputLimit& limit = limits_.limit(place);
+  const AxisOutputs& axis = limits_.axis(place);
+  const auto of = [&](std::optional<SignalIndex> other) {
+    if (!other) return std::int64_t{0};
+    return *other == signal ? value : image_.values[*other];
+  };
+  return {.value = of(limit.signal),
+          .offset = of(axis.offset),
+          .mode = of(limit.mode),
+          .order = of(axis.controlword),
+          .age = limit.mode == signal || axis.controlword == signal ? SetPointAge::held
+                                                                    : SetPointAge::commanded};
+}
+
+/// Checks a mode of operation or a position offset from within the bus thread. A controlword is
+/// checked when the outputs are packed, because the target may be commanded after it. It is checked
+/// here only if commands to the node are refused already, so that the refusal lasts.
+bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
+                               OutputMoment moment) noexcept {
+  for (const std::uint16_t place : limits_.targets_of(signal)) {
+    if (place == OutputLimits::no_place) continue;
+    const SignalIndex target = limits_.limit(place).signal;
+    const bool repeats =
+        limits_.holds(plan_.layout.signals[signal].node_index) && limits_.begins(place, value);
+    if (limits_.axis(place).controlword == signal && !repeats) continue;
+    if (!limited_row_open(place) || !outputs_[output_of(target)].known) continue;
+    const AxisCommand command = command_with(place, signal, value);
+    const bool held = command.age == SetPointAge::held;
+    const Cause cause = held ? Cause{target, command.value} : Cause{signal, value};
+    if (!judge(place, command, cause, moment)) return false;
+    if (!held) forgive(place, moment);
+  }
+  return true;
+}
+
+bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
+                               OutputMoment moment) noexcept {
+  limits_.expire(moment.cycle);
+  const std::size_t node_index = plan_.layout.signals[signal].node_index;
+  if (!suits_targets(signal, value, moment)) return false;
+  const std::uint16_t place = limits_.place_of(signal);
+  if (place != OutputLimits::no_place && limited_row_open(place)) {
+    const AxisCommand command = command_with(place, signal, value);
+    if (limits_.lacks_start(place, command.mode)) return false;
+    if (!judge(place, command, {signal, value}, moment)) return false;
+    forgive(place, moment);
+  }
+  if (limits_.holds(node_index)) return false;
+  if (place != OutputLimits::no_place) {
+    limits_.admit(place, command_with(place, signal, value), moment.cycle);
+  }
+  for (const std::uint16_t target : limits_.targets_of(signal)) {
+    if (target == OutputLimits::no_place || limits_.axis(target).offset != signal) continue;
+    limits_.admit(target, command_with(target, signal, value), moment.cycle);
+  }
+  return true;
+}
+
+/// Index of the input for whose first value a set-point of this RPDO waits, plus 1; 0 means none.
+/// See OutputLimits::lacks_start().
+std::uint32_t PdoOutputs::awaited_start(const PdoRow& pdo) const noexcept {
+  for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
+    const SignalIndex signal = fields_[pdo.first_field + i].signal;
+    const std::uint16_t place = limits_.place_of(signal);
+    if (place == OutputLimits::no_place || outputs_[output_of(signal)].known) continue;
+    const OutputLimit& limit = limits_.limit(place);
+    const std::int64_t mode = limit.mode ? image_.values[*limit.mode] : 0;
+    if (limit.signal == signal && limits_.lacks_start(place, mode)) return *limit.feedback + 1U;
+  }
+  return 0;
+}
+
+void PdoOutputs::note_limited(std::size_t position, std::uint64_t cycle) noexcept {
+  const PdoRow& pdo = plan_.pdos.rpdos[position];
+  for (std::uint16_t i = 0; i < pdo.field_count; ++i) {
+    limits_.sent(fields_[pdo.first_field + i].signal, cycle);
+  }
+}
+
+}  // namespace takt

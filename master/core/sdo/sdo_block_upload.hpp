@@ -1,0 +1,96 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "eds_parser/table/sdo_access.hpp"
+#include "master/core/sdo/sdo_block.hpp"
+#include "master/wire/frame.hpp"
+#include "master/wire/sdo_block_codec.hpp"
+
+namespace takt {
+
+/// The client side of one block upload. It accepts the segments that come in sequence, confirms
+/// each sub-block with the number of these segments, and checks the CRC at the end. CiA
+/// 301, 7.2.4.3.13.
+class SdoBlockUpload {
+ public:
+  /// Parameters of an upload.
+  struct Begin {
+    SdoChannel channel;
+    ObjectKey object;
+    std::uint8_t segments = most_block_segments;  ///< segments of a sub-block, 1..127
+    /// Protocol switch threshold: up to this number of bytes, the server may switch to an expedited
+    /// or segmented upload. 0 means never.
+    std::uint8_t threshold = 0;
+  };
+  /// Begins an upload. `buffer` must live until its end.
+  void begin(const Begin& begin, std::span<std::byte> buffer) noexcept;
+
+  /// The frame to send now, or std::nullopt if the client waits for the server.
+  std::optional<Frame> to_send() const noexcept;
+  /// The frame of to_send() was sent.
+  void sent() noexcept { to_send_ = Next::nothing; }
+  /// The server will answer the frame that is to be sent next with a sub-block.
+  bool asks_for_sub_block() const noexcept {
+    return state_ == State::segments && to_send_ != Next::nothing;
+  }
+  /// A sub-block was requested and has not ended.
+  bool awaits_sub_block() const noexcept {
+    return state_ == State::segments && to_send_ == Next::nothing;
+  }
+
+  /// Takes a frame of the server, except for aborts. After `done`, to_send() still gives the
+  /// confirmation of the end.
+  SdoBlockStep on_frame(const Frame& frame) noexcept;
+
+  /// Handles silence of the server in a sub-block: the segments that came are confirmed, so that
+  /// the server may repeat the rest. Returns false if there is nothing to confirm, or if this was
+  /// tried before.
+  bool confirm_after_silence() noexcept;
+  /// Silence now calls for confirm_after_silence().
+  bool in_sub_block() const noexcept {
+    return state_ == State::segments && holds_ && !asked_again_;
+  }
+
+  /// The server has accepted the transfer.
+  bool accepted() const noexcept { return state_ != State::initiate; }
+  /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
+  /// does not include the newest segment.
+  std::size_t received() const noexcept { return done_; }
+  /// Size that the server has announced, or std::nullopt.
+  std::optional<std::uint32_t> announced() const noexcept { return announced_; }
+
+ private:
+  enum class State : std::uint8_t { initiate, segments, end, done };
+  enum class Next : std::uint8_t { nothing, initiate, start, confirm, end };
+
+  SdoBlockStep on_accept(const Frame& frame) noexcept;
+  SdoBlockStep on_segment(const Frame& frame) noexcept;
+  SdoBlockStep on_end(const Frame& frame) noexcept;
+  bool repeats_last(const Frame& frame) const noexcept;
+  std::uint16_t crc_with_held(const SdoBlockEnd& end) const noexcept;
+  void confirm() noexcept;
+  // Moves the data of the newest segment to the buffer. Returns false if there is no room.
+  bool commit(std::size_t bytes) noexcept;
+
+  Begin setup_{};
+  std::span<std::byte> buffer_;
+  State state_ = State::initiate;
+  Next to_send_ = Next::nothing;
+  bool crc_used_ = false;
+  bool holds_ = false;  ///< a segment is held back, because it may be the last
+  bool last_held_ = false;
+  bool asked_again_ = false;
+  std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block that came in sequence
+  std::uint8_t confirmed_ = 0;    ///< number of segments that the confirmation reports
+  std::uint8_t fruitless_ = 0;
+  std::uint16_t crc_ = 0;
+  std::optional<std::uint32_t> announced_;
+  std::size_t done_ = 0;
+  std::array<std::uint8_t, segment_bytes> held_{};
+};
+
+}  // namespace takt

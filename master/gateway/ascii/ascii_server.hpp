@@ -1,0 +1,108 @@
+#pragma once
+#include <expected>
+#include <functional>
+#include <memory>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "master/lcm/accept_pause.hpp"
+#include "master/lcm/time_budget.hpp"
+#include "master/linux/clock.hpp"
+#include "master/linux/file_descriptor.hpp"
+
+namespace takt {
+
+/// Exchanges lines of text with clients of a UNIX socket, or of TCP on loopback. Everything is
+/// bounded: the number of clients, the length of a line, the unsent bytes and the time of each
+/// serve(). The server closes a client whose first line is not a command of CiA 309-3 before it
+/// hands over anything from it. It also closes a client that gives no command within 2 s. No call
+/// waits. One thread.
+class AsciiServer {
+ public:
+  static constexpr std::size_t most_clients = 8;
+  static constexpr std::size_t longest_line = 4096;
+  static constexpr Time first_line_limit = std::chrono::seconds{2};
+  /// A client with more unsent bytes is closed.
+  static constexpr std::size_t most_unsent = 256 * 1024;
+
+  struct Handler {
+    std::function<void(int client)> connected;
+    std::function<void(int client, std::string_view line)> line;
+    /// For lines marked by mark_waiting().
+    std::function<void(int client, std::string_view line)> old_line;
+    /// For a line that was too long and was dropped.
+    std::function<void(int client)> too_long;
+    std::function<void(int client)> gone;
+    /// Returns true if an answer is due: a client that has ended its writing side stays until it
+    /// has the answer.
+    std::function<bool(int client)> owed;
+    /// For the user, about a trouble of the server itself. At most once in 10 s.
+    std::function<void(const std::string& sentence)> warn = [](const std::string&) {};
+  };
+
+  /// `where` is `unix:PATH` or `tcp:PORT` (port 0 selects any free port). The error is a sentence.
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen(
+      const std::string& where, Handler handler, FrontClock clock = monotonic_now);
+  ~AsciiServer();
+  AsciiServer(const AsciiServer&) = delete;
+  AsciiServer& operator=(const AsciiServer&) = delete;
+
+  /// Sends a line and adds its end. Does nothing if the client has gone.
+  void send(int client, std::string_view line);
+  /// Tells that the front thread did not run for long. Every line that has begun to arrive by now
+  /// counts as old.
+  void mark_waiting();
+  /// Accepts clients, takes their lines and sends as much as possible.
+  void serve();
+  void watch(std::vector<pollfd>& descriptors) const;
+  /// The address as other programs write it: "unix:/run/takt.sock", "tcp:127.0.0.1:7711".
+  const std::string& where() const noexcept { return where_; }
+
+ private:
+  struct Client {
+    int id = 0;
+    FileDescriptor socket;
+    Time since{};  // time of the connection
+    std::string unread;
+    std::string unsent;
+    std::size_t old = 0;  // bytes that belong to old lines, first in `unread`, then in the socket
+    bool has_commanded = false;
+    bool unhandled = false;  // whole lines wait for the next round
+    bool skips = false;      // the rest of a line that was too long is skipped
+    bool ended = false;      // the client has ended its writing side
+    bool closed = false;
+  };
+
+  AsciiServer(FileDescriptor listener, std::string where, std::string path)
+      : listener_{std::move(listener)}, where_{std::move(where)}, path_{std::move(path)} {}
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_unix(
+      const std::string& path);
+  static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_tcp(
+      const std::string& port);
+  void accept_clients();
+  bool displace_silent();
+  void receive_all();
+  void receive(Client& client, const TimeBudget& budget);
+  void take_lines(Client& client, const TimeBudget& budget);
+  void take_line(Client& client, std::string_view line);
+  void drop_long_line(Client& client);
+  void close_foreign(Client& client);
+  void close_silent(Client& client);
+  void remove_closed();
+  static void flush(Client& client);
+  bool is_through(const Client& client) const;
+
+  FileDescriptor listener_;
+  std::string where_;
+  std::string path_;  // file to remove at the end
+  Handler handler_{};
+  FrontClock clock_{};
+  std::vector<std::unique_ptr<Client>> clients_;  // oldest first
+  std::size_t turn_ = 0;                          // index of the client served first
+  int next_id_ = 1;
+  AcceptPause accept_pause_;
+};
+
+}  // namespace takt

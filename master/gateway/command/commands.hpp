@@ -1,0 +1,132 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <takt/command_t.hpp>
+#include <utility>
+#include <vector>
+
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/core/command_limit.hpp"
+#include "master/core/node_status.hpp"
+#include "master/gateway/command/lease.hpp"
+#include "master/gateway/notice/notice.hpp"
+#include "master/lcm/rate_limit.hpp"
+
+namespace takt {
+
+/// Stages one output for the bus thread. The time to live output_released releases the output.
+using SetOutput =
+    std::function<void(SignalIndex signal, std::int64_t value, std::uint32_t time_to_live)>;
+
+/// Reason for refusing a command.
+enum class CommandRefusal : std::uint8_t {
+  observing,
+  schema,
+  session,     ///< the command is for another run of taktd
+  sender,      ///< the sender has no valid name, or instance 0
+  no_cycle,    ///< the command does not name the cycle of its image
+  future,      ///< the cycle of its image has not come yet
+  bad_signal,  ///< a signal is not an output of the layout
+  bad_value,   ///< a value does not fit the bits of its signal
+  too_old,
+  not_ready,  ///< the node has not booted, or is not operational
+  held,       ///< another sender holds the node
+  waited,     ///< the command waited while the front thread stood still
+  overtaken,  ///< a command computed from a later cycle was accepted before
+};
+inline constexpr std::size_t command_refusals = 13;
+std::string_view name(CommandRefusal refusal) noexcept;  ///< "too_old"
+
+struct CommandsOptions {
+  std::int64_t session = 0;
+  bool observe = false;
+};
+
+/// The state of the bus when a command arrives.
+struct CommandContext {
+  std::uint64_t cycle = 0;  ///< present cycle by the clock; 0 before the first image
+  Time now{};
+  std::span<const NodeStatus> nodes;  ///< in the order of BusPlan::nodes
+  /// The node of the typed channel; a release on it reaches only this node.
+  std::optional<std::size_t> only_node{};
+};
+
+/// Turns command_t messages into set-points. A node takes either all or none of its values in a
+/// message. Refusals are reported at most once per second for the same reason, sender and node.
+/// Front thread.
+class Commands {
+ public:
+  Commands(const BusPlan& plan, CommandsOptions options, SetOutput set_output, NoticeSink tell);
+
+  /// Returns true if at least one output was staged.
+  bool take(const command_t& command, const CommandContext& context);
+
+  std::uint64_t taken() const noexcept { return taken_; }
+  std::uint64_t refused() const noexcept {
+    return std::accumulate(refused_.begin(), refused_.end(), std::uint64_t{0});
+  }
+  /// Refused commands by reason, in the order of CommandRefusal.
+  const std::array<std::uint64_t, command_refusals>& refusals() const noexcept { return refused_; }
+  std::string_view holder(std::size_t node_index, std::uint64_t cycle) const noexcept {
+    return leases_.holder(node_index, cycle);
+  }
+  std::string_view last_holder(std::size_t node_index) const noexcept {
+    return leases_.last_holder(node_index);
+  }
+  /// Returns the limit of the newest accepted command to an output; std::nullopt before the first.
+  std::optional<CommandLimit> newest_limit(std::int64_t signal) const noexcept;
+  /// Counts a message that was not examined because it may have waited for long.
+  void discard() noexcept { count(CommandRefusal::waited); }
+
+ private:
+  struct Item {
+    SignalIndex signal = 0;
+    std::int64_t value = 0;
+    std::uint32_t cycles = 0;  ///< remaining cycles of its time to live; 0 means no limit
+    CommandLimit limit{};
+  };
+  enum class Verdict : std::uint8_t { unknown, accepted, refused };
+
+  bool check_message(const command_t& command, const CommandContext& context);
+  bool read_items(const command_t& command, const CommandContext& context);
+  bool check_node(std::size_t node_index, const command_t& command, const CommandContext& context);
+  bool check_cycle(const command_t& command, const CommandContext& context);
+  std::string owned_text(std::size_t node_index, const command_t& command,
+                         const CommandContext& context) const;
+  bool release(const command_t& command, const CommandContext& context);
+  bool release_node(std::size_t node, const command_t& command, const CommandContext& context);
+  Freshness freshness_of(const command_t& command, std::uint64_t now,
+                         std::uint32_t configured) const noexcept;
+  std::uint32_t shortest_limit(std::size_t node) const noexcept;
+  std::uint32_t lease_cycles(std::size_t node_index) const noexcept;
+  /// The refused command, the reason and the node concerned.
+  struct Refused {
+    const CommandContext& context;
+    const command_t& command;
+    CommandRefusal reason;
+    std::uint8_t node = 0;
+  };
+  bool refuse(const Refused& refused, const std::string& why);
+  void count(CommandRefusal reason) noexcept { ++refused_[std::to_underlying(reason)]; }
+
+  const BusPlan& plan_;
+  CommandsOptions options_;
+  SetOutput set_output_;
+  NoticeSink tell_;
+  std::uint32_t second_;  // cycles in one second
+  LeaseTable leases_;
+  RateLimit told_{std::chrono::seconds{1}};
+  std::vector<Item> items_;                          // items of the current message
+  std::vector<Verdict> verdicts_;                    // per node, for the current message
+  std::vector<std::optional<CommandLimit>> limits_;  // by signal: that of the newest command
+  std::uint64_t taken_ = 0;
+  std::array<std::uint64_t, command_refusals> refused_{};
+};
+
+}  // namespace takt

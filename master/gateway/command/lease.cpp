@@ -1,0 +1,70 @@
+#include "master/gateway/command/lease.hpp"
+
+#include <algorithm>
+
+namespace takt {
+
+Freshness freshness(const CommandAge& age) noexcept {
+  std::uint32_t limit = age.configured == 0 ? age.most : age.configured;
+  if (age.time_to_live != 0) limit = std::min(limit, age.time_to_live);
+  const std::uint64_t waited = age.computed_from < age.now ? age.now - age.computed_from : 0;
+  if (waited >= limit) return {.fresh = false};
+  if (age.configured == 0 && age.time_to_live == 0) return {.fresh = true};
+  const bool configured = age.configured != 0 && limit == age.configured;
+  return {.fresh = true,
+          .cycles = limit - static_cast<std::uint32_t>(waited),
+          .limit = {.cycles = limit,
+                    .origin = configured ? LimitOrigin::configured : LimitOrigin::command}};
+}
+
+LeaseTable::LeaseTable(std::size_t nodes, std::uint32_t unlimited)
+    : leases_(nodes), unlimited_{std::max(unlimited, 1U)} {}
+
+/// A later cycle that has not come yet cannot judge: the clock goes back if SYNC stood still. A
+/// command of the cycle in which its sender has released the node was sent before the release.
+bool LeaseTable::overtaken(const Lease& lease, std::int64_t instance,
+                           const LeaseTerm& term) noexcept {
+  if (lease.newest > term.now + 1) return false;
+  if (term.computed_from < lease.newest) return true;
+  return lease.released && lease.instance == instance && term.computed_from == lease.newest;
+}
+
+LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const LeaseTerm& term) {
+  if (node >= leases_.size()) return LeaseVerdict::held;
+  Lease& lease = leases_[node];
+  const bool others = term.now < lease.end && lease.instance != sender.instance;
+  if (others) return LeaseVerdict::held;
+  if (overtaken(lease, sender.instance, term)) return LeaseVerdict::overtaken;
+  lease.instance = sender.instance;
+  if (lease.sender != sender.name) lease.sender = sender.name;
+  lease.end = term.now + (term.cycles == 0 ? unlimited_ : term.cycles);
+  lease.newest = term.computed_from;
+  lease.released = false;
+  return LeaseVerdict::taken;
+}
+
+bool LeaseTable::holds(std::size_t node, std::int64_t instance, std::uint64_t now) const noexcept {
+  return node < leases_.size() && now < leases_[node].end && leases_[node].instance == instance;
+}
+
+bool LeaseTable::release(std::size_t node, std::uint64_t now,
+                         std::uint64_t computed_from) noexcept {
+  if (node >= leases_.size()) return false;
+  Lease& lease = leases_[node];
+  if (overtaken(lease, lease.instance, {.now = now, .computed_from = computed_from})) return false;
+  lease.end = 0;
+  lease.newest = computed_from;
+  lease.released = true;
+  return true;
+}
+
+std::string_view LeaseTable::holder(std::size_t node, std::uint64_t now) const noexcept {
+  if (node >= leases_.size() || now >= leases_[node].end) return {};
+  return leases_[node].sender;
+}
+
+std::string_view LeaseTable::last_holder(std::size_t node) const noexcept {
+  return node < leases_.size() ? std::string_view{leases_[node].sender} : std::string_view{};
+}
+
+}  // namespace takt

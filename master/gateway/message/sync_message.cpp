@@ -1,0 +1,63 @@
+#include "master/gateway/message/sync_message.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+namespace {
+
+std::string ms_text(std::int64_t ns) {
+  const std::int64_t us = (ns + 500) / 1000;
+  std::string rest = std::to_string(us % 1000);
+  rest.insert(0, 3 - rest.size(), '0');
+  return std::to_string(us / 1000) + "." + rest + " ms";
+}
+
+std::string maker(const BusPlan& plan) {
+  if (!plan.cycle.sync_followed) return "master";
+  if (!plan.cycle.sync_producer) return "external";
+  const auto found = std::ranges::find(plan.nodes, *plan.cycle.sync_producer, &NodePlan::id);
+  return found == plan.nodes.end() ? "external" : found->name;
+}
+
+std::string words(const sync_status_t& message, SyncState state) {
+  const std::string of = message.node_id == 0
+                             ? "a device that is not in the network file"
+                             : message.source + " (node " + std::to_string(message.node_id) + ")";
+  switch (state) {
+    case SyncState::none:
+      return "no SYNC";
+    case SyncState::made:
+      return "produced by the master, " + ms_text(message.declared_ns);
+    case SyncState::awaited:
+      return "waits for the first SYNC of " + of;
+    case SyncState::locked:
+      return "locked to the SYNC of " + of + ", " + ms_text(message.period_ns);
+    case SyncState::lost:
+      return "SYNC of " + of + " LOST";
+  }
+  return {};
+}
+
+}  // namespace
+
+sync_status_t sync_message(const BusPlan& plan, const BusStatus& bus) {
+  sync_status_t message{};
+  message.schema = message_schema;
+  message.state = static_cast<std::int16_t>(bus.sync);
+  if (bus.sync != SyncState::none) message.source = maker(plan);
+  const bool followed = plan.cycle.sync_followed;
+  if (followed && plan.cycle.sync_producer) message.node_id = plan.cycle.sync_producer->value();
+  if (!followed && bus.sync == SyncState::made) message.node_id = plan.master_id.value();
+  message.declared_ns = plan.cycle.sync ? plan.cycle.period.count() : 0;
+  message.period_ns = followed ? bus.sync_period.count() : message.declared_ns;
+  message.timeout_ns = followed ? plan.cycle.sync_timeout.count() : 0;
+  message.syncs = plan.cycle.sync ? static_cast<std::int64_t>(bus.beats) : 0;
+  message.losses = bus.sync_losses;
+  message.text = words(message, bus.sync);
+  return message;
+}
+
+}  // namespace takt

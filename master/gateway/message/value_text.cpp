@@ -1,0 +1,222 @@
+#include "master/gateway/message/value_text.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <fmt/format.h>
+#include <system_error>
+#include <utility>
+
+#include "master/gateway/message/units.hpp"
+
+namespace takt {
+namespace {
+
+using Named = std::pair<std::string_view, DataType>;
+constexpr Named short_names[] = {{"b", DataType::boolean},
+                                 {"bool", DataType::boolean},
+                                 {"i8", DataType::integer8},
+                                 {"i16", DataType::integer16},
+                                 {"i24", DataType::integer24},
+                                 {"i32", DataType::integer32},
+                                 {"i40", DataType::integer40},
+                                 {"i48", DataType::integer48},
+                                 {"i56", DataType::integer56},
+                                 {"i64", DataType::integer64},
+                                 {"u8", DataType::unsigned8},
+                                 {"u16", DataType::unsigned16},
+                                 {"u24", DataType::unsigned24},
+                                 {"u32", DataType::unsigned32},
+                                 {"u40", DataType::unsigned40},
+                                 {"u48", DataType::unsigned48},
+                                 {"u56", DataType::unsigned56},
+                                 {"u64", DataType::unsigned64},
+                                 {"x8", DataType::unsigned8},
+                                 {"x16", DataType::unsigned16},
+                                 {"x32", DataType::unsigned32},
+                                 {"x64", DataType::unsigned64},
+                                 {"r32", DataType::real32},
+                                 {"r64", DataType::real64},
+                                 {"f32", DataType::real32},
+                                 {"f64", DataType::real64},
+                                 {"string", DataType::visible_string},
+                                 {"vs", DataType::visible_string},
+                                 {"hex", DataType::octet_string},
+                                 {"os", DataType::octet_string},
+                                 {"domain", DataType::domain},
+                                 {"d", DataType::domain}};
+
+std::string lower(std::string_view text) {
+  std::string copy{text};
+  std::ranges::transform(copy, copy.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return copy;
+}
+
+std::uint64_t little_endian(std::span<const std::byte> bytes) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = std::min<std::size_t>(bytes.size(), 8); i-- > 0;) {
+    value = value << 8 | std::to_integer<std::uint64_t>(bytes[i]);
+  }
+  return value;
+}
+
+std::int64_t sign_extended(std::uint64_t value, unsigned bits) noexcept {
+  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(value);
+  const unsigned shift = 64 - bits;
+  return static_cast<std::int64_t>(value << shift) >> shift;
+}
+
+bool printable(std::span<const std::byte> bytes) noexcept {
+  return !bytes.empty() && std::ranges::all_of(bytes, [](std::byte byte) {
+    const int c = std::to_integer<int>(byte);
+    return c >= 0x20 && c < 0x7F;
+  });
+}
+
+std::string string_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::vector<std::byte> wire_bytes(std::uint64_t value, unsigned size) {
+  std::vector<std::byte> bytes;
+  for (unsigned i = 0; i < size; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
+  return bytes;
+}
+
+std::optional<std::uint64_t> parse_integer(std::string_view text, bool& negative) {
+  negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+  if (hexadecimal) text.remove_prefix(2);
+  std::uint64_t value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::expected<std::vector<std::byte>, std::string> integer_bytes(DataType type,
+                                                                 const std::string& text) {
+  bool negative = false;
+  const auto magnitude = parse_integer(text, negative);
+  if (!magnitude) return std::unexpected{"'" + text + "' is not an integer (decimal or 0x hex)"};
+  const unsigned bits = bit_width(type);
+  const std::uint64_t limit = is_signed(type)
+                                  ? (std::uint64_t{1} << (bits - 1)) - (negative ? 0 : 1)
+                                  : (negative ? 0 : ~std::uint64_t{0} >> (64 - bits));
+  // Users write 0xFFFE for an INTEGER16 as a bit pattern.
+  const bool pattern = !negative && text.starts_with("0x") && bits < 64 && *magnitude >> bits == 0;
+  if (*magnitude > limit && !pattern) {
+    return std::unexpected{text + " does not fit " + std::string{name(type)}};
+  }
+  return wire_bytes(negative ? 0 - *magnitude : *magnitude, byte_width(type));
+}
+
+std::expected<std::vector<std::byte>, std::string> real_bytes(DataType type,
+                                                              const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    return std::unexpected{"'" + text + "' is not a number"};
+  }
+  if (type == DataType::real32) {
+    return wire_bytes(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4);
+  }
+  return wire_bytes(std::bit_cast<std::uint64_t>(value), 8);
+}
+
+std::expected<std::vector<std::byte>, std::string> hex_bytes(const std::string& text) {
+  std::vector<std::byte> bytes;
+  std::string digits;
+  for (const char c : text) {
+    if (c == ' ' || c == ':') continue;
+    digits += c;
+  }
+  if (digits.starts_with("0x")) digits.erase(0, 2);
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    unsigned value = 0;
+    const char* const begin = digits.data() + i;
+    const auto [end, error] =
+        std::from_chars(begin, begin + std::min<std::size_t>(2, digits.size() - i), value, 16);
+    if (error != std::errc{} || end != begin + 2) {
+      return std::unexpected{"'" + text + "' is not an even number of hex digits"};
+    }
+    bytes.push_back(static_cast<std::byte>(value));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::optional<DataType> parse_data_type(std::string_view text) {
+  const std::string wanted = lower(text);
+  for (const auto& [short_name, type] : short_names) {
+    if (short_name == wanted) return type;
+  }
+  for (std::uint16_t code = 1; code <= 0x1B; ++code) {
+    const auto type = static_cast<DataType>(code);
+    if (lower(name(type)) == wanted && name(type) != name(DataType::unknown)) return type;
+  }
+  return std::nullopt;
+}
+
+std::string hex_text(std::span<const std::byte> bytes) {
+  std::string text;
+  for (const std::byte byte : bytes) text += fmt::format("{:02X}", std::to_integer<int>(byte));
+  return text;
+}
+
+bool fits(DataType type, std::span<const std::byte> bytes) noexcept {
+  return is_bytes(type) || bytes.size() == byte_width(type);
+}
+
+std::string misfit_text(std::string_view name, DataType type, std::span<const std::byte> bytes) {
+  constexpr std::size_t shown = 16;
+  const bool long_value = bytes.size() > shown;
+  return fmt::format(
+      "the device sent {} bytes ({}{}), {} takes {}; without a type the bytes are shown unchanged",
+      bytes.size(), hex_text(bytes.first(std::min(shown, bytes.size()))), long_value ? " ..." : "",
+      name, byte_width(type));
+}
+
+std::string value_text(DataType type, std::span<const std::byte> bytes) {
+  if (type == DataType::visible_string) return string_of(bytes);
+  if (is_bytes(type)) return hex_text(bytes);
+  const std::uint64_t value = little_endian(bytes);
+  if (is_real(type)) return fmt::format("{}", number_of(type, static_cast<std::int64_t>(value)));
+  if (is_signed(type)) return std::to_string(sign_extended(value, bit_width(type)));
+  return std::to_string(value);
+}
+
+std::string untyped_text(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return "(empty)";
+  if (printable(bytes) && bytes.size() > 4) return string_of(bytes);
+  if (bytes.size() > 8) return hex_text(bytes);
+  const std::uint64_t value = little_endian(bytes);
+  std::string text = fmt::format("{}  0x{:0{}X}", value, value, bytes.size() * 2);
+  const std::int64_t as_signed = sign_extended(value, static_cast<unsigned>(bytes.size()) * 8);
+  if (as_signed < 0) text += fmt::format("  signed {}", as_signed);
+  if (printable(bytes)) text += "  \"" + string_of(bytes) + "\"";
+  return text;
+}
+
+std::expected<std::vector<std::byte>, std::string> value_bytes(DataType type,
+                                                               const std::string& text) {
+  if (type == DataType::boolean) {
+    if (text == "true" || text == "1") return wire_bytes(1, 1);
+    if (text == "false" || text == "0") return wire_bytes(0, 1);
+    return std::unexpected{"'" + text + "' is not 0, 1, true or false"};
+  }
+  if (type == DataType::visible_string) {
+    const auto bytes = std::as_bytes(std::span{text});
+    return std::vector<std::byte>{bytes.begin(), bytes.end()};
+  }
+  if (is_bytes(type)) return hex_bytes(text);
+  if (is_real(type)) return real_bytes(type, text);
+  return integer_bytes(type, text);
+}
+
+}  // namespace takt

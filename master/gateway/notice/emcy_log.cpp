@@ -1,0 +1,73 @@
+#include "master/gateway/notice/emcy_log.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "master/wire/bytes.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t record_bytes = 16;
+
+}  // namespace
+
+void EmcyLog::take(const Event& event, std::int64_t utime) {
+  if (event.kind != EventKind::emcy || event.detail == 1) return;
+  std::vector<EmcyRecord>& records = records_[event.node];
+  if (records.size() == depth) records.erase(records.begin());
+  records.push_back({.utime = utime, .bytes = event.bytes});
+}
+
+const std::vector<EmcyRecord>& EmcyLog::of(std::uint8_t node) const {
+  static const std::vector<EmcyRecord> none;
+  const auto found = records_.find(node);
+  return found == records_.end() ? none : found->second;
+}
+
+std::vector<std::uint8_t> pack(std::span<const EmcyRecord> records) {
+  std::vector<std::uint8_t> bytes(records.size() * record_bytes);
+  std::span<std::uint8_t> left{bytes};
+  for (const EmcyRecord& record : records) {
+    store_le(left, static_cast<std::uint64_t>(record.utime));
+    std::ranges::copy(record.bytes, left.begin() + 8);
+    left = left.subspan(record_bytes);
+  }
+  return bytes;
+}
+
+std::vector<EmcyRecord> unpack_emcys(std::span<const std::uint8_t> bytes) {
+  std::vector<EmcyRecord> records;
+  for (; bytes.size() >= record_bytes; bytes = bytes.subspan(record_bytes)) {
+    EmcyRecord record{.utime = static_cast<std::int64_t>(load_le<std::uint64_t>(bytes))};
+    std::ranges::copy(bytes.subspan(8, 8), record.bytes.begin());
+    records.push_back(record);
+  }
+  return records;
+}
+
+std::string pack_texts(std::span<const EmcyRecord> records, std::span<const EmcyText> texts) {
+  std::string lines;
+  for (const EmcyText& text : texts) {
+    if (std::ranges::find(records, text.code, &EmcyRecord::code) == records.end()) continue;
+    lines += hex(text.code) + ' ' + text.text + '\n';
+  }
+  return lines;
+}
+
+std::map<std::uint16_t, std::string> unpack_texts(std::string_view lines) {
+  constexpr std::size_t code_width = 7;  // "0x1000 "
+  std::map<std::uint16_t, std::string> texts;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+    std::uint16_t code = 0;
+    if (line.size() <= code_width || !line.starts_with("0x")) continue;
+    const char* const end = line.data() + code_width - 1;
+    const auto [at, error] = std::from_chars(line.data() + 2, end, code, 16);
+    if (error == std::errc{} && at == end) texts[code] = line.substr(code_width);
+  }
+  return texts;
+}
+
+}  // namespace takt

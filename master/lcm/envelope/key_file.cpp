@@ -1,0 +1,168 @@
+#include "master/lcm/envelope/key_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fcntl.h>
+#include <sodium.h>
+#include <unistd.h>
+#include <utility>
+
+#include "master/lcm/printable_text.hpp"
+#include "master/linux/file_descriptor.hpp"
+
+namespace takt {
+namespace {
+
+constexpr std::size_t most_bytes = 65536;
+constexpr std::size_t most_keys = 64;
+constexpr std::size_t longest_name = 32;
+
+std::unexpected<std::string> failed(const std::string& path, const std::string& why) {
+  return std::unexpected{"key file " + path + ": " + why};
+}
+
+bool is_name(std::string_view text) noexcept {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  return !text.empty() && text.size() <= longest_name && std::ranges::all_of(text, allowed);
+}
+
+std::string_view take_word(std::string_view& line) noexcept {
+  constexpr std::string_view blanks = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+bool read_secret(std::string_view hex, EnvelopeKey& key) noexcept {
+  if (hex.size() != 2 * EnvelopeKey::bytes) return false;
+  for (std::size_t i = 0; i < EnvelopeKey::bytes; ++i) {
+    const char* const digits = hex.data() + 2 * i;
+    const auto [end, error] = std::from_chars(digits, digits + 2, key.secret[i], 16);
+    if (error != std::errc{} || end != digits + 2) return false;
+  }
+  return true;
+}
+
+/// Checks the owner, the mode and the size. The error says what to do about it.
+std::expected<void, std::string> check_permissions(const std::string& path,
+                                                   const struct stat& status) {
+  if (!S_ISREG(status.st_mode)) return failed(path, "it is not a regular file");
+  if (status.st_uid != ::geteuid() && status.st_uid != 0) {
+    return failed(path, "it belongs to another user");
+  }
+  if ((status.st_mode & 077) != 0) {
+    return failed(path, "users other than its owner can access it: chmod 600 " + path);
+  }
+  if (static_cast<std::size_t>(status.st_size) > most_bytes) {
+    return failed(path, "the file is longer than 64 KiB");
+  }
+  return {};
+}
+
+std::expected<std::string, std::string> read_all(int fd, const std::string& path) {
+  std::string text;
+  std::array<char, 4096> chunk;
+  for (;;) {
+    const ssize_t size = ::read(fd, chunk.data(), chunk.size());
+    if (size < 0) return failed(path, std::strerror(errno));
+    if (size == 0) return text;
+    text.append(chunk.data(), static_cast<std::size_t>(size));
+    if (text.size() > most_bytes) return failed(path, "the file is longer than 64 KiB");
+  }
+}
+
+bool same_file(const struct stat& a, const struct stat& b) noexcept {
+  return a.st_ino == b.st_ino && a.st_dev == b.st_dev && a.st_size == b.st_size &&
+         a.st_mode == b.st_mode && a.st_ctim.tv_sec == b.st_ctim.tv_sec &&
+         a.st_ctim.tv_nsec == b.st_ctim.tv_nsec;
+}
+
+}  // namespace
+
+std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::string& where,
+                                                                std::string_view text) {
+  std::vector<EnvelopeKey> keys;
+  for (int number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    line = line.substr(0, line.find('#'));
+    const std::string_view name = take_word(line);
+    if (name.empty()) continue;
+    const std::string here = "key file " + where + ":" + std::to_string(number) + ": ";
+    if (!is_name(name)) {
+      return std::unexpected{here +
+                             "a name has 1 to 32 letters, digits, underscores, dashes or dots"};
+    }
+    EnvelopeKey key{.name = std::string{name}};
+    if (!read_secret(take_word(line), key) || !take_word(line).empty()) {
+      return std::unexpected{here + "expected a name and 64 hex digits"};
+    }
+    if (std::ranges::find(keys, key.name, &EnvelopeKey::name) != keys.end()) {
+      return std::unexpected{here + "key '" + key.name + "' occurs twice"};
+    }
+    if (keys.size() == most_keys) return std::unexpected{here + "the file has more than 64 keys"};
+    keys.push_back(std::move(key));
+  }
+  if (keys.empty()) return failed(where, "the file has no key");
+  return keys;
+}
+
+std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string& path) {
+  const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
+  if (!file) {
+    return failed(path, errno == ELOOP ? "it is not a regular file" : std::strerror(errno));
+  }
+  struct stat status{};
+  if (::fstat(file.get(), &status) != 0) return failed(path, std::strerror(errno));
+  if (auto good = check_permissions(path, status); !good) return std::unexpected{good.error()};
+  const auto text = read_all(file.get(), path);
+  if (!text) return std::unexpected{text.error()};
+  return parse_keys(path, *text);
+}
+
+std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name) {
+  if (!is_name(name)) {
+    return failed(path, "'" + printable_text(name) +
+                            "' is not a valid key name: a name has 1 to 32 letters, digits, "
+                            "underscores, dashes or dots");
+  }
+  const FileDescriptor file{
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600)};
+  if (!file) return failed(path, std::strerror(errno));
+  std::array<unsigned char, EnvelopeKey::bytes> secret;
+  ::randombytes_buf(secret.data(), secret.size());
+  std::array<char, 2 * EnvelopeKey::bytes + 1> hex;
+  ::sodium_bin2hex(hex.data(), hex.size(), secret.data(), secret.size());
+  const std::string line = name + ' ' + hex.data() + '\n';
+  const ssize_t written = ::write(file.get(), line.data(), line.size());
+  if (written == static_cast<ssize_t>(line.size()) && ::fsync(file.get()) == 0) return {};
+  const std::string why = std::strerror(errno);
+  ::unlink(path.c_str());
+  return failed(path, why);
+}
+
+std::expected<WatchedKeyFile, std::string> WatchedKeyFile::open(std::string path) {
+  WatchedKeyFile file{std::move(path)};
+  if (const auto read = file.reread(); read && !*read) return std::unexpected{read->error()};
+  return file;
+}
+
+std::optional<std::expected<void, std::string>> WatchedKeyFile::reread() {
+  struct stat now{};
+  if (::lstat(path_.c_str(), &now) != 0) now = {};
+  if (!keys_.empty() && same_file(now, seen_)) return std::nullopt;
+  seen_ = now;
+  auto keys = load_keys(path_);
+  if (!keys) return std::unexpected{keys.error()};
+  keys_ = std::move(*keys);
+  return std::expected<void, std::string>{};
+}
+
+}  // namespace takt

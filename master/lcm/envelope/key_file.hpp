@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <sys/stat.h>
+#include <vector>
+
+#include "master/lcm/envelope/envelope_key.hpp"
+
+namespace takt {
+
+/// Parses the text of a key file: each line holds a name and 64 hex digits, and `#` begins a
+/// comment. The error is a sentence with `where` and the line number.
+std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::string& where,
+                                                                std::string_view text);
+
+/// Reads the keys of a file. The file must be a regular file that only its owner can access, and
+/// the owner must be this user or root. The error is a sentence.
+std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string& path);
+
+/// Creates a file with one new random key, mode 0600. Fails if the file already exists, and leaves
+/// it unchanged.
+std::expected<void, std::string> make_key_file(const std::string& path, const std::string& name);
+
+/// A key file that may change while it is in use.
+class WatchedKeyFile {
+ public:
+  /// Opens the file and reads it for the first time.
+  static std::expected<WatchedKeyFile, std::string> open(std::string path);
+
+  const std::vector<EnvelopeKey>& keys() const noexcept { return keys_; }
+  const std::string& path() const noexcept { return path_; }
+  /// Returns std::nullopt if the file is unchanged. Otherwise tells whether the file could be read
+  /// again; after an error the previous keys stay in use.
+  std::optional<std::expected<void, std::string>> reread();
+
+ private:
+  explicit WatchedKeyFile(std::string path) : path_{std::move(path)} {}
+
+  std::string path_;
+  std::vector<EnvelopeKey> keys_;
+  struct stat seen_{};
+};
+
+}  // namespace takt

@@ -1,0 +1,99 @@
+#include "master/lcm/message_shape.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace takt {
+namespace {
+
+class ShapeWalk {
+ public:
+  explicit ShapeWalk(std::span<const std::byte> body) noexcept : rest_{body} {}
+
+  bool walk(std::string_view shape) noexcept {
+    std::uint32_t count = 0;
+    for (std::size_t at = 0; at < shape.size(); ++at) {
+      if (shape[at] == '(') {
+        const std::size_t end = closing(shape, at);
+        if (!repeat(shape.substr(at + 1, end - at - 1), count)) return false;
+        at = end;
+      } else if (shape[at] == 'n') {
+        const auto length = take_length();
+        if (!length) return false;
+        count = *length;
+      } else if (!take_one(shape[at])) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool at_end() const noexcept { return rest_.empty(); }
+
+ private:
+  static std::size_t closing(std::string_view shape, std::size_t open) noexcept {
+    int depth = 0;
+    for (std::size_t at = open; at < shape.size(); ++at) {
+      if (shape[at] == '(') ++depth;
+      if (shape[at] == ')' && --depth == 0) return at;
+    }
+    return shape.size();
+  }
+
+  static std::size_t fixed_size(char kind) noexcept {
+    switch (kind) {
+      case 'b':
+        return 1;
+      case 'h':
+        return 2;
+      case 'i':
+      case 'f':
+        return 4;
+      default:
+        return 8;
+    }
+  }
+
+  // Each round takes at least one byte, so a huge count ends with the message.
+  bool repeat(std::string_view shape, std::uint32_t count) noexcept {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!walk(shape)) return false;
+    }
+    return true;
+  }
+
+  bool take_one(char kind) noexcept {
+    if (kind == 's') {
+      const auto length = take_length();
+      return length && *length > 0 && take(*length);
+    }
+    return take(fixed_size(kind));
+  }
+
+  std::optional<std::uint32_t> take_length() noexcept {
+    if (rest_.size() < 4) return std::nullopt;
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      value = value << 8 | std::to_integer<std::uint32_t>(rest_[i]);
+    rest_ = rest_.subspan(4);
+    if (value > 0x7FFF'FFFF) return std::nullopt;
+    return value;
+  }
+
+  bool take(std::size_t size) noexcept {
+    if (size > rest_.size()) return false;
+    rest_ = rest_.subspan(size);
+    return true;
+  }
+
+  std::span<const std::byte> rest_;
+};
+
+}  // namespace
+
+bool has_shape(std::span<const std::byte> body, std::string_view shape) noexcept {
+  ShapeWalk walk{body};
+  return walk.walk(shape) && walk.at_end();
+}
+
+}  // namespace takt

@@ -1,0 +1,40 @@
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+
+std::string_view text(DecodeFault fault) noexcept {
+  switch (fault) {
+    case DecodeFault::schema_1:
+      return "the message has schema 1 of an older takt";
+    case DecodeFault::other_version:
+      return "the publisher has another version of this message type";
+    case DecodeFault::malformed:
+      return "the bytes of the message are damaged";
+    case DecodeFault::out_of_range:
+      return "the message has an infinite number, or a number that does not fit 64 bits";
+  }
+  return "";
+}
+
+namespace {
+
+std::string schema_text(std::int16_t schema) { return "schema " + std::to_string(schema); }
+
+}  // namespace
+
+std::string schema_refusal(std::int16_t schema) {
+  const bool newer = schema > message_schema;
+  return "message of " + schema_text(schema) + ": " +
+         (newer ? "this taktd is older than the application and uses "
+                : "rebuild the application against this takt, which uses ") +
+         schema_text(message_schema);
+}
+
+std::string daemon_schema_text(std::int16_t schema) {
+  const bool newer = schema > message_schema;
+  return "the daemon sends messages of " + schema_text(schema) + " and this program uses " +
+         schema_text(message_schema) + ": " +
+         (newer ? "rebuild the program against the daemon's takt" : "update the daemon");
+}
+
+}  // namespace takt

@@ -1,0 +1,120 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <span>
+#include <string>
+#include <string_view>
+#include <takt/command_t.hpp>
+#include <takt/event_t.hpp>
+#include <takt/image_t.hpp>
+#include <takt/layout_t.hpp>
+#include <takt/pdo_status_t.hpp>
+#include <takt/reply_t.hpp>
+#include <takt/request_t.hpp>
+#include <takt/status_t.hpp>
+#include <takt/sync_status_t.hpp>
+#include <takt/timing_t.hpp>
+#include <takt/transfer_state_t.hpp>
+#include <takt/transfer_t.hpp>
+#include <vector>
+
+#include "master/lcm/message_shape.hpp"
+
+namespace takt {
+
+/// Version of all messages; their field `schema` carries it.
+inline constexpr std::int16_t message_schema = 2;
+
+/// Largest message, if the sender can choose: one Ethernet frame with LCM's header and channel
+/// name.
+inline constexpr std::size_t message_bytes = 1300;
+
+using Bytes = std::span<const std::byte>;
+
+/// Reason why bytes are not the expected message.
+enum class DecodeFault : std::uint8_t {
+  schema_1,       ///< the fingerprint is that of this type in schema 1
+  other_version,  ///< another fingerprint: the publisher uses other .lcm files
+  malformed,      ///< sizes inside the message are inconsistent
+  out_of_range,   ///< a number that no raw value can represent
+};
+
+std::string_view text(DecodeFault fault) noexcept;
+
+/// Text of the daemon for an application whose messages have another schema.
+std::string schema_refusal(std::int16_t schema);
+/// Text of a program that receives messages of a daemon with another schema.
+std::string daemon_schema_text(std::int16_t schema);
+
+/// Fingerprint of a type in schema 1; 0 if the type has not changed since.
+template <class T>
+inline constexpr std::uint64_t fingerprint_of_schema_1 = 0;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<command_t> = 0xE6CF45B76FC2022E;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<image_t> = 0x802677B48765DA81;
+template <>
+inline constexpr std::uint64_t fingerprint_of_schema_1<status_t> = 0xB1E043970713C28C;
+
+/// Layout of the bytes of a type, see has_shape.
+template <class T>
+inline constexpr std::string_view message_layout;
+template <>
+inline constexpr std::string_view message_layout<command_t> = "lhllslibn(i)(l)";
+template <>
+inline constexpr std::string_view message_layout<event_t> = "lhllhsshs";
+template <>
+inline constexpr std::string_view message_layout<image_t> = "llhhhlllin(l)n(i)";
+template <>
+inline constexpr std::string_view message_layout<layout_t> = "lhhhllliiin(shsihbhhsdd)";
+template <>
+inline constexpr std::string_view message_layout<pdo_status_t> = "lhhhlln(hhbibhllbibhllll)";
+template <>
+inline constexpr std::string_view message_layout<sync_status_t> = "lhlhshllllls";
+template <>
+inline constexpr std::string_view message_layout<reply_t> = "lhllsblsn(b)";
+template <>
+inline constexpr std::string_view message_layout<request_t> = "lhllsshihhin(b)";
+template <>
+inline constexpr std::string_view message_layout<status_t> =
+    "lhhhlssislllllllllllllfhhhhslhhbbbbbbllllbn(hshhhhihiiiiilsn(i))";
+template <>
+inline constexpr std::string_view message_layout<timing_t> = "lhlln(slffffn(l))";
+template <>
+inline constexpr std::string_view message_layout<transfer_t> = "lhllsshihilln(b)";
+template <>
+inline constexpr std::string_view message_layout<transfer_state_t> = "lhllssllllsln(b)";
+
+/// Decodes bytes from outside. Hostile bytes cost no more than their own size.
+template <class T>
+std::expected<T, DecodeFault> decode(Bytes bytes) {
+  if (bytes.size() < 8 || bytes.size() > 0x7FFF'FFFF) {
+    return std::unexpected{DecodeFault::malformed};
+  }
+  std::uint64_t fingerprint = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
+  }
+  if (fingerprint != static_cast<std::uint64_t>(T::getHash())) {
+    const bool old = fingerprint != 0 && fingerprint == fingerprint_of_schema_1<T>;
+    return std::unexpected{old ? DecodeFault::schema_1 : DecodeFault::other_version};
+  }
+  T message;
+  if (!has_shape(bytes.subspan(8), message_layout<T>) ||
+      message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) < 0) {
+    return std::unexpected{DecodeFault::malformed};
+  }
+  return message;
+}
+
+/// Encodes the message into a buffer that the caller reuses.
+template <class T>
+Bytes encode(const T& message, std::vector<std::byte>& buffer) {
+  const int size = message.getEncodedSize();
+  buffer.resize(static_cast<std::size_t>(size));
+  const int written = message.encode(buffer.data(), 0, size);
+  return Bytes{buffer}.first(written < 0 ? 0 : static_cast<std::size_t>(written));
+}
+
+}  // namespace takt

@@ -1,0 +1,17 @@
+#include "master/lcm/random_number.hpp"
+
+#include <sys/random.h>
+
+namespace takt {
+
+std::int64_t random_number() {
+  constexpr std::uint64_t positive = 0x7FFF'FFFF'FFFF'FFFF;
+  while (true) {
+    std::uint64_t number = 0;
+    // A signal may interrupt the call; 8 bytes come as a whole or not at all.
+    if (::getrandom(&number, sizeof number, 0) != sizeof number) continue;
+    if ((number & positive) != 0) return static_cast<std::int64_t>(number & positive);
+  }
+}
+
+}  // namespace takt

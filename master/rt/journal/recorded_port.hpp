@@ -1,0 +1,215 @@
+#pragma once
+#include <bit>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "master/rt/exchange/exchange.hpp"
+#include "master/rt/journal/journal.hpp"
+#include "master/rt/journal/journal_request.hpp"
+#include "master/rt/port.hpp"
+
+namespace takt {
+
+/// A port that also stands between the bus loop and the front thread, so that everything that
+/// decides what the loop does passes through it.
+template <class P>
+concept WitnessPort =
+    Port<P> && requires(P port, Exchange& exchange, std::uint64_t cycle, Request& request,
+                        const Reply& reply, const Event& event) {
+      { port.begin_cycle(cycle) } noexcept;
+      { port.set_points(exchange) } noexcept -> std::same_as<const SetPointFrame&>;
+      { port.take_request(exchange, request) } noexcept -> std::same_as<bool>;
+      { port.stop_requested(exchange) } noexcept -> std::same_as<bool>;
+      { port.give_reply(exchange, reply) } noexcept -> std::same_as<bool>;
+      { port.tell(exchange, event) } noexcept;
+      { port.checkpoint_due() } noexcept -> std::same_as<bool>;
+      { port.checkpoint(std::size_t{}) } noexcept -> std::same_as<std::uint64_t*>;
+    };
+
+namespace journal {
+
+/// Tells which parts of the news follow, each in its own words.
+enum NewsPart : std::uint64_t { echo = 1, utc = 2, state = 4 };
+inline constexpr std::size_t state_words = 3;
+
+struct SendPayload {
+  std::uint16_t offered = 0;
+  std::uint16_t sent = 0;
+  std::uint16_t error = 0;
+
+  std::uint64_t packed() const noexcept {
+    return std::uint64_t{offered} | std::uint64_t{sent} << 16 | std::uint64_t{error} << 32;
+  }
+  static SendPayload of(std::uint64_t payload) noexcept {
+    return {static_cast<std::uint16_t>(payload), static_cast<std::uint16_t>(payload >> 16),
+            static_cast<std::uint16_t>(payload >> 32)};
+  }
+};
+
+/// Packs all of the news except its times.
+inline void put_state(const PortNews& news, std::uint64_t* to) noexcept {
+  to[0] = std::uint64_t{news.interface_down} | std::uint64_t{news.error_passive} << 1 |
+          std::uint64_t{news.bus_off} << 2 | std::uint64_t{news.tx_error_counter} << 8 |
+          std::uint64_t{news.rx_error_counter} << 16;
+  to[1] = std::uint64_t{news.receive_overruns} | std::uint64_t{news.error_frames} << 32;
+  to[2] = static_cast<std::uint64_t>(std::int64_t{news.last_error});
+}
+inline void get_state(const std::uint64_t* from, PortNews& news) noexcept {
+  news.interface_down = (from[0] & 1) != 0;
+  news.error_passive = (from[0] & 2) != 0;
+  news.bus_off = (from[0] & 4) != 0;
+  news.tx_error_counter = static_cast<std::uint8_t>(from[0] >> 8);
+  news.rx_error_counter = static_cast<std::uint8_t>(from[0] >> 16);
+  news.receive_overruns = static_cast<std::uint32_t>(from[1]);
+  news.error_frames = static_cast<std::uint32_t>(from[1] >> 32);
+  news.last_error = static_cast<int>(static_cast<std::int64_t>(from[2]));
+}
+
+}  // namespace journal
+
+/// Records the answers of another port and the input from the front thread. This adds no system
+/// call and allocates nothing. Without a journal, the port only forwards. Bus thread only.
+template <Port P>
+class RecordedPort {
+ public:
+  /// Keeps pointers to `port` and `journal`.
+  RecordedPort(P& port, Journal* journal) noexcept : port_{&port}, journal_{journal} {}
+
+  Time now() noexcept {
+    const Time now = port_->now();
+    if (journal_ != nullptr) journal_->put(Mark::now, now);
+    return now;
+  }
+  void sleep_until(Time until) noexcept { port_->sleep_until(until); }
+  void sleep_precisely_until(Time until) noexcept { port_->sleep_precisely_until(until); }
+  bool wait_frame(Time until) noexcept {
+    const bool there = port_->wait_frame(until);
+    if (journal_ != nullptr) journal_->put(Mark::wait, std::uint64_t{there});
+    return there;
+  }
+  std::size_t receive(std::span<StampedFrame> in) noexcept {
+    const std::size_t count = port_->receive(in);
+    if (journal_ != nullptr) {
+      journal_->put(Mark::receive, count, std::span<const StampedFrame>{in.first(count)});
+    }
+    return count;
+  }
+  SendResult send(std::span<const Frame> out) noexcept {
+    const SendResult result = port_->send(out);
+    if (journal_ != nullptr) {
+      const journal::SendPayload payload{.offered = static_cast<std::uint16_t>(out.size()),
+                                         .sent = static_cast<std::uint16_t>(result.sent),
+                                         .error = static_cast<std::uint16_t>(result.error)};
+      journal_->put(Mark::send, payload.packed(), out);
+    }
+    return result;
+  }
+  PortNews news() const noexcept {
+    PortNews news = port_->news();
+    if (journal_ != nullptr) note(news);
+    return news;
+  }
+
+  void begin_cycle(std::uint64_t cycle) noexcept {
+    if (journal_ == nullptr) return;
+    journal_->begin_cycle(cycle);
+    if (tape_ == journal_->tape()) return;
+    tape_ = journal_->tape();
+    told_ = {};
+    points_ = nullptr;
+  }
+  bool checkpoint_due() const noexcept { return journal_ != nullptr && journal_->checkpoint_due(); }
+  /// Returns room for the state of the loop, or nullptr if it is too long. Whatever this port has
+  /// recorded once is recorded again behind the checkpoint.
+  std::uint64_t* checkpoint(std::size_t words) noexcept {
+    std::uint64_t* const room = journal_->checkpoint(words);
+    if (room == nullptr) return nullptr;
+    told_ = {};
+    points_ = nullptr;
+    return room;
+  }
+  const SetPointFrame& set_points(Exchange& exchange) noexcept {
+    const SetPointFrame& frame = exchange.set_points.newest();
+    if (journal_ != nullptr) note(frame);
+    return frame;
+  }
+  bool take_request(Exchange& exchange, Request& request) noexcept {
+    if (!exchange.requests.pop(request)) return false;
+    if (journal_ != nullptr) put_request(*journal_, request, exchange.transfers);
+    return true;
+  }
+  bool stop_requested(Exchange& exchange) noexcept {
+    if (!exchange.stop_requested.load(std::memory_order_relaxed)) return false;
+    if (journal_ != nullptr) journal_->put(Mark::stop, 0);
+    return true;
+  }
+  bool give_reply(Exchange& exchange, const Reply& reply) noexcept {
+    if (!exchange.replies.full() && exchange.replies.push(reply)) return true;
+    if (journal_ != nullptr) journal_->put(Mark::replies_full, 0);
+    return false;
+  }
+  void tell(Exchange& exchange, const Event& event) noexcept {
+    exchange.events.push(event);
+    if (journal_ == nullptr) return;
+    std::uint64_t* const room = journal_->claim(Mark::event, 0, journal::event_words);
+    if (room != nullptr) std::memcpy(static_cast<void*>(room), &event, sizeof event);
+  }
+
+ private:
+  /// The time of day is accurate to a few microseconds at best. The port hides smaller changes from
+  /// the loop, because each would need a record.
+  void note(PortNews& news) const noexcept {
+    constexpr Time jitter = std::chrono::microseconds{50};
+    std::uint64_t parts = 0;
+    const Time drift = news.since_1970 - told_.since_1970;
+    if (drift > jitter || drift < -jitter) {
+      parts |= journal::utc;
+    } else {
+      news.since_1970 = told_.since_1970;
+    }
+    if (news.last_sync_echo != told_.last_sync_echo) parts |= journal::echo;
+    if (!same_state(news)) parts |= journal::state;
+    const auto bits = static_cast<std::size_t>(std::popcount(parts & 3));
+    const std::size_t words = bits + ((parts & journal::state) != 0 ? journal::state_words : 0);
+    std::uint64_t* room = journal_->claim(Mark::news, parts, words);
+    if (room != nullptr) {
+      if ((parts & journal::echo) != 0) *room++ = count_of(news.last_sync_echo);
+      if ((parts & journal::utc) != 0) *room++ = count_of(news.since_1970);
+      if ((parts & journal::state) != 0) journal::put_state(news, room);
+    }
+    if (parts != 0) told_ = news;
+  }
+  bool same_state(const PortNews& news) const noexcept {
+    return news.interface_down == told_.interface_down &&
+           news.error_passive == told_.error_passive && news.bus_off == told_.bus_off &&
+           news.receive_overruns == told_.receive_overruns &&
+           news.error_frames == told_.error_frames &&
+           news.tx_error_counter == told_.tx_error_counter &&
+           news.rx_error_counter == told_.rx_error_counter && news.last_error == told_.last_error;
+  }
+  static std::uint64_t count_of(Time time) noexcept {
+    return static_cast<std::uint64_t>(time.count());
+  }
+  /// The triple buffer returns another of its frames whenever it has a new set.
+  void note(const SetPointFrame& frame) noexcept {
+    if (&frame == points_) return journal_->put(Mark::set_points, std::uint64_t{0});
+    points_ = &frame;
+    const std::size_t bytes = frame.points.size() * sizeof(SetPoint);
+    std::uint64_t* const room =
+        journal_->claim(Mark::set_points, frame.points.size(), 1 + bytes / 8);
+    if (room == nullptr) return;
+    room[0] = count_of(frame.when);
+    std::memcpy(static_cast<void*>(room + 1), frame.points.data(), bytes);
+  }
+
+  P* port_;
+  Journal* journal_;
+  unsigned tape_ = 1;
+  mutable PortNews told_;                  // as recorded last
+  const SetPointFrame* points_ = nullptr;  // the frame that the loop received last
+};
+
+}  // namespace takt

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+#include "master/sim/bus/faults.hpp"
+
+namespace takt::sim {
+
+/// The starts and ends of faults in the order of time.
+class FaultSchedule {
+ public:
+  struct Edge {
+    Time at{};
+    std::size_t fault = 0;
+    bool begins = true;
+  };
+
+  explicit FaultSchedule(Faults faults);
+  void add(const Fault& fault);
+
+  Time next() const noexcept { return next_ < edges_.size() ? edges_[next_].at : never; }
+  Edge take() noexcept { return edges_[next_++]; }
+  const Fault& fault(std::size_t index) const noexcept { return faults_[index]; }
+
+ private:
+  void insert(const Edge& edge);
+
+  Faults faults_;
+  std::vector<Edge> edges_;  ///< by time, then by order of addition
+  std::size_t next_ = 0;
+};
+
+}  // namespace takt::sim

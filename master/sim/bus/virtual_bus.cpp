@@ -1,0 +1,274 @@
+#include "master/sim/bus/virtual_bus.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "master/sim/bus/frame_bits.hpp"
+
+namespace takt::sim {
+namespace {
+
+constexpr std::uint32_t error_flag_bits = 6;  // up to 12 with the error flags of the other nodes
+constexpr std::uint32_t error_delimiter_bits = 8;
+constexpr std::uint32_t suspend_bits = 8;
+constexpr std::uint32_t recovery_bits = 128 * 11;
+
+}  // namespace
+
+VirtualBus::VirtualBus(std::uint32_t bitrate, Random random) : random_{random} {
+  set_bitrate(bitrate);
+}
+
+void VirtualBus::set_bitrate(std::uint32_t bitrate) noexcept {
+  bitrate_ = std::clamp(bitrate, 1'000u, 10'000'000u);
+}
+
+BusNodeIndex VirtualBus::attach(BusNodeOptions options) {
+  const auto index = static_cast<BusNodeIndex>(nodes_.size());
+  nodes_.emplace_back(options);
+  waiting_.resize(nodes_.size() / 64 + 1);
+  changes_.reserve(nodes_.size() + 8);
+  ++on_bus_;
+  return index;
+}
+
+bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time expires) noexcept {
+  BusNode& node = nodes_[from];
+  if (!node.on_bus()) return false;
+  if (node.faults.delay > Time{}) {
+    ready += Time{static_cast<Time::rep>(random_.next() %
+                                         static_cast<std::uint64_t>(node.faults.delay.count()))};
+  }
+  if (!node.push(
+          {.frame = frame, .rank = arbitration_rank(frame), .ready = ready, .expires = expires})) {
+    ++counters_.overflowed;
+    return false;
+  }
+  mark(from);
+  if (!busy_) next_ = std::min(next_, std::max({idle_from_, ready, node.suspended_until}));
+  return true;
+}
+
+void VirtualBus::mark(BusNodeIndex index) noexcept {
+  waiting_[index / 64] |= std::uint64_t{1} << (index % 64);
+}
+
+void VirtualBus::drop_queue(BusNodeIndex from) noexcept { nodes_[from].clear(); }
+
+void VirtualBus::set_powered(BusNodeIndex index, bool on, Time now) noexcept {
+  BusNode& node = nodes_[index];
+  if (node.powered == on) return;
+  if (node.on_bus()) --on_bus_;
+  if (node.bus_off && node.recovers != never) --recovering_;
+  node.powered = on;
+  node.bus_off = false;
+  node.recovers = never;
+  node.clear();
+  node.reset_errors();
+  if (on) ++on_bus_;
+  if (busy_ && sender_ == index && !on) wire_.result = WireResult::destroyed;
+  if (!busy_) idle_from_ = std::max(idle_from_, now);
+}
+
+void VirtualBus::set_bus_off(BusNodeIndex index, Time now) noexcept {
+  if (nodes_[index].on_bus()) go_bus_off(index, now);
+  if (!busy_) schedule();
+}
+
+bool VirtualBus::step(Time now, WireFrame& wire) noexcept {
+  if (recovering_ != 0) recover(now);
+  if (busy_) {
+    if (wire_.end > now) {
+      schedule();
+      return false;
+    }
+    finish(now, wire);
+    schedule();
+    return true;
+  }
+  arbitrate(now);
+  return false;
+}
+
+void VirtualBus::schedule() noexcept {
+  next_ = never;
+  if (recovering_ != 0) {
+    for (const BusNode& node : nodes_) next_ = std::min(next_, node.recovers);
+  }
+  if (busy_) {
+    next_ = std::min(next_, wire_.end);
+    return;
+  }
+  for (std::size_t word = 0; word < waiting_.size(); ++word) {
+    for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
+      const BusNode& node = nodes_[word * 64 + bit];
+      if (node.empty()) {
+        waiting_[word] &= ~(std::uint64_t{1} << bit);
+        continue;
+      }
+      next_ = std::min(next_, std::max(idle_from_, node.earliest()));
+    }
+  }
+}
+
+/// Selects the sender: of all controllers that offer a frame, the lowest rank wins. ISO 11898-1,
+/// 10.4.
+void VirtualBus::arbitrate(Time now) noexcept {
+  sender_ = rival_ = nobody;
+  std::size_t position = BusNode::none;
+  std::uint32_t best = 0;
+  for (std::size_t word = 0; word < waiting_.size(); ++word) {
+    for (std::uint64_t bits = waiting_[word]; bits != 0; bits &= bits - 1) {
+      const auto index =
+          static_cast<BusNodeIndex>(word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
+      BusNode& node = nodes_[index];
+      counters_.expired += node.drop_expired(now);
+      if (node.suspended_until > now) continue;
+      const std::size_t offer = node.offered(now);
+      if (offer == BusNode::none) continue;
+      const std::uint32_t rank = node.at(offer).rank;
+      if (sender_ != nobody && rank >= best) {
+        const bool relayed = node.options.relays || nodes_[sender_].options.relays;
+        if (rank == best && !relayed) rival_ = index;
+        continue;
+      }
+      best = rank;
+      sender_ = index;
+      rival_ = nobody;
+      position = offer;
+    }
+  }
+  if (sender_ != nobody) {
+    current_ = nodes_[sender_].take(position);
+    begin(now);
+  }
+  schedule();
+}
+
+void VirtualBus::begin(Time now) noexcept {
+  const std::uint32_t length = frame_bits(current_.frame).total;
+  wire_ = {.frame = current_.frame, .start = now, .sender = sender_};
+  wire_.result = WireResult::sent;
+  if (rival_ != nobody) {
+    BusNode& rival = nodes_[rival_];
+    const QueuedFrame other = rival.at(rival.offered(now));
+    if (other.frame != current_.frame) wire_.result = WireResult::destroyed;
+    if (wire_.result == WireResult::sent) rival.take(rival.offered(now));
+  }
+  if (random_.chance(nodes_[sender_].faults.error)) wire_.result = WireResult::destroyed;
+  if (wire_.result == WireResult::sent && !acknowledged(sender_)) {
+    wire_.result = WireResult::unacknowledged;
+  }
+  const std::uint32_t bits = wire_.result == WireResult::sent ? length : bits_until_error(length);
+  wire_.bits = static_cast<std::uint16_t>(bits);
+  wire_.end = now + bit_time(bits);
+  busy_ = true;
+}
+
+/// Returns the number of bits of the frame until it is destroyed, plus those of the error frame.
+std::uint32_t VirtualBus::bits_until_error(std::uint32_t frame_length) noexcept {
+  const std::uint32_t error_frame = error_flag_bits + error_delimiter_bits;
+  if (wire_.result == WireResult::unacknowledged) return frame_length - 8 + error_frame;
+  const std::uint32_t first = rival_ != nobody ? 19 : 1;  // after the identifier
+  const std::uint32_t echoes = random_.below(error_flag_bits + 1);
+  return first + random_.below(frame_length - first) + echoes + error_frame;
+}
+
+bool VirtualBus::acknowledged(BusNodeIndex sender) const noexcept {
+  return analyser_ || on_bus_ > (nodes_[sender].on_bus() ? 1u : 0u);
+}
+
+void VirtualBus::finish(Time now, WireFrame& wire) noexcept {
+  busy_ = false;
+  counters_.bits += wire_.bits + interframe_bits;
+  idle_from_ = now + bit_time(interframe_bits);
+  wire = wire_;
+  if (wire_.result == WireResult::sent) {
+    finish_good(wire);
+  } else {
+    finish_bad(now);
+  }
+  for (const BusNodeIndex index : {sender_, rival_}) {
+    if (index == nobody || !nodes_[index].error_passive(counters_.frames)) continue;
+    nodes_[index].suspended_until = idle_from_ + bit_time(suspend_bits);
+  }
+}
+
+void VirtualBus::finish_good(WireFrame& wire) noexcept {
+  ++counters_.frames;
+  BusNode& sender = nodes_[sender_];
+  if (sender.transmit_errors != 0) --sender.transmit_errors;
+  if (!current_.repetition && random_.chance(sender.faults.duplicate)) {
+    ++counters_.duplicated;
+    QueuedFrame again = current_;
+    again.repetition = true;
+    repeat(sender_, again);
+  }
+  if (random_.chance(sender.faults.loss)) {
+    ++counters_.lost;
+    wire.result = WireResult::lost;
+  }
+}
+
+void VirtualBus::finish_bad(Time now) noexcept {
+  ++counters_.error_frames;
+  for (BusNodeIndex i = 0; i < nodes_.size(); ++i) {
+    if (!nodes_[i].on_bus()) continue;
+    ++nodes_[i].error_frames;
+    if (i != sender_ && i != rival_) nodes_[i].add_receive_error(counters_.frames);
+  }
+  if (nodes_[sender_].on_bus()) repeat(sender_, current_);
+  punish(sender_, now);
+  if (rival_ != nobody) punish(rival_, now);
+}
+
+void VirtualBus::repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept {
+  nodes_[index].put_back(frame);
+  mark(index);
+}
+
+void VirtualBus::punish(BusNodeIndex index, Time now) noexcept {
+  BusNode& node = nodes_[index];
+  if (!node.on_bus()) return;
+  // The counter of an error-passive node does not grow without an acknowledge, so a lone node never
+  // goes bus-off.
+  const bool alone = wire_.result == WireResult::unacknowledged;
+  if (alone && node.transmit_errors > 127) return;
+  node.transmit_errors += 8;
+  if (node.transmit_errors > 255) go_bus_off(index, now);
+}
+
+void VirtualBus::go_bus_off(BusNodeIndex index, Time now) noexcept {
+  BusNode& node = nodes_[index];
+  node.bus_off = true;
+  ++node.times_bus_off;
+  node.clear();
+  --on_bus_;
+  if (changes_.size() < changes_.capacity()) changes_.push_back(index);
+  if (node.options.restart == never) return;
+  node.recovers = now + node.options.restart + bit_time(recovery_bits);
+  ++recovering_;
+}
+
+void VirtualBus::recover(Time now) noexcept {
+  for (BusNodeIndex i = 0; i < nodes_.size(); ++i) {
+    BusNode& node = nodes_[i];
+    if (node.recovers > now) continue;
+    node.recovers = never;
+    node.bus_off = false;
+    node.reset_errors();
+    ++on_bus_;
+    --recovering_;
+    if (changes_.size() < changes_.capacity()) changes_.push_back(i);
+  }
+}
+
+BusNodeIndex VirtualBus::take_change() noexcept {
+  if (changes_.empty()) return nobody;
+  const BusNodeIndex index = changes_.back();
+  changes_.pop_back();
+  return index;
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,97 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "eds_parser/table/time.hpp"
+#include "master/sim/bus/bus_node.hpp"
+#include "master/sim/bus/wire_frame.hpp"
+#include "master/sim/random.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt::sim {
+
+/// Counters of the bus since the start.
+struct BusCounters {
+  std::uint64_t frames = 0;  ///< frames sent completely
+  std::uint64_t bits = 0;    ///< bit times of a busy wire, with error frames and IFS
+  std::uint64_t error_frames = 0;
+  std::uint64_t expired = 0;     ///< frames that their senders dropped because they were too late
+  std::uint64_t overflowed = 0;  ///< frames dropped because the queue of their sender was full
+  std::uint64_t lost = 0;        ///< frames lost by a fault
+  std::uint64_t duplicated = 0;  ///< frames duplicated by a fault
+};
+
+/// One CAN segment in virtual time: exact frame lengths, arbitration, error frames with
+/// retransmission, error counters, bus-off. The owner calls step() whenever next_event() has come.
+class VirtualBus {
+ public:
+  VirtualBus(std::uint32_t bitrate, Random random);
+
+  /// Adds a node. May be called only during construction of the world.
+  BusNodeIndex attach(BusNodeOptions options);
+  BusNode& node(BusNodeIndex index) noexcept { return nodes_[index]; }
+  const BusNode& node(BusNodeIndex index) const noexcept { return nodes_[index]; }
+  std::size_t size() const noexcept { return nodes_.size(); }
+
+  /// Offers a frame from `ready` on. The frame is dropped if it is not on the wire before
+  /// `expires`. Returns false if the queue is full or the node is off the bus.
+  bool queue(BusNodeIndex from, const Frame& frame, Time ready, Time expires = never) noexcept;
+  void drop_queue(BusNodeIndex from) noexcept;
+  void set_powered(BusNodeIndex index, bool on, Time now) noexcept;
+  void set_bus_off(BusNodeIndex index, Time now) noexcept;
+  /// Adds or removes an analyser that acknowledges every frame, so that a bus without other devices
+  /// works too.
+  void set_analyser(bool present) noexcept { analyser_ = present; }
+
+  Time next_event() const noexcept { return next_; }
+  /// Does the work that is due at next_event(). Returns true if a frame has left the wire; the
+  /// frame is then in `wire`.
+  bool step(Time now, WireFrame& wire) noexcept;
+
+  Time bit_time(std::uint32_t bits) const noexcept {
+    return Time{static_cast<Time::rep>(bits * std::uint64_t{1'000'000'000} / bitrate_)};
+  }
+  std::uint32_t bitrate() const noexcept { return bitrate_; }
+  /// The new bit rate applies from the next frame on.
+  void set_bitrate(std::uint32_t bitrate) noexcept;
+  const BusCounters& counters() const noexcept { return counters_; }
+
+  /// Returns a node that has gone bus-off or come back since the last call, or `nobody`.
+  BusNodeIndex take_change() noexcept;
+  static constexpr BusNodeIndex nobody = 0xFFFF;
+
+ private:
+  void schedule() noexcept;
+  void arbitrate(Time now) noexcept;
+  void begin(Time now) noexcept;
+  std::uint32_t bits_until_error(std::uint32_t frame_length) noexcept;
+  void finish(Time now, WireFrame& wire) noexcept;
+  void finish_good(WireFrame& wire) noexcept;
+  void finish_bad(Time now) noexcept;
+  void punish(BusNodeIndex index, Time now) noexcept;
+  void go_bus_off(BusNodeIndex index, Time now) noexcept;
+  void repeat(BusNodeIndex index, const QueuedFrame& frame) noexcept;
+  void recover(Time now) noexcept;
+  void mark(BusNodeIndex index) noexcept;
+  bool acknowledged(BusNodeIndex sender) const noexcept;
+
+  std::uint32_t bitrate_ = 1'000'000;
+  Random random_;
+  std::vector<BusNode> nodes_;
+  std::vector<std::uint64_t> waiting_;  ///< set of nodes with queued frames, one bit a node
+  std::vector<BusNodeIndex> changes_;
+  BusCounters counters_;
+  bool analyser_ = false;
+  std::size_t on_bus_ = 0;  ///< number of nodes that are powered and not bus-off
+  std::size_t recovering_ = 0;
+  Time next_ = never;
+  Time idle_from_{};
+  bool busy_ = false;
+  QueuedFrame current_;
+  BusNodeIndex sender_ = nobody;
+  BusNodeIndex rival_ = nobody;  ///< node that sends the same identifier at the same time
+  WireFrame wire_;
+};
+
+}  // namespace takt::sim

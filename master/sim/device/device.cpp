@@ -1,0 +1,372 @@
+#include "master/sim/device/device.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "master/sim/dictionary/cob_rules.hpp"
+
+namespace takt::sim {
+namespace {
+
+constexpr std::uint16_t pdos_a_direction = 512;
+constexpr std::uint16_t sdo_servers = 128;
+constexpr Time fast_tick = std::chrono::milliseconds{1};   // for event-driven TPDOs
+constexpr Time slow_tick = std::chrono::milliseconds{10};  // between updates of a model
+
+}  // namespace
+
+Device::Device(const DeviceTable& table, Random random, DeviceTimes times)
+    : node_{table.node},
+      address_{table.node},
+      times_{times},
+      delays_{random.fork(1)},
+      dummy_usage_{table.dummy_usage},
+      store_{table},
+      emcy_{store_, table.node},
+      sync_{store_, emcy_},
+      sync_producer_{store_},
+      time_{store_},
+      heartbeat_{store_, table.node},
+      watch_{store_, emcy_},
+      guarding_{store_, emcy_, table.node},
+      storage_{store_},
+      program_{store_},
+      multiplexed_{store_, table.node} {
+  for (std::uint16_t n = 1; n <= pdos_a_direction; ++n) {
+    if (PdoRecord::exists(store_, PdoDirection::transmit, n)) {
+      tpdos_.emplace_back(PdoRecord{store_, PdoDirection::transmit, n});
+    }
+    if (PdoRecord::exists(store_, PdoDirection::receive, n)) {
+      rpdos_.emplace_back(PdoRecord{store_, PdoDirection::receive, n});
+    }
+  }
+  const auto has_quirk = [&table](std::string_view quirk) {
+    return std::ranges::find(table.quirks, quirk) != table.quirks.end();
+  };
+  if (has_quirk("lss") || has_quirk("no_node_id")) {
+    lss_.emplace(store_, has_quirk("no_node_id") ? LssSlave::none : node_.value());
+  }
+  for (std::uint16_t n = 0; n < sdo_servers && (n == 0 || store_.has_index(0x1200u + n)); ++n) {
+    Dictionary& dictionary = *this;
+    sdo_.emplace_back(dictionary, node_, faults_.sdo).set_times(times_.sdo, times_.segment);
+  }
+  routes_.reserve(5 + sdo_.size() + watch_.watches().size() + tpdos_.size() + rpdos_.size());
+  model_ = make_model(table, store_, emcy_, random);
+  const DeviceTraits traits = model_->traits();
+  for (Tpdo& tpdo : tpdos_) tpdo.set_traits(traits);
+  sync_.set_may_produce(traits.produces_sync);
+}
+
+Device::~Device() = default;
+
+void Device::power_on(Time now) noexcept {
+  if (state_ != DeviceState::off) return;
+  if (lss_) lss_->power_on();
+  reset_node(now);
+}
+
+void Device::power_off() noexcept {
+  stop_pdos();
+  heartbeat_.stop();
+  for (SdoServer& server : sdo_) server.reset();
+  watch_.forget();
+  guarding_.reset();
+  sync_.reset();
+  sync_producer_.stop();
+  time_.reset();
+  state_ = DeviceState::off;
+  boots_at_ = next_storm_ = tick_ = deadline_ = never;
+  routes_.clear();
+  routes_changed_ = true;
+}
+
+void Device::reset_node(Time now) noexcept {
+  begin_reset(times_.startup, now);
+  store_.reset(0x2000, 0x9FFF);
+  model_->reset(now);
+  finish_call(now);
+}
+
+void Device::reset_communication(Time now) noexcept {
+  if (state_ == DeviceState::operational) model_->connection_lost(now);
+  begin_reset(times_.communication_reset, now);
+}
+
+void Device::begin_reset(Time startup, Time now) noexcept {
+  stop_pdos();
+  state_ = DeviceState::initialising;
+  heartbeat_.stop();
+  for (SdoServer& server : sdo_) server.reset();
+  sync_.reset();
+  sync_producer_.stop();
+  take_address();
+  store_.reset(0x1000, 0x1FFF);
+  emcy_.reset();
+  watch_.forget();
+  watch_.configure();
+  guarding_.reset();
+  tick_ = next_storm_ = never;
+  boots_at_ = now + startup + faults_.bootup_delay;
+  routes_.clear();
+  routes_changed_ = true;
+}
+
+/// Ends Initialising: sends the boot-up message and enters PRE-OPERATIONAL. CiA 301, 7.3.2.2.
+void Device::boot(Time now) noexcept {
+  boots_at_ = never;
+  if (speaks_only_lss()) return build_routes();
+  send_bootup(now);
+  state_ = DeviceState::preoperational;
+  heartbeat_.start(now);
+  sync_producer_.start(now);
+  build_routes();
+  if (faults_.storm_period > Time{}) next_storm_ = now + faults_.storm_period;
+  if (faults_.self_start) enter(DeviceState::operational, now);
+}
+
+void Device::start_storm(Time now) noexcept {
+  if (state_ == DeviceState::off || boots_at_ != never) return;
+  next_storm_ = faults_.storm_period > Time{} ? now : never;
+  finish_call(now);
+}
+
+void Device::send_bootup(Time now) noexcept {
+  if (!faults_.no_bootup) out_.send(make_frame(CobId::base(0x700u + address_.value()), {0}), now);
+}
+
+void Device::on_frame(const Frame& frame, Time now) noexcept {
+  const auto [first, last] = std::ranges::equal_range(routes_, frame.id, {}, &Route::id);
+  if (first == last) return;
+  std::array<Route, 8> taken;  // a handler may rebuild the routes
+  const auto count = std::min<std::ptrdiff_t>(last - first, std::ssize(taken));
+  std::copy_n(first, count, taken.begin());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    dispatch(taken[static_cast<std::size_t>(i)], frame, now);
+  }
+  finish_call(now);
+}
+
+void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept {
+  if (frame.rtr) return on_request(route, now);
+  switch (route.kind) {
+    case RouteKind::nmt:
+      return on_nmt(frame, now);
+    case RouteKind::sync:
+      if (communicates()) on_sync(frame, now);
+      return;
+    case RouteKind::sdo:
+      return ask(sdo_[route.index], frame, now);
+    case RouteKind::rpdo:
+      return on_rpdo(rpdos_[route.index], frame, now);
+    case RouteKind::heartbeat:
+      if (communicates() && frame.length == 1) {
+        watch_.on_heartbeat(static_cast<std::uint8_t>(frame.id.id() & 0x7F), frame.data[0], now);
+      }
+      return;
+    case RouteKind::lss:
+      return on_lss(frame, now);
+    case RouteKind::time:
+      if (communicates()) time_.on_frame(frame, now);
+      return;
+    case RouteKind::tpdo_request:
+    case RouteKind::guarding:
+      return;
+  }
+}
+
+/// Handles a remote frame.
+void Device::on_request(const Route& route, Time now) noexcept {
+  if (route.kind == RouteKind::tpdo_request && !faults_.mute_pdo) {
+    model_->advance(now);
+    tpdos_[route.index].on_request(now + times_.pdo, out_);
+  }
+  if (route.kind == RouteKind::guarding) {
+    guarding_.on_request(static_cast<std::uint8_t>(state_), faults_.guarding, now, out_);
+  }
+}
+
+void Device::on_nmt(const Frame& frame, Time now) noexcept {
+  if (frame.length != 2 || (lss_ && lss_->switching())) return;
+  const bool for_it = frame.data[1] == address_.value() && !speaks_only_lss();
+  if (frame.data[1] != 0 && !for_it) return;
+  if (speaks_only_lss() && frame.data[0] < 129) return;
+  switch (frame.data[0]) {
+    case 1:
+      if (!faults_.no_start) enter(DeviceState::operational, now);
+      return;
+    case 2:
+      return enter(DeviceState::stopped, now);
+    case 128:
+      return enter(DeviceState::preoperational, now);
+    case 129:
+      return reset_node(now);
+    case 130:
+      return reset_communication(now);
+    default:
+      return;
+  }
+}
+
+void Device::enter(DeviceState state, Time now) noexcept {
+  if (state_ == state) return;
+  const DeviceState old = std::exchange(state_, state);
+  if (old == DeviceState::operational) {
+    stop_pdos();
+    sync_.reset();  // outside OPERATIONAL the device does not report a missing SYNC
+    model_->advance(now);
+    model_->connection_lost(now);
+  }
+  if (state == DeviceState::operational) start_pdos(now);
+  if (state == DeviceState::stopped) {
+    for (SdoServer& server : sdo_) server.reset();
+    sync_.reset();
+    sync_producer_.stop();
+    watch_.forget();
+  }
+  if (old == DeviceState::stopped) sync_producer_.start(now);
+}
+
+void Device::on_time(Time now) noexcept {
+  if (lss_) lss_->on_time(now);
+  if (now >= boots_at_) boot(now);
+  if (now >= next_storm_) {
+    send_bootup(now);
+    next_storm_ = faults_.storm_period > Time{} ? now + faults_.storm_period : never;
+  }
+  if (now >= tick_) look_at_inputs(now);
+  heartbeat_.on_time(now, static_cast<std::uint8_t>(state_), faults_.no_heartbeat, out_);
+  if (communicates()) {
+    if (watch_.on_time(now) || guarding_.on_time(now)) communication_error(now);
+    make_sync(now);
+    if (sync_.on_time(now)) model_->sync_lost(now);
+    program_.on_time(now);
+    for (SdoServer& server : sdo_) {
+      if (now >= server.deadline()) server.on_time(now, out_);
+    }
+  }
+  if (state_ == DeviceState::operational) {
+    for (Rpdo& rpdo : rpdos_) rpdo.on_time(now, emcy_);
+    run_tpdos(now);
+  }
+  finish_call(now);
+}
+
+/// Reacts to a communication error as 0x1029:01 says. CiA 301, 7.5.2.32.
+void Device::communication_error(Time now) noexcept {
+  model_->advance(now);
+  model_->connection_lost(now);
+  switch (store_.number({0x1029, 1}, 0)) {
+    case 0:
+      if (state_ == DeviceState::operational) enter(DeviceState::preoperational, now);
+      return;
+    case 2:
+      return enter(DeviceState::stopped, now);
+    default:
+      return;
+  }
+}
+
+void Device::on_bus_off(Time now) noexcept {
+  if (!communicates()) return;
+  communication_error(now);
+  finish_call(now);
+}
+
+void Device::on_bus_recovered(Time now) noexcept {
+  emcy_.tell(0x8140);
+  finish_call(now);
+}
+
+void Device::fail(std::uint16_t emcy_code, Time now) noexcept {
+  if (state_ == DeviceState::off) return;
+  model_->advance(now);
+  model_->fail(emcy_code, now);
+  look_at_inputs(now);
+  finish_call(now);
+}
+
+/// Ends every call: sends waiting EMCYs and computes the next deadline.
+void Device::finish_call(Time now) noexcept {
+  emcy_.on_time(now, communicates(), out_);
+  if (lss_ && lss_->switching()) out_.clear();
+  deadline_ = std::min({boots_at_, next_storm_, heartbeat_.deadline()});
+  if (lss_) deadline_ = std::min(deadline_, lss_->deadline());
+  if (!communicates()) {
+    tick_ = never;
+    return;
+  }
+  plan_tick();
+  deadline_ =
+      std::min({deadline_, tick_, watch_.deadline(), guarding_.deadline(), program_.deadline(),
+                sync_.deadline(), sync_producer_.deadline(), emcy_.deadline()});
+  for (const SdoServer& server : sdo_) deadline_ = std::min(deadline_, server.deadline());
+  if (state_ != DeviceState::operational) return;
+  for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
+  for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());
+}
+
+void Device::plan_tick() noexcept {
+  const Time change = model_->next_change();
+  if (change == never) {
+    tick_ = never;
+    return;
+  }
+  const bool events =
+      multiplexed_.wants_events() || std::ranges::any_of(tpdos_, &Tpdo::wants_events);
+  tick_ = std::max(change, last_look_ + (events ? fast_tick : slow_tick));
+}
+
+void Device::ask(SdoServer& server, const Frame& frame, Time now) noexcept {
+  if (!communicates() || faults_.mute_sdo) return;
+  const auto delay = static_cast<std::uint64_t>(faults_.sdo_delay.count());
+  const Time late{delay == 0 ? 0 : static_cast<Time::rep>(delays_.next() % delay)};
+  server.set_times(times_.sdo + late, times_.segment);
+  server.on_frame(frame, now, out_);
+}
+
+/// An SDO channel exists if bit 31 of both its COB-IDs is 0. CiA 301, 7.5.2.33.
+void Device::route_sdo_servers() noexcept {
+  for (std::uint16_t n = 0; n < sdo_.size(); ++n) {
+    if (n != 0) {
+      const auto index = static_cast<std::uint16_t>(0x1200u + n);
+      const auto request = static_cast<std::uint32_t>(store_.number({index, 1}, cob_invalid));
+      const auto answer = static_cast<std::uint32_t>(store_.number({index, 2}, cob_invalid));
+      if (((request | answer) & cob_invalid) != 0 || request == 0 || answer == 0) continue;
+      sdo_[n].set_channel(cob_id(request), cob_id(answer));
+    }
+    routes_.push_back({sdo_[n].request_id(), RouteKind::sdo, n});
+  }
+}
+
+void Device::build_routes() noexcept {
+  routes_.clear();
+  routes_.push_back({CobId::base(0), RouteKind::nmt, 0});
+  if (lss_) routes_.push_back({LssSlave::id(), RouteKind::lss, 0});
+  routes_changed_ = true;
+  if (speaks_only_lss()) return;
+  routes_.push_back({sync_.id(), RouteKind::sync, 0});
+  if (const auto time = time_.id()) routes_.push_back({*time, RouteKind::time, 0});
+  route_sdo_servers();
+  routes_.push_back({guarding_.id(), RouteKind::guarding, 0});
+  for (const auto& watch : watch_.watches()) {
+    if (watch.node != 0) {
+      routes_.push_back({CobId::base(0x700u + watch.node), RouteKind::heartbeat, 0});
+    }
+  }
+  for (std::size_t i = 0; i < rpdos_.size(); ++i) {
+    if (!rpdos_[i].record().valid()) continue;
+    routes_.push_back({rpdos_[i].record().id(), RouteKind::rpdo, static_cast<std::uint16_t>(i)});
+  }
+  for (std::size_t i = 0; i < tpdos_.size(); ++i) {
+    const PdoRecord& record = tpdos_[i].record();
+    if (!record.valid() || !record.rtr_allowed()) continue;
+    routes_.push_back({record.id(), RouteKind::tpdo_request, static_cast<std::uint16_t>(i)});
+  }
+  // All keys differ, so an in-place sort, which allocates nothing, gives a definite order.
+  std::ranges::sort(routes_, {}, [](const Route& route) {
+    return std::tuple{route.id, route.kind, route.index};
+  });
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+
+#include "master/sim/dictionary/object_store.hpp"
+
+namespace takt::sim {
+
+/// Copies received values back to the bus: the sub-indices from `first` on of `from` to those of
+/// `to`.
+inline void echo(ObjectStore& store, std::uint16_t from, std::uint16_t to,
+                 std::uint8_t first = 1) noexcept {
+  for (const Object& in : store.range(from, from)) {
+    Object* out = store.find({to, in.key.sub});
+    if (in.key.sub >= first && out != nullptr) out->set(in.value);
+  }
+}
+
+}  // namespace takt::sim

@@ -1,0 +1,46 @@
+#pragma once
+#include "eds_parser/table/device_table.hpp"
+#include "eds_parser/table/firmware.hpp"
+#include "master/sim/family/ramp.hpp"
+#include "master/sim/model/model.hpp"
+
+namespace takt::sim {
+
+/// A Lenze 8400 HighLine on its system bus. Types 254 and 255 mean the same, the cycle time sends
+/// in addition to events, and type 0 needs SYNC and an event. From firmware 16.00.00 on, a SYNC
+/// producer reacts to its own SYNC as to a received one, if it sends and receives SYNC with the
+/// same identifier.
+class Lenze8400 final : public Model {
+ public:
+  Lenze8400(const DeviceTable& table, ObjectStore& store, EmcyProducer& emcy);
+
+  void reset(Time now) noexcept override;
+  void advance(Time now) noexcept override;
+  void outputs(Time now) noexcept override;
+  Abort check_communication(const Object& object, std::uint64_t raw) const noexcept override;
+  void communication_written(const Object& object) noexcept override;
+  void connection_lost(Time now) noexcept override;
+  void fail(std::uint16_t code, Time now) noexcept override;
+  Time next_change() const noexcept override { return speed_.next_change(); }
+  DeviceTraits traits() const noexcept override;
+  bool obeys_own_sync() const noexcept override;
+  std::optional<CobId> sync_transmit_id() const noexcept override;
+
+ private:
+  bool enabled() const noexcept;
+  void publish() noexcept;
+
+  ObjectStore& store_;
+  EmcyProducer& emcy_;
+  Firmware firmware_;
+  Object* control_;
+  Object* set_point_;
+  Object* status_;
+  Object* actual_;
+  Object* sync_in_;   ///< code C00367
+  Object* sync_out_;  ///< code C00368
+  Ramp speed_;
+  bool fault_ = false;
+};
+
+}  // namespace takt::sim

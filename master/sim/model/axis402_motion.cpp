@@ -1,0 +1,279 @@
+#include <algorithm>
+#include <cmath>
+
+#include "master/sim/model/axis402.hpp"
+
+namespace takt::sim {
+namespace {
+
+constexpr Time longest_step = std::chrono::milliseconds{2};
+constexpr Time::rep most_steps = 2000;
+constexpr std::uint16_t following_error_code = 0x8611;
+constexpr std::uint16_t halt_bit = 0x100;
+constexpr double default_ramp = 1e6;
+constexpr double fastest = 2e9;
+constexpr double friction = 0.02;  // times the rated torque
+constexpr double peak = 10;        // times the rated torque
+
+std::int64_t rounded(double value) noexcept {
+  return static_cast<std::int64_t>(value + std::copysign(0.5, value));
+}
+
+}  // namespace
+
+void Axis402::advance(Time now) noexcept {
+  const Time span = now - time_;
+  if (span <= Time{}) return;
+  if (idle()) {
+    time_ = now;
+    return;
+  }
+  const Time::rep steps = std::clamp<Time::rep>(
+      (span.count() + longest_step.count() - 1) / longest_step.count(), 1, most_steps);
+  for (Time::rep i = 1; i <= steps; ++i) {
+    const Time part = span * i / steps - span * (i - 1) / steps;
+    time_ += part;
+    step(part);
+  }
+  publish();
+}
+
+void Axis402::step(Time span) noexcept {
+  const double h = static_cast<double>(span.count()) * 1e-9;
+  if (state_ == DriveState::not_ready) {
+    if (time_ < initialised_at_) return;
+    enter(DriveState::switch_on_disabled);
+  }
+  if (!settled_) {
+    follow_mode();
+    follow_controlword();
+  }
+  if (!is_powered(state_)) {
+    motor_.coast(rated_acceleration_ / 4, h);
+    demand_ = {motor_.position, 0};
+    return;
+  }
+  if (state_ == DriveState::operation_enabled && stopping_to_ == state_) {
+    step_enabled(h);
+  } else {
+    step_stopping(h);
+  }
+  supervise_following_error(span);
+  supervise_target(span);
+}
+
+void Axis402::step_enabled(double h) noexcept {
+  if (halted()) {
+    ramp_velocity(demand_, 0, {.acceleration = 0, .deceleration = stop_deceleration()}, h);
+    motor_.follow_position(demand_, peak * rated_acceleration_, h);
+    return;
+  }
+  step_mode(h);
+}
+
+bool Axis402::halted() const noexcept {
+  const bool profile = mode_ == DriveMode::profile_position ||
+                       mode_ == DriveMode::profile_velocity || mode_ == DriveMode::homing;
+  return profile && (controlword_ & halt_bit) != 0;
+}
+
+void Axis402::step_mode(double h) noexcept {
+  const double limit = peak * rated_acceleration_;
+  switch (mode_) {
+    case DriveMode::profile_position:
+      profile_.step(demand_, ramps(), h);
+      break;
+    case DriveMode::homing:
+      if (homing_.step(demand_, stop_deceleration(), h)) {
+        const double shift = homing_.shift();
+        demand_.position += shift;
+        motor_.position += shift;
+      }
+      break;
+    case DriveMode::cyclic_position:
+    case DriveMode::interpolated_position:
+      cyclic_.step(demand_, h);
+      break;
+    case DriveMode::profile_velocity:
+      ramp_velocity(demand_, static_cast<double>(objects_.target_velocity.get()), ramps(), h);
+      motor_.follow_velocity(demand_.velocity, limit, h);
+      demand_.position = motor_.position;
+      return;
+    case DriveMode::cyclic_velocity: {
+      const auto target = objects_.target_velocity.get() + objects_.velocity_offset.get();
+      demand_.velocity = static_cast<double>(target);
+      motor_.follow_velocity(demand_.velocity, objects_.max_acceleration.positive_or(limit), h);
+      demand_.position = motor_.position;
+      return;
+    }
+    case DriveMode::profile_torque:
+    case DriveMode::cyclic_torque:
+      return step_torque(h);
+    case DriveMode::none:
+      break;
+  }
+  motor_.follow_position(demand_, limit, h);
+}
+
+void Axis402::step_torque(double h) noexcept {
+  const auto torque =
+      static_cast<double>(objects_.target_torque.get() + objects_.torque_offset.get());
+  const double drag = friction * rated_acceleration_ * std::tanh(motor_.velocity / 100);
+  const double speed = motor_.velocity + (torque / 1000 * rated_acceleration_ - drag) * h;
+  motor_.follow_velocity(std::clamp(speed, -fastest, fastest), peak * rated_acceleration_, h);
+  demand_ = {motor_.position, motor_.velocity};
+}
+
+void Axis402::step_stopping(double h) noexcept {
+  const double deceleration = stop_deceleration();
+  ramp_velocity(demand_, 0, {.acceleration = deceleration, .deceleration = deceleration}, h);
+  motor_.follow_position(demand_, peak * rated_acceleration_, h);
+  const bool still = demand_.velocity == 0 && std::abs(motor_.velocity) < 1;
+  if (!still) return;
+  motor_.velocity = 0;
+  stop_has_ended();
+}
+
+void Axis402::stop_has_ended() noexcept {
+  const std::int64_t option = objects_.quick_stop_option.get();
+  if (state_ == DriveState::fault_reaction) {
+    enter(DriveState::fault);
+  } else if (state_ == DriveState::operation_enabled) {
+    enter(stopping_to_);
+  } else if (option < 5 || option > 8) {
+    enter(DriveState::switch_on_disabled);
+  }
+}
+
+double Axis402::stop_deceleration() const noexcept {
+  const double slow = objects_.profile_deceleration.positive_or(
+      objects_.profile_acceleration.positive_or(default_ramp));
+  const double quick = objects_.quick_stop_deceleration.positive_or(4 * slow);
+  std::int64_t option = objects_.halt_option.get();
+  if (state_ == DriveState::quick_stop) option = (objects_.quick_stop_option.get() - 1) % 4 + 1;
+  if (state_ == DriveState::fault_reaction) option = objects_.fault_option.get();
+  if (stopping_to_ != DriveState::operation_enabled) option = 1;
+  if (option <= 1) return slow;
+  return option == 2 ? quick : peak * rated_acceleration_;
+}
+
+Ramps Axis402::ramps() const noexcept {
+  const double up = objects_.profile_acceleration.positive_or(default_ramp);
+  const double speed = static_cast<double>(objects_.profile_velocity.get());
+  return {.velocity = std::min(speed, objects_.max_profile_velocity.positive_or(fastest)),
+          .acceleration = up,
+          .deceleration = objects_.profile_deceleration.positive_or(up)};
+}
+
+bool Axis402::controls_position() const noexcept {
+  return mode_ == DriveMode::profile_position || mode_ == DriveMode::cyclic_position ||
+         mode_ == DriveMode::interpolated_position || mode_ == DriveMode::homing;
+}
+
+/// Supervises the following error with the window 0x6065 and the timeout 0x6066. A window of 0 or
+/// 0xFFFFFFFF disables the supervision.
+void Axis402::supervise_following_error(Time span) noexcept {
+  const std::int64_t window = objects_.following_window.get();
+  const double error = std::abs(demand_.position - motor_.position);
+  const bool watched = controls_position() && window != 0 && window != 0xFFFF'FFFF;
+  if (!watched || error <= static_cast<double>(window)) {
+    following_time_ = Time{};
+    following_error_ = false;
+    return;
+  }
+  following_time_ += span;
+  if (following_time_ < std::chrono::milliseconds{objects_.following_timeout.get()}) return;
+  fail(following_error_code);
+  following_error_ = true;
+}
+
+void Axis402::supervise_target(Time span) noexcept {
+  bool there = false;
+  if (halted()) {
+    there = std::abs(motor_.velocity) < 1;
+  } else if (mode_ == DriveMode::profile_position) {
+    const double off = std::abs(demand_.position - motor_.position);
+    there = profile_.arrived() && off <= static_cast<double>(objects_.position_window.get()) + 0.5;
+  } else if (mode_ == DriveMode::profile_velocity) {
+    const auto target = static_cast<double>(objects_.target_velocity.get());
+    there =
+        std::abs(motor_.velocity - target) <= static_cast<double>(objects_.velocity_window.get());
+  }
+  target_time_ = there ? target_time_ + span : Time{};
+  on_target_ = there && target_time_ >= std::chrono::milliseconds{objects_.position_time.get()};
+}
+
+std::uint16_t Axis402::mode_bits() const noexcept {
+  if (state_ != DriveState::operation_enabled) return 0;
+  const bool new_target = mode_ == DriveMode::profile_position && !profile_.arrived() && !halted();
+  const unsigned reached = on_target_ && !new_target ? 0x0400 : 0;
+  switch (mode_) {
+    case DriveMode::profile_position:
+      return static_cast<std::uint16_t>(reached | (profile_.acknowledges() ? 0x1000u : 0u));
+    case DriveMode::profile_velocity: {
+      const auto threshold = static_cast<double>(objects_.velocity_threshold.get());
+      const bool stands = std::abs(motor_.velocity) <= threshold;
+      return static_cast<std::uint16_t>(reached | (stands ? 0x1000u : 0u));
+    }
+    case DriveMode::homing:
+      return homing_.status_bits(demand_.velocity == 0);
+    case DriveMode::interpolated_position:
+      return (controlword_ & 0x10) != 0 ? 0x1000 : 0;
+    case DriveMode::cyclic_position:
+    case DriveMode::cyclic_velocity:
+    case DriveMode::cyclic_torque:
+      return 0x1000;  // drive follows the command value
+    case DriveMode::profile_torque:
+      return 0x0400;
+    case DriveMode::none:
+      return 0;
+  }
+  return 0;
+}
+
+std::uint16_t Axis402::statusword() const noexcept {
+  constexpr unsigned voltage = 0x10;
+  constexpr unsigned remote = 0x200;
+  unsigned word = state_bits(state_) | mode_bits();
+  if (state_ == DriveState::not_ready) return static_cast<std::uint16_t>(word);
+  word |= voltage | remote;
+  const bool limited = mode_ == DriveMode::profile_position
+                           ? profile_.limited()
+                           : mode_ == DriveMode::cyclic_position && cyclic_.limited();
+  if (limited && state_ == DriveState::operation_enabled) word |= 0x0800;
+  if (following_error_) word |= 0x2000;
+  return static_cast<std::uint16_t>(word);
+}
+
+void Axis402::publish() noexcept {
+  const std::int64_t actual = rounded(motor_.position);
+  const std::int64_t wanted = rounded(demand_.position);
+  objects_.statusword.set(statusword());
+  objects_.mode_display.set(static_cast<std::int64_t>(mode_));
+  objects_.position_actual.set(actual);
+  objects_.position_actual_internal.set(actual);
+  objects_.position_demand.set(wanted);
+  objects_.position_demand_internal.set(wanted);
+  objects_.following_error.set(wanted - actual);
+  objects_.velocity_actual.set(rounded(motor_.velocity));
+  objects_.velocity_demand.set(rounded(demand_.velocity));
+  objects_.digital_inputs.set(homing_.on_switch() ? 4 : 0);
+  publish_torque();
+}
+
+void Axis402::publish_torque() noexcept {
+  if (!is_powered(state_)) {
+    objects_.torque_actual.set(0);
+    objects_.torque_demand.set(0);
+    objects_.current_actual.set(0);
+    return;
+  }
+  const double drag = friction * std::clamp(motor_.velocity / 100, -1.0, 1.0);
+  const double torque = 1000 * (motor_.acceleration / rated_acceleration_ + drag);
+  const std::int64_t told = rounded(std::clamp(torque, -32767.0, 32767.0));
+  objects_.torque_actual.set(told);
+  objects_.torque_demand.set(told);
+  objects_.current_actual.set(told);
+}
+
+}  // namespace takt::sim

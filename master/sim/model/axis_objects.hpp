@@ -1,0 +1,97 @@
+#pragma once
+#include <cstdint>
+
+#include "master/sim/dictionary/object_store.hpp"
+
+namespace takt::sim {
+
+/// A numeric object of the dictionary, or a constant if the device does not have the object.
+class Slot {
+ public:
+  Slot(ObjectStore& store, ObjectKey key, std::int64_t missing = 0)
+      : object_{store.find(key)}, missing_{missing} {
+    if (object_ != nullptr && object_->is_bytes()) object_ = nullptr;
+  }
+  std::int64_t get() const noexcept { return object_ == nullptr ? missing_ : object_->number(); }
+  /// Returns the value, or `other` if the parameter is missing or not above zero (unset).
+  double positive_or(double other) const noexcept {
+    const std::int64_t value = get();
+    return value > 0 ? static_cast<double>(value) : other;
+  }
+  void set(std::int64_t value) noexcept {
+    if (object_ != nullptr) object_->set(static_cast<std::uint64_t>(value));
+  }
+  bool exists() const noexcept { return object_ != nullptr; }
+  bool is(const Object& object) const noexcept { return object_ == &object; }
+
+ private:
+  Object* object_;
+  std::int64_t missing_;
+};
+
+/// The objects of one axis. The objects of axis n lie 0x800 x n above those of axis 0. CiA 402-2.
+class AxisObjects {
+ private:
+  Slot at(unsigned index, std::uint8_t sub = 0, std::int64_t missing = 0) const;
+
+  ObjectStore& store_;
+  std::uint16_t offset_;
+
+ public:
+  AxisObjects(ObjectStore& store, std::uint16_t offset);
+
+  Slot abort_connection;
+  Slot error_code;
+  Slot controlword;
+  Slot statusword;
+  Slot quick_stop_option;
+  Slot shutdown_option;
+  Slot disable_option;
+  Slot halt_option;
+  Slot fault_option;
+  Slot mode;
+  Slot mode_display;
+  Slot supported_modes;
+  Slot position_demand;
+  Slot position_actual;
+  Slot position_demand_internal;
+  Slot position_actual_internal;
+  Slot following_window;
+  Slot following_timeout;
+  Slot position_window;
+  Slot position_time;
+  Slot target_position;
+  Slot home_offset;
+  Slot limit_min;
+  Slot limit_max;
+  Slot max_profile_velocity;
+  Slot profile_velocity;
+  Slot profile_acceleration;
+  Slot profile_deceleration;
+  Slot quick_stop_deceleration;
+  Slot velocity_demand;
+  Slot velocity_actual;
+  Slot velocity_window;
+  Slot velocity_threshold;
+  Slot target_velocity;
+  Slot target_torque;
+  Slot torque_demand;
+  Slot torque_actual;
+  Slot current_actual;
+  Slot homing_method;
+  Slot homing_speed_switch;
+  Slot homing_speed_zero;
+  Slot homing_acceleration;
+  Slot position_offset;
+  Slot velocity_offset;
+  Slot torque_offset;
+  Slot interpolation_target;
+  Slot period_value;
+  Slot period_exponent;
+  Slot max_acceleration;
+  Slot positioning_option;
+  Slot following_error;
+  Slot digital_inputs;
+};
+
+}  // namespace takt::sim

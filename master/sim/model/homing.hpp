@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+
+#include "master/sim/model/axis_objects.hpp"
+#include "master/sim/model/motion.hpp"
+#include "master/sim/random.hpp"
+
+namespace takt::sim {
+
+/// Homing mode. The switch that a method seeks lies ahead at a random distance, a third of a second
+/// to one second away at search speed. CiA 402-2; methods 1-14, 17-30, 33-35, 37.
+class Homing {
+ public:
+  Homing(const AxisObjects& objects, Random random) : objects_{objects}, random_{random} {}
+
+  /// Enters the mode; homing has not been started yet.
+  void start() noexcept { stage_ = Stage::idle; }
+  void on_controlword(std::uint16_t before, std::uint16_t now, const Demand& demand) noexcept;
+  /// Returns true when the reference has been found and the axis stands still. Then shift() gives
+  /// the shift of the coordinates.
+  bool step(Demand& demand, double deceleration, double h) noexcept;
+  /// Returns the value to add to positions so that the reference reads minus the home offset
+  /// 0x607C.
+  double shift() const noexcept;
+  /// Returns bits 10, 12 and 13 of the statusword.
+  std::uint16_t status_bits(bool stands) const noexcept;
+  bool on_switch() const noexcept { return stage_ == Stage::leave; }
+
+ private:
+  enum class Stage : std::uint8_t { idle, seek, leave, stop, done, failed };
+
+  bool seek(Demand& demand, const Ramps& ramps, double h) noexcept;
+
+  const AxisObjects& objects_;
+  Random random_;
+  Stage stage_ = Stage::idle;
+  double direction_ = 1;
+  double switch_at_ = 0;
+  double reference_ = 0;
+};
+
+}  // namespace takt::sim

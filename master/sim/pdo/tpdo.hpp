@@ -1,0 +1,68 @@
+#pragma once
+#include <cstdint>
+
+#include "eds_parser/table/time.hpp"
+#include "master/sim/pdo/device_traits.hpp"
+#include "master/sim/pdo/pdo_record.hpp"
+#include "master/sim/service/transmitter.hpp"
+
+namespace takt::sim {
+
+/// One TPDO of a device, which is sampled and sent by SYNC, by event, by timer or on request. CiA
+/// 301, 7.2.2 and 7.5.2.37.
+class Tpdo {
+ public:
+  explicit Tpdo(PdoRecord record) : record_{record} {}
+
+  void set_traits(const DeviceTraits& traits) noexcept { traits_ = traits; }
+  const PdoRecord& record() const noexcept { return record_; }
+  /// Enters the state that a TPDO has on entering OPERATIONAL: an event is pending (unless the
+  /// traits say otherwise) and counters are zero.
+  void start(Time now) noexcept;
+  void stop() noexcept { running_ = false; }
+  /// To be called after a write to one of the objects of this TPDO.
+  void reconfigure(Time now) noexcept;
+
+  /// The frame may be on the wire from `ready` on; after `window_end` the frame is dropped.
+  void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
+  void on_request(Time ready, Transmitter& out) noexcept;
+  /// The RPDO with the same number was received.
+  void answer(Time ready, Transmitter& out) noexcept;
+  /// Called when mapped values may have changed.
+  void notice(Time now, Transmitter& out) noexcept;
+  void on_time(Time now, Transmitter& out) noexcept;
+  Time deadline() const noexcept { return deadline_; }
+  /// True if changes of mapped values are events.
+  bool wants_events() const noexcept;
+
+ private:
+  /// False for a multiplexed PDO, which is not sent as a whole.
+  bool active() const noexcept {
+    return running_ && record_.valid() && record_.multiplex() == Multiplex::none;
+  }
+  bool counts_to_its_turn(std::uint8_t counter) noexcept;
+  void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
+  void event(Time ready, Transmitter& out) noexcept;
+  bool runs_by_timer() const noexcept;
+  bool only_answers() const noexcept;
+  Time inhibit() const noexcept;
+  void update_deadline() noexcept;
+
+  PdoRecord record_;
+  DeviceTraits traits_;
+  PdoMapping mapping_;
+  std::uint8_t type_ = 255;
+  bool running_ = false;
+  bool pending_ = false;    ///< an event that has not been sent yet
+  bool sampled_ = false;    ///< type 252: sample_ is valid
+  bool started_ = false;    ///< the SYNC start value has been seen
+  std::uint8_t count_ = 0;  ///< SYNCs since the last transmission
+  std::uint64_t last_ = 0;  ///< data of the newest frame
+  std::uint64_t seen_ = 0;  ///< data at the newest check for changes
+  std::uint64_t sample_ = 0;
+  Time allowed_from_{};  ///< end of the inhibit time
+  Time timer_ = never;   ///< expiry of the event timer
+  Time deadline_ = never;
+};
+
+}  // namespace takt::sim
