@@ -6,8 +6,8 @@
 
 #include "apps/axis/axis_group.hpp"
 #include "apps/axis/open_lcm.hpp"
+#include "apps/move/move_options.hpp"
 #include "apps/move/move_run.hpp"
-#include "apps/move/options.hpp"
 #include "master/lcm/envelope/checked_transport.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 

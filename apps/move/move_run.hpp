@@ -6,8 +6,8 @@
 
 #include "apps/axis/axis_group.hpp"
 #include "apps/move/following.hpp"
+#include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"
-#include "apps/move/options.hpp"
 #include "apps/move/pace.hpp"
 #include "apps/move/progress.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "apps/move/options.hpp"
+#include "apps/move/move_options.hpp"
 
 namespace takt {
 

@@ -5,10 +5,10 @@
 #include <iterator>
 #include <memory>
 
-#include "apps/duration/duration.hpp"
-#include "apps/known_words/known_words.hpp"
-#include "apps/takt/commands.hpp"
-#include "apps/takt/live_arguments.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/duration.hpp"
+#include "apps/command_line/known_words.hpp"
+#include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/budget/left_out.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
 #include "eds_parser/print/print_budget.hpp"

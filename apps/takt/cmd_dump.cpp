@@ -13,19 +13,19 @@
 #include <optional>
 #include <unistd.h>
 
-#include "apps/frame_text/candump_line.hpp"
-#include "apps/frame_text/error_frame_text.hpp"
-#include "apps/frame_text/frame_text.hpp"
-#include "apps/frame_text/recorded_lines.hpp"
-#include "apps/frame_text/trace_line.hpp"
-#include "apps/frame_text/value_text.hpp"
-#include "apps/takt/commands.hpp"
-#include "apps/takt/json_text.hpp"
-#include "apps/takt/live_arguments.hpp"
-#include "apps/takt/whole_number.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/json_text.hpp"
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/whole_number.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/explain/frame/error_frame_text.hpp"
+#include "master/explain/frame/frame_text.hpp"
+#include "master/explain/frame/frame_value_text.hpp"
 #include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/clock.hpp"
+#include "master/trace/candump_line.hpp"
+#include "master/trace/recorded_lines.hpp"
+#include "master/trace/trace_line.hpp"
 
 namespace takt {
 namespace {

@@ -3,9 +3,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "apps/takt/commands.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/whole_number.hpp"
 #include "apps/takt/eds_commands.hpp"
-#include "apps/takt/whole_number.hpp"
 #include "eds_parser/check/check.hpp"
 #include "eds_parser/check/rule_list.hpp"
 #include "eds_parser/print/findings_json.hpp"

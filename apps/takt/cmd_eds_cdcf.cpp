@@ -1,10 +1,10 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/text_file.hpp"
+#include "apps/command_line/whole_number.hpp"
 #include "apps/takt/eds_commands.hpp"
-#include "apps/takt/live_arguments.hpp"
-#include "apps/takt/text_file.hpp"
-#include "apps/takt/whole_number.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "eds_parser/write/configured_values.hpp"
 

@@ -2,9 +2,9 @@
 #include <memory>
 #include <optional>
 
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/text_file.hpp"
 #include "apps/takt/eds_commands.hpp"
-#include "apps/takt/live_arguments.hpp"
-#include "apps/takt/text_file.hpp"
 #include "eds_parser/ini/ini.hpp"
 #include "eds_parser/report/text_diff.hpp"
 #include "eds_parser/write/eds_fix.hpp"

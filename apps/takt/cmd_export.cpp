@@ -2,9 +2,9 @@
 #include <memory>
 #include <sstream>
 
-#include "apps/takt/commands.hpp"
-#include "apps/takt/live_arguments.hpp"
-#include "apps/takt/text_file.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/text_file.hpp"
 #include "eds_parser/export/cpp_header.hpp"
 #include "eds_parser/export/dbc.hpp"
 #include "eds_parser/export/lcm_text.hpp"

@@ -2,8 +2,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/takt/commands.hpp"
-#include "apps/takt/live_arguments.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/live_arguments.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 
 namespace takt {

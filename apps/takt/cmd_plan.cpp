@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <iostream>
 
-#include "apps/takt/commands.hpp"
-#include "apps/takt/live_arguments.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_diff.hpp"
 #include "eds_parser/print/plan/plan_diff_json.hpp"

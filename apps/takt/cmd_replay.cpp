@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <memory>
 
-#include "apps/black_box/replay.hpp"
-#include "apps/takt/commands.hpp"
+#include "apps/command_line/commands.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/black_box/replay.hpp"
 
 namespace takt {
 namespace {

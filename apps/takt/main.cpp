@@ -7,9 +7,9 @@
 #include <tuple>
 #include <unistd.h>
 
-#include "apps/known_words/known_words.hpp"
-#include "apps/takt/commands.hpp"
-#include "apps/takt/live_arguments.hpp"
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/known_words.hpp"
+#include "apps/command_line/live_arguments.hpp"
 
 namespace {
 

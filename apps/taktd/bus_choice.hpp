@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/taktd/options.hpp"
+#include "apps/taktd/daemon_options.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {

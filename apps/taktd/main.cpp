@@ -7,7 +7,7 @@
 
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
-#include "apps/taktd/options.hpp"
+#include "apps/taktd/daemon_options.hpp"
 #include "apps/taktd/summary.hpp"
 #include "eds_parser/budget/budget.hpp"
 #include "eds_parser/network_file/load_network.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/taktd/stop_signal.hpp"
+#include "apps/taktd/process/stop_signal.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/linux/clock.hpp"
 

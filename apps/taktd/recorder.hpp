@@ -6,7 +6,7 @@
 #include <string>
 #include <takt/request_t.hpp>
 
-#include "apps/black_box/black_box.hpp"
+#include "master/black_box/black_box.hpp"
 #include "master/gateway/bridge.hpp"
 #include "master/gateway/notice/notice.hpp"
 

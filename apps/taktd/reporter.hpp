@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/taktd/error_log.hpp"
-#include "apps/taktd/line_writer.hpp"
+#include "apps/taktd/process/error_log.hpp"
+#include "apps/taktd/process/line_writer.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/gateway/notice/notice.hpp"
 

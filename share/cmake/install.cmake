@@ -8,7 +8,8 @@ install(TARGETS ${libraries} EXPORT takt-targets)
 install(TARGETS takt taktd takt-move)
 
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/takt)
-install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp)
+install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp
+        REGEX "/master/(black_box|explain/frame|trace)$" EXCLUDE)
 install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(FILES apps/python/envelopes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)

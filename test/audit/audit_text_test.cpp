@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "apps/audit/ask_devices.hpp"
-#include "apps/audit/audit_report.hpp"
+#include "apps/takt/audit/ask_devices.hpp"
+#include "apps/takt/audit/audit_report.hpp"
 #include "test/audit/audited.hpp"
 
 namespace takt {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/audit/audit.hpp"
+#include "apps/takt/audit/audit.hpp"
 #include "test/boot/plant.hpp"
 
 namespace takt::test {

@@ -1,4 +1,4 @@
-#include "apps/black_box/black_box.hpp"
+#include "master/black_box/black_box.hpp"
 
 #include <atomic>
 #include <csignal>

@@ -6,9 +6,9 @@
 #include <unistd.h>
 #include <vector>
 
-#include "apps/black_box/recording_file.hpp"
-#include "apps/black_box/replay.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/black_box/recording_file.hpp"
+#include "master/black_box/replay.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "test/support/folder.hpp"

@@ -6,7 +6,7 @@
 #include <random>
 #include <sstream>
 
-#include "apps/black_box/first_checkpoint.hpp"
+#include "master/black_box/first_checkpoint.hpp"
 #include "test/black_box/recorded_run.hpp"
 #include "test/support/folder.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "apps/black_box/recording_file.hpp"
-#include "apps/black_box/replay.hpp"
+#include "master/black_box/recording_file.hpp"
+#include "master/black_box/replay.hpp"
 #include "test/black_box/recorded_run.hpp"
 #include "test/fuzz/input.hpp"
 #include "test/support/folder.hpp"

@@ -4,16 +4,16 @@
 #include <string>
 #include <string_view>
 
-#include "apps/frame_text/error_frame_text.hpp"
-#include "apps/frame_text/frame_text.hpp"
-#include "apps/frame_text/recorded_lines.hpp"
-#include "apps/frame_text/trace_line.hpp"
-#include "apps/learn/device_files.hpp"
-#include "apps/learn/network_text.hpp"
-#include "apps/learn/recording.hpp"
+#include "apps/takt/learn/device_files.hpp"
+#include "apps/takt/learn/network_text.hpp"
+#include "apps/takt/learn/recording.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/read_network.hpp"
 #include "eds_parser/read/eds.hpp"
+#include "master/explain/frame/error_frame_text.hpp"
+#include "master/explain/frame/frame_text.hpp"
+#include "master/trace/recorded_lines.hpp"
+#include "master/trace/trace_line.hpp"
 #include "test/fuzz/input.hpp"
 
 namespace {

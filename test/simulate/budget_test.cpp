@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "eds_parser/network_file/changed_network.hpp"
 #include "test/simulate/loaded_run.hpp"
 #include "test/simulate/random_network.hpp"

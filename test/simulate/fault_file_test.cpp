@@ -1,11 +1,11 @@
-#include "apps/simulate/fault_file.hpp"
+#include "apps/takt/simulate/fault_file.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <set>
 
-#include "apps/duration/duration.hpp"
+#include "apps/command_line/duration.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,8 +1,8 @@
-#include "apps/simulate/forger.hpp"
+#include "apps/takt/simulate/program/forger.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/simulate/virtual_daemon.hpp"
+#include "apps/takt/simulate/program/virtual_daemon.hpp"
 #include "master/lcm/messages.hpp"
 #include "test/unit/rt/small_plan.hpp"
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/simulate/outcome_report.hpp"
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/outcome_report.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "apps/simulate/sine_motion.hpp"
+#include "apps/takt/simulate/sine_motion.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "master/sim/bus/world.hpp"

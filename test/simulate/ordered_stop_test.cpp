@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <string>
 #include <unistd.h>
 
-#include "apps/simulate/outcome_report.hpp"
+#include "apps/takt/simulate/outcome_report.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

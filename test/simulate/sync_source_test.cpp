@@ -6,7 +6,7 @@
 #include <string>
 #include <unistd.h>
 
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
 
 // A device produces SYNC, and the master's cycle follows this SYNC.

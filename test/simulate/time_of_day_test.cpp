@@ -6,7 +6,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt {

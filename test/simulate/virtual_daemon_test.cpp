@@ -1,4 +1,4 @@
-#include "apps/simulate/virtual_daemon.hpp"
+#include "apps/takt/simulate/program/virtual_daemon.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

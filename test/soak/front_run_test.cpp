@@ -1,4 +1,4 @@
-#include "apps/soak/front_run.hpp"
+#include "apps/takt/soak/front_run.hpp"
 
 #include <array>
 #include <gtest/gtest.h>

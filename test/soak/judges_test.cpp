@@ -1,10 +1,10 @@
 #include <array>
 #include <gtest/gtest.h>
 
-#include "apps/soak/image_judge.hpp"
-#include "apps/soak/node_judge.hpp"
-#include "apps/soak/output_judge.hpp"
-#include "apps/soak/restless_user.hpp"
+#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/judge/node_judge.hpp"
+#include "apps/takt/soak/judge/output_judge.hpp"
+#include "apps/takt/soak/restless_user.hpp"
 #include "test/unit/rt/small_plan.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "apps/soak/limit_judge.hpp"
+#include "apps/takt/soak/judge/limit_judge.hpp"
 
 #include <gtest/gtest.h>
 #include <memory>

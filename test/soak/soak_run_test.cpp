@@ -1,4 +1,4 @@
-#include "apps/soak/soak_run.hpp"
+#include "apps/takt/soak/soak_run.hpp"
 
 #include <array>
 #include <csignal>
@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "apps/soak/soak_jobs.hpp"
+#include "apps/takt/soak/soak_jobs.hpp"
 #include "master/rt/exchange/exchange.hpp"
 #include "master/sim/bus/world.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/taktd/error_log.hpp"
+#include "apps/taktd/process/error_log.hpp"
 
 #include <array>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "apps/taktd/open_again.hpp"
+#include "apps/taktd/process/open_again.hpp"
 
 namespace takt {
 namespace {

@@ -1,4 +1,4 @@
-#include "apps/takt/image_delay.hpp"
+#include "apps/takt/live/image_delay.hpp"
 
 #include <chrono>
 #include <gtest/gtest.h>

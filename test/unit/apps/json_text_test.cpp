@@ -1,4 +1,4 @@
-#include "apps/takt/json_text.hpp"
+#include "apps/command_line/json_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "apps/taktd/line_writer.hpp"
+#include "apps/taktd/process/line_writer.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "apps/takt/lss_reply.hpp"
+#include "apps/takt/service/lss_reply.hpp"
 
 #include <array>
 #include <gmock/gmock.h>

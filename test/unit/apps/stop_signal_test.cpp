@@ -1,4 +1,4 @@
-#include "apps/taktd/stop_signal.hpp"
+#include "apps/taktd/process/stop_signal.hpp"
 
 #include <csignal>
 #include <gtest/gtest.h>

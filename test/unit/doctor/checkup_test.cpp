@@ -1,4 +1,4 @@
-#include "apps/doctor/checkup.hpp"
+#include "apps/takt/doctor/checkup.hpp"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "apps/frame_text/frame_text.hpp"
+#include "master/explain/frame/frame_text.hpp"
 #include "test/unit/frame_text/frame_text_fixture.hpp"
 
 namespace takt {

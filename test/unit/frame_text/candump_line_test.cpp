@@ -1,4 +1,4 @@
-#include "apps/frame_text/candump_line.hpp"
+#include "master/trace/candump_line.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "apps/frame_text/error_frame_text.hpp"
+#include "master/explain/frame/error_frame_text.hpp"
 
 #include <array>
 #include <gtest/gtest.h>
 
-#include "apps/frame_text/candump_line.hpp"
+#include "master/trace/candump_line.hpp"
 
 namespace takt {
 namespace {

@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "apps/frame_text/frame_text.hpp"
+#include "master/explain/frame/frame_text.hpp"
 
 namespace takt::test {
 

@@ -1,8 +1,8 @@
-#include "apps/frame_text/trace_line.hpp"
+#include "master/trace/trace_line.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/frame_text/recorded_lines.hpp"
+#include "master/trace/recorded_lines.hpp"
 
 namespace takt {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "apps/import/import_report.hpp"
+#include "apps/takt/import/import_report.hpp"
 #include "test/support/folder.hpp"
 
 namespace takt::test {

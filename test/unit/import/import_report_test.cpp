@@ -1,4 +1,4 @@
-#include "apps/import/import_report.hpp"
+#include "apps/takt/import/import_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

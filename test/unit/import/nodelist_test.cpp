@@ -1,4 +1,4 @@
-#include "apps/import/nodelist.hpp"
+#include "apps/takt/import/nodelist.hpp"
 
 #include <fstream>
 #include <gmock/gmock.h>

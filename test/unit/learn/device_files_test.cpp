@@ -1,4 +1,4 @@
-#include "apps/learn/device_files.hpp"
+#include "apps/takt/learn/device_files.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "apps/learn/network_text.hpp"
-#include "apps/learn/recording.hpp"
+#include "apps/takt/learn/network_text.hpp"
+#include "apps/takt/learn/recording.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "test/support/folder.hpp"
 

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "apps/learn/network_text.hpp"
-#include "apps/learn/recording.hpp"
-#include "apps/simulate/simulation.hpp"
+#include "apps/takt/learn/network_text.hpp"
+#include "apps/takt/learn/recording.hpp"
+#include "apps/takt/simulate/simulation.hpp"
 #include "eds_parser/network_file/read_devices.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"

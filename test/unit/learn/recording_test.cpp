@@ -1,5 +1,5 @@
 // The lines that a recording may contain, and the distinction between nodes and master on the bus.
-#include "apps/learn/recording.hpp"
+#include "apps/takt/learn/recording.hpp"
 
 #include <array>
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "apps/learn/network_text.hpp"
+#include "apps/takt/learn/network_text.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"

@@ -1,4 +1,4 @@
-#include "apps/learn/sdo_observer.hpp"
+#include "apps/takt/learn/sdo_observer.hpp"
 
 #include <gtest/gtest.h>
 #include <initializer_list>

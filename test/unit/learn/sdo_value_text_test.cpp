@@ -1,4 +1,4 @@
-#include "apps/learn/sdo_value_text.hpp"
+#include "apps/takt/learn/sdo_value_text.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "apps/scan/bus_scan.hpp"
+#include "apps/takt/service/bus_scan.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>

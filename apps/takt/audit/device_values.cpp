@@ -1,0 +1,81 @@
+#include "apps/takt/audit/device_values.hpp"
+
+#include <span>
+
+namespace takt {
+namespace {
+
+std::uint64_t number_of(std::span<const std::byte> bytes) {
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < bytes.size() && i < sizeof number; ++i) {
+    number |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+  }
+  return number;
+}
+
+bool writes(BootAction action) {
+  using enum BootAction;
+  return action == write || action == write_if_differs || action == write_if_changed ||
+         action == enable_pdo;
+}
+
+bool is_writable(const DeviceObject& object) {
+  return object.access != Access::ro && object.access != Access::constant;
+}
+
+}  // namespace
+
+DeviceValues::DeviceValues(const NodePlan& node, const DeviceTable& device) {
+  for (const DeviceObject& object : device.objects) {
+    values_[object.key] = number_of(object.value);
+    if (is_writable(object)) writable_[object.key] = {object.low_limit, object.high_limit};
+  }
+  if (!node.boot) return;
+  for (const BootStep& step : node.boot_plan.steps) {
+    const auto known = values_.find(step.object);
+    if (writes(step.action) && known != values_.end()) known->second = number_of(step.value);
+  }
+}
+
+std::optional<std::uint64_t> DeviceValues::get(ObjectKey key) const {
+  const auto known = values_.find(key);
+  if (known == values_.end()) return std::nullopt;
+  return known->second;
+}
+
+std::optional<int> DeviceValues::option(std::uint16_t index) const {
+  const auto value = get({index, 0});
+  if (!value) return std::nullopt;
+  return static_cast<std::int16_t>(*value & 0xFFFF);
+}
+
+void DeviceValues::answered(ObjectKey key, std::span<const std::byte> bytes) {
+  const std::uint64_t value = number_of(bytes);
+  const auto known = values_.find(key);
+  if (known != values_.end() && known->second != value) {
+    note(to_string(key) + " is " + hex(static_cast<std::uint32_t>(value), 2) +
+         " in the device, but " + hex(static_cast<std::uint32_t>(known->second), 2) +
+         " by network file and EDS");
+  }
+  values_[key] = value;
+}
+
+void DeviceValues::missing(ObjectKey key) {
+  writable_.erase(key);
+  if (values_.erase(key) != 0)
+    note(to_string(key) + " is in the EDS, but the device does not have this object");
+}
+
+bool DeviceValues::takes(ObjectKey key, std::int64_t value) const {
+  const auto known = writable_.find(key);
+  if (known == writable_.end()) return false;
+  const Limits& limits = known->second;
+  return value >= limits.low.value_or(value) && value <= limits.high.value_or(value);
+}
+
+bool DeviceValues::has(std::uint16_t index) const {
+  const auto next = values_.lower_bound({index, 0});
+  return next != values_.end() && next->first.index == index;
+}
+
+}  // namespace takt

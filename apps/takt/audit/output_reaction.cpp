@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <array>
+
+#include "apps/takt/audit/reaction.hpp"
+
+namespace takt {
+namespace {
+
+/// Outputs of one width, with the objects of their error mode and error value.
+struct OutputKind {
+  std::uint16_t outputs;
+  std::uint16_t mode;
+  std::uint16_t value;
+  bool mask;  ///< true: the error mode is a bit mask; false: error mode 1 applies the error value
+  std::uint64_t all;
+};
+
+constexpr std::array<OutputKind, 8> kinds{{{0x6200, 0x6206, 0x6207, true, 0xFF},
+                                           {0x6220, 0x6226, 0x6227, false, 1},
+                                           {0x6300, 0x6306, 0x6307, true, 0xFFFF},
+                                           {0x6320, 0x6326, 0x6327, true, 0xFFFF'FFFF},
+                                           {0x6410, 0x6443, 0x6444, false, 1},
+                                           {0x6411, 0x6443, 0x6444, false, 1},
+                                           {0x6412, 0x6443, 0x6444, false, 1},
+                                           {0x6413, 0x6443, 0x6445, false, 1}}};
+
+/// Reaction of one output. Neighbours with the same reaction are reported together.
+struct Fate {
+  ObjectKey first;
+  std::uint8_t last = 0;
+  Failsafe verdict = Failsafe::untold;
+  std::string text{};
+};
+
+std::string number_text(const OutputKind& kind, std::uint64_t value) {
+  return kind.mask ? hex(static_cast<std::uint32_t>(value), 2) : std::to_string(value);
+}
+
+class Outputs {
+ public:
+  explicit Outputs(const DeviceValues& values) : values_{values} {}
+
+  void add(ObjectKey output) {
+    const auto kind = std::ranges::find(kinds, output.index, &OutputKind::outputs);
+    Fate fate{.first = output, .last = output.sub};
+    if (kind == kinds.end()) {
+      fate.text = "is specific to the manufacturer: see the manual";
+    } else {
+      judge(*kind, fate);
+    }
+    verdict_ = std::max(verdict_, fate.verdict);
+    if (!fates_.empty() && continues(fates_.back(), fate)) {
+      fates_.back().last = output.sub;
+    } else {
+      fates_.push_back(std::move(fate));
+    }
+  }
+
+  Reaction take() {
+    Reaction reaction{
+        .verdict = verdict_, .text = {}, .remedy = std::move(remedy_), .fixed = std::move(fixed_)};
+    for (const Fate& fate : fates_) {
+      reaction.text += (reaction.text.empty() ? "" : "; ") + to_string(fate.first);
+      if (fate.last != fate.first.sub) reaction.text += ".." + hex(fate.last, 2).substr(2);
+      reaction.text += " " + fate.text;
+    }
+    return reaction;
+  }
+
+ private:
+  static bool continues(const Fate& before, const Fate& fate) {
+    return before.text == fate.text && before.first.index == fate.first.index &&
+           before.last + 1 == fate.first.sub;
+  }
+
+  void judge(const OutputKind& kind, Fate& fate) {
+    const ObjectKey mode_key{kind.mode, fate.first.sub};
+    const auto mode = values_.get(mode_key);
+    const auto value = values_.get({kind.value, fate.first.sub});
+    if (!mode || !value) {
+      fate.text = "has no " + hex(mode ? kind.value : kind.mode).substr(2) + ": see the manual";
+      return;
+    }
+    const std::uint64_t taken = *mode & kind.all;
+    const std::string tail =
+        " (" + hex(kind.mode).substr(2) + " = " + number_text(kind, *mode) + ")";
+    if (taken == kind.all) {
+      fate.verdict = Failsafe::stops;
+      fate.text = "goes to " + number_text(kind, *value & (kind.mask ? kind.all : ~0ULL)) + tail;
+      return;
+    }
+    fate.verdict = Failsafe::goes_on;
+    fate.text = taken == 0 ? "STAYS" + tail
+                           : "STAYS except for bits " + number_text(kind, taken) +
+                                 ", which go to " + number_text(kind, *value & taken) + tail;
+    if (!values_.takes(mode_key, static_cast<std::int64_t>(kind.all))) {
+      fixed_.push_back(mode_key);
+      return;
+    }
+    remedy_.push_back("{index: " + hex(kind.mode) +
+                      ", sub_index: " + std::to_string(fate.first.sub) +
+                      ", value: " + number_text(kind, kind.all) + "}");
+  }
+
+  const DeviceValues& values_;
+  Failsafe verdict_ = Failsafe::harmless;
+  std::vector<Fate> fates_;
+  std::vector<std::string> remedy_;
+  std::vector<ObjectKey> fixed_;
+};
+
+}  // namespace
+
+Reaction output_reaction(const BusPlan& plan, std::size_t node_index, const DeviceValues& values) {
+  std::vector<ObjectKey> commanded;
+  for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
+    const Signal& signal = plan.layout.signals[i];
+    if (signal.node_index == node_index) commanded.push_back(signal.object);
+  }
+  std::ranges::sort(commanded);
+  const auto twice = std::ranges::unique(commanded);
+  commanded.erase(twice.begin(), twice.end());
+  Outputs outputs{values};
+  for (const ObjectKey& output : commanded) outputs.add(output);
+  return outputs.take();
+}
+
+}  // namespace takt

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/json_text.hpp"
+#include "apps/command_line/whole_number.hpp"
+#include "apps/takt/doctor/checkup.hpp"
+#include "apps/takt/live/screen.hpp"
+#include "master/lcm/link/lcm_url.hpp"
+
+namespace takt {
+namespace {
+
+struct DoctorOptions {
+  std::string bus;
+  std::string lcm_url;
+  std::optional<std::uint32_t> bitrate_kbit;
+  int priority = 80;
+  bool json = false;
+};
+
+void append(std::vector<Remark>& all, std::vector<Remark> more) {
+  std::ranges::move(more, std::back_inserter(all));
+}
+
+/// Tries real time with a separate thread, so that only one effect on this process remains: its
+/// memory is locked.
+std::vector<Remark> try_realtime(int priority) {
+  RealtimeOptions options;
+  options.mode = RtMode::attempt;
+  options.priority = priority;
+  RtThread thread{options, "takt-doctor", [] {}};
+  thread.join();
+  return judge_realtime(thread.report());
+}
+
+std::vector<Remark> examine(const DoctorOptions& options) {
+  std::vector<Remark> all;
+  const bool is_can = !options.bus.starts_with("unix:") && options.bus != "sim";
+  if (options.bus.empty() || is_can) all.push_back(check_can_support());
+  if (!options.bus.empty() && is_can) {
+    const auto bitrate = options.bitrate_kbit ? std::optional{*options.bitrate_kbit * 1000}
+                                              : std::optional<std::uint32_t>{};
+    append(all, check_interface(options.bus, bitrate));
+  }
+  append(all, check_machine("/"));
+  append(all, try_realtime(options.priority));
+  append(all, check_lcm(choose_lcm_url(options.lcm_url, ""), "/"));
+  return all;
+}
+
+const char* word(Verdict verdict) {
+  if (verdict == Verdict::good) return "good";
+  return verdict == Verdict::hint ? "hint" : "BAD";
+}
+
+void print(const std::vector<Remark>& remarks) {
+  static constexpr Paint paints[] = {Paint::good, Paint::warning, Paint::bad};
+  const bool colour = ::isatty(STDOUT_FILENO) != 0;
+  constexpr std::size_t width = 400;  // wide enough not to cut a command, which users copy
+  for (const Remark& remark : remarks) {
+    Line line;
+    line.add(left(word(remark.verdict), 6), paints[static_cast<std::size_t>(remark.verdict)])
+        .add(left(remark.subject, 16), Paint::title)
+        .add(remark.text);
+    std::puts(line.render(width, colour).c_str());
+    if (!remark.command.empty()) std::printf("%22s%s\n", "", remark.command.c_str());
+  }
+}
+
+void print_json(const std::vector<Remark>& remarks) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Remark& remark : remarks) {
+    all.push_back({{"verdict", remark.verdict == Verdict::bad ? "bad" : word(remark.verdict)},
+                   {"subject", remark.subject},
+                   {"text", remark.text},
+                   {"command", remark.command}});
+  }
+  const nlohmann::json document{{"remarks", std::move(all)}};
+  std::puts(json_text(document, 1).c_str());
+}
+
+int run(const DoctorOptions& options) {
+  const std::vector<Remark> remarks = examine(options);
+  options.json ? print_json(remarks) : print(remarks);
+  return std::ranges::any_of(remarks, [](const Remark& r) { return r.verdict == Verdict::bad; })
+             ? 1
+             : 0;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand(
+      "doctor", "checks whether this machine is fit for a bus, and names remedies");
+  verb->footer(
+      "Each line is good, a hint or BAD (exit code 1). The command below a line mends the fault;\n"
+      "run that command as root. takt doctor itself changes nothing.\n"
+      "Examples:\n"
+      "  takt doctor\n"
+      "  takt doctor --bus can0 --bitrate 500");
+  auto options = std::make_shared<DoctorOptions>();
+  verb->add_option("--bus", options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
+  add_number(*verb, "--bitrate", options->bitrate_kbit,
+             "bit rate that the interface must have, kbit/s")
+      ->check(CLI::Range(10, 1000))
+      ->type_name("KBIT");
+  add_number(*verb, "--priority", options->priority, "priority of the bus thread")
+      ->check(CLI::Range(1, 99))
+      ->type_name("N");
+  verb->add_option("--lcm-url", options->lcm_url,
+                   "LCM URL to check; default: LCM_DEFAULT_URL, else LCM's own")
+      ->type_name("URL");
+  verb->add_flag("--json", options->json, "print one JSON document");
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,365 @@
+#include "apps/takt/import/nodelist.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "eds_parser/ini/ini.hpp"
+#include "eds_parser/ini/value_reader.hpp"
+#include "eds_parser/read/eds.hpp"
+#include "eds_parser/report/text.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_file = std::size_t{1} << 20U;
+constexpr std::size_t longest_name = 40;
+
+std::string read_text(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return {};
+  std::ifstream in{path, std::ios::binary};
+  std::string text(longest_file + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+std::string lower(std::string_view text) {
+  std::string out{text};
+  for (char& c : out) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return out;
+}
+
+/// Returns a value that YAML reads as exactly this text. Control characters become blanks.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return out + '"';
+}
+
+/// Returns a name that can be part of an LCM channel: `Axis 1 (left)` becomes `axis_1_left`.
+std::string plain_name(std::string_view text, const std::string& otherwise) {
+  std::string out;
+  for (const char c : lower(text)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (plain) {
+      out += c;
+    } else if (!out.empty() && out.back() != '_') {
+      out += '_';
+    }
+  }
+  out = out.substr(0, longest_name);
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  if (out.empty() || out == "all") return otherwise;
+  return out.front() >= '0' && out.front() <= '9' ? otherwise + '_' + out : out;
+}
+
+/// Splits a key like `node12dcfname` into 12 and `dcfname`. Returns std::nullopt for other keys.
+std::optional<std::pair<unsigned, std::string>> node_key(std::string_view key) {
+  constexpr std::string_view prefix = "node";
+  const std::string word = lower(key);
+  if (!word.starts_with(prefix)) return std::nullopt;
+  unsigned number = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data() + prefix.size(), end, number);
+  if (error != std::errc{} || stop == end) return std::nullopt;
+  return std::pair{number, std::string{stop, end}};
+}
+
+struct ListedNode {
+  std::optional<std::size_t> present{};  ///< row of the key in the report
+  std::optional<std::size_t> name{};     ///< row of the key in the report
+  std::optional<std::size_t> dcf{};      ///< row of the key in the report
+  bool is_present = false;
+  std::string file{};   ///< path of the device file in the network file
+  std::string label{};  ///< name of the node in the network file
+  SourcePos pos{};      ///< place of its first key
+};
+
+class Importer {
+ public:
+  Importer(const fs::path& cpj, unsigned number, const fs::path& folder)
+      : cpj_{cpj},
+        folder_{folder},
+        section_{number <= 1 ? "topology" : "topology" + std::to_string(number)},
+        number_{number},
+        report_{cpj.string()},
+        values_{report_, std::nullopt} {}
+
+  ImportedNodelist run() {
+    const std::string text = read_text(cpj_);
+    if (text.empty() || text.size() > longest_file) {
+      wrong({}, "no-file", "can't be read, is empty, or is larger than 1 MB");
+      return finish();
+    }
+    const IniFile file = read_ini(text, report_);
+    const IniSection* topology = find_topology(file);
+    if (topology == nullptr) {
+      wrong({}, "no-topology",
+            "there is no [" +
+                (number_ <= 1 ? std::string{"Topology"} : "Topology" + std::to_string(number_)) +
+                "]: the file is not a nodelist.cpj of CiA 306-3, or has no such network");
+      return finish();
+    }
+    for (const IniEntry& entry : file.entries(*topology)) read(entry);
+    compare_count(*topology);
+    for (auto& [id, node] : nodes_) use(id, node);
+    if (!wrong_) write();
+    return finish();
+  }
+
+ private:
+  const IniSection* find_topology(const IniFile& file) {
+    const IniSection* found = nullptr;
+    for (const IniSection& section : file.sections) {
+      const std::string name = lower(section.name);
+      const bool wanted = name == section_ || (number_ <= 1 && name == "topology1");
+      if (wanted && found == nullptr) {
+        found = &section;
+        title_ = std::string{section.name};
+        continue;
+      }
+      const bool other = name.starts_with("topology");
+      report_.note(section.pos, "unused-key",
+                   "[" + to_utf8(section.name) + "] " +
+                       (other ? "is another network; `--network` chooses a network"
+                              : "is not a section of a nodelist.cpj; takt left it out"));
+    }
+    return found;
+  }
+
+  void wrong(SourcePos pos, std::string_view rule, std::string message) {
+    wrong_ = true;
+    report_.error(pos, rule, std::move(message));
+  }
+
+  std::size_t add(const IniEntry& entry, KeyFate fate, std::string why) {
+    rows_.push_back({.path = title_ + '.' + to_utf8(entry.key),
+                     .value = to_utf8(entry.value),
+                     .pos = entry.pos(),
+                     .fate = fate,
+                     .why = std::move(why)});
+    return rows_.size() - 1;
+  }
+
+  void read(const IniEntry& entry) {
+    const std::string key = lower(entry.key);
+    if (key == "netname") {
+      name_ = to_utf8(entry.value);
+      add(entry, KeyFate::used, "name of the bus, part of the LCM channels");
+    } else if (key == "nodes") {
+      count_ = values_.read_count(entry.value, 127, entry.key, entry.pos());
+      count_row_ = add(entry, KeyFate::used, "compared with the nodes that are listed");
+    } else if (key == "netrefd") {
+      add(entry, KeyFate::ignored, "a reference for readers");
+    } else if (key == "edsbasename") {
+      base_ = slashes(to_utf8(entry.value));
+      add(entry, KeyFate::used, "second folder for device files");
+    } else if (const auto of_node = node_key(entry.key)) {
+      read_node(entry, of_node->first, of_node->second);
+    } else {
+      add(entry, KeyFate::ignored, "not a key of CiA 306-3");
+    }
+  }
+
+  void read_node(const IniEntry& entry, unsigned id, const std::string& what) {
+    if (!NodeId::from(id)) {
+      add(entry, KeyFate::wrong, "node ids are 1..127");
+      wrong(entry.key_pos(), "node-id-range", "node ids are 1..127");
+      return;
+    }
+    auto& node = nodes_[id];
+    if (node.pos == SourcePos{}) node.pos = entry.key_pos();
+    if (what == "present") {
+      node.is_present = values_.read_flag(entry.value, entry.key, entry.pos());
+      node.present = add(entry, node.is_present ? KeyFate::used : KeyFate::ignored,
+                         node.is_present ? "" : "the node is not present; takt left it out");
+    } else if (what == "name") {
+      node.name = add(entry, KeyFate::used, "name of the node");
+    } else if (what == "dcfname") {
+      node.dcf = add(entry, KeyFate::used, "device file of the node");
+    } else if (what == "refd") {
+      add(entry, KeyFate::ignored, "a reference for readers");
+    } else {
+      add(entry, KeyFate::ignored, "not a key of CiA 306-3");
+    }
+  }
+
+  void compare_count(const IniSection& topology) {
+    const auto listed = static_cast<std::uint32_t>(
+        std::ranges::count_if(nodes_, [](const auto& node) { return node.second.is_present; }));
+    const bool same = count_ && (*count_ == listed || *count_ == nodes_.size());
+    if (same) return;
+    const std::string why = "the file lists " + std::to_string(listed) + " nodes as present";
+    if (count_row_) {
+      rows_[*count_row_].fate = KeyFate::suspicious;
+      rows_[*count_row_].why = why;
+    } else {
+      report_.warning(topology.pos, "missing-key", "Nodes is missing; " + why);
+    }
+  }
+
+  /// Replaces each `\`, which tools for Windows write, with `/`.
+  static std::string slashes(std::string text) {
+    std::ranges::replace(text, '\\', '/');
+    return text;
+  }
+
+  void use(unsigned id, ListedNode& node) {
+    if (!node.is_present) {
+      if (node.present) return;
+      report_.warning(node.pos, "missing-key",
+                      "Node" + std::to_string(id) + "Present is missing; the node was left out");
+      return;
+    }
+    label(id, node);
+    if (!node.dcf) {
+      wrong(node.pos, "missing-key",
+            "node " + std::to_string(id) + " has no Node" + std::to_string(id) +
+                "DCFName: taktd needs the DCF or EDS of the node");
+      return;
+    }
+    find_file(id, node);
+  }
+
+  void label(unsigned id, ListedNode& node) {
+    const std::string otherwise = "node" + std::to_string(id);
+    const std::string written = node.name ? rows_[*node.name].value : "";
+    node.label = plain_name(written, otherwise);
+    if (!labels_.insert(node.label).second) {
+      node.label += '_' + std::to_string(id);
+      labels_.insert(node.label);
+    }
+    if (node.name && node.label != written) {
+      rows_[*node.name].why = "name of the node, as `" + node.label + '`';
+    }
+  }
+
+  void find_file(unsigned id, ListedNode& node) {
+    ImportedKey& row = rows_[*node.dcf];
+    const fs::path name = slashes(row.value);
+    std::error_code failed;
+    for (const fs::path& path : {cpj_.parent_path() / name, cpj_.parent_path() / base_ / name}) {
+      if (row.value.empty() || !fs::is_regular_file(path, failed)) continue;
+      node.file = fs::proximate(path, folder_, failed).generic_string();
+      if (failed) node.file = path.generic_string();
+      take_from(path, id, node, row);
+      return;
+    }
+    row.fate = KeyFate::wrong;
+    row.why =
+        "not found beside the project file" + (base_.empty() ? std::string{} : " or in " + base_);
+    wrong(row.pos, "no-file", '`' + row.value + "` " + row.why);
+  }
+
+  /// Takes the bit rate and the choice of the master from a DCF.
+  void take_from(const fs::path& path, unsigned id, ListedNode& node, ImportedKey& row) {
+    const EdsFile file = read_eds_file(path, NodeId::from(id));
+    const auto& said = file.dictionary.commissioning;
+    if (said.node_id && said.node_id->value() != id) {
+      row.fate = KeyFate::suspicious;
+      row.why = "the NodeID of the file is " + std::to_string(said.node_id->value()) +
+                "; takt uses node id " + std::to_string(id) + " of the project";
+    }
+    if (said.manager) {
+      row.fate = KeyFate::ignored;
+      row.why = "CANopenManager=1: this is the master, whose place takt takes";
+      master_ = id;
+      node.is_present = false;
+      return;
+    }
+    if (said.baudrate_kbit != 0) bitrates_.insert(said.baudrate_kbit);
+  }
+
+  /// Returns the node-ID of the manager of the project, or else the highest node-ID that no node
+  /// has.
+  std::optional<unsigned> master_id() const {
+    if (master_) return master_;
+    for (unsigned id = 127; id > 0; --id) {
+      const auto node = nodes_.find(id);
+      if (node == nodes_.end() || !node->second.is_present) return id;
+    }
+    return std::nullopt;
+  }
+
+  void write() {
+    const auto master = master_id();
+    if (!master)
+      return wrong({}, "no-free-id", "all 127 node ids are taken: no id is left for takt");
+    yaml_ = "# from " + cpj_.filename().string() + ", [" + to_utf8(title_) + "]\n";
+    yaml_ += "bus:\n  name: " + plain_name(name_, "bus") + "\n" + bitrate_line();
+    yaml_ += "master:\n  node_id: " + std::to_string(*master) +
+             "\n  # sync_period: 10000  # us; without it there is no SYNC\n";
+    yaml_ += "nodes:\n";
+    bool any = false;
+    for (const auto& [id, node] : nodes_) {
+      if (!node.is_present) continue;
+      any = true;
+      yaml_ += "  " + node.label + ":\n    node_id: " + std::to_string(id) +
+               "\n    dcf: " + in_quotes(node.file) + '\n';
+    }
+    if (any) return;
+    wrong({}, "no-nodes", "no node is present");
+    yaml_.clear();
+  }
+
+  std::string bitrate_line() {
+    if (bitrates_.size() == 1) {
+      return "  bitrate_kbit: " + std::to_string(*bitrates_.begin()) + "  # Baudrate of the DCFs\n";
+    }
+    const bool none = bitrates_.empty();
+    report_.warning(
+        {}, "bitrate",
+        std::string{none ? "no DCF contains a Baudrate" : "the DCFs differ in Baudrate"} +
+            ": `bitrate_kbit` was set to " +
+            std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "; correct this value");
+    return "  bitrate_kbit: " + std::to_string(none ? default_bitrate : *bitrates_.rbegin()) + "\n";
+  }
+
+  ImportedNodelist finish() {
+    ImportedNodelist result;
+    result.report.keys = std::move(rows_);
+    result.report.others = report_.take();
+    result.report.usable = !yaml_.empty() && !wrong_;
+    if (result.report.usable) result.yaml = std::move(yaml_);
+    return result;
+  }
+
+  static constexpr unsigned default_bitrate = 500;
+
+  fs::path cpj_;
+  fs::path folder_;
+  std::string section_;
+  unsigned number_;
+  Report report_;
+  ValueReader values_;
+  std::string title_;
+  std::string name_;
+  std::string base_;
+  std::optional<std::uint32_t> count_;
+  std::optional<std::size_t> count_row_;
+  std::vector<ImportedKey> rows_;
+  std::map<unsigned, ListedNode> nodes_;
+  std::set<std::string> labels_;
+  std::set<std::uint16_t> bitrates_;
+  std::optional<unsigned> master_;
+  bool wrong_ = false;
+  std::string yaml_;
+};
+
+}  // namespace
+
+ImportedNodelist import_nodelist(const fs::path& cpj, unsigned number, const fs::path& folder) {
+  return Importer{cpj, number, folder}.run();
+}
+
+}  // namespace takt

@@ -1,0 +1,149 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/text_file.hpp"
+#include "apps/command_line/whole_number.hpp"
+#include "apps/takt/learn/network_text.hpp"
+#include "apps/takt/learn/recording.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/network_file/read_devices.hpp"
+
+namespace takt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string log;
+  std::string out;
+  std::vector<std::string> files;
+  std::vector<std::string> folders;
+  std::string interface;
+  std::uint32_t bitrate_kbit = 1000;
+  bool quiet = false;
+};
+
+/// Adds a device file that is given as `FILE`, or as `5=FILE` for one node-ID.
+bool add_file(const std::string& argument, DeviceFiles& files, Findings& findings) {
+  unsigned id = 0;
+  const char* const end = argument.data() + argument.size();
+  const auto [equals, error] = std::from_chars(argument.data(), end, id);
+  const auto node = NodeId::from(id);
+  if (error == std::errc{} && equals != end && *equals == '=' && node) {
+    return files.assign(node->value(), std::string{equals + 1, end}, findings);
+  }
+  return files.add_file(argument, findings);
+}
+
+std::optional<LearnedBus> listen(const Options& options) {
+  if (options.log == "-") return read_recording(std::cin, "stdin", options.interface);
+  std::ifstream file{options.log, std::ios::binary};
+  std::error_code ignored;
+  if (!file || fs::is_directory(options.log, ignored)) return {};
+  return read_recording(file, options.log, options.interface);
+}
+
+void print(const Findings& findings, bool quiet) {
+  for (const Finding& finding : findings) {
+    if (quiet && finding.severity == Severity::note) continue;
+    std::cerr << to_string(finding) << '\n';
+  }
+}
+
+/// Loads the written file as taktd would and prints its errors.
+int judge(const std::string& file) {
+  const LoadedNetwork network = load_network(file);
+  if (!has_error(network.findings)) return 0;
+  print(network.findings, true);
+  std::cerr << file
+            << ": this file was written, but taktd does not accept it; correct the errors above\n";
+  return 1;
+}
+
+int run(const Options& options) {
+  DeviceFiles files;
+  Findings findings;
+  bool good = true;
+  for (const std::string& folder : options.folders) files.add_folder(folder, findings);
+  for (const std::string& file : options.files) good = add_file(file, files, findings) && good;
+  print(findings, options.quiet);
+  if (!good || has_error(findings)) return 2;
+  const auto bus = listen(options);
+  if (!bus) return complain(options.log + ": can't be read", 2);
+  if (bus->frames == 0 && !options.interface.empty()) {
+    print(bus->findings, false);
+    return complain(options.log + ": holds no frame of interface " + options.interface, 2);
+  }
+  if (bus->frames == 0) {
+    return complain(options.log +
+                        ": holds no frame; takt reads recordings of candump, PCAN (.trc), Vector "
+                        "(.asc) and python-can",
+                    2);
+  }
+
+  const bool to_stdout = options.out == "-";
+  const fs::path out{options.out};
+  LearnOptions how{.bitrate_kbit = options.bitrate_kbit,
+                   .device_data = load_device_data(device_folders(), findings)};
+  if (!to_stdout) {
+    how.folder = out.parent_path();
+    how.stem = out.stem().string();
+  }
+  const LearnedNetwork network = learned_network(*bus, files, how);
+  print(network.findings, options.quiet);
+  if (!to_stdout) {
+    for (const auto& [name, content] : network.made_files) {
+      const auto written = write_whole_file(how.folder / name, content);
+      if (!written) return complain(written.error(), 1);
+    }
+  }
+  const auto written = write_whole_file(options.out, network.text);
+  if (!written) return complain(written.error(), 1);
+  const int judged = to_stdout ? 0 : judge(options.out);
+  return has_error(network.findings) ? 1 : judged;
+}
+
+}  // namespace
+
+void add_learn(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("learn", "makes a network file from a recorded boot of another master");
+  command
+      ->add_option("LOG", options->log,
+                   "recording of candump (-L or plain), .trc or .asc; - for stdin")
+      ->required();
+  command->add_option("-o,--output", options->out, "network file to write; - for stdout")
+      ->type_name("NET.yaml")
+      ->required();
+  command->add_option("--eds", options->files,
+                      "EDS or DCF, matched by its identity; 5=FILE assigns it to node 5");
+  command
+      ->add_option("--eds-dir", options->folders,
+                   "folder with EDS and DCF files; takt searches subfolders, too")
+      ->type_name("DIR");
+  command->add_option("--bus", options->interface, "use only this interface of the recording");
+  add_number(*command, "--bitrate", options->bitrate_kbit,
+             "bit rate, kbit/s; a recording does not contain it")
+      ->check(CLI::Range(10U, 1000U))
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "leave out notes");
+  command->footer(
+      "Start the recording before the other master resets the devices:\n"
+      "  candump -L can0 > boot.log\n"
+      "The network file contains nodes, SDO writes in their order, PDOs, SYNC, heartbeats and\n"
+      "guarding. Comments in it describe what a network file can't express. For a device without\n"
+      "EDS takt writes an EDS from the recording, beside the network file. Exit code 1: the\n"
+      "network file needs corrections, which stderr lists.\n\n"
+      "Example:\n"
+      "  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
+      "  takt plan machine.yaml");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,67 @@
+#include "apps/takt/learn/learned_pdos.hpp"
+
+#include <set>
+
+namespace takt {
+namespace {
+
+template <class T>
+std::optional<T> at(const LearnedValues& values, ObjectKey key) {
+  const auto found = values.find(key);
+  const auto number = found == values.end() ? std::nullopt : found->second.number();
+  return number ? std::optional{static_cast<T>(*number)} : std::nullopt;
+}
+
+/// Returns all entries of a mapping, or std::nullopt if one is missing. An incomplete mapping has
+/// no use.
+std::optional<std::vector<std::uint32_t>> entries(const LearnedValues& values, std::uint16_t index,
+                                                  std::uint8_t count) {
+  std::vector<std::uint32_t> list;
+  for (std::uint8_t sub = 1; sub <= count; ++sub) {
+    const auto entry = at<std::uint32_t>(values, {index, sub});
+    const std::uint32_t bits = entry.value_or(0) & 0xFFU;
+    if (bits == 0 || bits > 64) return {};
+    list.push_back(*entry);
+  }
+  return list;
+}
+
+LearnedPdo pdo_of(const LearnedValues& values, std::uint16_t number, bool is_tpdo) {
+  const auto communication = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + number - 1);
+  const auto mapping = static_cast<std::uint16_t>(communication + 0x200);
+  LearnedPdo pdo{.number = number,
+                 .is_tpdo = is_tpdo,
+                 .cob_id = at<std::uint32_t>(values, {communication, 1}),
+                 .transmission = at<std::uint8_t>(values, {communication, 2}),
+                 .inhibit_time = at<std::uint16_t>(values, {communication, 3}),
+                 .timer = at<std::uint16_t>(values, {communication, 5}),
+                 .sync_start = at<std::uint8_t>(values, {communication, 6}),
+                 .count = at<std::uint8_t>(values, {mapping, 0}),
+                 .mapping = {}};
+  if (pdo.count && *pdo.count != 0 && *pdo.count <= 64) {
+    pdo.mapping = entries(values, mapping, *pdo.count);
+  }
+  return pdo;
+}
+
+}  // namespace
+
+std::optional<CobId> LearnedPdo::identifier() const noexcept {
+  if (!cob_id) return {};
+  const bool extended = (*cob_id & 0x2000'0000U) != 0;
+  return extended ? CobId::extended(*cob_id & 0x1FFF'FFFFU) : CobId::base(*cob_id & 0x7FFU);
+}
+
+std::vector<LearnedPdo> learned_pdos(const LearnedValues& values) {
+  std::set<std::pair<bool, std::uint16_t>> seen;
+  for (auto at = values.lower_bound({0x1400, 0}); at != values.end(); ++at) {
+    const std::uint16_t index = at->first.index;
+    if (!is_pdo_object(index)) break;
+    seen.emplace(index >= 0x1800, static_cast<std::uint16_t>((index & 0x1FFU) + 1));
+  }
+  std::vector<LearnedPdo> pdos;
+  for (const auto& [is_tpdo, number] : seen) pdos.push_back(pdo_of(values, number, is_tpdo));
+  return pdos;
+}
+
+}  // namespace takt

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "apps/takt/learn/learned_bus.hpp"
+
+namespace takt {
+
+/// A PDO as a recorded boot left it. A parameter is empty if the recording does not show it.
+struct LearnedPdo {
+  std::uint16_t number = 1;
+  bool is_tpdo = false;
+  std::optional<std::uint32_t> cob_id;  ///< value of sub-index 1 with its flags
+  std::optional<std::uint8_t> transmission;
+  std::optional<std::uint16_t> inhibit_time;  ///< multiples of 100 us
+  std::optional<std::uint16_t> timer;         ///< sub-index 5, ms
+  std::optional<std::uint8_t> sync_start;
+  std::optional<std::uint8_t> count;                  ///< sub-index 0 of the mapping
+  std::optional<std::vector<std::uint32_t>> mapping;  ///< the first `count` entries; never empty
+  bool enabled() const noexcept { return !cob_id || (*cob_id & 0x8000'0000U) == 0; }
+  std::optional<CobId> identifier() const noexcept;
+};
+
+/// Returns the PDOs of which the recording shows any parameter: first the RPDOs, then the TPDOs,
+/// each in ascending order.
+std::vector<LearnedPdo> learned_pdos(const LearnedValues& values);
+
+/// Returns true for the communication and mapping records of RPDOs and TPDOs.
+constexpr bool is_pdo_object(std::uint16_t index) noexcept {
+  return index >= 0x1400 && index <= 0x1BFF;
+}
+
+}  // namespace takt

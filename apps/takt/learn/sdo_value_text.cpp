@@ -1,0 +1,65 @@
+#include "apps/takt/learn/sdo_value_text.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fmt/format.h>
+
+namespace takt {
+namespace {
+
+constexpr std::size_t longest_text = 4096;
+
+std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
+  std::uint64_t value = 0;
+  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | bytes[i];
+  return value;
+}
+
+/// Returns the bytes in quotes. YAML has an escape for every character, but a byte above 0x7F would
+/// become two bytes in UTF-8; returns std::nullopt for these.
+std::optional<std::string> quoted(std::span<const std::uint8_t> bytes) {
+  const auto ascii = [](std::uint8_t c) { return c < 0x80; };
+  if (bytes.empty() || bytes.size() > longest_text || !std::ranges::all_of(bytes, ascii)) return {};
+  std::string out = "\"";
+  for (const std::uint8_t c : bytes) {
+    if (c < 0x20 || c == 0x7F) {
+      out += fmt::format("\\x{:02X}", c);
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += static_cast<char>(c);
+    }
+  }
+  return out + '"';
+}
+
+std::optional<std::string> real_text(double value) {
+  if (!std::isfinite(value)) return {};
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+}  // namespace
+
+std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type) {
+  if (is_bytes(type)) return quoted(bytes);
+  if (bytes.empty() || bytes.size() > 8) return {};
+  const std::uint64_t raw = little_endian(bytes);
+  if (type == DataType::real32) {
+    const double value = std::bit_cast<float>(static_cast<std::uint32_t>(raw));
+    return real_text(value);
+  }
+  if (type == DataType::real64) return real_text(std::bit_cast<double>(raw));
+  const unsigned bits = bit_width(type);
+  const std::uint64_t cut = bits == 64 ? raw : raw & ((std::uint64_t{1} << bits) - 1);
+  if (is_signed(type)) {
+    const unsigned unused = 64 - bits;
+    return std::to_string(static_cast<std::int64_t>(cut << unused) >> unused);
+  }
+  if (cut > static_cast<std::uint64_t>(INT64_MAX)) return {};
+  return std::to_string(cut);
+}
+
+}  // namespace takt

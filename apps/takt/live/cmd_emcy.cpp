@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/json_text.hpp"
+#include "apps/takt/live/daemon_client.hpp"
+#include "master/explain/emcy_text.hpp"
+#include "master/gateway/notice/emcy_log.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/messages.hpp"
+#include "master/lcm/printable_text.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+struct EmcyOptions {
+  LiveOptions live;
+  std::string node;
+  bool follow = false;
+};
+
+struct Told {
+  std::int16_t node = 0;
+  std::string name;
+  EmcyRecord record;
+  std::string words;
+};
+
+std::atomic<bool> interrupted = false;
+
+/// Returns the local time, for example "14:03:07.123".
+std::string clock_text(std::int64_t utime) {
+  const auto seconds = static_cast<std::time_t>(utime / 1'000'000);
+  return fmt::format("{:%H:%M:%S}.{:03}", fmt::localtime(seconds), utime / 1000 % 1000);
+}
+
+std::string bytes_text(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes)
+    text += fmt::format("{}{:02X}", text.empty() ? "" : " ", byte);
+  return text;
+}
+
+nlohmann::json to_json(const Told& told) {
+  const EmcyRecord& record = told.record;
+  return {{"utime", record.utime},
+          {"node_id", told.node},
+          {"node", told.name},
+          {"code", record.code()},
+          {"text", told.words},
+          {"error_register", record.error_register()},
+          {"error_register_text", error_register_text(record.error_register())},
+          {"manufacturer", std::vector<int>{record.bytes.begin() + 3, record.bytes.end()}}};
+}
+
+void print(const Told& told) {
+  const EmcyRecord& record = told.record;
+  std::printf("%s\n", fmt::format("{}  node {} {:<12} 0x{:04X}  {} (register: {}; vendor bytes {})",
+                                  clock_text(record.utime), told.node, printable_text(told.name),
+                                  record.code(), printable_text(told.words),
+                                  error_register_text(record.error_register()),
+                                  bytes_text(std::span{record.bytes}.subspan(3)))
+                          .c_str());
+}
+
+/// Returns the EMCY history of all nodes, or of node `only` if it is not 0, in the order of time.
+std::expected<std::vector<Told>, LiveError> history(DaemonClient& daemon, std::int16_t only) {
+  std::vector<Told> all;
+  for (const node_status_t& node : daemon.status().nodes) {
+    if (only != 0 && node.node_id != only) continue;
+    if (node.emcy_count == 0) continue;
+    request_t request{};
+    request.service = "emcy_history";
+    request.node_id = node.node_id;
+    const auto reply = daemon.ask(std::move(request), std::chrono::seconds{3});
+    if (!reply) return std::unexpected{reply.error()};
+    if (reply->good == 0) return std::unexpected{LiveError{reply->text, 1}};
+    const std::vector<std::uint8_t> bytes{reply->data.begin(), reply->data.end()};
+    const auto own = unpack_texts(reply->text);
+    for (const EmcyRecord& record : unpack_emcys(bytes)) {
+      const auto found = own.find(record.code());
+      all.push_back({node.node_id, node.name, record,
+                     found == own.end() ? std::string{emcy_text(record.code())} : found->second});
+    }
+  }
+  std::ranges::stable_sort(all, {}, [](const Told& told) { return told.record.utime; });
+  return all;
+}
+
+/// Prints the EMCYs that the daemon reports from now on.
+int follow(const EmcyOptions& options, const std::string& bus, std::int16_t only) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const std::string events = channel_name(bus, "EVENT");
+  auto lcm = open_live(options.live, {any_bus("EVENT")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
+  while (!interrupted) {
+    lcm->serve(
+        [&](std::string_view channel, std::span<const std::byte> data) {
+          if (channel != events) return;
+          const auto event = decode<event_t>(data);
+          if (!event || event->kind != "emcy" || (only != 0 && event->node_id != only)) return;
+          if (options.live.json) {
+            const nlohmann::json line{{"utime", event->utime},
+                                      {"node_id", event->node_id},
+                                      {"node", event->node},
+                                      {"text", event->text}};
+            std::puts(json_text(line).c_str());
+          } else {
+            std::printf("%s  %s\n", clock_text(event->utime).c_str(),
+                        printable_lines(event->text).c_str());
+          }
+          std::fflush(stdout);
+        },
+        monotonic_now() + std::chrono::milliseconds{200});
+  }
+  return 0;
+}
+
+int run(const EmcyOptions& options) {
+  auto daemon = DaemonClient::find(options.live);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  std::int16_t only = 0;
+  if (!options.node.empty()) {
+    const auto node = daemon->node(options.node);
+    if (!node) return complain(node.error().sentence, node.error().code);
+    only = *node;
+  }
+  const auto told = history(*daemon, only);
+  if (!told) return complain(told.error().sentence, told.error().code);
+  if (options.live.json && !options.follow) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const Told& one : *told) all.push_back(to_json(one));
+    const nlohmann::json document{{"bus", daemon->status().bus}, {"emcys", std::move(all)}};
+    std::puts(json_text(document, 1).c_str());
+  } else if (!options.live.json) {
+    for (const Told& one : *told) print(one);
+  }
+  std::fflush(stdout);
+  return options.follow ? follow(options, daemon->status().bus, only) : 0;
+}
+
+}  // namespace
+
+void add_emcy(CLI::App& app, int& exit_code) {
+  auto* verb =
+      app.add_subcommand("emcy", "prints the EMCYs that nodes have sent, with their meaning");
+  verb->footer(
+      "Examples:\n  takt emcy                 the newest 32 EMCYs of each node\n"
+      "  takt emcy shoulder --json\n  takt emcy --follow        also those that arrive later");
+  auto options = std::make_shared<EmcyOptions>();
+  verb->add_option("NODE", options->node, "node id or name; default: all nodes");
+  verb->add_flag("-f,--follow", options->follow,
+                 "continue with the EMCYs that arrive, until interrupted");
+  add_live_options(*verb, options->live);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

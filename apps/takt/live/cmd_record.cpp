@@ -1,0 +1,42 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/takt/live/daemon_client.hpp"
+#include "master/lcm/printable_text.hpp"
+
+namespace takt {
+namespace {
+
+/// Longer than the least interval between two recordings plus the time to write the files.
+constexpr std::chrono::seconds patience{30};
+
+int run(const LiveOptions& options) {
+  auto daemon = DaemonClient::find(options);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  request_t request{};
+  request.service = "record";
+  const auto reply = daemon->ask(std::move(request), patience);
+  if (!reply) return complain(reply.error().sentence, reply.error().code);
+  if (reply->good == 0) return complain(reply->text, 1);
+  std::puts(printable_text(reply->text).c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& exit_code) {
+  auto* verb =
+      app.add_subcommand("record", "makes the daemon write a recording of its last seconds");
+  verb->footer(
+      "The daemon needs --black-box, or `black_box:` in the network file. takt record prints the\n"
+      "path of the recording, which is on the machine of taktd.\n\n"
+      "Example:\n"
+      "  takt replay $(takt record)");
+  auto options = std::make_shared<LiveOptions>();
+  add_live_options(*verb, *options);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

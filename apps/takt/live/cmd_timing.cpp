@@ -1,0 +1,122 @@
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/json_text.hpp"
+#include "apps/takt/live/daemon_client.hpp"
+#include "apps/takt/live/image_delay.hpp"
+#include "apps/takt/live/timing_table.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/printable_text.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time silence_limit = std::chrono::milliseconds{3500};
+
+struct TimingOptions {
+  LiveOptions live;
+  bool follow = false;
+};
+
+std::atomic<bool> interrupted = false;
+
+void print(const std::string& bus, const timing_t& timing, const TimingOptions& options) {
+  if (options.live.json) {
+    nlohmann::json document = timing_json(timing);
+    document["bus"] = bus;
+    const int indent = options.follow ? one_line : 1;
+    std::puts(json_text(document, indent).c_str());
+  } else {
+    std::printf("%s at cycle %lld, the last second\n", bus.c_str(),
+                static_cast<long long>(timing.cycle));
+    for (const std::string& line : timing_lines(timing)) std::puts(printable_text(line).c_str());
+  }
+  std::fflush(stdout);
+}
+
+/// Receives the timing messages and the images of one bus.
+class TimingEar {
+ public:
+  TimingEar(LcmClient lcm, const std::string& bus)
+      : lcm_{std::move(lcm)},
+        timing_channel_{channel_name(bus, "TIMING")},
+        image_channel_{channel_name(bus, "IMAGE")} {}
+
+  /// Returns the next timing_t, with the delays of the images that arrived since the one before.
+  /// Returns std::nullopt if none comes in time, or after Ctrl-C.
+  std::optional<timing_t> next() {
+    newest_.reset();
+    const Time until = monotonic_now() + silence_limit;
+    while (!newest_ && !interrupted && monotonic_now() < until) {
+      lcm_.serve([this](std::string_view from, Bytes data) { take(from, data); },
+                 monotonic_now() + std::chrono::milliseconds{100});
+    }
+    return newest_;
+  }
+
+ private:
+  void take(std::string_view from, Bytes data) {
+    const Time now = monotonic_now();
+    if (from == image_channel_) {
+      if (const auto image = decode<image_t>(data)) delay_.take(*image, now, realtime_offset());
+    } else if (from == timing_channel_) {
+      auto timing = decode<timing_t>(data);
+      if (!timing) return;
+      timing->histograms.push_back(delay_.finish());
+      ++timing->num_histograms;
+      newest_ = std::move(*timing);
+    }
+  }
+
+  LcmClient lcm_;
+  std::string timing_channel_;
+  std::string image_channel_;
+  ImageDelay delay_;
+  std::optional<timing_t> newest_;
+};
+
+int run(const TimingOptions& options) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const auto daemon = DaemonClient::find(options.live);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  const std::string& bus = daemon->status().bus;
+  auto lcm = open_live(options.live, {any_bus("TIMING"), any_bus("IMAGE")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
+  TimingEar ear{std::move(*lcm), bus};
+  ear.next();  // discards the first message, so that all later rows cover the same second
+  do {
+    const auto timing = ear.next();
+    if (interrupted) break;
+    if (!timing)
+      return complain("the daemon of bus '" + bus + "' sends no timing messages any more", 3);
+    print(bus, *timing, options);
+  } while (options.follow);
+  return 0;
+}
+
+}  // namespace
+
+void add_timing(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("timing", "shows how punctual the cycle of a running daemon is");
+  verb->footer(
+      "The table covers the last second: how late SYNC was sent, how long after SYNC the last\n"
+      "synchronous PDO and the image came, the image was handed to LCM, and this program\n"
+      "received it (on the daemon's machine), and how old set-points were when they were sent.\n"
+      "Each column of the picture covers twice the time of the column before.\n"
+      "Examples:\n"
+      "  takt timing\n"
+      "  takt timing --follow --json > night.jsonl");
+  auto options = std::make_shared<TimingOptions>();
+  verb->add_flag("-f,--follow", options->follow, "print each second, until interrupted");
+  add_live_options(*verb, options->live);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,120 @@
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/takt/live/daemon_client.hpp"
+#include "apps/takt/live/screen.hpp"
+#include "apps/takt/live/top_frame.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time frame_period = std::chrono::milliseconds{100};
+constexpr Time first_limit = std::chrono::seconds{3};
+
+struct TopArguments {
+  LiveOptions live;
+  bool once = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+/// Returns the bus to show, the first if there are several. Returns null if there is none.
+const BusView* shown(const BusViews& views, const std::string& bus_name) {
+  const auto buses = chosen(views, bus_name);
+  return buses.empty() ? nullptr : buses.front();
+}
+
+void print(const std::vector<Line>& lines) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  const std::size_t width = terminal ? Screen::size().columns : 160;
+  for (const Line& line : lines) std::printf("%s\n", line.render(width, terminal).c_str());
+}
+
+int show_once(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
+  const Time limit = monotonic_now() + first_limit;
+  listen(lcm, views, limit, [&] {
+    const BusView* const bus = shown(views, bus_name);
+    return bus != nullptr && !bus->values().empty() && bus->timing();
+  });
+  const BusView* const bus = shown(views, bus_name);
+  if (bus == nullptr) {
+    const LiveError error = no_bus(views, lcm, bus_name);
+    return complain(error.sentence, error.code);
+  }
+  print(top_frame(*bus, {.rows = 0}).lines);
+  std::fflush(stdout);
+  const auto two = two_daemons({bus});
+  return two ? complain(two->sentence, two->code) : 0;
+}
+
+/// Returns false if the key ends the program.
+bool on_key(int key, TopOptions& options) {
+  if (key == 'q' || key == 'Q') return false;
+  if (key == Screen::key_down || key == 'j') ++options.first_signal;
+  if ((key == Screen::key_up || key == 'k') && options.first_signal > 0) --options.first_signal;
+  return true;
+}
+
+void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const Screen screen;
+  TopOptions options;
+  Time next_frame = monotonic_now();
+  while (!interrupted) {
+    while (const int key = Screen::key()) {
+      if (!on_key(key, options)) return;
+    }
+    next_frame = monotonic_now() + frame_period;
+    listen(lcm, views, next_frame, [] { return interrupted.load(); });
+    options.rows = Screen::size().rows;
+    const BusView* const bus = shown(views, bus_name);
+    if (bus != nullptr) {
+      const TopFrame frame = top_frame(*bus, options);
+      options.first_signal = frame.first_signal;
+      screen.show(frame.lines);
+    } else {
+      const std::string why = views.buses().empty() ? "no daemon answers on " + lcm.where()
+                                                    : no_bus(views, lcm, bus_name).sentence;
+      screen.show({Line{}.add(why + " (q quits)", Paint::dim)});
+    }
+  }
+}
+
+int run(const TopArguments& arguments) {
+  auto lcm = open_live(arguments.live, {any_bus("STATUS"), any_bus("LAYOUT"), any_bus("IMAGE"),
+                                        any_bus("TIMING"), any_bus("EVENT"), any_bus("SYNC")});
+  if (!lcm) return complain(lcm.error().sentence, lcm.error().code);
+  BusViews views;
+  const bool live = !arguments.once && ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDIN_FILENO) != 0;
+  if (!live) return show_once(*lcm, views, arguments.live.bus_name);
+  show_live(*lcm, views, arguments.live.bus_name);
+  return 0;
+}
+
+}  // namespace
+
+void add_top(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("top", "shows a live view of a running daemon");
+  verb->footer(
+      "Keys: q quits, arrows scroll the values.\nExamples:\n  takt top\n"
+      "  takt top --once            prints the view once, for scripts\n"
+      "  takt top --bus-name lift");
+  auto arguments = std::make_shared<TopArguments>();
+  verb->add_option("--lcm-url", arguments->live.lcm_url,
+                   "LCM URL of the daemon; default: LCM_DEFAULT_URL")
+      ->type_name("URL");
+  verb->add_option("--bus-name", arguments->live.bus_name, "name of the bus, if there are several")
+      ->type_name("NAME");
+  verb->add_flag("--once", arguments->once, "print the view once and end");
+  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace takt

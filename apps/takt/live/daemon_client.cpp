@@ -1,0 +1,181 @@
+#include "apps/takt/live/daemon_client.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <unistd.h>
+
+#include "master/lcm/channel_names.hpp"
+#include "master/lcm/envelope/key_file.hpp"
+#include "master/lcm/printable_text.hpp"
+#include "master/lcm/random_number.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time find_limit = std::chrono::milliseconds{2500};
+constexpr Time settle =
+    std::chrono::milliseconds{250};  // every bus sends a status within this time
+
+/// Returns true if the status names the bus of its own channel, as that of every daemon does. A
+/// message that names another bus does not count, so that the user need not choose between the two.
+bool has_status(std::string_view bus, const BusView& view) {
+  return view.status() &&
+         bus_of_channel(channel_name(view.status()->bus, "STATUS"), "STATUS") == bus;
+}
+
+std::string names_of(const BusViews& views) {
+  std::string names;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!has_status(bus, view)) continue;
+    names += (names.empty() ? "" : ", ") + view.status()->bus;
+  }
+  return names;
+}
+
+std::expected<status_t, LiveError> choose(const BusViews& views, const LcmClient& lcm,
+                                          const std::string& bus_name) {
+  const auto buses = chosen(views, bus_name);
+  if (buses.empty()) return std::unexpected{no_bus(views, lcm, bus_name)};
+  if (auto two = two_daemons(buses)) return std::unexpected{std::move(*two)};
+  if (buses.size() > 1) {
+    return std::unexpected{
+        LiveError{"LCM carries several buses: " + names_of(views) + "; choose with --bus-name", 2}};
+  }
+  return *buses.front()->status();
+}
+
+/// Returns an id that is unique among all programs that send requests at the same time.
+std::int64_t new_request_id() { return realtime_now().count(); }
+
+}  // namespace
+
+std::vector<const BusView*> chosen(const BusViews& views, const std::string& bus_name) {
+  std::vector<const BusView*> buses;
+  for (const auto& [bus, view] : views.buses()) {
+    if (!has_status(bus, view)) continue;
+    if (bus_name.empty() || view.status()->bus == bus_name || bus == bus_name) {
+      buses.push_back(&view);
+    }
+  }
+  return buses;
+}
+
+std::optional<LiveError> two_daemons(const std::vector<const BusView*>& buses) {
+  const auto found = std::ranges::find_if(buses, &BusView::two_daemons);
+  if (found == buses.end()) return std::nullopt;
+  return LiveError{
+      "two daemons run a bus named '" + (*found)->status()->bus +
+          "' on this LCM, and --bus-name can't choose between them; stop one daemon, or give each "
+          "its own LCM URL (`lcm: {url: ...}`) and choose with --lcm-url. If the right daemon has "
+          "`authenticate: images`, --check-images accepts only its messages",
+      3};
+}
+
+LiveError no_bus(const BusViews& views, const LcmClient& lcm, const std::string& bus_name) {
+  const std::string others = names_of(views);
+  if (!others.empty()) return {"there is no bus '" + bus_name + "'; the buses are: " + others, 2};
+  const std::string which = bus_name.empty() ? std::string{} : " for bus '" + bus_name + "'";
+  return {"no daemon" + which + " answers on " + lcm.where() +
+              ". Is taktd running? At its start taktd prints the LCM_DEFAULT_URL to set",
+          3};
+}
+
+void listen(LcmClient& lcm, BusViews& views, Time until, const std::function<bool()>& enough) {
+  std::string told;
+  while (!enough() && monotonic_now() < until) {
+    lcm.serve(
+        [&](std::string_view channel, std::span<const std::byte> data) {
+          const std::string trouble = views.take(channel, data);
+          if (trouble.empty() || trouble == told) return;
+          told = trouble;
+          std::fprintf(stderr, "takt: %s\n", printable_text(trouble).c_str());
+        },
+        until);
+  }
+}
+
+std::expected<LcmClient, LiveError> open_live(const LiveOptions& options,
+                                              const std::vector<std::string>& patterns) {
+  std::optional<WatchedKeyFile> signers;
+  if (options.check_images) {
+    if (options.keys.empty()) {
+      return std::unexpected{LiveError{"--check-images needs a key file: --keys FILE", 2}};
+    }
+    auto keys = WatchedKeyFile::open(options.keys);
+    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
+    signers = std::move(*keys);
+  }
+  auto lcm = LcmClient::open(options.lcm_url, patterns, signers);
+  if (!lcm) return std::unexpected{LiveError{lcm.error(), 3}};
+  return std::move(*lcm);
+}
+
+std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& options) {
+  std::optional<EnvelopeSeal> seal;
+  if (!options.keys.empty()) {
+    const auto keys = load_keys(options.keys);
+    if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
+    seal.emplace(keys->front(), random_number());
+  }
+  auto lcm = open_live(options, {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
+  if (!lcm) return std::unexpected{lcm.error()};
+  BusViews views;
+  const auto found = [&] { return !chosen(views, options.bus_name).empty(); };
+  listen(*lcm, views, monotonic_now() + find_limit, found);
+  if (found()) listen(*lcm, views, monotonic_now() + settle, [] { return false; });
+  auto status = choose(views, *lcm, options.bus_name);
+  if (!status) return std::unexpected{status.error()};
+  return DaemonClient{std::move(*lcm), std::move(*status), std::move(seal)};
+}
+
+void DaemonClient::send(std::string_view what, Bytes message) {
+  const std::string channel = channel_name(status_.bus, what);
+  if (!seal_) return lcm_.publish(channel, message);
+  lcm_.publish(channel_name(status_.bus, "SECURED"),
+               seal_->seal(channel, message, status_.session, realtime_now()));
+}
+
+std::expected<std::int16_t, LiveError> DaemonClient::node(const std::string& text) const {
+  if (text == "all") return std::int16_t{0};
+  const auto id = parse_node_id(text);
+  std::string known;
+  for (const node_status_t& node : status_.nodes) {
+    if (node.name == text || (id && node.node_id == id->value())) return node.node_id;
+    known += (known.empty() ? "" : ", ") + std::to_string(node.node_id) + " " + node.name;
+  }
+  return std::unexpected{LiveError{
+      "bus '" + status_.bus + "' has no node '" + text + "'; the nodes are: " + known, 2}};
+}
+
+std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limit) {
+  std::vector<std::byte> buffer;
+  request.schema = message_schema;
+  request.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+  request.session = status_.session;
+  request.id = new_request_id();
+  request.sender = "takt-" + std::to_string(::getpid());
+  send("REQUEST", encode(request, buffer));
+  const std::string answers = channel_name(status_.bus, "REPLY");
+  const Time until = monotonic_now() + limit;
+  std::optional<reply_t> answer;
+  while (!answer && monotonic_now() < until) {
+    lcm_.serve(
+        [&](std::string_view channel, std::span<const std::byte> data) {
+          if (channel != answers) return;
+          auto reply = decode<reply_t>(data);
+          const bool ours = reply && reply->id == request.id && reply->sender == request.sender;
+          if (ours) answer = std::move(*reply);
+        },
+        until);
+  }
+  if (answer) return std::move(*answer);
+  return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer" +
+                                       (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
+                                              : "; does it require a key (--keys)?"),
+                                   3}};
+}
+
+}  // namespace takt

@@ -1,0 +1,85 @@
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/known_words.hpp"
+#include "apps/takt/live/daemon_client.hpp"
+#include "eds_parser/table/boot_plan.hpp"
+#include "master/linux/bus/frame_channel.hpp"
+
+namespace takt {
+namespace {
+
+struct NmtOptions {
+  LiveOptions live;
+  std::string command;
+  std::string node;
+  std::string bus;
+};
+
+const std::map<std::string, NmtCommand> commands{{"start", NmtCommand::start},
+                                                 {"stop", NmtCommand::stop},
+                                                 {"preop", NmtCommand::enter_preoperational},
+                                                 {"reset", NmtCommand::reset_node},
+                                                 {"reset-comm", NmtCommand::reset_communication}};
+
+int run_on_bus(const NmtOptions& options) {
+  const auto id = parse_node_id(options.node);
+  if (!id && options.node != "all") {
+    return complain("'" + options.node + "' is not a node id 1..127 or all", 2);
+  }
+  auto channel = FrameChannel::open(options.bus, BusMember::guest);
+  if (!channel) return complain(channel.error().message, 3);
+  const std::uint8_t node = id ? id->value() : std::uint8_t{0};
+  const Frame frame =
+      make_frame(CobId::base(0), {static_cast<std::uint8_t>(commands.at(options.command)), node});
+  if (!channel->send(frame)) return complain("the frame could not be sent on " + options.bus, 3);
+  return 0;
+}
+
+/// Returns how long to wait for the answer. The daemon sends a command that ends the PDO exchange
+/// only after it has stopped the axes in order.
+std::chrono::seconds patience(const std::string& command) {
+  const bool after_axes = command == "stop" || command == "preop";
+  return std::chrono::seconds{after_axes ? 65 : 3};  // `stop_timeout` is at most 60 s
+}
+
+int run(const NmtOptions& options) {
+  if (!options.bus.empty()) return run_on_bus(options);
+  auto daemon = DaemonClient::find(options.live);
+  if (!daemon) return complain(daemon.error().sentence, daemon.error().code);
+  const auto id = parse_node_id(options.node);  // may be the node-ID of the master itself
+  const auto node = daemon->node(options.node);
+  if (!node && !id) return complain(node.error().sentence, node.error().code);
+  request_t request{};
+  request.service = "nmt";
+  request.node_id = node ? *node : std::int16_t{id->value()};
+  request.nmt_command = static_cast<std::int16_t>(commands.at(options.command));
+  const auto reply = daemon->ask(std::move(request), patience(options.command));
+  if (!reply) return complain(reply.error().sentence, reply.error().code);
+  return reply->good != 0 ? 0 : complain(reply->text, 1);
+}
+
+}  // namespace
+
+void add_nmt(CLI::App& app, int& exit_code) {
+  auto* verb = app.add_subcommand("nmt", "starts, stops and resets nodes");
+  verb->footer(
+      "Before stop and preop the daemon stops the enabled axes in order; the command lasts until\n"
+      "then. A reset is sent at once. With --bus every command is sent at once.\n\n"
+      "Examples:\n  takt nmt reset 5\n  takt nmt preop all --bus-name lift\n"
+      "  takt nmt start 5 --bus can0      needs no daemon");
+  auto options = std::make_shared<NmtOptions>();
+  verb->add_option("COMMAND", options->command, "start, stop, preop, reset, reset-comm")
+      ->required()
+      ->check(one_of({"start", "stop", "preop", "reset", "reset-comm"}));
+  verb->add_option("NODE", options->node, "node id (also the master's), name, or all")->required();
+  verb->add_option("--bus", options->bus, "work directly on can0 or unix:PATH, without a daemon")
+      ->type_name("IFACE");
+  add_live_options(*verb, options->live);
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

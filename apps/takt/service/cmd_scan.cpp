@@ -1,0 +1,206 @@
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/interrupt.hpp"
+#include "apps/command_line/json_text.hpp"
+#include "apps/command_line/live_arguments.hpp"
+#include "apps/command_line/whole_number.hpp"
+#include "apps/takt/learn/device_files.hpp"
+#include "apps/takt/live/screen.hpp"
+#include "apps/takt/live/top_frame.hpp"
+#include "apps/takt/service/bus_scan.hpp"
+#include "master/linux/bus/frame_channel.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+struct ScanOptions {
+  std::string bus;
+  std::vector<std::string> folders;
+  int timeout_ms = 200;
+  int listen_ms = 1200;
+  bool json = false;
+};
+
+/// A node and the device file that fits it.
+struct Found {
+  std::uint8_t id = 0;
+  ScannedNode node;
+  DeviceFiles::Match file;
+};
+
+// After this time with a full transmit queue, no node acknowledges the frames.
+constexpr Time longest_jam = std::chrono::seconds{2};
+
+void hear(BusScan& scan, FrameChannel& channel) {
+  StampedFrame frame;
+  if (channel.receive(frame, std::chrono::milliseconds{1})) {
+    scan.on_frame(frame.frame, monotonic_now());
+  }
+}
+
+/// Sends all frames. Waits if the transmit queue is full, because most interfaces hold only ten
+/// frames. Returns false if no frame can be sent for longest_jam.
+bool send(std::span<const Frame> frames, BusScan& scan, FrameChannel& channel) {
+  const Time limit = monotonic_now() + longest_jam;
+  for (;;) {
+    frames = frames.subspan(channel.send(frames).sent);
+    if (frames.empty()) return true;
+    if (monotonic_now() > limit) return false;
+    hear(scan, channel);
+  }
+}
+
+std::expected<BusScan, std::string> scan_bus(const ScanOptions& options) {
+  auto channel = FrameChannel::open(options.bus, BusMember::guest);
+  if (!channel) return std::unexpected{channel.error().message};
+  BusScan scan{std::chrono::milliseconds{options.timeout_ms}};
+  const Time listens_until = monotonic_now() + std::chrono::milliseconds{options.listen_ms};
+  const Interrupt interrupt;
+  while ((!scan.done() || monotonic_now() < listens_until) && !Interrupt::asked()) {
+    Outbox out;
+    scan.on_time(monotonic_now(), out);
+    if (!send(out.frames(), scan, *channel)) {
+      return std::unexpected{"a frame could not be sent on " + options.bus +
+                             ": the interface is down, or no node acknowledges frames"};
+    }
+    hear(scan, *channel);
+  }
+  return scan;
+}
+
+std::string hex(std::optional<std::uint32_t> value) {
+  return value ? fmt::format("0x{:08X}", *value) : "-";
+}
+
+std::string state(const ScannedNode& node) {
+  return node.state == NmtState::unknown ? "no heartbeat" : nmt_name(static_cast<int>(node.state));
+}
+
+std::string profile(const ScannedNode& node) {
+  if (!node.device_type) return node.answers ? "-" : "silent";
+  const std::uint32_t number = *node.device_type & 0xFFFF;
+  return number == 0 ? "no profile" : fmt::format("CiA {}", number);
+}
+
+std::string file_text(const Found& found, bool wanted) {
+  if (!wanted) return {};
+  if (found.file.path.empty()) return "no file fits";
+  std::string text = found.file.path.string();
+  if (found.file.other_revision) text += " (of another revision)";
+  if (found.file.rivals != 0) text += fmt::format(" ({} more fit)", found.file.rivals);
+  return text;
+}
+
+void print(const std::vector<Found>& nodes, bool with_files) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  const std::size_t width = terminal ? Screen::size().columns : 250;
+  Line head;
+  head.add(
+      " NODE  STATE            PROFILE     VENDOR      PRODUCT     REVISION    SERIAL      NAME",
+      Paint::dim);
+  std::puts(head.render(width, terminal).c_str());
+  for (const Found& found : nodes) {
+    Line line;
+    line.add(right(std::to_string(found.id), 5))
+        .add("  " + left(state(found.node), 17))
+        .add(left(profile(found.node), 12));
+    for (const auto& number : found.node.identity) line.add(left(hex(number), 12));
+    line.add(with_files ? left(found.node.name, 24) : found.node.name, Paint::title)
+        .add(file_text(found, with_files), Paint::dim);
+    std::puts(line.render(width, terminal).c_str());
+  }
+}
+
+nlohmann::json to_json(const Found& found) {
+  static constexpr std::array names{"vendor_id", "product_code", "revision_number",
+                                    "serial_number"};
+  const auto number = [](std::optional<std::uint32_t> value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  nlohmann::json json{{"node_id", found.id},
+                      {"state", nmt_name(static_cast<int>(found.node.state))},
+                      {"answers_sdo", found.node.answers},
+                      {"device_type", number(found.node.device_type)},
+                      {"name", found.node.name},
+                      {"eds", nullptr}};
+  for (std::size_t i = 0; i < names.size(); ++i) json[names[i]] = number(found.node.identity[i]);
+  if (!found.file.path.empty()) {
+    json["eds"] = found.file.path.string();
+    json["eds_of_another_revision"] = found.file.other_revision;
+  }
+  return json;
+}
+
+std::vector<Found> with_files(const BusScan& scan, const DeviceFiles& files) {
+  std::vector<Found> all;
+  for (const auto& [id, node] : scan.nodes()) {
+    const SeenIdentity identity{.device_type = node.device_type.value_or(0),
+                                .vendor_id = node.identity[0].value_or(0),
+                                .product_code = node.identity[1].value_or(0),
+                                .revision_number = node.identity[2].value_or(0),
+                                .serial_number = node.identity[3].value_or(0)};
+    all.push_back({id, node, files.find(id, identity)});
+  }
+  return all;
+}
+
+int run(const ScanOptions& options) {
+  DeviceFiles files;
+  Findings findings;
+  for (const std::string& folder : options.folders) files.add_folder(folder, findings);
+  if (!findings.empty()) return complain(to_string(findings.front()), 2);
+  const auto scan = scan_bus(options);
+  if (!scan) return complain(scan.error(), 3);
+  if (scan->met_another_client()) {
+    complain("another program sends SDO requests on " + options.bus +
+                 " (a running taktd?), so answers may be mixed up; `takt status` asks the daemon",
+             0);
+  }
+  const std::vector<Found> nodes = with_files(*scan, files);
+  if (options.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const Found& found : nodes) all.push_back(to_json(found));
+    const nlohmann::json document{{"bus", options.bus}, {"nodes", std::move(all)}};
+    std::puts(json_text(document, 1).c_str());
+  } else if (!nodes.empty()) {
+    print(nodes, !options.folders.empty());
+  }
+  if (!nodes.empty()) return 0;
+  return complain("no device answers on " + options.bus +
+                      ": is the bit rate right, are the devices powered, is the bus terminated? "
+                      "`takt lss find` finds devices without node id",
+                  1);
+}
+
+}  // namespace
+
+void add_scan(CLI::App& app, int& exit_code) {
+  auto* verb =
+      app.add_subcommand("scan", "lists the devices on a bus: node, state, identity, device file");
+  verb->footer(
+      "takt scan reads 0x1000, 0x1018 and 0x1008 of all node ids and listens to heartbeats. The\n"
+      "command changes nothing.\n"
+      "Examples:\n  takt scan --bus can0\n  takt scan --bus can0 --eds-dir vendor/ --json");
+  auto options = std::make_shared<ScanOptions>();
+  verb->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
+  verb->add_option("--eds-dir", options->folders,
+                   "folder with EDS and DCF files to match with the devices")
+      ->type_name("DIR");
+  add_number(*verb, "--timeout", options->timeout_ms, "longest silence of a node, ms")
+      ->check(CLI::Range(1, 60000))
+      ->type_name("MS");
+  add_number(*verb, "--listen", options->listen_ms, "shortest time to listen to heartbeats, ms")
+      ->check(CLI::Range(0, 600000))
+      ->type_name("MS");
+  verb->add_flag("--json", options->json, "print one JSON document");
+  verb->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace takt

@@ -1,0 +1,182 @@
+#include "apps/takt/service/file_transfer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <unistd.h>
+#include <utility>
+
+#include "apps/command_line/interrupt.hpp"
+#include "master/gateway/command/transfers.hpp"
+#include "master/lcm/channel_names.hpp"
+#include "master/linux/clock.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time repeat_after = 300ms;  // without a state, a message was probably lost
+constexpr Time ask_every = 1s;        // interval of status messages while the transfer runs
+constexpr Time most_silence = 5s;     // longest time without a message from the daemon
+
+}  // namespace
+
+FileTransfer::FileTransfer(DaemonClient& daemon, Target target, Progress progress)
+    : daemon_{daemon},
+      target_{target},
+      progress_{std::move(progress)},
+      id_{realtime_now().count()},
+      sender_{"takt-" + std::to_string(::getpid())} {}
+
+transfer_t FileTransfer::message(const char* action) const {
+  transfer_t out{};
+  out.schema = message_schema;
+  out.session = daemon_.status().session;
+  out.id = id_;
+  out.sender = sender_;
+  out.action = action;
+  out.node_id = target_.node;
+  out.index = target_.object.index;
+  out.sub = target_.object.sub;
+  out.timeout_ms = target_.timeout_ms;
+  return out;
+}
+
+void FileTransfer::send(transfer_t out) {
+  out.utime = std::chrono::duration_cast<std::chrono::microseconds>(realtime_now()).count();
+  daemon_.send("TRANSFER", encode(out, buffer_));
+}
+
+bool FileTransfer::hear(Time until) {
+  const std::string channel = channel_name(daemon_.status().bus, "TRANSFER_STATE");
+  bool heard = false;
+  while (!heard && monotonic_now() < until) {
+    daemon_.lcm().serve(
+        [&](std::string_view from, std::span<const std::byte> data) {
+          if (from != channel) return;
+          auto state = decode<transfer_state_t>(data);
+          if (!state || state->id != id_ || state->sender != sender_) return;
+          if (!state->data.empty() && state->offset == static_cast<std::int64_t>(value_.size())) {
+            for (const std::uint8_t byte : state->data) value_.push_back(std::byte{byte});
+          }
+          state_ = std::move(*state);
+          heard = true;
+        },
+        std::min(until, monotonic_now() + 100ms));
+    if (Interrupt::asked() && !std::exchange(aborted_, true)) send(message("abort"));
+  }
+  return heard;
+}
+
+std::unexpected<LiveError> FileTransfer::silent() const {
+  return std::unexpected{
+      LiveError{"the daemon of bus '" + daemon_.status().bus + "' did not answer", 3}};
+}
+
+std::expected<void, LiveError> FileTransfer::failure() const {
+  if (state_.stage != "failed") return {};
+  if (aborted_) return std::unexpected{LiveError{"interrupted; the transfer was aborted", 1}};
+  return std::unexpected{LiveError{state_.text, 1}};
+}
+
+std::expected<void, LiveError> FileTransfer::begin(const char* action, std::size_t total) {
+  transfer_t first = message(action);
+  first.total = static_cast<std::int64_t>(total);
+  for (const Time until = monotonic_now() + most_silence; monotonic_now() < until;) {
+    send(first);
+    if (hear(monotonic_now() + repeat_after)) return failure();
+  }
+  return silent();
+}
+
+/// Sends the value in parts. The parts of one window follow each other without waiting; the daemon
+/// reports how much it has received.
+std::expected<void, LiveError> FileTransfer::fill(std::span<const std::byte> value) {
+  Time limit = monotonic_now() + most_silence;
+  std::size_t sent = 0;
+  while (state_.stage == "filling") {
+    const auto received = static_cast<std::size_t>(state_.received);
+    sent = std::max(sent, received);
+    const std::size_t window = received + Transfers::parts_at_once * Transfers::part_bytes;
+    for (; sent < std::min(window, value.size());) {
+      transfer_t part = message("data");
+      part.offset = static_cast<std::int64_t>(sent);
+      const std::size_t size = std::min(Transfers::part_bytes, value.size() - sent);
+      part.size = static_cast<std::int32_t>(size);
+      for (const std::byte byte : value.subspan(sent, size)) {
+        part.data.push_back(std::to_integer<std::uint8_t>(byte));
+      }
+      send(std::move(part));
+      sent += size;
+    }
+    if (hear(monotonic_now() + repeat_after)) {
+      limit = monotonic_now() + most_silence;
+    } else {
+      sent = static_cast<std::size_t>(state_.received);  // a part was lost; repeat from there
+    }
+    if (monotonic_now() > limit) return silent();
+  }
+  return failure();
+}
+
+/// Waits for the end of the transfer on the bus. The status messages also tell the daemon that this
+/// program still waits.
+std::expected<void, LiveError> FileTransfer::await_end() {
+  Time limit = monotonic_now() + most_silence;
+  Time ask_at = monotonic_now() + ask_every;
+  while (state_.stage == "running") {
+    progress_(static_cast<std::size_t>(state_.done), static_cast<std::size_t>(state_.total));
+    if (hear(ask_at)) limit = monotonic_now() + most_silence;
+    if (monotonic_now() > limit) return silent();
+    if (monotonic_now() < ask_at) continue;
+    ask_at = monotonic_now() + ask_every;
+    send(message("status"));
+  }
+  return failure();
+}
+
+std::expected<void, LiveError> FileTransfer::download(std::span<const std::byte> value) {
+  if (value.size() > Transfers::most_bytes) {
+    return std::unexpected{
+        LiveError{"a file has at most " + std::to_string(Transfers::most_bytes) + " bytes", 1}};
+  }
+  auto result = begin("download", value.size());
+  if (result) result = fill(value);
+  if (result) result = await_end();
+  send(message("end"));
+  return result;
+}
+
+std::expected<std::vector<std::byte>, LiveError> FileTransfer::upload(std::size_t limit) {
+  auto result = begin("upload", std::min(limit, Transfers::most_bytes));
+  if (result) result = await_end();
+  if (!result) {
+    send(message("end"));
+    return std::unexpected{result.error()};
+  }
+  auto value = fetch();
+  send(message("end"));
+  return value;
+}
+
+std::expected<std::vector<std::byte>, LiveError> FileTransfer::fetch() {
+  const auto total = static_cast<std::size_t>(state_.total);
+  Time limit = monotonic_now() + most_silence;
+  while (value_.size() < total) {
+    const std::size_t before = value_.size();
+    transfer_t more = message("more");
+    more.offset = static_cast<std::int64_t>(before);
+    more.total = static_cast<std::int64_t>(Transfers::parts_at_once * Transfers::part_bytes);
+    send(std::move(more));
+    const std::size_t wanted =
+        std::min(total, before + Transfers::parts_at_once * Transfers::part_bytes);
+    while (value_.size() < wanted && hear(monotonic_now() + repeat_after)) {
+      if (state_.stage == "failed") return std::unexpected{LiveError{state_.text, 1}};
+    }
+    if (value_.size() != before) limit = monotonic_now() + most_silence;
+    if (monotonic_now() > limit) return silent();
+  }
+  return std::move(value_);
+}
+
+}  // namespace takt

@@ -1,0 +1,112 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "apps/command_line/commands.hpp"
+#include "apps/command_line/duration.hpp"
+#include "apps/command_line/whole_number.hpp"
+#include "apps/takt/simulate/fault_file.hpp"
+#include "apps/takt/simulate/outcome_report.hpp"
+#include "apps/takt/simulate/simulation.hpp"
+
+namespace takt {
+namespace {
+
+struct Arguments {
+  std::string network;
+  std::string run_for = "10s";
+  std::string faults;
+  std::string jitter = "0us";
+  SimulationOptions simulation;
+  bool json = false;
+};
+
+bool tell(const Findings& findings) {
+  for (const Finding& finding : findings) std::cerr << to_string(finding) << '\n';
+  return has_error(findings);
+}
+
+int run(Arguments& arguments) {
+  const LoadedNetwork network = load_network(arguments.network);
+  if (tell(network.findings)) return 2;
+  SimulationOptions& options = arguments.simulation;
+  if (!arguments.faults.empty()) {
+    FaultFile file = read_fault_file(arguments.faults, network.plan, options.applications);
+    if (tell(file.findings)) return 2;
+    options.faults = std::move(file.faults);
+    options.programs = std::move(file.programs);
+  }
+  options.duration = *parse_duration(arguments.run_for);
+  options.wake_jitter = *parse_duration(arguments.jitter);
+
+  const auto start = std::chrono::steady_clock::now();
+  const SimulationOutcome outcome = simulate(network, options);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  if (arguments.json) {
+    print_json(std::cout, outcome);
+  } else {
+    print_text(std::cout, outcome);
+  }
+  const double simulated = std::chrono::duration<double>(outcome.simulated).count();
+  std::cerr << "simulated " << simulated << " s in " << took.count()
+            << " s: " << static_cast<long>(simulated / took.count()) << " times real time\n";
+  if (outcome.stop != StopResult::confirmed) return 6;
+  return outcome.mandatory_failed ? 4 : 0;
+}
+
+std::string check_duration(const std::string& text) {
+  return parse_duration(text) ? "" : "'" + text + "' is not a time like 100s, 500ms or 2h";
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  auto* command = app.add_subcommand("simulate", "runs the master and its devices in virtual time");
+  command->add_option("NET.yaml", arguments->network, "network file")->required();
+  command->add_option("--for", arguments->run_for, "simulated time until the ordered stop")
+      ->check(check_duration)
+      ->capture_default_str();
+  add_number(*command, "--seed", arguments->simulation.seed, "seed; equal seeds give equal runs")
+      ->capture_default_str();
+  command->add_option("--faults", arguments->faults,
+                      "file that lists faults and their times (YAML)");
+  auto* move = command->add_flag("--move", arguments->simulation.move,
+                                 "move all CiA 402 axes with a built-in sine, without application");
+  add_number(*command, "--applications", arguments->simulation.applications,
+             "run the whole taktd, and this many programs that move the axes")
+      ->check(CLI::Range(std::size_t{1}, most_applications))
+      ->excludes(move);
+  command->add_option("--jitter", arguments->jitter, "how late the simulated master's thread wakes")
+      ->check(check_duration)
+      ->capture_default_str();
+  command->add_option("--candump", arguments->simulation.candump, "write all frames to this file");
+  command->add_flag("--json", arguments->json,
+                    "print one JSON document, which is equal for equal seeds");
+  command->footer(
+      "Faults: a list under `faults:`, each {kind, node, at, for ...}. Kinds: loss, duplicate,\n"
+      "error_frames (probability), delay (time), babble (cob_id, data, time), power_off, drift\n"
+      "(ppm), mute_sdo (object), slow_sdo (time), refuse_object and refuse_write (object,\n"
+      "abort_code), ignore_write (object), override_value (object, value), fixed_mapping,\n"
+      "late_bootup and bootup_storm (time), no_bootup, self_start, no_start, preop_only,\n"
+      "no_heartbeat, no_guarding, stuck_toggle, mute_pdo, device_error (emcy_code), lss_silent,\n"
+      "lss_no_store, reset, bus_off, stall_master, interface_down. With --applications also\n"
+      "stall_front, kill_master, slow_messages (time), stall_application, slow_application\n"
+      "(time), kill_application, end_application, second_sender (these five also take\n"
+      "application), replay, forge_command, forge_image and damage_messages (time).\n"
+      "share/doc/faults.md has an example of each kind.\n\n"
+      "Example:\n"
+      "  takt simulate share/demo/two_axes.yaml --for 100s --move\n"
+      "  takt simulate share/demo/two_axes.yaml --applications 2 --faults crash.yaml\n"
+      "  takt simulate lift.yaml --for 1h --seed 7 --faults bad_day.yaml --json");
+  command->callback([arguments, &exit_code] {
+    try {
+      exit_code = run(*arguments);
+    } catch (const std::exception& exception) {
+      std::cerr << "takt simulate: " << exception.what() << '\n';
+      exit_code = 2;
+    }
+  });
+}
+
+}  // namespace takt

@@ -1,0 +1,143 @@
+#include "apps/takt/simulate/program/forger.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t memory = 8192;   // number of commands that the forger remembers
+constexpr Time as_good_as_new = 2s;    // a younger command may still be obeyed
+constexpr std::int64_t low_bits = 15;  // bits of a position that identify its sender
+constexpr std::int64_t nobody = 6;     // value of these bits that no program uses
+constexpr std::int64_t fewest_away =
+    50'000;                       // least cycles between a forged cycle and the true one
+constexpr Time least_away = 10s;  // the same distance as a time; no lease lasts longer than 1 s
+constexpr std::int64_t never_reached = std::int64_t{1} << 62;  // cycle number
+
+}  // namespace
+
+Forger::Forger(const BusPlan& plan, VirtualLcm& lcm, Forged forged, sim::Random random)
+    : plan_{plan},
+      forged_{std::move(forged)},
+      random_{random},
+      lcm_{lcm.join(1000, Echo::unheard)},
+      channels_{plan.name} {
+  lcm_.subscribe(channels_.command);
+  lcm_.subscribe(channels_.image);
+}
+
+void Forger::act(Time now) {
+  lcm_.serve([&](std::string_view channel, Bytes data) {
+    if (channel == channels_.image) {
+      image_.assign(data.begin(), data.end());
+      return;
+    }
+    heard_.push_back({.when = now, .command = {data.begin(), data.end()}});
+    if (heard_.size() > memory) heard_.pop_front();
+  });
+}
+
+void Forger::publish(const std::string& channel, Bytes data) {
+  ++sent_;
+  lcm_.publish(channel, data);
+}
+
+void Forger::act_up(Time now) {
+  switch (random_.below(4)) {
+    case 0:
+      return forge_image(now);
+    case 1:
+      return send_rubbish();
+    case 2:
+      return replay(now);
+    default:
+      return forge_command(now);
+  }
+}
+
+void Forger::replay(Time now) {
+  const auto old = std::ranges::partition_point(
+      heard_, [&](const Heard& heard) { return heard.when < now - as_good_as_new; });
+  const auto many = static_cast<std::uint32_t>(old - heard_.begin());
+  if (many == 0) return;
+  const std::uint32_t first = random_.below(many);
+  const std::uint32_t last = std::min(many, first + 1 + random_.below(60));
+  const bool from_no_cycle = random_.chance(0.5);
+  for (std::uint32_t i = first; i < last; ++i) {
+    auto command = decode<command_t>(heard_[i].command);
+    if (!command) continue;
+    if (from_no_cycle) command->cycle = 0;
+    if (random_.chance(0.1)) command->time_to_live = 0x7FFF'FFFF;
+    publish(channels_.command, encode(*command, buffer_));
+  }
+}
+
+/// Returns the true cycle, extrapolated by the clock from the newest image as in the daemon.
+/// Returns std::nullopt if no image has come yet.
+std::optional<std::int64_t> Forger::cycle_at(Time now) const {
+  const auto image = decode<image_t>(image_);
+  if (!image) return std::nullopt;
+  return image->cycle + (now - Time{image->sync_mono_ns}) / plan_.cycle.period;
+}
+
+std::int64_t Forger::far_away() const noexcept {
+  return std::max<std::int64_t>(fewest_away, least_away / plan_.cycle.period);
+}
+
+void Forger::forge_command(Time now) {
+  const auto cycle = cycle_at(now);
+  if (heard_.empty() || !cycle) return;
+  auto command = decode<command_t>(heard_.back().command);
+  if (!command) return;
+  const std::array<std::int64_t, 6> wrong_cycles{0,
+                                                 -1,
+                                                 *cycle + far_away() + random_.below(100'000),
+                                                 never_reached,
+                                                 std::int64_t{0x7FFF'FFFF'FFFF'FFFF},
+                                                 *cycle - 2 * far_away()};
+  const bool other_session = random_.chance(0.2);
+  if (other_session) {
+    command->session ^= static_cast<std::int64_t>(random_.next() >> 1 | 1U);
+  } else {
+    command->cycle = wrong_cycles[random_.below(wrong_cycles.size())];
+  }
+  if (random_.chance(0.3)) command->time_to_live = 0x7FFF'FFFF;
+  for (std::size_t i = 0; i < command->signals.size(); ++i) {
+    const auto signal = static_cast<SignalIndex>(command->signals[i]);
+    if (plan_.layout.signals[signal].object.index != 0x607A) continue;
+    command->values[i] = (command->values[i] & ~low_bits) | nobody;  // stays within every limit
+    forged_(signal, command->values[i]);
+  }
+  publish(channels_.command, encode(*command, buffer_));
+}
+
+void Forger::forge_image(Time now) {
+  const auto cycle = cycle_at(now);
+  auto image = decode<image_t>(image_);
+  if (!image || !cycle) return;
+  const std::int64_t ahead = *cycle + far_away() + random_.below(1'000'000);
+  image->cycle = random_.chance(0.5) ? never_reached : ahead;
+  publish(channels_.image, encode(*image, buffer_));
+}
+
+void Forger::send_rubbish() {
+  std::vector<std::byte> bytes;
+  if (!heard_.empty() && random_.chance(0.5)) {
+    bytes = heard_.back().command;
+    bytes.resize(random_.below(static_cast<std::uint32_t>(bytes.size())));
+  } else {
+    bytes.resize(random_.below(2000));
+    std::ranges::generate(bytes, [&] { return std::byte(random_.below(256)); });
+  }
+  const std::array channels{&channels_.command, &channels_.request, &channels_.image,
+                            &channels_.layout, &channels_.transfer};
+  publish(*channels[random_.below(channels.size())], bytes);
+}
+
+}  // namespace takt

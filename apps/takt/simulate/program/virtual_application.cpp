@@ -1,0 +1,222 @@
+#include "apps/takt/simulate/program/virtual_application.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "eds_parser/table/ids.hpp"
+#include "master/lcm/messages.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t socket_room = 300;      // messages
+constexpr std::int64_t stride = 16;           // counts per command; low bits identify the program
+constexpr std::int64_t downwards = 8;         // the low bit that marks a falling position
+constexpr std::int64_t most_push = 100;       // per mille of the rated torque
+constexpr std::int64_t push_velocity = 4;     // counts per second for each unit of push
+constexpr std::uint64_t images_a_reset = 60;  // between fault resets, which take several images
+constexpr double turn_before = 2000;          // distance from a limit, in counts
+constexpr Time longest_deafness = 3s;         // the layout is published once a second
+
+}  // namespace
+
+VirtualApplication::VirtualApplication(const BusPlan& plan, VirtualLcm& lcm,
+                                       ApplicationOptions options, sim::Random random)
+    : plan_{plan},
+      options_{std::move(options)},
+      random_{random},
+      lcm_{lcm.join(socket_room)},
+      channels_{plan.name} {}
+
+void VirtualApplication::start() {
+  running_ = true;
+  stalled_until_ = {};
+  instance_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
+  if (options_.instance) instance_ = options_.instance(instance_);
+  time_to_live_ = 8 + random_.below(20);
+  input_ = {};
+  axes_ = {};
+  courses_.clear();
+  jump_ = 0;
+  new_layout_ = fresh_ = false;
+  heard_ = 0;
+  lcm_.subscribe(channels_.image);
+  lcm_.subscribe(channels_.layout);
+}
+
+void VirtualApplication::kill() {
+  running_ = false;
+  lcm_.close();
+}
+
+void VirtualApplication::end(Time now) {
+  command_t& command = axes_.command();
+  keep_own_outputs(command);
+  command.instance = instance_;
+  command.sender = options_.name;
+  command.release = 1;
+  if (!command.signals.empty()) lcm_.publish(channels_.command, encode(command, buffer_));
+  if (options_.released) options_.released(now);
+  kill();
+}
+
+std::string VirtualApplication::text() const {
+  std::string words = "program " + std::to_string(options_.number);
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    words += ", " + axes_.name(i) + " (" + hex(axes_.statusword(i)) + ")";
+  }
+  return words;
+}
+
+std::size_t VirtualApplication::leads() const noexcept {
+  if (!running_) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(
+      courses_, [](const Course& course) { return course.position.has_value(); }));
+}
+
+Time VirtualApplication::next() const noexcept {
+  const Time arrival = lcm_.next_arrival();
+  if (!running_ || arrival == never) return never;
+  return std::max(arrival + reaction_, stalled_until_);
+}
+
+void VirtualApplication::act(Time now) {
+  reaction_ = slowness_ + 20us + Time{random_.below(random_.chance(0.02) ? 5'000'000 : 300'000)};
+  input_.set_time(now.count());
+  hears_ = false;
+  lcm_.serve([this](std::string_view channel, Bytes data) { take(channel, data); });
+  if (std::exchange(new_layout_, false)) {
+    axes_.set_layout(input_);
+    axes_.set_goal(DriveGoal::enabled);
+    courses_.assign(static_cast<std::size_t>(axes_.size()), {});
+    fresh_ = false;
+  }
+  judge_hearing(now);
+  if (!std::exchange(fresh_, false)) return;
+  follow_image();
+  send(now);
+}
+
+void VirtualApplication::take(std::string_view channel, Bytes data) {
+  if (channel == channels_.layout) {
+    if (const auto part = decode<layout_t>(data)) new_layout_ |= input_.take(*part);
+  } else if (const auto part = decode<image_t>(data)) {
+    hears_ = true;
+    if (options_.hears && !options_.hears(*part)) return;
+    if (!input_.take(*part)) return;
+    fresh_ = true;
+    sync_ = Time{part->sync_mono_ns};
+  }
+}
+
+/// Checks that a program that receives images uses the newest of them, whatever messages come in
+/// between. Images that waited while the program was stalled count once.
+void VirtualApplication::judge_hearing(Time now) {
+  if (fresh_) heard_ = 0;
+  if (fresh_ || !hears_) return;
+  if (heard_++ == 0) heard_since_ = now;
+  const auto enough = static_cast<std::uint64_t>(longest_deafness / plan_.cycle.period);
+  if (!options_.deaf || heard_ < enough || now - heard_since_ < longest_deafness) return;
+  options_.deaf("program " + std::to_string(options_.number) + " has received images " +
+                std::to_string(heard_) + " times in " + std::to_string((now - heard_since_) / 1ms) +
+                " ms, but used no image");
+}
+
+void VirtualApplication::follow_image() {
+  axes_.on_image(input_);
+  const bool resets = ++images_ % images_a_reset == 0;
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const DriveSequence& drive = axes_.drive(i);
+    if (drive.in_fault()) {
+      if (resets) axes_.reset_faults();
+    } else if (drive.goal() == DriveGoal::disabled) {
+      axes_.set_goal(i, DriveGoal::enabled);
+    }
+  }
+}
+
+void VirtualApplication::keep_own_outputs(command_t& command) const {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < command.signals.size(); ++i) {
+    const auto signal = static_cast<std::size_t>(command.signals[i]);
+    if (!options_.nodes[plan_.layout.signals[signal].node_index]) continue;
+    command.signals[kept] = command.signals[i];
+    command.values[kept++] = command.values[i];
+  }
+  command.signals.resize(kept);
+  command.values.resize(kept);
+  command.num_values = static_cast<std::int32_t>(kept);
+}
+
+std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int64_t from) {
+  Course& course = courses_[static_cast<std::size_t>(axis)];
+  const auto signal = static_cast<SignalIndex>(*axes_.signals(axis).target_position);
+  const auto at = static_cast<double>(from);
+  for (const OutputLimit& limit : plan_.limits.outputs) {
+    if (limit.signal != signal) continue;
+    if (at > limit.high - turn_before) course.down = true;
+    if (at < limit.low + turn_before) course.down = false;
+  }
+  const std::int64_t step = (from & -stride) / stride + (course.down ? -1 : 1);
+  const std::int64_t jump = has_push(axis) ? 0 : jump_;
+  course.position = step * stride + options_.number + (course.down ? downwards : 0) + jump;
+  return *course.position;
+}
+
+bool VirtualApplication::has_push(AxisControl::Index axis) const {
+  const AxisSignals& signals = axes_.signals(axis);
+  return signals.target_velocity || signals.target_torque;
+}
+
+/// Sets target velocity and target torque if the drive has them.
+void VirtualApplication::push(AxisControl::Index axis, command_t& command) {
+  Course& course = courses_[static_cast<std::size_t>(axis)];
+  if (course.push >= most_push) course.weaker = true;
+  if (course.push <= -most_push) course.weaker = false;
+  course.push += course.weaker ? -1 : 1;
+  course.apart += jump_;
+  const auto put = [&](AxisSignals::Position signal, std::int64_t value) {
+    if (!signal) return;
+    const auto at = std::ranges::find(command.signals, static_cast<std::int32_t>(*signal));
+    if (at == command.signals.end()) return;
+    command.values[static_cast<std::size_t>(at - command.signals.begin())] = value;
+  };
+  put(axes_.signals(axis).target_velocity, course.push * push_velocity + course.apart);
+  put(axes_.signals(axis).target_torque, course.push + course.apart);
+}
+
+void VirtualApplication::count_on(command_t& command) {
+  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+    const auto target = axes_.signals(i).target_position;
+    if (!target) continue;
+    const auto at = std::ranges::find(command.signals, *target);
+    if (at == command.signals.end()) continue;
+    Course& course = courses_[static_cast<std::size_t>(i)];
+    if (!axes_.drive(i).enabled()) {
+      course = {.position = {}, .down = course.down};
+      continue;
+    }
+    std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
+    value = next_position(i, course.position.value_or(value));
+    push(i, command);
+  }
+  jump_ = 0;
+}
+
+void VirtualApplication::send(Time now) {
+  command_t& command = axes_.command();
+  keep_own_outputs(command);
+  if (command.signals.empty()) return;
+  count_on(command);
+  command.utime = now / 1us;
+  command.instance = instance_;
+  command.sender = options_.name;
+  command.time_to_live = static_cast<std::int32_t>(time_to_live_);
+  if (options_.commanded) options_.commanded(command, sync_);
+  ++sent_;
+  lcm_.publish(channels_.command, encode(command, buffer_));
+}
+
+}  // namespace takt

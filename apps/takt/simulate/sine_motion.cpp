@@ -1,0 +1,103 @@
+#include "apps/takt/simulate/sine_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace takt {
+namespace {
+
+constexpr double frequency = 0.5;            // Hz
+constexpr double amplitude_si = 0.5;         // in the unit of the position, if it has one
+constexpr double amplitude_counts = 5000.0;  // for a position without a unit
+constexpr std::int64_t cyclic_position = 8;
+
+std::optional<SignalIndex> find(const ImageLayout& layout, NodeId node, std::uint16_t index,
+                                bool output) {
+  for (std::size_t i = 0; i < layout.signals.size(); ++i) {
+    const Signal& signal = layout.signals[i];
+    if (signal.node == node && signal.object == ObjectKey{index, 0} && signal.output == output) {
+      return static_cast<SignalIndex>(i);
+    }
+  }
+  return std::nullopt;
+}
+
+double amplitude_of(const Signal& position) {
+  return position.unit.empty() || position.scale == 0 ? amplitude_counts
+                                                      : std::abs(amplitude_si / position.scale);
+}
+
+}  // namespace
+
+SineMotion::SineMotion(const BusPlan& plan) {
+  find_axes(plan);
+  values_.reserve(plan.layout.outputs());
+  for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
+    const auto signal = static_cast<SignalIndex>(i);
+    const bool used = std::ranges::any_of(axes_, [signal](const Axis& axis) {
+      return axis.controlword == signal || axis.target == signal || axis.mode == signal;
+    });
+    if (!used) others_.push_back(signal);
+  }
+}
+
+void SineMotion::find_axes(const BusPlan& plan) {
+  for (const NodePlan& node : plan.nodes) {
+    if (!node.cia402) continue;
+    const auto controlword = find(plan.layout, node.id, 0x6040, true);
+    const auto statusword = find(plan.layout, node.id, 0x6041, false);
+    const auto target = find(plan.layout, node.id, 0x607A, true);
+    const auto actual = find(plan.layout, node.id, 0x6064, false);
+    if (!controlword || !statusword || !target || !actual) continue;
+    Axis axis{.controlword = *controlword,
+              .statusword = *statusword,
+              .target = *target,
+              .actual = *actual,
+              .mode = find(plan.layout, node.id, 0x6060, true),
+              .amplitude = amplitude_of(plan.layout.signals[*target])};
+    axis.sequence.set_goal(DriveGoal::enabled);
+    axes_.push_back(axis);
+  }
+}
+
+void SineMotion::update(const ImageView& image, OutputWriter& outputs) noexcept {
+  for (const Value& value : next(image)) outputs.set(value.signal, value.value);
+}
+
+std::span<const SineMotion::Value> SineMotion::next(const ImageView& image) noexcept {
+  values_.clear();
+  for (const SignalIndex signal : others_) set(signal, 0);
+  std::size_t moving = 0;
+  for (Axis& axis : axes_) {
+    lead(axis, image);
+    moving += axis.since.has_value();
+  }
+  most_moving_ = std::max(most_moving_, moving);
+  return values_;
+}
+
+void SineMotion::lead(Axis& axis, const ImageView& image) noexcept {
+  const auto statusword = static_cast<std::uint16_t>(image.values[axis.statusword]);
+  set(axis.controlword, axis.sequence.step(statusword));
+  if (axis.mode) set(*axis.mode, cyclic_position);
+  if (!axis.sequence.enabled()) {
+    axis.since.reset();
+    set(axis.target, image.values[axis.actual]);
+    const bool fault = axis.sequence.in_fault();
+    if (fault && !axis.fault) axis.sequence.reset_fault();
+    axis.fault = fault;
+    if (!fault) axis.sequence.set_goal(DriveGoal::enabled);
+    return;
+  }
+  if (!axis.since) {
+    axis.since = image.sync_time;
+    axis.centre = static_cast<double>(image.values[axis.actual]);
+  }
+  const double t = std::chrono::duration<double>(image.sync_time - *axis.since).count();
+  // The motion is at rest at the beginning and the end of each period.
+  const double way = axis.amplitude * (1 - std::cos(2 * std::numbers::pi * frequency * t)) / 2;
+  set(axis.target, std::llround(axis.centre + way));
+}
+
+}  // namespace takt

@@ -1,0 +1,89 @@
+#include "apps/takt/soak/judge/image_judge.hpp"
+
+#include <algorithm>
+
+namespace takt {
+
+std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexcept {
+  std::uint64_t value = 0;
+  for (unsigned bit = 0; bit < count; ++bit) {
+    const unsigned at = offset + bit;
+    const std::uint64_t one = (frame.data[at / 8] >> (at % 8)) & 1U;
+    value |= one << bit;
+  }
+  return value;
+}
+
+ImageJudge::ImageJudge(const BusPlan& plan, Verdict& verdict)
+    : plan_{plan},
+      verdict_{verdict},
+      rows_(plan.pdos.tpdos.size()),
+      last_(plan.layout.signals.size(), 0) {}
+
+void ImageJudge::on_wire(const sim::WireFrame& wire) noexcept {
+  ++frames_;
+  const bool whole = wire.result == sim::WireResult::sent || wire.result == sim::WireResult::lost;
+  if (!whole || wire.frame.rtr) return;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    const PdoRow& pdo = plan_.pdos.tpdos[row];
+    if (pdo.cob_id != wire.frame.id || wire.frame.length < pdo.length) continue;
+    History& history = rows_[row];
+    history.frames[++history.seen % depth] = wire.frame;
+  }
+}
+
+bool ImageJudge::shows(const PdoRow& row, const Frame& frame,
+                       const ImageView& image) const noexcept {
+  for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
+    const PdoField& field = plan_.pdos.fields[i];
+    const std::uint64_t mask = field.bits >= 64 ? ~0ULL : (1ULL << field.bits) - 1;
+    const auto value = static_cast<std::uint64_t>(image.values[field.signal]);
+    if ((value & mask) != bits_of(frame, field.bit_offset, field.bits)) return false;
+    const bool negative = field.sign_extend && ((value >> (field.bits - 1)) & 1) != 0;
+    if ((value & ~mask) != (negative ? ~mask : 0)) return false;
+  }
+  return true;
+}
+
+bool ImageJudge::unchanged(const PdoRow& row, const ImageView& image) const noexcept {
+  for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
+    const SignalIndex signal = plan_.pdos.fields[i].signal;
+    if (image.values[signal] != last_[signal]) return false;
+  }
+  return true;
+}
+
+/// Finds the oldest frame that fits, because a newer one with the same values may not have been
+/// read yet. Returns false if no frame fits.
+bool ImageJudge::find(const PdoRow& row, History& history, const ImageView& image) const noexcept {
+  const std::uint64_t oldest = history.seen >= depth ? history.seen - depth + 1 : 1;
+  for (std::uint64_t i = std::max(oldest, history.matched + 1); i <= history.seen; ++i) {
+    if (!shows(row, history.frames[i % depth], image)) continue;
+    history.matched = i;
+    return true;
+  }
+  return false;
+}
+
+void ImageJudge::judge(const ImageView& image) {
+  if (image.cycle <= cycle_ || image.publish_time < published_) {
+    verdict_.blame("cycle numbers rise",
+                   "cycle " + std::to_string(image.cycle) + " after " + std::to_string(cycle_));
+  }
+  if (image.publish_time < image.sync_time) {
+    verdict_.blame("times of an image", "published before its SYNC");
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const PdoRow& row = plan_.pdos.tpdos[i];
+    if (row.multiplexed() || unchanged(row, image) || find(row, rows_[i], image)) continue;
+    verdict_.blame("no torn image", "TPDO" + std::to_string(row.number) + " of node " +
+                                        std::to_string(row.node.value()) +
+                                        " shows values that no single frame carried");
+  }
+  std::ranges::copy(image.values, last_.begin());
+  cycle_ = image.cycle;
+  published_ = image.publish_time;
+  ++images_;
+}
+
+}  // namespace takt

@@ -1,0 +1,281 @@
+#include "apps/takt/soak/judge/limit_judge.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/judge/true_axes.hpp"
+#include "eds_parser/table/limit_names.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint16_t axis_objects = 0x800;  // distance of two axes in a device, CiA 402
+constexpr std::uint16_t actual_position = 0x6064;
+constexpr Time longest_gap = 50ms;
+constexpr double fewest_cycles = 3;           // lower limit of longest_gap in cycles
+constexpr double clear_part = 0.2;            // part of a cycle that a wake-up may be late
+constexpr double cycles_behind = 4;           // age of the actual position that the master knows
+constexpr unsigned cycles_of_doubt = 8;       // age of the axis state that the master knows
+constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
+constexpr std::int64_t profile_position = 1;  // value of 6060 and 6061
+constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
+
+double number(const Signal& signal, std::uint64_t bits) noexcept {
+  if (signal.type == DataType::real32) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
+  }
+  if (signal.type == DataType::real64) return std::bit_cast<double>(bits);
+  const unsigned spare = signal.bits == 0 || signal.bits > 64 ? 0U : 64U - signal.bits;
+  const std::uint64_t top = bits << spare;
+  if (!is_signed(signal.type)) return static_cast<double>(top >> spare);
+  return static_cast<double>(static_cast<std::int64_t>(top) >> spare);
+}
+
+/// Returns true for the fallback value and the safe value. The master sends them without a command,
+/// and no limit of step, velocity or acceleration applies to them.
+bool is_own_value(const Signal& signal, double value) noexcept {
+  const auto is = [&](std::int64_t own) {
+    return value == number(signal, static_cast<std::uint64_t>(own));
+  };
+  return (signal.fallback == Fallback::value && is(signal.fallback_value)) ||
+         (signal.safe_value && is(*signal.safe_value));
+}
+
+}  // namespace
+
+LimitJudge::LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
+    : plan_{plan},
+      world_{world},
+      verdict_{verdict},
+      most_cycles_{std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period))},
+      places_(plan.layout.outputs()) {
+  for (const OutputLimit& limit : plan.limits.outputs) {
+    Place& place = places_[limit.signal - plan.layout.inputs];
+    place.limit = &limit;
+    const Signal& target = signal_of(place);
+    for (std::size_t i = plan.layout.inputs; i < plan.layout.signals.size(); ++i) {
+      const Signal& other = plan.layout.signals[i];
+      const bool same_axis =
+          other.node_index == target.node_index &&
+          other.object.index / axis_objects == target.object.index / axis_objects;
+      if (same_axis && other.object.index % axis_objects == 0x40) {
+        place.controlword = static_cast<SignalIndex>(i);
+      }
+    }
+  }
+}
+
+void LimitJudge::begin_anew() {
+  for (Place& place : places_) {
+    place.value.reset();
+    place.last_way.reset();
+    place.enables = false;
+    place.doubt = cycles_of_doubt;
+  }
+}
+
+void LimitJudge::begin_cycle(Time now) {
+  std::ranges::rotate(cycles_, cycles_.begin() + 1);
+  cycles_.back() = now;
+  for (Place& place : places_) {
+    if (place.doubt != 0) --place.doubt;
+    // A babbling node may have sent a hundred positions in a cycle. All of them may have waited in
+    // the queue while the master was stopped.
+    while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
+      place.actual.pop_front();
+    }
+  }
+}
+
+void LimitJudge::heard(const Frame& frame) {
+  for (const PdoRow& row : plan_.pdos.tpdos) {
+    if (row.cob_id != frame.id || row.multiplexed()) continue;
+    for (std::size_t i = row.first_field; i < row.first_field + row.field_count; ++i) {
+      const PdoField& field = plan_.pdos.fields[i];
+      note_input(field.signal, bits_of(frame, field.bit_offset, field.bits));
+    }
+  }
+}
+
+void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
+  const double value = number(plan_.layout.signals[signal], bits);
+  for (Place& place : places_) {
+    if (place.limit == nullptr) continue;
+    if (place.limit->feedback == signal) place.actual.push_back({world_.now(), value});
+    if (place.limit->mode_display == signal && !place.limit->mode) {
+      place.mode = static_cast<std::int8_t>(bits);
+    }
+    if (place.limit->statusword != signal) continue;
+    place.enabled = (bits & 0x6F) == 0x27;
+    if (!place.enabled) place.doubt = cycles_of_doubt;
+  }
+}
+
+/// Notes controlwords and modes, which determine the meaning of the targets of their axis.
+void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
+  for (Place& place : places_) {
+    if (place.limit == nullptr) continue;
+    if (place.limit->mode == signal) place.mode = static_cast<std::int8_t>(bits);
+    if (place.controlword != signal) continue;
+    place.enables = (bits & 0x0F) == 0x0F;
+    if (!place.enables) place.doubt = cycles_of_doubt;
+  }
+}
+
+bool LimitJudge::is_actual(SignalIndex signal, std::uint64_t bits) const noexcept {
+  const Place& place = places_[signal - plan_.layout.inputs];
+  const double position = number(plan_.layout.signals[signal], bits);
+  return std::ranges::find(place.actual, position, &Seen::position) != place.actual.end();
+}
+
+/// Returns true if the drive certainly follows set-points and the master certainly knows it.
+bool LimitJudge::follows(const Place& place) const noexcept {
+  return place.doubt == 0 && place.enabled && (place.enables || !place.controlword);
+}
+
+bool LimitJudge::in_profile(const Place& place) const noexcept {
+  const bool known = place.limit->mode || place.limit->mode_display;
+  return known ? place.mode == profile_position : place.limit->profile;
+}
+
+/// Returns the distance between two positions, for a rotary axis the shorter one. A distance of a
+/// whole turn or more counts in full.
+double LimitJudge::length(const Place& place, double from, double to) const noexcept {
+  const double wrap = place.limit->wraps ? std::ldexp(1.0, signal_of(place).bits) : 0.0;
+  const double turn = place.limit->modulus > 0 ? place.limit->modulus : wrap;
+  const double way = to - from;
+  if (std::abs(way) >= turn || 2 * std::abs(way) <= turn) return way;
+  return way > 0 ? way - turn : way + turn;
+}
+
+LimitJudge::Way LimitJudge::way_to(const Place& place, double value, Time now) const noexcept {
+  const double cycles = static_cast<double>((now - place.when).count()) /
+                        static_cast<double>(plan_.cycle.period.count());
+  const bool clear = std::abs(cycles - std::round(cycles)) <= clear_part;
+  const double counted = clear ? std::round(cycles) : std::ceil(cycles);
+  return {.length = length(place, *place.value, value),
+          .cycles = static_cast<unsigned>(std::clamp(counted, 1.0, most_cycles_))};
+}
+
+/// Returns how far from its actual position an axis at rest may be sent, in counts.
+double LimitJudge::reach(const Place& place, double cycles) const noexcept {
+  const double rate = std::min(place.limit->step, place.limit->rate);
+  if (rate != OutputLimit::none) return std::ceil(rate * cycles);
+  return std::ceil(place.limit->bend * most_cycles_ * most_cycles_);
+}
+
+bool LimitJudge::near_axis(const Place& place, double value) {
+  const Signal& feedback = plan_.layout.signals[*place.limit->feedback];
+  const TrueAxis axis =
+      true_axis(world_, feedback.node,
+                static_cast<unsigned>(feedback.object.index - actual_position) / axis_objects);
+  double way = std::abs(length(place, static_cast<double>(axis.position), value));
+  for (const Seen& seen : place.actual) {
+    way = std::min(way, std::abs(length(place, seen.position, value)));
+  }
+  const double period = std::chrono::duration<double>(plan_.cycle.period).count();
+  const double moved = std::abs(static_cast<double>(axis.velocity)) * period * cycles_behind;
+  return way <= reach(place, cycles_behind) + moved;
+}
+
+/// Checks the range. An output outside its range may move back, but not further away.
+void LimitJudge::judge_range(const Place& place, double value) {
+  double low = std::min(place.limit->low, place.value.value_or(OutputLimit::none));
+  double high = std::max(place.limit->high, place.value.value_or(-OutputLimit::none));
+  if (!follows(place)) {
+    for (const Seen& seen : place.actual) {
+      low = std::min(low, seen.position);
+      high = std::max(high, seen.position);
+    }
+  }
+  if (value >= low && value <= high) return;
+  blame(place, value, place.limit->range, "the value is outside the range");
+}
+
+void LimitJudge::judge_way(const Place& place, double value, const Way& way) {
+  const double counts = std::abs(way.length);
+  const auto judge = [&](double rate, LimitKind kind) {
+    const double rounding = is_real(signal_of(place).type) ? real_rounding * std::abs(value) : 0.0;
+    const double most = std::ceil(rate * way.cycles) + rounding;
+    if (counts <= most || !std::isfinite(rate)) return;
+    blame(place, value, kind,
+          "the value is " + std::to_string(std::llround(counts)) +
+              " counts away from the one before, " + std::to_string(std::llround(most)) +
+              " are allowed");
+  };
+  judge(place.limit->step, LimitKind::step);
+  judge(place.limit->rate, place.limit->rate_of);
+}
+
+/// Returns true if the distance needs more than the permitted acceleration. Each of the three
+/// values is rounded to a count, which may look like an acceleration. A distance over several
+/// cycles may have begun in any of them, if the same value was commanded again before.
+bool LimitJudge::too_sharp(const Place& place, const Way& way) const noexcept {
+  const double bend = place.limit->bend;
+  const auto sharp = [&](unsigned cycles, double before, unsigned gap) {
+    const double found = std::abs(way.length / cycles - before);
+    return found > bend * (cycles + gap) / 2 + 1.0 / cycles + 1.0 / gap + 1e-6;
+  };
+  for (unsigned cycles = 1; cycles <= way.cycles; ++cycles) {
+    if (way.cycles > 1 && !sharp(cycles, 0, 1)) return false;
+    for (unsigned gap = 1; gap <= place.last_way->cycles; ++gap) {
+      if (!sharp(cycles, place.last_way->length / gap, gap)) return false;
+    }
+  }
+  return true;
+}
+
+void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
+  const bool real = is_real(signal_of(place).type);
+  if (place.limit->bend == OutputLimit::none || !place.last_way || real) return;
+  if (!too_sharp(place, way)) return;
+  blame(place, value, LimitKind::acceleration,
+        "the value is " + std::to_string(std::llround(way.length)) + " counts away in " +
+            std::to_string(way.cycles) + " cycles, after " +
+            std::to_string(std::llround(place.last_way->length)) + " in " +
+            std::to_string(place.last_way->cycles));
+}
+
+void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time now) {
+  note_order(index, bits);
+  Place& place = places_[index - plan_.layout.inputs];
+  if (place.limit == nullptr) return;
+  const double value = number(plan_.layout.signals[index], bits);
+  if (begins) {
+    place.enables = false;
+    place.doubt = cycles_of_doubt;
+  }
+  if (!begins && value == place.value) return;
+  ++judged_;
+  const bool own = is_own_value(signal_of(place), value);
+  if (own) place.doubt = cycles_of_doubt;
+  if (!own) judge_range(place, value);
+  const bool free = own || in_profile(place) ||
+                    (!follows(place) && place.limit->feedback && near_axis(place, value));
+  std::optional<Way> way;
+  if (place.value) way = way_to(place, value, now);
+  if (way && !free) judge_way(place, value, *way);
+  if (way && !free && follows(place)) judge_bend(place, value, *way);
+  if (!place.value && !free && place.limit->feedback) {
+    blame(place, value, LimitKind::step, "the first value is far from the actual position");
+  }
+  place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
+  place.value = value;
+  place.when = now;
+}
+
+void LimitJudge::blame(const Place& place, double value, LimitKind kind, const std::string& what) {
+  const Signal& signal = signal_of(place);
+  verdict_.blame("no output leaves its limits",
+                 plan_.nodes[signal.node_index].name + "." + signal.name + " = " +
+                     std::to_string(std::llround(value)) + " breaks the limit of " +
+                     std::string{name(kind)} + ": " + what);
+}
+
+}  // namespace takt

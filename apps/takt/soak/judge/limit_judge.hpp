@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/takt/soak/judge/verdict.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/sim/bus/world.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// Checks every limited output against `limits:` of the network file: range, step, velocity,
+/// acceleration and torque. The judge reads the frames that the devices receive and the TPDOs on
+/// the wire, and uses nothing that the master has computed. A distance ("way") is measured from the
+/// value sent before, over the cycles since that value was new, and modulo the turn of the axis.
+/// While the drive does not follow set-points, a position may also continue from the actual
+/// position of the axis. If a frame can mean two things (a command may be repeated without a
+/// change), the judge assumes the permitted one.
+class LimitJudge {
+ public:
+  LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
+
+  /// To be called when the master begins a cycle, in which it reads all frames since the last one.
+  void begin_cycle(Time now);
+  /// To be called when the master passes a value of an output to the interface. `begins` is true if
+  /// the output was not sent in the last cycles.
+  void sent(SignalIndex signal, std::uint64_t bits, bool begins, Time now);
+  /// To be called with each frame on the wire. The sender does not matter, because the master
+  /// cannot know it.
+  void heard(const Frame& frame);
+  /// To be called when the daemon is a new process, which has sent nothing so far.
+  void begin_anew();
+  /// Returns true if this target equals one of the newest actual positions on the wire.
+  bool is_actual(SignalIndex signal, std::uint64_t bits) const noexcept;
+  /// Number of values that were checked against a limit.
+  std::uint64_t judged() const noexcept { return judged_; }
+
+ private:
+  struct Seen {
+    Time when{};
+    double position = 0;
+  };
+  /// The distance to a value: its length in counts, and the greatest number of cycles that it may
+  /// have taken.
+  struct Way {
+    double length = 0;
+    unsigned cycles = 1;
+  };
+  struct Place {
+    const OutputLimit* limit = nullptr;
+    std::optional<SignalIndex> controlword{};  ///< of the same axis, if it is an output
+    std::optional<double> value{};             ///< value sent last
+    Time when{};                               ///< when `value` was first sent
+    std::optional<Way> last_way{};  ///< distance to `value`; empty if the drive did not follow
+    std::int64_t mode = 0;          ///< 6060 as sent, otherwise 6061 as received
+    bool enables = false;           ///< the last controlword sent enables operation
+    bool enabled = true;            ///< the last statusword received is enabled
+    unsigned doubt = 0;             ///< cycles in which the master may not know the state
+    std::deque<Seen> actual{};      ///< actual positions since cycles_[0], newest last
+  };
+
+  void note_order(SignalIndex signal, std::uint64_t bits);
+  void note_input(SignalIndex signal, std::uint64_t bits);
+  bool follows(const Place& place) const noexcept;
+  bool in_profile(const Place& place) const noexcept;
+  double length(const Place& place, double from, double to) const noexcept;
+  Way way_to(const Place& place, double value, Time now) const noexcept;
+  double reach(const Place& place, double cycles) const noexcept;
+  bool near_axis(const Place& place, double value);
+  void judge_range(const Place& place, double value);
+  void judge_way(const Place& place, double value, const Way& way);
+  void judge_bend(const Place& place, double value, const Way& way);
+  bool too_sharp(const Place& place, const Way& way) const noexcept;
+  void blame(const Place& place, double value, LimitKind kind, const std::string& what);
+  const Signal& signal_of(const Place& place) const noexcept {
+    return plan_.layout.signals[place.limit->signal];
+  }
+
+  const BusPlan& plan_;
+  sim::World& world_;
+  Verdict& verdict_;
+  double most_cycles_;            // greatest number of cycles that counts for one distance
+  std::vector<Place> places_;     // one for each output
+  std::array<Time, 6> cycles_{};  // start times of the newest cycles, oldest first
+  std::uint64_t judged_ = 0;
+};
+
+}  // namespace takt

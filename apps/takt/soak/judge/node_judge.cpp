@@ -1,0 +1,70 @@
+#include "apps/takt/soak/judge/node_judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace takt {
+namespace {
+
+constexpr std::array<const char*, 5> boot_names{"idle", "booting", "ready", "failed", "lost"};
+
+bool named(NmtState state) noexcept {
+  using enum NmtState;
+  return state == bootup || state == stopped || state == operational || state == preoperational ||
+         state == unknown;
+}
+
+}  // namespace
+
+NodeJudge::NodeJudge(const BusPlan& plan, Verdict& verdict)
+    : plan_{plan}, verdict_{verdict}, progress_(plan.nodes.size()) {}
+
+bool NodeJudge::ready(const NodeStatus& node) noexcept {
+  return node.boot == BootState::ready && node.nmt == NmtState::operational;
+}
+
+std::string NodeJudge::story(std::size_t index, const NodeStatus& node) const {
+  const auto boot = static_cast<std::size_t>(node.boot);
+  std::string text = "node " + std::to_string(plan_.nodes[index].id.value()) + " is " +
+                     (boot < boot_names.size() ? boot_names[boot] : "in an unknown boot state") +
+                     ", NMT state " + std::to_string(std::to_underlying(node.nmt)) +
+                     ", boot step " + std::to_string(node.boot_step + 1);
+  if (node.boot_letter != 0) text += std::string{", letter "} + node.boot_letter;
+  return text;
+}
+
+void NodeJudge::judge(const StatusSnapshot& status, Time now) {
+  for (std::size_t i = 0; i < progress_.size(); ++i) {
+    const NodeStatus& node = status.nodes[i];
+    if (static_cast<std::size_t>(node.boot) >= boot_names.size() || !named(node.nmt)) {
+      verdict_.blame("every node is in a named state", story(i, node));
+    }
+    Progress& progress = progress_[i];
+    if (node.boot != progress.boot || node.boot_step != progress.step) {
+      progress = {.boot = node.boot, .step = node.boot_step, .since = now};
+    }
+    if (node.boot == BootState::booting && now - progress.since > patience) {
+      verdict_.blame("every wait ends", story(i, node) + " for 60 s");
+    }
+  }
+}
+
+bool NodeJudge::all_ready(const StatusSnapshot& status) const noexcept {
+  return std::ranges::all_of(status.nodes, ready);
+}
+
+void NodeJudge::judge_end(const StatusSnapshot& status) {
+  for (std::size_t i = 0; i < status.nodes.size(); ++i) {
+    if (ready(status.nodes[i])) continue;
+    verdict_.blame("every node comes back", story(i, status.nodes[i]));
+  }
+}
+
+std::uint64_t NodeJudge::boots(const StatusSnapshot& status) const noexcept {
+  std::uint64_t sum = 0;
+  for (const NodeStatus& node : status.nodes) sum += node.boot_count;
+  return sum;
+}
+
+}  // namespace takt

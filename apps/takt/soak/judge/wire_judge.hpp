@@ -1,0 +1,84 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "apps/takt/soak/judge/limit_judge.hpp"
+#include "apps/takt/soak/judge/verdict.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "master/wire/frame.hpp"
+
+namespace takt {
+
+/// A set of senders of commands: one bit for each program.
+using SenderBit = std::uint32_t;
+
+/// Describes a value that an application has sent.
+struct SentCommand {
+  SenderBit sender = 0;
+  Time computed_from{};            ///< SYNC time of the image that the value was computed from
+  std::uint32_t time_to_live = 0;  ///< cycles; 0 means as configured
+};
+
+/// Checks the outputs on the wire against the commands of the applications, by the true clock: no
+/// value is older than its time to live, no program moves an axis that another one holds, and each
+/// output is within its limits.
+class WireJudge {
+ public:
+  WireJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
+
+  /// To be called when an application has sent this value.
+  void commanded(SignalIndex signal, std::int64_t value, const SentCommand& command);
+  /// To be called with a forged value, which must never appear on the wire.
+  void forged(SignalIndex signal, std::int64_t value);
+  /// To be called when this sender has given up its outputs.
+  void released(SenderBit sender, Time now);
+  /// To be called when the daemon is a new process: no sender holds the outputs, and nothing was
+  /// sent so far.
+  void begin_anew();
+  /// To be called when the master begins a cycle.
+  void begin_cycle(Time now) { limits_.begin_cycle(now); }
+  /// To be called with each frame on the wire.
+  void heard(const Frame& frame) { limits_.heard(frame); }
+  /// To be called with the frames that the master passes to the interface.
+  void sent(std::span<const Frame> frames, Time now);
+  /// Number of positions on the wire that an application had commanded.
+  std::uint64_t moves() const noexcept { return moves_; }
+  /// Time at which a position of this sender was last on the wire.
+  Time last_move(SenderBit sender) const noexcept;
+
+ private:
+  struct Known {
+    Time until = -never;  ///< end of the time to live, plus the time to the wire
+    Time computed_from{};
+    Time held_until{};  ///< until then the sender certainly holds the node
+    SenderBit senders = 0;
+  };
+  struct Holder {
+    SenderBit sender = 0;
+    Time until{};
+  };
+  struct Output {
+    std::unordered_map<std::uint64_t, Known> known;
+    std::uint64_t last = 0;
+    Time when = -never;  ///< time at which `last` was sent
+  };
+
+  void judge(SignalIndex signal, std::uint64_t value, Time now);
+  void judge_holder(const Signal& signal, const Known& known, Time now);
+  bool lasting(const Signal& signal, std::uint64_t value) const noexcept;
+  void blame_stale(const Signal& signal, std::uint64_t value, const Known* known, Time now);
+  Output& output(SignalIndex signal) { return outputs_[signal - plan_.layout.inputs]; }
+
+  const BusPlan& plan_;
+  Verdict& verdict_;
+  std::vector<Output> outputs_;
+  std::vector<Holder> holders_;  // in the order of BusPlan::nodes
+  std::vector<Time> moved_;      // time of the last move, by the number of the sender's bit
+  std::vector<Time> released_;   // time of the release, by the number of the sender's bit
+  LimitJudge limits_;
+  std::uint64_t moves_ = 0;
+};
+
+}  // namespace takt

@@ -1,0 +1,204 @@
+#include "apps/takt/soak/soak_run.hpp"
+
+#include <array>
+#include <cstdio>
+#include <malloc.h>
+#include <memory>
+
+#include "apps/takt/simulate/candump_log.hpp"
+#include "apps/takt/soak/fault_walk.hpp"
+#include "apps/takt/soak/intruder.hpp"
+#include "apps/takt/soak/judge/image_judge.hpp"
+#include "apps/takt/soak/judge/node_judge.hpp"
+#include "apps/takt/soak/judge/output_judge.hpp"
+#include "apps/takt/soak/judged_port.hpp"
+#include "apps/takt/soak/restless_user.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/rt/bus_loop.hpp"
+#include "master/sim/bus/sim_port.hpp"
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time calm = 1s;                         // before the first fault
+constexpr Time time_to_recover = 60s;             // after the last one
+constexpr std::size_t memory_slack = 256 * 1024;  // bytes for open requests and event texts
+constexpr std::array<Time, 4> latenesses{0us, 60us, 300us, 2ms};
+
+/// Passes the frames on the wire to the judge and, if requested, to a candump file.
+class Ear final : public sim::BusObserver {
+ public:
+  Ear(const BusPlan& plan, const std::string& candump, ImageJudge& judge) : judge_{judge} {
+    if (!candump.empty()) log_ = std::make_unique<CandumpLog>(plan, candump);
+  }
+  void on_wire(const sim::WireFrame& wire) noexcept override {
+    judge_.on_wire(wire);
+    if (log_) log_->on_wire(wire);
+  }
+
+ private:
+  ImageJudge& judge_;
+  std::unique_ptr<CandumpLog> log_;
+};
+
+sim::Faults faults_of(const BusPlan& plan, const SoakOptions& options) {
+  return fault_walk(plan, sim::Random{options.seed}.fork(1), calm, calm + options.duration);
+}
+
+sim::WorldOptions world_options(const LoadedNetwork& network, const SoakOptions& options) {
+  return {.seed = options.seed,
+          .bitrate = network.plan.bitrate,
+          .faults = faults_of(network.plan, options),
+          .power_on_spread = 500ms};
+}
+
+sim::RemotePortOptions port_options(const LoadedNetwork& network, const SoakOptions& options) {
+  const Time late = latenesses[sim::Random{options.seed}.fork(2).below(latenesses.size())];
+  return {.sync = network.plan.cycle.sync_cob_id, .wake_jitter = late, .spin_jitter = late / 16};
+}
+
+/// One run: the simulated world, the master, its users and the judges.
+class Run {
+ public:
+  Run(const LoadedNetwork& network, const SoakOptions& options)
+      : plan_{network.plan},
+        options_{options},
+        random_{options.seed},
+        images_{plan_, verdict_},
+        outputs_{plan_, verdict_},
+        nodes_{plan_, verdict_},
+        ear_{plan_, options.candump, images_},
+        world_{network.devices, world_options(network, options)},
+        sim_port_{world_, port_options(network, options)},
+        intruder_{world_, plan_, random_.fork(3)},
+        port_{sim_port_, outputs_, intruder_},
+        exchange_{std::make_unique<Exchange>(plan_)},
+        user_{plan_, *exchange_, outputs_, verdict_, random_.fork(4)},
+        loop_{plan_, port_, *exchange_} {
+    world_.observe(&ear_);
+  }
+
+  SoakOutcome run() {
+    loop_.start();
+    walk();
+    if (verdict_.good()) settle();
+    if (verdict_.good()) stop();
+    return {.seed = options_.seed,
+            .simulated = world_.now(),
+            .images = images_.images(),
+            .frames = images_.frames(),
+            .rubbish = intruder_.sent(),
+            .faults = faults_of(plan_, options_).size(),
+            .requests = user_.asked(),
+            .boots = nodes_.boots(status_),
+            .events = events_,
+            .violation = verdict_.violation()};
+  }
+
+ private:
+  void cycle() {
+    loop_.cycle();
+    if (options_.meddle) options_.meddle(*exchange_, world_);
+    const Time now = world_.now();
+    exchange_->status.read(status_);
+    verdict_.at(status_.bus.cycle, now);
+    for (ImageView image; exchange_->images.take(image);) {
+      images_.judge(image);
+      user_.on_image(image, now);
+    }
+    for (Event event; exchange_->events.pop(event);) tell(event);
+    user_.take_replies(now);
+    nodes_.judge(status_, now);
+  }
+
+  void tell(const Event& event) {
+    ++events_;
+    if (!options_.verbose) return;
+    std::fprintf(stderr, "%12.3f ms  %s\n", 1e-6 * static_cast<double>(event.when.count()),
+                 describe(plan_, event).c_str());
+  }
+
+  void walk() {
+    const Time end = calm + options_.duration;
+    const Time warm = calm + options_.duration / 4;
+    std::size_t memory = 0;
+    while (world_.now() < end && verdict_.good()) {
+      user_.ask(world_.now());
+      cycle();
+      if (memory == 0 && world_.now() >= warm) memory = ::mallinfo2().uordblks;
+    }
+    const std::size_t now = ::mallinfo2().uordblks;
+    if (now > memory + memory_slack) {
+      verdict_.blame("memory stays flat", std::to_string(now - memory) + " bytes more than at " +
+                                              std::to_string(warm / 1ms) + " ms");
+    }
+  }
+
+  /// Switches all devices off and on, because rubbish may have reconfigured them, and checks that
+  /// all nodes come back and all requests are answered without further faults.
+  void settle() {
+    intruder_.leave();
+    for (const NodePlan& node : plan_.nodes) world_.power(node.id, false);
+    for (const Time until = world_.now() + 2s; world_.now() < until;) cycle();
+    for (const NodePlan& node : plan_.nodes) world_.power(node.id, true);
+    user_.reset_all(world_.now());
+    const Time limit = world_.now() + time_to_recover;
+    const auto settled = [&] { return nodes_.all_ready(status_) && user_.unanswered() == 0; };
+    do {
+      cycle();
+    } while (!settled() && world_.now() < limit && verdict_.good());
+    if (user_.unanswered() != 0) {
+      verdict_.blame("every request is answered once",
+                     std::to_string(user_.unanswered()) + " requests have no answer");
+    }
+    for (const Time until = world_.now() + 200ms; world_.now() < until;) cycle();
+    nodes_.judge_end(status_);
+  }
+
+  void stop() {
+    loop_.request_stop();
+    const Time limit = world_.now() + plan_.stop_timeout + plan_.cycle.period;
+    while (!loop_.done() && world_.now() <= limit) cycle();
+    if (!loop_.done()) verdict_.blame("the ordered stop ends in time", "the stop did not end");
+  }
+
+  const BusPlan& plan_;
+  const SoakOptions& options_;
+  sim::Random random_;
+  Verdict verdict_;
+  ImageJudge images_;
+  OutputJudge outputs_;
+  NodeJudge nodes_;
+  Ear ear_;
+  sim::World world_;
+  sim::SimPort sim_port_;
+  Intruder intruder_;
+  JudgedPort port_;
+  std::unique_ptr<Exchange> exchange_;
+  RestlessUser user_;
+  BusLoop<JudgedPort> loop_;
+  StatusSnapshot status_;
+  std::uint64_t events_ = 0;
+};
+
+void tell_faults(const BusPlan& plan, const SoakOptions& options) {
+  for (const sim::Fault& fault : faults_of(plan, options)) {
+    std::fprintf(
+        stderr, "%12.3f ms  fault until %.3f ms: %s", 1e-6 * static_cast<double>(fault.at.count()),
+        1e-6 * static_cast<double>(fault.until.count()), std::string{name(fault.kind)}.c_str());
+    if (fault.node) std::fprintf(stderr, " node %u", fault.node->value());
+    if (fault.object) std::fprintf(stderr, " %s", to_string(*fault.object).c_str());
+    std::fprintf(stderr, "\n");
+  }
+}
+
+}  // namespace
+
+SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options) {
+  if (options.verbose) tell_faults(network.plan, options);
+  return std::make_unique<Run>(network, options)->run();
+}
+
+}  // namespace takt

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "apps/takt/soak/front_meddle.hpp"
+#include "apps/takt/soak/judge/verdict.hpp"
+#include "eds_parser/network_file/load_network.hpp"
+
+namespace takt {
+
+struct Exchange;
+namespace sim {
+class World;
+}
+
+struct SoakOptions {
+  std::uint64_t seed = 1;
+  Time duration = std::chrono::seconds{20};  ///< of the faults; afterwards all must recover
+  std::string candump{};                     ///< file for all frames; empty means no file
+  bool verbose = false;                      ///< prints faults and events to stderr
+  /// Called after each cycle and before the judges look. The judges must find what it breaks.
+  std::function<void(Exchange&, sim::World&)> meddle{};
+  FrontMeddle front{};
+};
+
+/// Counters of one run, and its first violation.
+struct SoakOutcome {
+  std::uint64_t seed = 0;
+  Time simulated{};
+  std::uint64_t images = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t rubbish = 0;  ///< frames that the intruder sent
+  std::uint64_t faults = 0;
+  std::uint64_t requests = 0;
+  std::uint64_t boots = 0;  ///< successful boots
+  std::uint64_t events = 0;
+  std::uint64_t commands = 0;  ///< commands that the programs sent
+  std::uint64_t moves = 0;     ///< positions on the wire that the programs commanded
+  std::uint64_t forged = 0;    ///< forged messages
+  std::uint64_t troubles = 0;  ///< faults of programs: stalls, deaths, rivals, replays ...
+  std::optional<Violation> violation{};
+};
+
+/// Runs the bus thread and a whole network in virtual time with a random sequence of faults. The
+/// same seed gives the same run.
+SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options);
+
+}  // namespace takt

@@ -1,0 +1,156 @@
+#include "apps/takt/soak/troubles.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace takt {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time mean_pause = 400ms;
+
+}  // namespace
+
+Troubles::Troubles(Cast cast, sim::Random random, Time from, Time until, bool verbose)
+    : cast_{cast}, random_{random}, next_{from}, until_{until}, verbose_{verbose} {}
+
+Time Troubles::some(Time longest) {
+  return Time{1 +
+              static_cast<Time::rep>(random_.next() % static_cast<std::uint64_t>(longest.count()))};
+}
+
+/// Returns the duration of a fault: mostly short, sometimes longer than every time to live.
+Time Troubles::span() {
+  switch (random_.below(8)) {
+    case 0:
+      return 1s + some(8s);
+    case 1:
+    case 2:
+      return some(1s);
+    default:
+      return some(60ms);
+  }
+}
+
+VirtualApplication& Troubles::application() {
+  return *cast_.applications[random_.below(static_cast<std::uint32_t>(cast_.applications.size()))];
+}
+
+Time Troubles::next() const noexcept { return std::min(next_, agenda_.next()); }
+
+void Troubles::act(Time now) {
+  agenda_.act(now);
+  if (next_ > now) return;
+  begin(now);
+  next_ = now + some(2 * mean_pause);
+  if (next_ >= until_) next_ = never;
+}
+
+void Troubles::begin(Time now) {
+  ++count_;
+  switch (random_.below(13)) {
+    case 0:
+    case 1:
+      return stall_front(now);
+    case 2:
+    case 3:
+      return stall_process(now);
+    case 4:
+      daemon_dies_ = cast_.daemon.runs();
+      return tell(now, "the daemon dies", {});
+    case 5:
+      return stall_application(now);
+    case 6:
+      return kill_application(now);
+    case 7:
+      return bring_rival(now);
+    case 8:
+      return slow_down_lcm(now);
+    case 9:
+      tell(now, "replay", {});
+      return cast_.forger.replay(now);
+    case 10:
+      cast_.clocks.set_wall(std::chrono::days{20454} + some(2s) - 1s);
+      return tell(now, "the wall clock is set", {});
+    case 11:
+      return let_jump(now);
+    default:
+      tell(now, "forged messages", {});
+      for (std::uint32_t i = 1 + random_.below(10); i != 0; --i) cast_.forger.act_up(now);
+  }
+}
+
+void Troubles::stall_front(Time now) {
+  const Time stall = span();
+  tell(now, "the front thread is stalled", stall);
+  cast_.daemon.stall(now + stall);
+}
+
+/// Stalls both threads of taktd, as SIGSTOP does. Chance decides which of them continues first, and
+/// an application may die meanwhile.
+void Troubles::stall_process(Time now) {
+  const Time stall = span();
+  tell(now, "taktd is stopped", stall);
+  cast_.world.add({.kind = sim::FaultKind::stall_master, .at = now, .until = now + stall});
+  cast_.daemon.stall(now + stall + some(300us));
+  if (random_.chance(0.3))
+    agenda_.add(now + stall / 2, [this, at = now + stall / 2] { kill_application(at); });
+}
+
+void Troubles::daemon_died(Time now) {
+  daemon_dies_ = false;
+  agenda_.add(now + 20ms + span(), [this] { cast_.daemon.start(); });
+}
+
+void Troubles::stall_application(Time now) {
+  const Time stall = span();
+  tell(now, "an application is stalled", stall);
+  application().stall(now + stall);
+}
+
+/// Lets an application jump, by little more than its limits permit or by far more.
+void Troubles::let_jump(Time now) {
+  const std::int64_t counts = std::int64_t{16} << random_.below(16);
+  tell(now, "an application jumps", {});
+  application().jump(random_.chance(0.5) ? counts : -counts);
+}
+
+void Troubles::kill_application(Time now) {
+  VirtualApplication& one = application();
+  if (!one.runs()) return;
+  const Time away = 20ms + span();
+  const bool in_order = random_.chance(0.5);
+  tell(now, in_order ? "an application ends" : "an application dies", away);
+  if (in_order) {
+    one.end(now);
+  } else {
+    one.kill();
+  }
+  agenda_.add(now + away, [&one] { one.start(); });
+}
+
+void Troubles::bring_rival(Time now) {
+  if (cast_.rival.runs()) return;
+  const Time stay = span();
+  tell(now, "a second program of the same name starts", stay);
+  cast_.rival.start();
+  agenda_.add(now + stay, [this] { cast_.rival.kill(); });
+}
+
+void Troubles::slow_down_lcm(Time now) {
+  const Time lasts = span();
+  tell(now, "messages are slow", lasts);
+  cast_.lcm.set_delay(1ms + some(300ms));
+  agenda_.add(now + lasts, [this] { cast_.lcm.set_delay(VirtualLcm::usual_delay); });
+}
+
+void Troubles::tell(Time now, const char* what, Time span) const {
+  if (!verbose_) return;
+  std::fprintf(stderr, "%12.3f ms  %s", 1e-6 * static_cast<double>(now.count()), what);
+  if (span != Time{})
+    std::fprintf(stderr, " for %.3f ms", 1e-6 * static_cast<double>(span.count()));
+  std::fprintf(stderr, "\n");
+}
+
+}  // namespace takt

@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "apps/taktd/process/line_writer.hpp"
+#include "master/gateway/notice/notice.hpp"
+
+namespace spdlog {
+class logger;
+}
+
+namespace takt {
+
+/// Writes sentences for people to stderr, with the time of day. No caller waits if stderr accepts
+/// no data. The log counts the lines that are lost and reports their number with the next line.
+class ErrorLog {
+ public:
+  /// Writes to `file` instead of stderr.
+  explicit ErrorLog(FileDescriptor file = stderr_again(),
+                    LineWriter::StartThread start = LineWriter::start_detached);
+  ~ErrorLog();
+  ErrorLog(const ErrorLog&) = delete;
+  ErrorLog& operator=(const ErrorLog&) = delete;
+
+  void say(Weight weight, const std::string& sentence);
+  /// Returns false if stderr has not accepted everything within `limit`.
+  bool flush(Time limit) { return writer_.flush(limit); }
+
+ private:
+  enum class Colours : bool { none, ansi };
+
+  class Sink;
+  ErrorLog(Colours colours, FileDescriptor file, LineWriter::StartThread start);
+  static FileDescriptor stderr_again();
+
+  LineWriter writer_;
+  std::unique_ptr<spdlog::logger> log_;
+  bool without_thread_told_ = false;
+};
+
+}  // namespace takt
