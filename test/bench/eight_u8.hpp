@@ -1,5 +1,5 @@
 #pragma once
-#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt::bench {
 

@@ -31,7 +31,7 @@
 #include "master/rt/journal/recorded_port.hpp"
 #include "test/proof/allocation_trap.hpp"
 #include "test/proof/syscall_trap.hpp"
-#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include "apps/takt/simulate/program/virtual_daemon.hpp"
 #include "master/lcm/messages.hpp"
-#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt {
 namespace {

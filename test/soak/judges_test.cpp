@@ -5,7 +5,7 @@
 #include "apps/takt/soak/judge/node_judge.hpp"
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "apps/takt/soak/restless_user.hpp"
-#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt {
 namespace {

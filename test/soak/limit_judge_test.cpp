@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
-#include "test/unit/rt/small_plan.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt {
 namespace {

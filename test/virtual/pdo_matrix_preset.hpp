@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "eds_parser/table/device_table.hpp"
-#include "test/unit/sim/sample_device.hpp"
+#include "test/unit/master/sim/device/sample_device.hpp"
 
 namespace takt::test {
 

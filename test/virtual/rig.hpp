@@ -6,8 +6,8 @@
 
 #include "master/master.hpp"
 #include "master/sim/bus/sim_port.hpp"
-#include "test/unit/rt/small_plan.hpp"
-#include "test/unit/sim/sample_device.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
+#include "test/unit/master/sim/device/sample_device.hpp"
 
 namespace takt::test {
 

@@ -1,0 +1,452 @@
+#!/usr/bin/env python3
+"""Reads the includes and the types of the tree and fails on what breaks the rules of the house.
+
+check_rooms.py [ROOT]       checks ROOT (default: this checkout)
+check_rooms.py --self-test  shows that each rule can fail
+check_rooms.py --table      prints the rooms as a Markdown table
+
+Rules: a room includes only the rooms (or single headers) of its line, and no rooms form a circle; the pure rooms use C++ and
+its standard library alone and read no clock; no two headers of one library have the same name; no two types have the same
+qualified name; test/unit mirrors the rooms.
+"""
+import collections
+import pathlib
+import re
+import sys
+import tempfile
+
+TABLE = "eds_parser/table"
+CORE = "master/core master/core/sdo master/core/pdo master/core/node master/core/network master/core/lss"
+LINUX = "master/linux master/linux/can master/linux/bus"
+SIM = "master/sim master/sim/bus"
+LCM = "eds_parser/lcm master/lcm master/lcm/envelope master/lcm/link"
+EDS = "eds_parser/report eds_parser/dictionary eds_parser/ini eds_parser/read"
+
+# Room: what it is about, and what it may include besides itself and `eds_parser/table`: rooms that stand above it in this table,
+# and single headers of any room.
+ROOMS = {
+    TABLE: ("compiled tables: all that the master knows of a network", ""),
+    "eds_parser/lcm": ("names, URLs and message types of a bus on LCM", ""),
+    "eds_parser/report": ("findings and their places, suggestions, differences of texts", ""),
+    "eds_parser/dictionary": ("the object dictionary of one device", "eds_parser/report eds_parser/ini/number.hpp"),
+    "eds_parser/ini": ("what a line of an EDS says: sections, keys, numbers, $NODEID", "eds_parser/report eds_parser/dictionary"),
+    "eds_parser/read": ("text of an EDS or DCF -> dictionary", "eds_parser/report eds_parser/dictionary eds_parser/ini"),
+    "eds_parser/check": ("dictionary -> findings", "eds_parser/report eds_parser/dictionary eds_parser/ini"),
+    "eds_parser/write": ("DCF, concise DCF, mended EDS", EDS),
+    "eds_parser/specification": ("what network file and device data say, as data", "eds_parser/report eds_parser/dictionary"),
+    "eds_parser/plan/pdo": ("PDOs of a node: mapping, transmission, COB-IDs",
+                            "eds_parser/report eds_parser/dictionary eds_parser/specification"),
+    "eds_parser/plan/device": ("what a device has and cannot do: its start values, rules of the device data",
+                               "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
+    "eds_parser/plan/boot": ("the boot of a node, step by step",
+                             "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
+    "eds_parser/plan/image": ("the process image: signals, units, fallbacks",
+                              "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
+    "eds_parser/plan/limits": ("limits of outputs", "eds_parser/report eds_parser/plan/pdo eds_parser/plan/device"),
+    "eds_parser/plan": ("specification and dictionaries -> bus plan",
+                        "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo "
+                        "eds_parser/plan/device eds_parser/plan/boot eds_parser/plan/image eds_parser/plan/limits"),
+    "eds_parser/budget": ("response times of all frames", "eds_parser/report eds_parser/plan"),
+    "eds_parser/network_file": ("YAML -> specification, and the whole way to a plan",
+                                EDS + " eds_parser/lcm eds_parser/check eds_parser/specification eds_parser/plan "
+                                "eds_parser/budget"),
+    "eds_parser/export": ("DBC, C++ header, LCM types", "eds_parser/lcm"),
+    "eds_parser/print": ("dictionaries, budgets and findings as text and JSON",
+                         "eds_parser/report eds_parser/dictionary eds_parser/plan eds_parser/budget"),
+    "eds_parser/print/plan": ("plans and their differences as text and JSON",
+                              "eds_parser/report eds_parser/lcm eds_parser/plan eds_parser/print"),
+
+    "master/wire": ("codecs of each service", ""),
+    "master/core": ("what all machines share: the machine itself, events, requests, states", "master/wire"),
+    "master/core/sdo": ("SDO client and the master's own server", "master/wire master/core"),
+    "master/core/lss": ("LSS", "master/wire master/core"),
+    "master/core/pdo": ("process data: expected set, set-points, limits, PDOs on request", "master/wire master/core"),
+    "master/core/node": ("one node: session, boot, heartbeat, guarding", "master/wire master/core master/core/sdo"),
+    "master/core/network": ("all nodes: NMT, start, ordered stop, TIME",
+                            "master/wire master/core master/core/sdo master/core/lss master/core/node"),
+    "master/explain": ("facts of the master in sentences", "master/wire " + CORE),
+    "master/explain/frame": ("frames in words", "master/wire master/explain"),
+    "master/trace": ("recordings of candump, PCAN and Vector, line by line", "master/wire"),
+    "master/rt/exchange": ("what crosses between the bus thread and the front thread", "master/core master/rt/port.hpp"),
+    "master/rt/journal": ("what decided a run: recorded and played back",
+                          "master/wire master/core master/rt/exchange master/rt/port.hpp"),
+    "master/rt": ("the cycle",
+                  "master/wire master/rt/exchange master/rt/journal master/core master/core/pdo master/core/network"),
+    "master/linux": ("threads, clocks, files and sockets", "master/wire"),
+    "master/linux/can": ("SocketCAN", "master/wire master/linux master/rt/port.hpp"),
+    "master/linux/unix_bus": ("the bus between processes", "master/linux master/linux/can/can_frame.hpp master/rt/port.hpp"),
+    "master/linux/bus": ("a bus by its name: who may open it, who talks on it",
+                         "master/wire master/core master/linux master/linux/can master/linux/unix_bus"),
+    "master": ("the face: a master for one bus", "master/rt master/rt/exchange"),
+    "master/sim": ("random numbers, clocks and deadlines of the simulation", ""),
+    "master/sim/dictionary": ("the objects of a simulated device", ""),
+    "master/sim/service": ("its services: SDO, EMCY, heartbeat, guarding, SYNC, TIME, LSS", "master/wire master/sim/dictionary"),
+    "master/sim/pdo": ("its PDOs", "master/wire master/sim/dictionary master/sim/service"),
+    "master/sim/model": ("what it does: CiA 402, 401, 406",
+                         "master/sim master/sim/dictionary master/sim/service master/sim/pdo"),
+    "master/sim/family": ("what device families do otherwise", "master/sim/dictionary master/sim/model"),
+    "master/sim/device": ("the device as a whole",
+                          "master/wire master/sim master/sim/dictionary master/sim/service master/sim/pdo master/sim/model"),
+    "master/sim/bus": ("the wire, its faults, and the world of all devices",
+                       "master/wire master/sim master/sim/device master/rt/port.hpp"),
+    "master/lcm": ("messages of takt on LCM, and the transport", "eds_parser/lcm master/linux"),
+    "master/lcm/envelope": ("signed messages and their keys", "eds_parser/lcm master/lcm master/linux"),
+    "master/lcm/tcpq": ("LCM's tcpq:// protocol, both sides", "master/lcm master/linux"),
+    "master/lcm/link": ("a connection to LCM, whatever the machine allows",
+                        "eds_parser/lcm master/lcm master/lcm/envelope master/lcm/tcpq master/linux"),
+    "master/gateway/notice": ("what people are told", "master/wire master/core master/explain master/lcm"),
+    "master/gateway/message": ("images and states -> messages",
+                               "eds_parser/lcm master/lcm master/rt/exchange master/gateway/notice"),
+    "master/gateway/command": ("messages -> set-points, requests, transfers; leases",
+                               "master/wire master/core master/core/lss master/lcm master/gateway/notice master/gateway/message"),
+    "master/gateway/ascii": ("CiA 309-3",
+                             "master/wire master/core master/core/lss master/lcm master/linux master/linux/unix_bus "
+                             "master/gateway/message master/gateway/front_guest.hpp"),
+    "master/gateway": ("the front thread",
+                       "master master/wire master/core master/explain master/lcm master/rt/exchange "
+                       "master/gateway/notice master/gateway/message master/gateway/command"),
+    "master/black_box": ("recordings of the master, and their replay",
+                         "master/core master/explain master/trace master/linux master/rt master/rt/journal"),
+
+    "apps/command_line": ("options, numbers, durations, guesses: of all programs", "eds_parser/report master/lcm"),
+    "apps/axis": ("the library that applications use",
+                  "master/lcm master/lcm/link master/lcm/envelope master/gateway/message"),
+    "apps/move": ("takt-move", "apps/axis apps/command_line master/lcm master/lcm/envelope"),
+    "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
+                       "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
+                       "master/rt/exchange master/linux " + LCM),
+    "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
+                          "apps/command_line apps/takt/live apps/takt/learn/device_files.hpp master/wire master/core "
+                          "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),
+    "apps/takt/audit": ("what devices do when the master dies",
+                        "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
+    "apps/takt/doctor": ("is this machine fit for a bus?",
+                         "apps/command_line apps/takt/live master/lcm/link " + LINUX),
+    "apps/takt/import": ("what becomes of a bus.yml or a nodelist",
+                         "apps/command_line master/lcm eds_parser/specification eds_parser/network_file " + EDS),
+    "apps/takt/learn": ("network files from recordings",
+                        "apps/command_line master/wire master/trace master/explain/frame eds_parser/specification "
+                        "eds_parser/network_file eds_parser/write " + EDS),
+    "apps/takt/simulate/program": ("daemon and applications in virtual time",
+                                   "apps/axis master master/gateway master/lcm master/rt " + SIM),
+    "apps/takt/simulate": ("a whole network in virtual time, and what became of it",
+                           "apps/command_line apps/axis apps/takt/simulate/program eds_parser/network_file eds_parser/report "
+                           "eds_parser/ini master/core master/explain master/gateway/command master/rt master/rt/exchange "
+                           "master/linux/bus " + SIM),
+    "apps/takt/soak/judge": ("who says whether a run was right",
+                             "master/wire master/core master/core/network master/rt/exchange master/sim/device " + SIM),
+    "apps/takt/soak": ("random walks of faults",
+                       "apps/command_line apps/takt/simulate apps/takt/simulate/program apps/takt/soak/judge "
+                       "eds_parser/network_file master/explain master/gateway master/rt master/rt/exchange " + SIM),
+    "apps/takt": ("the tool: commands on files",
+                  "apps/command_line eds_parser/check eds_parser/write eds_parser/export eds_parser/budget "
+                  "eds_parser/network_file eds_parser/print eds_parser/print/plan master/lcm master/lcm/envelope "
+                  "master/linux master/linux/bus master/explain/frame master/trace master/black_box " + EDS),
+    "apps/taktd/process": ("a process of a service: stderr, signals, systemd, waiting",
+                           "master/linux master/gateway master/gateway/notice"),
+    "apps/taktd": ("the daemon",
+                   "apps/command_line apps/taktd/process eds_parser/network_file eds_parser/budget master master/wire master/rt "
+                   "master/rt/journal master/explain master/black_box master/gateway master/gateway/ascii "
+                   "master/gateway/notice " + LINUX + " " + LCM + " " + SIM),
+}
+# Arrows of the present code that their rooms may not have: (file, header). Each has its mend in an issue; the list only shrinks.
+PENDING_ARROWS = {
+    ("master/explain/frame/frame_names.hpp", "eds_parser/network_file/load_network.hpp"),
+    ("master/black_box/decision.cpp", "eds_parser/print/plan/print_plan.hpp"),
+    ("master/rt/exchange/status_board.hpp", "master/core/network/ordered_stop.hpp"),
+    ("apps/axis/open_lcm.cpp", "master/lcm/tcpq/tcpq_client.hpp"),
+    ("eds_parser/network_file/read_devices.cpp", "eds_parser/plan/pdo/pdo_compiler.hpp"),
+    ("eds_parser/plan/axis_compiler.cpp", "eds_parser/read/object_words.hpp"),
+}
+# Types that have two definitions. The list only shrinks.
+PENDING_DOUBLES = {"takt::RawRange", "takt::Recording", "takt::SdoServer", "takt::SdoTransfer", "takt::TimeBudget",
+                   "takt::Verdict"}
+
+MOST_LINES = 400
+MOST_FILES = 30  # of a room; a note
+LIBRARIES = ("eds_parser", "master", "apps")
+# Rooms that use C++ and its standard library alone.
+PURE = tuple(room for room in ROOMS
+             if room.startswith(("eds_parser/", "master/wire", "master/core", "master/rt"))
+             and not room.startswith(("eds_parser/print", "eds_parser/network_file"))) + ("master/explain",)
+WRITERS = ("nlohmann/", "fmt/")  # of text and JSON: eds_parser/print, a target of its own
+NOT_PURE = {"thread", "mutex", "shared_mutex", "condition_variable", "future", "iostream", "semaphore"}
+CLOCK = re.compile(r"\b(steady_clock|system_clock|high_resolution_clock|clock_gettime|time\s*\(\s*nullptr)")
+INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]+>|"[^"]+")')
+LCM_TYPES = re.compile(r"^(lcm/|takt/)")  # LCM itself and the types generated by lcm-gen
+KNOW_LCM = ("master/lcm", "master/gateway", "apps")
+
+
+def is_in(room, rooms):
+    return any(room == other or room.startswith(other + "/") for other in rooms)
+
+
+def room_of(path):
+    """The folder; None where it is no room."""
+    folder = path.rsplit("/", 1)[0]
+    return folder if folder in ROOMS else None
+
+
+def arrow(path, target):
+    """Why `path` may not include the project's header `target`; None where it may."""
+    here, there = room_of(path), room_of(target)
+    if there is None:
+        return f'"{target}" is in no room: includes start at the top of the tree'
+    may = ROOMS[here][1].split()
+    if there in (here, TABLE) or there in may or target in may:
+        return None
+    return f"{here} may not include {there}: {target}"
+
+
+def foreign(path, header):
+    """Why `path` may not include the foreign header; None where it may."""
+    here = room_of(path)
+    if header.startswith("yaml-cpp/"):
+        fine = is_in(here, ("eds_parser/network_file", "apps"))
+        return None if fine else "below the apps, yaml-cpp is used only by eds_parser/network_file"
+    if LCM_TYPES.match(header):
+        return None if is_in(here, KNOW_LCM) else f"{here} knows nothing of LCM"
+    if is_in(here, ("eds_parser/print",)) and header.startswith(WRITERS):
+        return None
+    pure = here in PURE or here.startswith("eds_parser/")
+    if pure and ("/" in header or header.endswith(".h") or header in NOT_PURE):
+        return f"<{header}>: {here} is pure C++: no socket, thread, clock or other library"
+    return None
+
+
+def check_line(path, line):
+    found = INCLUDE.match(line)
+    if found is None:
+        is_clock = room_of(path) in PURE and CLOCK.search(line.split("//")[0])
+        return f"{room_of(path)} reads no clock" if is_clock else None
+    header = found[1][1:-1]
+    if found[1][0] == '"' and not LCM_TYPES.match(header):
+        return None if (path, header) in PENDING_ARROWS else arrow(path, header)
+    return foreign(path, header)
+
+
+TOKEN = re.compile(
+    r"\b(?:inline\s+)?namespace\s+(?P<space>[\w:]*)\s*\{"
+    r"|\b(?P<kind>class|struct|union|enum(?:\s+(?:class|struct))?)\s+(?:\[\[[^\]]*\]\]\s*|alignas\([^)]*\)\s*)*(?P<name>\w[\w:]*)"
+    r"(?:\s+final)?\s*(?P<base>:[^;{}()]*)?\{"
+    r"|(?P<open>\{)|(?P<close>\})")
+NOISE = re.compile(  # raw strings, comments, strings, characters, lines of the preprocessor
+    r'R"(\w*)\(.*?\)\1"|//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Fa-f])\'(?:\\.|[^\'\\\n])+\''
+    r"|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.S | re.M)
+
+
+def types_of(text):
+    """(qualified name, line, is anonymous) of each type that has its definition in `text`, those within functions left out."""
+    text = NOISE.sub(lambda found: "\n" * found[0].count("\n"), text)
+    scopes = []  # None: a block
+    for token in TOKEN.finditer(text):
+        if token["close"]:
+            if scopes:
+                scopes.pop()
+            continue
+        name = token["space"] if token["space"] is not None else token["name"]
+        if token["open"] or name is None:
+            scopes.append(None)
+            continue
+        if token["kind"] and None not in scopes:
+            qualified = "::".join([scope for scope in scopes if scope] + [name])
+            yield qualified, text.count("\n", 0, token.start("kind")) + 1, "" in scopes
+        scopes.append(name)
+
+
+def doubles(types):
+    """(path, line, what) of each type that has a definition before it. `types`: of all files, (path, name, line, anonymous)."""
+    first = {}
+    for path, name, line, anonymous in types:
+        if anonymous or name in PENDING_DOUBLES:
+            continue
+        if name in first:
+            yield path, line, f"{name} is defined in {first[name][0]}:{first[name][1]} too"
+        first.setdefault(name, (path, line))
+
+
+def equal_names(paths):
+    """(path, 1, what) of each header whose library has another one of its name."""
+    first = {}
+    for path in paths:
+        library, name = path.split("/")[0], path.rsplit("/", 1)[1]
+        if not name.endswith(".hpp"):
+            continue
+        if (library, name) in first:
+            yield path, 1, f"{library} has two headers {name}: {first[library, name]}"
+        first.setdefault((library, name), path)
+
+
+def unmirrored(root):
+    """(folder, 1, what) of each folder of test/unit with sources that is no room's."""
+    for file in sorted(pathlib.Path(root, "test/unit").rglob("*.[hc]pp")):
+        path = file.relative_to(root).as_posix()
+        if path.removeprefix("test/unit/").rsplit("/", 1)[0] not in ROOMS:
+            yield path, 1, "test/unit mirrors the rooms: there is no such room"
+
+
+def upward(rooms):
+    """(room, 1, what) of each room of the table that may include one which is not above it: arrows never make a circle."""
+    above = set()
+    for room, (_, may) in rooms.items():
+        for other in may.split():
+            if other not in above and not other.endswith(".hpp"):
+                yield room, 1, f"the table of rooms lets it include {other}, which does not stand above it"
+        above.add(room)
+
+
+def sources(root, tops):
+    for top in tops:
+        for file in sorted(pathlib.Path(root, top).rglob("*")):
+            if file.suffix in (".hpp", ".cpp", ".h") and "build" not in file.parts:
+                yield file.relative_to(root).as_posix(), file.read_text(encoding="utf-8")
+
+
+def check(root):
+    """All (path, line, what) that break a rule, and notes."""
+    errors, notes, types, sizes, arrows = list(upward(ROOMS)), [], [], collections.Counter(), set()
+    for path, text in sources(root, (*LIBRARIES, "test")):
+        lines = text.splitlines()
+        if len(lines) > MOST_LINES:
+            notes.append(f"{path}: {len(lines)} lines: is it really one idea?")
+        if path.startswith("test/"):
+            continue
+        if room_of(path) is None:
+            errors.append((path, 1, "is in no room"))
+            continue
+        sizes[room_of(path)] += 1
+        types += [(path, *found) for found in types_of(text)]
+        for number, line in enumerate(lines, 1):
+            if what := check_line(path, line):
+                errors.append((path, number, what))
+            elif (found := INCLUDE.match(line)) and (path, found[1][1:-1]) in PENDING_ARROWS:
+                arrows.add((path, found[1][1:-1]))
+    errors += doubles(types)
+    errors += equal_names(path for path, _ in sources(root, LIBRARIES))
+    errors += unmirrored(root)
+    notes += [f"{room}: {count} files: is it one idea?" for room, count in sizes.items() if count > MOST_FILES]
+    named = collections.Counter(name for _, name, _, anonymous in types if not anonymous)
+    mended = [*sorted(" -> ".join(pair) for pair in PENDING_ARROWS - arrows),
+              *sorted(name for name in PENDING_DOUBLES if named[name] < 2)]
+    return errors, notes, mended
+
+
+BAD = {
+    "eds_parser/a.hpp": "",
+    "eds_parser/table/a.hpp": '#include "eds_parser/report/source.hpp"',
+    "eds_parser/report/a.cpp": '#include "master/wire/frame.hpp"',
+    "eds_parser/read/b.cpp": "#include <yaml-cpp/yaml.h>",
+    "eds_parser/check/c.cpp": "#include <nlohmann/json.hpp>",
+    "eds_parser/check/d.cpp": '#include "eds_parser/plan/cob_ids.hpp"',
+    "eds_parser/plan/pdo/a.cpp": '#include "eds_parser/plan/network_compiler.hpp"',
+    "eds_parser/dictionary/a.cpp": '#include "eds_parser/ini/ini.hpp"',
+    "eds_parser/print/a.cpp": "#include <sys/socket.h>",
+    "eds_parser/plan/a.cpp": "#include <takt/image_t.hpp>",
+    "master/wire/a.hpp": '#include "master/core/machine.hpp"',
+    "master/wire/b.hpp": '#include "eds_parser/report/source.hpp"',
+    "master/core/a.hpp": '#include "master/rt/port.hpp"',
+    "master/core/b.hpp": "#include <mutex>",
+    "master/core/c.cpp": "auto now = std::chrono::steady_clock::now();",
+    "master/core/d.cpp": '#include "machine.hpp"',
+    "master/core/sdo/a.cpp": '#include "master/core/node/node_session.hpp"',
+    "master/rt/a.hpp": '#include "master/linux/can/socket_can.hpp"',
+    "master/rt/b.cpp": "#include <sys/socket.h>",
+    "master/rt/exchange/a.hpp": '#include "master/rt/bus_loop.hpp"',
+    "master/explain/a.cpp": '#include "master/rt/bus_loop.hpp"',
+    "master/sim/bus/a.cpp": '#include "master/core/sdo/sdo_client.hpp"',
+    "master/sim/bus/b.cpp": '#include "master/rt/bus_loop.hpp"',
+    "master/sim/model/a.cpp": '#include "master/sim/device/device.hpp"',
+    "master/linux/a.cpp": "#include <lcm/lcm-cpp.hpp>",
+    "master/linux/b.cpp": '#include "takt/image_t.hpp"',
+    "master/linux/can/a.cpp": '#include "master/gateway/bridge.hpp"',
+    "master/lcm/a.cpp": '#include "master/gateway/notice/notice.hpp"',
+    "master/gateway/a.cpp": '#include "apps/axis/axis_group.hpp"',
+    "master/gateway/c.cpp": "#include <yaml-cpp/yaml.h>",
+    "master/gateway/message/b.cpp": '#include "eds_parser/network_file/load_network.hpp"',
+    "apps/axis/a.cpp": '#include "apps/move/sine.hpp"',
+    "apps/takt/learn/a.cpp": '#include "apps/takt/soak/soak_run.hpp"',
+    "apps/taktd/twice.hpp": "namespace takt { struct Twice {}; }",
+    "apps/takt/thrice.hpp": "namespace takt {\nclass Twice final : public Once {\n};\n}",
+    "master/rt/inner.cpp": "namespace takt { void f() { struct Local {}; }\nenum class Inner : int { a }; }",
+    "master/rt/journal/inner.hpp": "namespace takt { enum Inner { a }; }",
+    "master/lcm/same.hpp": "",
+    "master/sim/same.hpp": "",
+    "test/unit/master/gone/a_test.cpp": "",
+}
+NOT_FOUND_HERE = ("apps/takt/thrice.hpp", "master/rt/inner.cpp", "master/lcm/same.hpp")  # the first of two
+GOOD = {
+    "eds_parser/network_file/a.cpp": "#include <yaml-cpp/yaml.h>",
+    "apps/takt/simulate/a.cpp": "#include <yaml-cpp/yaml.h>",
+    "eds_parser/report/a.hpp": '#include "eds_parser/table/ids.hpp"',
+    "eds_parser/dictionary/b.cpp": '#include "eds_parser/ini/number.hpp"',
+    "eds_parser/print/plan/b.cpp": "#include <nlohmann/json.hpp>\n#include <fmt/format.h>",
+    "master/core/c.cpp": '#include "master/wire/frame.hpp"\n#include <chrono>\n// steady_clock is read elsewhere',
+    "master/sim/bus/d.hpp": '#include "master/rt/port.hpp"\n#include "master/wire/frame.hpp"',
+    "master/linux/can/e.hpp": '#include "master/rt/port.hpp"\n#include <sys/socket.h>',
+    "master/gateway/f.hpp": '#include "master/master.hpp"\n#include <lcm/lcm-cpp.hpp>\n#include "takt/image_t.hpp"',
+    "apps/takt/soak/g.cpp": '#include "apps/takt/soak/judge/verdict.hpp"\n#include "master/sim/bus/world.hpp"',
+    "apps/move/h.cpp": "namespace takt { namespace { struct Options {}; } }\nstruct Options;",
+    "apps/taktd/i.cpp": "namespace takt::sim { struct Options {}; }\ntemplate <class Options> struct Box;",
+    "apps/taktd/j.cpp": "namespace takt {\nstruct Options { // struct Text {\n  struct Text {};\n};\n// class Options {\n}",
+    "apps/taktd/k.cpp": 'namespace takt { const char* brace = "{"; class Text {}; enum class Text2; }',
+    "test/unit/master/core/sdo/a_test.cpp": '#include "master/core/network/network.hpp"',
+}
+
+
+def plant(root, files):
+    for path, text in files.items():
+        file = pathlib.Path(root, path)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text + "\n", encoding="utf-8")
+
+
+def self_test():
+    complaints = []
+    with tempfile.TemporaryDirectory() as root:
+        plant(root, BAD)
+        found = collections.Counter(path for path, _, _ in check(root)[0])
+    complaints += [f"not found: {path}: {text}" for path, text in BAD.items() if not found[path] and path not in NOT_FOUND_HERE]
+    if any(found[first] and found[second] for first, second in (("apps/takt/thrice.hpp", "apps/taktd/twice.hpp"),)):
+        complaints.append("both of two equal types are reported")
+    with tempfile.TemporaryDirectory() as root:
+        plant(root, GOOD)
+        pathlib.Path(root, "test/long.cpp").write_text("\n" * (MOST_LINES + 1))
+        plant(root, {f"master/motion_of_{number}.hpp": "" for number in range(MOST_FILES + 1)})
+        refused, notes, mended = check(root)
+    complaints += [f"wrongly refused: {path}:{line}: {what}" for path, line, what in refused]
+    if len(notes) != 2:
+        complaints.append("a long file or a large room was not reported")
+    if len(mended) != len(PENDING_ARROWS) + len(PENDING_DOUBLES):
+        complaints.append("an exception that is no longer needed was not reported")
+    if not list(upward({"a": ("", "b"), "b": ("", "")})) or list(upward({"a": ("", "b/c.hpp"), "b": ("", "a")})):
+        complaints.append("a circle of rooms was not reported, or one where there is none")
+    for what in complaints:
+        print(f"self-test: {what}")
+    return 1 if complaints else 0
+
+
+def print_table():
+    print("| room | what it is about | may include |\n|---|---|---|")
+    for room, (about, may) in ROOMS.items():
+        print(f"| `{room}/` | {about} | {', '.join(f'`{other}`' for other in may.split())} |")
+    return 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    if sys.argv[1:] == ["--table"]:
+        return print_table()
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
+    errors, notes, mended = check(root)
+    for path, line, what in errors:
+        print(f"{path}:{line}: {what}")
+    for what in mended:
+        print(f"check_rooms.py: is mended, take it off the list: {what}")
+    for note in notes:
+        print(f"{note} (note)")
+    return 1 if errors or mended else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

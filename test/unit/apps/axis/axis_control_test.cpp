@@ -1,0 +1,391 @@
+#include "apps/axis/axis_control.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include <map>
+
+#include "test/unit/apps/axis/messages_for_tests.hpp"
+
+namespace takt {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::image;
+using testing::signal;
+using testing::two_axes;
+
+constexpr std::int64_t not_commanded = -1;
+constexpr std::int64_t disabled = 0x0250;
+constexpr std::int64_t ready = 0x0231;
+constexpr std::int64_t enabled = 0x0237;
+constexpr std::int64_t fault = 0x0218;
+
+/// Positions of signals in the layout of two_axes().
+constexpr std::int32_t position_5 = 2;
+constexpr std::int32_t controlword_5 = 4;
+constexpr std::int32_t controlword_6 = 5;
+constexpr std::int32_t target_5 = 6;
+constexpr std::int32_t target_6 = 7;
+
+class TwoAxes : public ::testing::Test {
+ protected:
+  TwoAxes() {
+    input_.take(two_axes());
+    axes_.set_layout(input_);
+  }
+  void see(std::initializer_list<std::int64_t> values) {
+    input_.take(image(++cycle_, values));
+    axes_.on_image(input_);
+  }
+  void see_stale(std::initializer_list<std::int64_t> values, std::int32_t stale) {
+    image_t missing = image(++cycle_, values);
+    missing.stale = {stale};
+    missing.num_stale = 1;
+    input_.take(missing);
+    axes_.on_image(input_);
+  }
+  std::int64_t commanded(std::int32_t signal) {
+    const command_t& command = axes_.command();
+    for (std::size_t i = 0; i < command.signals.size(); ++i) {
+      if (command.signals[i] == signal) return command.values[i];
+    }
+    return not_commanded;
+  }
+
+  ImageInput input_;
+  AxisControl axes_;
+  std::int64_t cycle_ = 0;
+};
+
+TEST_F(TwoAxes, AreFoundByNode) {
+  ASSERT_EQ(axes_.size(), 2);
+  EXPECT_EQ(axes_.name(0), "shoulder");
+  EXPECT_EQ(axes_.name(1), "elbow");
+}
+
+TEST_F(TwoAxes, HavePositionsInSi) {
+  see({disabled, disabled, 1500, -250});
+  EXPECT_DOUBLE_EQ(axes_.positions()(0), 1.5);
+  EXPECT_DOUBLE_EQ(axes_.positions()(1), -0.25);
+}
+
+TEST_F(TwoAxes, AreCommandedWithTheSessionAndCycleOfTheirImage) {
+  cycle_ = 41;
+  see({disabled, disabled, 0, 0});
+  const command_t& command = axes_.command();
+  EXPECT_EQ(command.session, 77);
+  EXPECT_EQ(command.cycle, 42);
+  EXPECT_EQ(command.schema, 2);
+  EXPECT_THAT(command.signals, ElementsAre(controlword_5, target_5, controlword_6, target_6));
+  EXPECT_EQ(command.num_values, 4);
+}
+
+TEST_F(TwoAxes, DoNotJumpWhenTheyAreEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({ready, ready, 1500, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+  axes_.set_positions(Eigen::Vector2d{9.0, 9.0});
+  EXPECT_EQ(commanded(target_5), 1500);
+  see({enabled, ready, 1502, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+  EXPECT_EQ(commanded(target_6), -250);
+}
+
+TEST_F(TwoAxes, StayWhereTheyAreWhenTheyAreFoundEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 1500, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+  EXPECT_EQ(commanded(target_6), -250);
+  see({enabled, enabled, 1503, -250});
+  EXPECT_EQ(commanded(target_5), 1500);
+}
+
+TEST_F(TwoAxes, KeepTheTargetThatIsSentWhenTheyAreFoundEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, ready, 1500, -250, 0x000F, 0x0007, 1512, -999});
+  EXPECT_EQ(commanded(target_5), 1512);
+  EXPECT_EQ(commanded(target_6), -250);
+}
+
+TEST_F(TwoAxes, StayWhereTheyAreWhenANewLayoutFindsThemEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  axes_.set_layout(input_);
+  see({enabled, enabled, 700, 100});
+  EXPECT_EQ(commanded(target_5), 700);
+  EXPECT_EQ(commanded(target_6), 100);
+}
+
+TEST_F(TwoAxes, AreNotEnabledBeforeTheirPositionWasSeen) {
+  axes_.set_goal(DriveGoal::enabled);
+  see_stale({ready, ready, 0, -250}, position_5);
+  EXPECT_EQ(commanded(controlword_5), 0x0000);
+  EXPECT_EQ(commanded(target_5), not_commanded);
+  EXPECT_EQ(commanded(controlword_6), 0x0007);
+  EXPECT_EQ(commanded(target_6), -250);
+
+  see({ready, ready, 1500, -250});
+  EXPECT_EQ(commanded(controlword_5), 0x0007);
+  EXPECT_EQ(commanded(target_5), 1500);
+  see_stale({ready, ready, 1500, -250}, position_5);
+  EXPECT_EQ(commanded(controlword_5), 0x0007) << "once is enough";
+}
+
+TEST_F(TwoAxes, StayEnabledWithoutATargetUntilTheirPositionIsSeen) {
+  axes_.set_goal(DriveGoal::enabled);
+  see_stale({enabled, enabled, 0, 0}, position_5);
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F);
+  EXPECT_EQ(commanded(target_5), not_commanded);
+  see({enabled, enabled, 1500, 0});
+  EXPECT_EQ(commanded(target_5), 1500);
+}
+
+TEST_F(TwoAxes, TakeTargetsOnlyWhereTheyAreEnabled) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, ready, 1500, -250});
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  EXPECT_EQ(commanded(target_5), 2000);
+  EXPECT_EQ(commanded(target_6), -250);
+}
+
+TEST_F(TwoAxes, KeepTheirTargetsWhereThePositionIsNoNumber) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 1500, -250});
+  axes_.set_positions(Eigen::Vector2d{nan, 1.0});
+  EXPECT_EQ(commanded(target_5), 1500);
+  EXPECT_EQ(commanded(target_6), 1000);
+  axes_.set_positions(Eigen::Vector2d{infinity, -infinity});
+  EXPECT_EQ(commanded(target_5), 1500);
+  EXPECT_EQ(commanded(target_6), 1000);
+}
+
+TEST_F(TwoAxes, FollowTheirPositionAgainAfterAFault) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_positions(Eigen::Vector2d{2.0, 2.0});
+  see({fault, enabled, 700, 100});
+  EXPECT_EQ(commanded(target_5), 700);
+  EXPECT_EQ(commanded(target_6), 2000);
+  EXPECT_EQ(commanded(controlword_5), 0x0000);
+  EXPECT_EQ(commanded(controlword_6), 0x000F);
+  EXPECT_FALSE(axes_.all_enabled());
+}
+
+TEST_F(TwoAxes, HoldTheControlwordWhileTheStatuswordIsMissing) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({ready, ready, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x0007);
+  see_stale({fault, ready, 0, 0}, 0);
+  EXPECT_EQ(commanded(controlword_5), 0x0007);
+  EXPECT_TRUE(axes_.stale(0));
+  EXPECT_FALSE(axes_.stale(1));
+}
+
+TEST_F(TwoAxes, AreRaisedAndLoweredByTheHandshakeInProfilePosition) {
+  axes_.set_mode(DriveMode::profile_position);
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x002F);
+  axes_.begin_set_points();
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x003F);
+  see({0x1237, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x002F);
+  EXPECT_EQ(commanded(controlword_6), 0x003F);
+}
+
+TEST_F(TwoAxes, ShowsTargetsInTheCountsThatTheImageWillShow) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.set_positions(Eigen::Vector2d{0.12345678, -0.5});
+  const Eigen::VectorXd shown = axes_.target_positions_in_counts();
+  EXPECT_NE(shown, axes_.target_positions());
+
+  see({enabled, enabled, 0, 0, 0x0F, 0x0F, commanded(target_5), commanded(target_6)});
+  EXPECT_EQ(axes_.sent_positions(), shown);
+}
+
+TEST_F(TwoAxes, ShallBeDisabledAfterANewLayout) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  layout_t again = two_axes();
+  again.session = 78;
+  input_.take(again);
+  axes_.set_layout(input_);
+  EXPECT_EQ(axes_.drive(0).goal(), DriveGoal::disabled);
+}
+
+TEST(AxisSignals, FindsTheSecondAxisOfADevice) {
+  const std::vector signals{signal(5, 0x6041, false, 16), signal(5, 0x6040, true, 16),
+                            signal(5, 0x6841, false, 16), signal(5, 0x6840, true, 16),
+                            signal(5, 0x687A, true, 32)};
+  const auto axes = find_axes(signals);
+
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_EQ(axes[1].name, "shoulder.2");
+  EXPECT_EQ(axes[1].target_position, 4U);
+  EXPECT_EQ(axes[0].target_position, std::nullopt);
+}
+
+TEST(AxisSignals, LeavesOutWhatIsNoAxis) {
+  const std::vector signals{signal(5, 0x6041, false, 16),  // no controlword
+                            signal(6, 0x6000, false, 8), signal(6, 0x6200, true, 8)};
+  EXPECT_TRUE(find_axes(signals).empty());
+}
+
+TEST(AxisControl, HasNoTargetWithoutAPositionBeforeItIsGivenOne) {
+  layout_t layout = two_axes();
+  layout.signals[2] = signal(5, 0x606C, false, 32);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_goal(DriveGoal::enabled);
+  input.take(image(1, {ready, ready, 0, 0}));
+  axes.on_image(input);
+  EXPECT_THAT(axes.command().signals, ElementsAre(controlword_5, controlword_6, target_6));
+  EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 0x0007, 0));
+
+  axes.set_positions(Eigen::Vector2d{2.0, 2.0});
+  EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 2000, 0x0007, 0));
+  input.take(image(2, {ready, ready, 0, 0}));
+  axes.on_image(input);
+  EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 2000, 0x0007, 0));
+}
+
+/// Axis 5, whose mode of operation and mode display replace the signals of axis 6.
+class AxisWithModes : public ::testing::Test {
+ protected:
+  AxisWithModes() {
+    layout_t layout = two_axes();
+    layout.signals[1] = signal(5, 0x6061, false, 8);
+    layout.signals[5] = signal(5, 0x6060, true, 8);
+    layout.signals[7] = signal(5, 0x60FF, true, 32, 1e-3);
+    input_.take(layout);
+    axes_.set_layout(input_);
+    axes_.set_goal(DriveGoal::enabled);
+  }
+  /// Returns the target position in counts after an image.
+  std::int64_t target(std::int64_t shown_mode, std::int64_t position) {
+    input_.take(image(++cycle_, {enabled, shown_mode, position, 0}));
+    axes_.on_image(input_);
+    return axes_.command().values.at(2);
+  }
+  std::int64_t target_velocity() { return axes_.command().values.at(3); }
+
+  ImageInput input_;
+  AxisControl axes_;
+  std::int64_t cycle_ = 0;
+};
+
+TEST_F(AxisWithModes, DoesNotJumpBackWhenVelocityModeEnds) {
+  axes_.set_mode(DriveMode::cyclic_velocity);
+  EXPECT_EQ(target(9, 1000), 1000);
+  axes_.set_velocities(Eigen::VectorXd::Constant(1, 0.5));
+  EXPECT_EQ(target(9, 3000), 3000);
+  EXPECT_EQ(target_velocity(), 500);
+
+  axes_.set_mode(DriveMode::cyclic_position);
+  EXPECT_EQ(target(9, 3100), 3100) << "the drive is not in its new mode yet";
+  EXPECT_EQ(target(8, 3150), 3100);
+  EXPECT_EQ(target(8, 3160), 3100);
+}
+
+TEST_F(AxisWithModes, StopsWhereTheVelocityIsNoNumber) {
+  axes_.set_mode(DriveMode::cyclic_velocity);
+  target(9, 1000);
+  axes_.set_velocities(Eigen::VectorXd::Constant(1, 0.5));
+  axes_.set_velocities(Eigen::VectorXd::Constant(1, -std::numeric_limits<double>::infinity()));
+  EXPECT_EQ(target_velocity(), 0);
+}
+
+TEST_F(AxisWithModes, TakesNoTargetPositionOutsideOfThePositionModes) {
+  target(8, 1000);
+  axes_.set_positions(Eigen::VectorXd::Constant(1, 2.0));
+  EXPECT_EQ(target(8, 1000), 2000);
+  EXPECT_EQ(target(6, 1200), 1200) << "homing";
+  axes_.set_positions(Eigen::VectorXd::Constant(1, 2.0));
+  EXPECT_EQ(axes_.command().values.at(2), 1200);
+}
+
+TEST_F(AxisWithModes, TakesTargetPositionsInProfilePosition) {
+  axes_.set_mode(DriveMode::profile_position);
+  target(1, 1000);
+  axes_.set_positions(Eigen::VectorXd::Constant(1, 2.0));
+  EXPECT_EQ(target(1, 1100), 2000);
+}
+
+TEST(AxisControl, KeepsAVelocityWhereNoPositionIsMapped) {
+  layout_t layout = two_axes();
+  layout.signals[1] = signal(5, 0x6061, false, 8);
+  layout.signals[2] = signal(5, 0x606C, false, 32, 1e-3);
+  layout.signals[5] = signal(5, 0x6060, true, 8);
+  layout.signals[6] = signal(5, 0x60FF, true, 32, 1e-3);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_mode(DriveMode::cyclic_velocity);
+  axes.set_goal(DriveGoal::enabled);
+  const auto see = [&](std::int64_t cycle) {
+    input.take(image(cycle, {enabled, 9, 0, 0}));
+    axes.on_image(input);
+    return axes.command().values;
+  };
+  see(1);
+  axes.set_velocities(Eigen::VectorXd::Constant(1, 0.5));
+
+  EXPECT_THAT(see(2), ::testing::Contains(500));
+  EXPECT_THAT(see(3), ::testing::Contains(500));
+}
+
+TEST(AxisControl, CommandsTheModeWhereItIsMapped) {
+  layout_t layout = two_axes();
+  layout.signals[1] = signal(5, 0x6061, false, 8);
+  layout.signals[5] = signal(5, 0x6060, true, 8);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_mode(DriveMode::cyclic_position);
+  input.take(image(1, {enabled, 1, 0, 0}));
+  axes.on_image(input);
+
+  EXPECT_FALSE(axes.in_mode());
+  EXPECT_THAT(axes.command().values, ElementsAre(0x0007, 8, 0));
+  input.take(image(2, {enabled, 8, 0, 0}));
+  axes.on_image(input);
+  EXPECT_TRUE(axes.in_mode());
+}
+
+TEST(AxisControl, IsInNoModeWhereTheModeIsNeitherMappedNorShown) {
+  ImageInput input;
+  input.take(two_axes());
+  AxisControl axes;
+  axes.set_layout(input);
+  axes.set_mode(DriveMode::cyclic_position);
+  input.take(image(1, {enabled, 1, 0, 0}));
+  axes.on_image(input);
+
+  EXPECT_FALSE(axes.in_mode());
+}
+
+TEST(AxisControl, IsInTheModeThatItCommandsWhereNoneIsShown) {
+  layout_t layout = two_axes();
+  layout.signals[1] = signal(5, 0x606C, false, 32);
+  layout.signals[5] = signal(5, 0x6060, true, 8);
+  ImageInput input;
+  input.take(layout);
+  AxisControl axes;
+  axes.set_layout(input);
+
+  EXPECT_TRUE(axes.in_mode());
+}
+
+}  // namespace
+}  // namespace takt

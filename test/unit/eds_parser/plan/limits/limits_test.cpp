@@ -1,0 +1,364 @@
+// The key `limits:` of a network file: the checks of the bus thread, and the cases that are refused
+// with a reason.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "eds_parser/print/plan/print_plan.hpp"
+#include "test/unit/eds_parser/plan/tiny_network.hpp"
+
+namespace takt::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::string_view units =
+    "    units:\n"
+    "      position: {scale: 0.001, unit: rad}\n"
+    "      velocity: {scale: 0.01, unit: rad/s}\n"
+    "      acceleration: {scale: 0.1, unit: rad/s^2}\n";
+
+/// Compiles a network with a cycle of 2 ms and a drive whose RPDO2 carries `mapped`, with the given
+/// limits and units.
+Compiled drive(const std::string& limits, const std::string& mapped = "{index: 0x607A}",
+               std::string_view its_units = units, const std::string& eds = tiny_eds()) {
+  return compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    tpdo: {1: {mapping: [{index: 0x6041}, {index: 0x6064}]}}\n"
+      "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, " +
+          mapped + "]}}\n" + std::string{its_units} + limits,
+      eds);
+}
+
+const OutputLimit& only(const Compiled& net) {
+  EXPECT_EQ(net.plan.limits.outputs.size(), 1U);
+  return net.plan.limits.outputs.at(0);
+}
+
+std::string text_of(const Compiled& net) {
+  std::ostringstream out;
+  print_plan_text(out, net.plan, {});
+  return out.str();
+}
+
+std::string json_of(const Compiled& net) {
+  std::ostringstream out;
+  print_plan_json(out, net.plan, {});
+  return out.str();
+}
+
+TEST(Limits, OfAnAxisAreCheckedInCountsPerCycle) {
+  const Compiled net = drive(
+      "    limits: {position: [-1.5, 1.5], velocity: 2.0, acceleration: 20, jerk: 400, "
+      "step: 0.01}\n");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  const OutputLimit& limit = only(net);
+  EXPECT_EQ(net.plan.layout.signals[limit.signal].object, (ObjectKey{0x607A, 0}));
+  EXPECT_EQ(limit.low, -1500.0);
+  EXPECT_EQ(limit.high, 1500.0);
+  EXPECT_DOUBLE_EQ(limit.step, 10.0);
+  EXPECT_DOUBLE_EQ(limit.rate, 4.0);   // 2 rad/s x 2 ms / 1 mrad
+  EXPECT_DOUBLE_EQ(limit.bend, 0.08);  // 20 rad/s^2 x (2 ms)^2 / 1 mrad
+  EXPECT_TRUE(limit.wraps);
+  ASSERT_TRUE(limit.feedback);
+  EXPECT_EQ(net.plan.layout.signals[*limit.feedback].object, (ObjectKey{0x6064, 0}));
+  ASSERT_TRUE(limit.statusword);
+}
+
+TEST(Limits, OfPositionTurnWithTheSignAndShiftWithTheOffset) {
+  const Compiled net = drive("    limits: {position: [-1, 3]}\n", "{index: 0x607A}",
+                             "    units: {position: {scale: 0.5, sign: -1, offset: 1, unit: m}}\n");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, -4.0);  // 3 m = -1 x -4 x 0.5 m + 1 m
+  EXPECT_EQ(only(net).high, 4.0);
+}
+
+TEST(Limits, OfPositionNameThePositionOffsetBecauseTheSumIsChecked) {
+  const std::string eds = tiny_eds() + entry("60B0", "Position offset", 4, "rww", "0", true);
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}, {index: 0x60B0}]}}\n"
+      "    units: {position: {scale: 0.001, unit: rad}}\n"
+      "    limits: {position: [-1, 1]}\n",
+      eds);
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  ASSERT_FALSE(net.plan.limits.lines.empty());
+  EXPECT_EQ(net.plan.limits.lines[0].kind, LimitKind::position);
+  EXPECT_EQ(net.plan.limits.lines[0].signals.size(), 2U);
+}
+
+TEST(Limits, CountNoStepWhereTheFileSetsAModeWithoutSetPoints) {
+  for (const auto& [mode, profile] : {std::pair{"3", true}, {"8", false}, {"7", false}}) {
+    const Compiled net = drive(
+        "    limits: {step: 0.01}\n    sdo: [{index: 0x6060, value: " + std::string{mode} + "}]\n");
+    EXPECT_EQ(only(net).profile, profile) << mode;
+  }
+}
+
+TEST(Limits, OfVelocityBoundTheTargetVelocityAndItsChange) {
+  const Compiled net = drive("    limits: {velocity: 2.0, acceleration: 20}\n", "{index: 0x60FF}");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, -200.0);
+  EXPECT_EQ(only(net).high, 200.0);
+  EXPECT_EQ(only(net).range, LimitKind::velocity);
+  EXPECT_DOUBLE_EQ(only(net).rate, 4.0);  // 20 rad/s^2 x 2 ms / 0.01 rad/s
+  EXPECT_EQ(only(net).rate_of, LimitKind::acceleration);
+  EXPECT_FALSE(only(net).wraps);
+}
+
+TEST(Limits, OfASecondAxisMayDiffer) {
+  const std::string eds = tiny_eds() + entry("687A", "Target position", 4, "rww", "0", true);
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [{index: 0x607A}, {index: 0x687A}]}}\n"
+      "    units: {position: {scale: 0.001, unit: rad}}\n"
+      "    limits: {step: 0.01, position: [-1, 1], axes: {2: {position: [-2, 2]}}}\n",
+      eds);
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  ASSERT_EQ(net.plan.limits.outputs.size(), 2U);
+  EXPECT_EQ(net.plan.limits.outputs[0].high, 1000.0);
+  EXPECT_EQ(net.plan.limits.outputs[1].high, 2000.0);
+  EXPECT_DOUBLE_EQ(net.plan.limits.outputs[1].step, 10.0);
+}
+
+TEST(Limits, OfASingleOutputAreInItsUnit) {
+  const Compiled net = drive(
+      "      objects: [{index: 0x2003, scale: 0.1, unit: V}]\n"
+      "    limits: {objects: [{index: 0x2003, min: 0, max: 10, step: 0.5}]}\n",
+      "{index: 0x2003}");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(only(net).low, 0.0);
+  EXPECT_EQ(only(net).high, 100.0);
+  EXPECT_DOUBLE_EQ(only(net).step, 5.0);
+  EXPECT_EQ(only(net).range, LimitKind::range);
+  EXPECT_EQ(net.plan.limits.outputs[0].rate, OutputLimit::none);
+}
+
+TEST(Limits, AreAbsentWhereNobodyGivesThem) {
+  EXPECT_THAT(drive("").plan.limits.outputs, IsEmpty());
+}
+
+TEST(Limits, ThatMakeNoSenseAreErrorsWhereTheyStand) {
+  EXPECT_THAT(drive("    limits: {position: [2, 1]}\n").complaints(),
+              ElementsAre("12:24 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {position: 1}\n").complaints(),
+              ElementsAre("12:24 error [wrong-type]"));
+  EXPECT_THAT(drive("    limits: {velocity: -1}\n").complaints(),
+              ElementsAre("12:24 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {step: 0}\n").complaints(),
+              ElementsAre("12:20 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {step: .inf}\n").complaints(), Not(IsEmpty()));
+  EXPECT_THAT(drive("    limits: {position: [.nan, 1]}\n").complaints(), Not(IsEmpty()));
+  EXPECT_THAT(drive("    limits: {speed: 1}\n").complaints(),
+              ElementsAre("12:14 error [unknown-key]"));
+  EXPECT_THAT(drive("    limits: {axes: {9: {step: 1}}}\n").complaints(),
+              ElementsAre("12:21 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {axes: {2: {step: 1}}}\n").said("limits"),
+              HasSubstr("carries a set-point of axis 2"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, min: 2, max: 1}]}\n").complaints(),
+              ElementsAre("12:45 error [out-of-range]"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003}]}\n").complaints(),
+              ElementsAre("12:24 error [missing-key]"));
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}, {index: 0x2003, max: 2}]}\n")
+                  .complaints(),
+              testing::Contains("12:49 error [written-twice]"));
+}
+
+TEST(Limits, OfWhatIsNotCommandedAreErrors) {
+  EXPECT_THAT(drive("    limits: {objects: [{index: 0x2003, max: 1}]}\n").said("limits"),
+              HasSubstr("no RPDO carries 2003:00"));
+  EXPECT_THAT(drive("    limits: {step: 1}\n", "{index: 0x2003}").said("limits"),
+              HasSubstr("no RPDO of node `arm` carries a set-point of a drive"));
+}
+
+TEST(Limits, WithoutAUnitAreErrors) {
+  const Compiled net = drive("    limits: {position: [-1, 1]}\n", "{index: 0x607A}", "");
+  EXPECT_THAT(net.complaints(), ElementsAre("8:24 error [limits]"));
+  EXPECT_THAT(net.said("limits"), HasSubstr("has no unit"));
+}
+
+TEST(Limits, InAnotherUnitThanPositionsAreToldAndNotCompared) {
+  const Compiled net =
+      drive("    limits: {velocity: 3000}\n", "{index: 0x607A}",
+            "    units: {position: {scale: 0.001, unit: rad}, velocity: {scale: 1, unit: rpm}}\n");
+  EXPECT_THAT(net.complaints(), ElementsAre("9:24 warning [limits]"));
+  EXPECT_THAT(net.plan.limits.outputs, IsEmpty());
+}
+
+TEST(Limits, ThatAFallbackOrASafeValueBreaksAreErrors) {
+  EXPECT_THAT(drive("      objects: [{index: 0x2003, unit: V}]\n"
+                    "    safe_values: [{index: 0x2003, value: 20}]\n"
+                    "    limits: {objects: [{index: 0x2003, min: 1, max: 10}]}\n",
+                    "{index: 0x2003}")
+                  .said("limits"),
+              HasSubstr("lies outside its limits"));
+}
+
+TEST(Limits, AreNamedWithTheirSourceByThePlan) {
+  const Compiled net = drive("    limits: {position: [-1.5, 1.5], velocity: 2, jerk: 400}\n");
+  EXPECT_THAT(text_of(net),
+              AllOf(HasSubstr("arm  position      -1.5 .. 1.5 rad  from the network file\n"),
+                    HasSubstr("arm  velocity      2 rad/s          from the network file\n"),
+                    HasSubstr("arm  jerk          400 rad/s^3      from the network file, used for "
+                              "planned motion only\n"),
+                    HasSubstr("arm  step          none             proposal: `step: 0.004` "
+                              "(velocity in one cycle)\n")));
+  EXPECT_THAT(json_of(net), HasSubstr(R"("source": "file")"));
+}
+
+TEST(Limits, AreProposedWhereThereAreNone) {
+  const Compiled net = drive("    limits: {velocity: 2}\n");
+  EXPECT_THAT(text_of(net),
+              AllOf(HasSubstr("proposal: `position: ...` (enter the travel of the machine"),
+                    HasSubstr("proposal: `step: 0.004` (velocity in one cycle)")));
+  EXPECT_THAT(text_of(drive("")), HasSubstr("proposal: `velocity: 10` (6081:00)"));
+}
+
+TEST(Limits, OfARotaryAxisThatMayNotTurnOverThereAreAWarning) {
+  const std::string range_limit =
+      record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
+      entry("607Bsub1", "min", 4, "rw", "0") + entry("607Bsub2", "max", 4, "rw", "0");
+  const auto rotary = [&](const std::string& written, const std::string& objects) {
+    std::string text;
+    for (const Finding& f : drive("    limits: {modulo: 3.6, step: 0.01}\n" + written,
+                                  "{index: 0x607A}", units, tiny_eds() + objects)
+                                .findings) {
+      if (f.rule == "limits") text += std::string{name(f.severity)} + ": " + f.message + "\n";
+    }
+    return text;
+  };
+  EXPECT_THAT(rotary("", range_limit),
+              AllOf(HasSubstr("warning: `modulo` of node `arm` is 3600 counts of"),
+                    HasSubstr("nothing sets 607B:00 (position range limit)"),
+                    HasSubstr("Write 607B:01 and 607B:02 under `sdo:`")));
+  EXPECT_THAT(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 9999}]\n", range_limit),
+              HasSubstr("but 607B:00 (position range limit) wraps after 10000"));
+  EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3599}]\n", range_limit), "");
+  EXPECT_EQ(rotary("    sdo: [{index: 0x607B, sub_index: 2, value: 3600}]\n", range_limit), "")
+      << "a rounded number";
+  EXPECT_THAT(rotary("", ""), AllOf(HasSubstr("note: "), HasSubstr("does not have this object")));
+}
+
+/// Compiles a limited axis whose actual position comes in TPDO2 with these keys.
+std::string start_of(const std::string& tpdo, const std::string& limits) {
+  const Compiled net = compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    tpdo: {2: {enabled: true, cob_id: auto, " +
+      tpdo +
+      "}}\n"
+      "    rpdo: {2: {enabled: true, cob_id: auto, mapping: [{index: 0x6040}, {index: "
+      "0x607A}]}}\n" +
+      std::string{units} + "    limits: {" + limits + "}\n");
+  return net.said("limits");
+}
+
+TEST(Limits, ThatWaitForAPositionThatComesByEventAloneHaveAWarning) {
+  for (const char* const limits : {"step: 0.01", "velocity: 2.0", "acceleration: 20"}) {
+    EXPECT_THAT(
+        start_of("transmission: 255", limits),
+        AllOf(HasSubstr(
+                  "limits of node `arm` hold its set-points back until 6064:00 has arrived once"),
+              HasSubstr("TPDO2 sends it only by event (transmission 255 without "
+                        "`event_timer`)"),
+              HasSubstr("Give TPDO2 an `event_timer`, or make it synchronous")));
+  }
+  EXPECT_THAT(start_of("transmission: 254", "step: 0.01"), HasSubstr("(transmission 254 without"));
+  EXPECT_EQ(start_of("transmission: 255, event_timer: 100", "step: 0.01"), "");
+  EXPECT_EQ(start_of("transmission: 1", "step: 0.01"), "");
+  EXPECT_EQ(start_of("transmission: 255", "position: [-1, 1]"), "") << "a range needs no start";
+}
+
+TEST(Limits, OfARoundedTurnCountTheTurnOfTheDrive) {
+  const std::string range_limit =
+      record("607B", "Position range limit", 3) + entry("607Bsub0", "highest", 5, "const", "2") +
+      entry("607Bsub1", "min", 4, "rw", "0") + entry("607Bsub2", "max", 4, "rw", "35999");
+  const Compiled net = drive("    limits: {modulo: 35.999, step: 0.01}\n", "{index: 0x607A}", units,
+                             tiny_eds() + range_limit);
+  EXPECT_EQ(only(net).modulus, 36'000.0) << "35999 would make a way of 35999 no turn-over";
+}
+
+std::string limit_objects(const std::string& unsigned32 = "7") {
+  const int type = std::stoi(unsigned32);
+  return record("607D", "Software position limit", 3) +
+         entry("607Dsub0", "highest", 5, "const", "2") +
+         entry("607Dsub1", "min", 4, "rw", "-1000") + entry("607Dsub2", "max", 4, "rw", "2000") +
+         entry("607F", "Max profile velocity", type, "rw", "500") +
+         entry("60C5", "Max acceleration", type, "rw", "300");
+}
+
+Compiled telling_drive(const std::string& limits, const std::string& mapped,
+                       const std::string& objects = limit_objects()) {
+  return compile(
+      "master: {sync_period: 2000}\nnodes:\n  arm:\n    node_id: 5\n    dcf: tiny.eds\n"
+      "    rpdo: {2: {enabled: true, mapping: [" +
+          mapped + "]}}\n" + std::string{units} + limits,
+      tiny_eds() + objects);
+}
+
+/// Returns the objects of the steps that read limits.
+std::vector<std::string> reads(const Compiled& net) {
+  std::vector<std::string> objects;
+  for (const BootStep& step : net.plan.nodes.at(0).boot_plan.steps) {
+    if (step.action == BootAction::read_limit) objects.push_back(to_string(step.object));
+  }
+  return objects;
+}
+
+TEST(Limits, ThatTheFileDoesNotGiveAreReadInTheBootInCountsPerCycle) {
+  const Compiled net = telling_drive("", "{index: 0x607A}");
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(reads(net), ElementsAre("607D:01", "607D:02", "607F:00", "60C5:00"));
+  ASSERT_EQ(net.plan.limits.device.size(), 3U);
+  const auto& device = net.plan.limits.device;
+  EXPECT_EQ(device[0].bound, DeviceBound::range);
+  EXPECT_EQ(device[0].factor, 1.0);
+  EXPECT_EQ(device[1].bound, DeviceBound::rate);
+  EXPECT_DOUBLE_EQ(device[1].factor, 0.02);  // 0.01 rad/s x 2 ms / 1 mrad
+  EXPECT_EQ(device[2].bound, DeviceBound::bend);
+  EXPECT_DOUBLE_EQ(device[2].factor, 4e-4);  // 0.1 rad/s^2 x (2 ms)^2 / 1 mrad
+  EXPECT_EQ(only(net).high, OutputLimit::none);
+  EXPECT_EQ(only(net).range, LimitKind::position);
+  EXPECT_THAT(
+      text_of(net),
+      AllOf(
+          HasSubstr("arm  position      as the device says rad      read from the device at boot, "
+                    "607D:01\n"),
+          HasSubstr("arm  velocity      as the device says rad/s    read from the device at boot, "
+                    "607F:00\n"),
+          HasSubstr("arm  acceleration  as the device says rad/s^2  read from the device at boot, "
+                    "60C5:00\n")));
+  EXPECT_THAT(json_of(net), HasSubstr(R"("source": "device")"));
+}
+
+TEST(Limits, OfTheDeviceAreReadOnceForSeveralOutputsAndBoundVelocities) {
+  const Compiled net = telling_drive("", "{index: 0x60FF}, {index: 0x607A}");
+  EXPECT_THAT(reads(net), ElementsAre("607D:01", "607D:02", "607F:00", "60C5:00"));
+  ASSERT_EQ(net.plan.limits.device.size(), 5U);
+  EXPECT_EQ(net.plan.limits.device[2].bound, DeviceBound::size);
+  EXPECT_EQ(net.plan.limits.device[2].factor, 1.0);
+  EXPECT_EQ(net.plan.limits.device[4].bound, DeviceBound::rate);
+  EXPECT_DOUBLE_EQ(net.plan.limits.device[4].factor, 0.02);  // 0.1 rad/s^2 x 2 ms / 0.01 rad/s
+}
+
+TEST(Limits, OfTheFileSpareTheBootTheReading) {
+  EXPECT_THAT(
+      reads(telling_drive("    limits: {position: [-1, 1], velocity: 2, acceleration: 20}\n",
+                          "{index: 0x607A}")),
+      IsEmpty());
+  EXPECT_THAT(reads(telling_drive("    limits: {position: [-1, 1]}\n", "{index: 0x607A}")),
+              ElementsAre("607F:00", "60C5:00"));
+}
+
+TEST(Limits, AreNotReadWhereTheDeviceFileHasNoneOf32BitsOrNothingShowsThem) {
+  EXPECT_THAT(reads(telling_drive("", "{index: 0x607A}", "")), IsEmpty());
+  EXPECT_THAT(reads(telling_drive("", "{index: 0x607A}", limit_objects("6"))),
+              ElementsAre("607D:01", "607D:02"));
+  EXPECT_THAT(reads(telling_drive("", "{index: 0x2003}")), IsEmpty());
+}
+
+}  // namespace
+}  // namespace takt::test
