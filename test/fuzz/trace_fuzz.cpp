@@ -53,9 +53,9 @@ void dump(std::string_view text) {
 /// What `takt learn` does with the whole: the network file and the EDS files are read again.
 void learn(std::string_view text) {
   std::istringstream in{std::string{text}};
-  const takt::LearnedBus bus = takt::read_recording(in, "fuzz.log", {});
+  const takt::learn::LearnedBus bus = takt::learn::read_recording(in, "fuzz.log", {});
   for (const takt::Finding& finding : bus.findings) demand(!to_string(finding).empty());
-  const auto learned = takt::learned_network(bus, takt::DeviceFiles{}, {});
+  const auto learned = takt::learn::learned_network(bus, takt::learn::DeviceFiles{}, {});
   takt::Findings findings;
   static_cast<void>(takt::read_network(learned.text, "learned.yaml", findings));
   for (const auto& [name, content] : learned.made_files) {

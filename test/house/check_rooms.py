@@ -159,7 +159,7 @@ PENDING_ARROWS = {
     ("eds_parser/plan/axis_compiler.cpp", "eds_parser/read/object_words.hpp"),
 }
 # Types that have two definitions. The list only shrinks.
-PENDING_DOUBLES = {"takt::RawRange", "takt::Recording", "takt::SdoServer", "takt::SdoTransfer", "takt::TimeBudget",
+PENDING_DOUBLES = {"takt::RawRange", "takt::SdoServer", "takt::TimeBudget",
                    "takt::Verdict"}
 
 MOST_LINES = 400

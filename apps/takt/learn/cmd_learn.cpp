@@ -14,6 +14,7 @@
 #include "eds_parser/network_file/read_devices.hpp"
 
 namespace takt {
+namespace learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,9 +110,10 @@ int run(const Options& options) {
 }
 
 }  // namespace
+}  // namespace learn
 
 void add_learn(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<learn::Options>();
   auto* command =
       app.add_subcommand("learn", "makes a network file from a recorded boot of another master");
   command
@@ -143,7 +145,7 @@ void add_learn(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  takt learn boot.log --eds-dir vendor/ --bitrate 500 -o machine.yaml\n"
       "  takt plan machine.yaml");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] { exit_code = learn::run(*options); });
 }
 
 }  // namespace takt

@@ -6,7 +6,7 @@
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/read/eds.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ DeviceFiles::Match DeviceFiles::find(std::uint8_t node, const SeenIdentity& iden
   return found;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -9,7 +9,7 @@
 #include "apps/takt/learn/learned_bus.hpp"
 #include "eds_parser/dictionary/object_dictionary.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// Identity of a device as far as the recording or a file shows it. 0 means unknown.
 struct SeenIdentity {
@@ -61,4 +61,4 @@ class DeviceFiles {
   std::map<std::uint8_t, std::filesystem::path> assigned_;
 };
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -5,7 +5,7 @@
 
 #include "apps/takt/learn/learned_pdos.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 /// Returns the boot with the most writes, the newest of equal ones. Returns null if there is no
@@ -123,4 +123,4 @@ std::vector<std::uint8_t> LearnedBus::strangers() const {
   return list;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -11,7 +11,7 @@
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/table/ids.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// An SDO write of the master.
 struct LearnedWrite {
@@ -115,4 +115,4 @@ struct LearnedBus {
   bool sends_as_device(std::uint8_t node_id) const;
 };
 
-}  // namespace takt
+}  // namespace takt::learn

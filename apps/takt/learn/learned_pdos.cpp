@@ -2,7 +2,7 @@
 
 #include <set>
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 template <class T>
@@ -64,4 +64,4 @@ std::vector<LearnedPdo> learned_pdos(const LearnedValues& values) {
   return pdos;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -5,7 +5,7 @@
 
 #include "apps/takt/learn/learned_bus.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// A PDO as a recorded boot left it. A parameter is empty if the recording does not show it.
 struct LearnedPdo {
@@ -31,4 +31,4 @@ constexpr bool is_pdo_object(std::uint16_t index) noexcept {
   return index >= 0x1400 && index <= 0x1BFF;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -10,7 +10,7 @@
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 struct DriveObject {
@@ -285,4 +285,4 @@ std::string made_eds(const LearnedNode& node, const std::string& recording,
   return text;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -3,7 +3,7 @@
 
 #include "apps/takt/learn/learned_bus.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// Returns an EDS that is made from the recording, for a device whose own EDS is not available. It
 /// holds every object that was read or written, with its width on the bus, and every object that
@@ -12,4 +12,4 @@ namespace takt {
 std::string made_eds(const LearnedNode& node, const std::string& recording,
                      const std::string& file_name);
 
-}  // namespace takt
+}  // namespace takt::learn

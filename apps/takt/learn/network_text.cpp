@@ -13,7 +13,7 @@
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/read/eds.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -397,4 +397,4 @@ LearnedNetwork learned_network(const LearnedBus& bus, const DeviceFiles& files,
   return NetworkText{bus, files, options}.run();
 }
 
-}  // namespace takt
+}  // namespace takt::learn

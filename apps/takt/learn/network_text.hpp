@@ -9,7 +9,7 @@
 #include "apps/takt/learn/learned_bus.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// Options of learned_network().
 struct LearnOptions {
@@ -31,4 +31,4 @@ struct LearnedNetwork {
 LearnedNetwork learned_network(const LearnedBus& bus, const DeviceFiles& files,
                                const LearnOptions& options);
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -11,7 +11,7 @@
 #include "eds_parser/specification/object_units.hpp"
 #include "master/wire/sdo_abort.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 constexpr std::uint32_t invalid_bit = 0x8000'0000;
@@ -387,4 +387,4 @@ std::string node_text(const NodeToWrite& node, const LearnedBus& bus, Findings& 
   return NodeText{node, bus, findings}.write();
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -5,7 +5,7 @@
 #include "apps/takt/learn/device_files.hpp"
 #include "apps/takt/learn/learned_bus.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// A node with the known properties of its device and of the master.
 struct NodeToWrite {
@@ -29,4 +29,4 @@ std::string node_name(std::uint8_t id);
 /// Returns true for objects 0x1000..0x1FFF that have a key in the network file.
 bool has_key_of_its_own(ObjectKey key) noexcept;
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <vector>
 
-namespace takt {
+namespace takt::learn {
 
 void PeriodMeter::add(std::optional<std::int64_t> us) noexcept {
   ++count_;
@@ -60,4 +60,4 @@ std::optional<std::int64_t> as_configured_ms(std::optional<std::int64_t> measure
   return ms >= 1 && ms <= 65535 ? std::optional{ms} : std::nullopt;
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace takt {
+namespace takt::learn {
 
 /// Measures the usual time between frames of one kind: the median of the newest 255 intervals. Its
 /// memory is fixed.
@@ -39,4 +39,4 @@ std::int64_t as_configured(std::int64_t measured) noexcept;
 /// if the result is not in the range 1..65535 of an UNSIGNED16 time.
 std::optional<std::int64_t> as_configured_ms(std::optional<std::int64_t> measured_us) noexcept;
 
-}  // namespace takt
+}  // namespace takt::learn

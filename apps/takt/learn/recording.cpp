@@ -8,7 +8,7 @@
 #include "master/trace/words.hpp"
 #include "master/wire/nmt.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 constexpr std::size_t most_identifiers = 4096;
@@ -312,4 +312,4 @@ LearnedBus read_recording(std::istream& in, const std::string& name, const std::
   return recording.take();
 }
 
-}  // namespace takt
+}  // namespace takt::learn

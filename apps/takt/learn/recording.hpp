@@ -10,7 +10,7 @@
 #include "master/trace/candump_line.hpp"
 #include "master/trace/recorded_lines.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// Learns a bus from a recording, frame by frame. Its memory is bounded for any recording.
 class Recording {
@@ -62,4 +62,4 @@ class Recording {
 /// than candump writes.
 LearnedBus read_recording(std::istream& in, const std::string& name, const std::string& interface);
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -4,7 +4,7 @@
 
 #include "master/wire/sdo_codec.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 constexpr std::uint8_t abort_command = 0x80;
@@ -178,4 +178,4 @@ std::optional<SdoTransfer> SdoObserver::answer(const Frame& frame) {
   return {};
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -7,7 +7,7 @@
 #include "master/explain/frame/block_text.hpp"
 #include "master/wire/frame.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// One SDO transfer of a recording that has ended, successfully or with an abort.
 struct SdoTransfer {
@@ -58,4 +58,4 @@ class SdoObserver {
   std::uint64_t cut_off_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::learn

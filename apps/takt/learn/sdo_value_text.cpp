@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 constexpr std::size_t longest_text = 4096;
@@ -62,4 +62,4 @@ std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, D
   return std::to_string(cut);
 }
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -5,7 +5,7 @@
 
 #include "eds_parser/table/data_type.hpp"
 
-namespace takt {
+namespace takt::learn {
 
 /// Returns the bytes of an object as a value in a network file. Text and raw bytes are quoted.
 /// Returns std::nullopt if a network file can't hold the value: text or raw bytes that are empty,
@@ -13,4 +13,4 @@ namespace takt {
 /// that is not finite, or an unsigned number above 2^63 - 1.
 std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type);
 
-}  // namespace takt
+}  // namespace takt::learn

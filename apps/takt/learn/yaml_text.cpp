@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace takt {
+namespace takt::learn {
 
 std::string yaml_quoted(std::string_view text) {
   std::string out = "\"";
@@ -21,4 +21,4 @@ std::string yaml_word(std::string_view text) {
   return word ? std::string{text} : yaml_quoted(text);
 }
 
-}  // namespace takt
+}  // namespace takt::learn

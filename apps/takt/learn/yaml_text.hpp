@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-namespace takt {
+namespace takt::learn {
 
 /// Returns the text in quotes, `"text"`. Control characters become `?`.
 std::string yaml_quoted(std::string_view text);
@@ -10,4 +10,4 @@ std::string yaml_quoted(std::string_view text);
 /// Returns the text without quotes if YAML can only read it as a string, and in quotes otherwise.
 std::string yaml_word(std::string_view text);
 
-}  // namespace takt
+}  // namespace takt::learn

@@ -32,7 +32,7 @@ struct ScanOptions {
 struct Found {
   std::uint8_t id = 0;
   ScannedNode node;
-  DeviceFiles::Match file;
+  learn::DeviceFiles::Match file;
 };
 
 // After this time with a full transmit queue, no node acknowledges the frames.
@@ -138,21 +138,21 @@ nlohmann::json to_json(const Found& found) {
   return json;
 }
 
-std::vector<Found> with_files(const BusScan& scan, const DeviceFiles& files) {
+std::vector<Found> with_files(const BusScan& scan, const learn::DeviceFiles& files) {
   std::vector<Found> all;
   for (const auto& [id, node] : scan.nodes()) {
-    const SeenIdentity identity{.device_type = node.device_type.value_or(0),
-                                .vendor_id = node.identity[0].value_or(0),
-                                .product_code = node.identity[1].value_or(0),
-                                .revision_number = node.identity[2].value_or(0),
-                                .serial_number = node.identity[3].value_or(0)};
+    const learn::SeenIdentity identity{.device_type = node.device_type.value_or(0),
+                                       .vendor_id = node.identity[0].value_or(0),
+                                       .product_code = node.identity[1].value_or(0),
+                                       .revision_number = node.identity[2].value_or(0),
+                                       .serial_number = node.identity[3].value_or(0)};
     all.push_back({id, node, files.find(id, identity)});
   }
   return all;
 }
 
 int run(const ScanOptions& options) {
-  DeviceFiles files;
+  learn::DeviceFiles files;
   Findings findings;
   for (const std::string& folder : options.folders) files.add_folder(folder, findings);
   if (!findings.empty()) return complain(to_string(findings.front()), 2);

@@ -8,7 +8,7 @@
 
 #include "test/support/folder.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST(DeviceFiles, AVendorIdOfZeroNeedsAProductCodeAndTheDeviceType) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn

@@ -12,7 +12,7 @@
 #include "eds_parser/network_file/load_network.hpp"
 #include "test/support/folder.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ TEST(IncompleteRecording, DatesAreTimesOfTheWallClock) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn

@@ -12,7 +12,7 @@
 #include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -341,4 +341,4 @@ TEST(PeriodMeter, FindsTheTimeThatSomebodyWrote) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn

@@ -15,7 +15,7 @@
 #include "eds_parser/read/eds.hpp"
 #include "test/support/folder.hpp"
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST(Learn, ALineOfAnyLengthCostsNoMemory) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn

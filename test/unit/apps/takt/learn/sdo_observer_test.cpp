@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <initializer_list>
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -151,4 +151,4 @@ TEST(SdoObserver, ALongValueIsNotKeptWhole) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn

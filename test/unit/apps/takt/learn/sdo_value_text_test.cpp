@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace takt {
+namespace takt::learn {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -34,4 +34,4 @@ TEST(SdoValueText, SaysWhatANetworkFileCannotHold) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::learn
