@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -214,4 +214,4 @@ TEST_F(FrontMeddled, NothingIsSeenOfTheStop) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::soak

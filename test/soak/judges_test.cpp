@@ -7,7 +7,7 @@
 #include "apps/takt/soak/restless_user.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -319,4 +319,4 @@ TEST_F(Asked, BlamesAnAnswerThatStaysAway) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::soak

@@ -5,7 +5,7 @@
 
 #include "test/unit/master/core/pdo/small_plan.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -306,4 +306,4 @@ TEST_F(LimitJudges, HoldProfilePositionsAgainstTheRangeOnly) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::soak

@@ -11,7 +11,7 @@
 #include "master/rt/exchange/exchange.hpp"
 #include "master/sim/bus/world.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -193,4 +193,4 @@ TEST(SoakJobs, TellTheSeedOfAViolationAndOfACrash) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::soak

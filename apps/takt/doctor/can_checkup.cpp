@@ -6,7 +6,7 @@
 #include "apps/takt/doctor/checkup.hpp"
 #include "master/linux/file_descriptor.hpp"
 
-namespace takt {
+namespace takt::doctor {
 namespace {
 
 constexpr std::uint32_t usual_bitrate = 1'000'000;
@@ -75,4 +75,4 @@ std::vector<Remark> judge_link(const CanLink& link, std::optional<std::uint32_t>
   return {{Verdict::good, link.name, text}};
 }
 
-}  // namespace takt
+}  // namespace takt::doctor

@@ -8,7 +8,7 @@
 #include "master/linux/can/can_link.hpp"
 #include "master/linux/rt_thread.hpp"
 
-namespace takt {
+namespace takt::doctor {
 
 enum class Verdict : std::uint8_t { good, hint, bad };
 
@@ -39,4 +39,4 @@ std::vector<Remark> judge_realtime(const RtReport& report);
 /// `root`.
 std::vector<Remark> check_lcm(const std::string& url, const std::filesystem::path& root);
 
-}  // namespace takt
+}  // namespace takt::doctor

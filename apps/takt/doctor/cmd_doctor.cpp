@@ -12,6 +12,7 @@
 #include "master/lcm/link/lcm_url.hpp"
 
 namespace takt {
+namespace doctor {
 namespace {
 
 struct DoctorOptions {
@@ -92,6 +93,7 @@ int run(const DoctorOptions& options) {
 }
 
 }  // namespace
+}  // namespace doctor
 
 void add_doctor(CLI::App& app, int& exit_code) {
   auto* verb = app.add_subcommand(
@@ -102,7 +104,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  takt doctor\n"
       "  takt doctor --bus can0 --bitrate 500");
-  auto options = std::make_shared<DoctorOptions>();
+  auto options = std::make_shared<doctor::DoctorOptions>();
   verb->add_option("--bus", options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
   add_number(*verb, "--bitrate", options->bitrate_kbit,
              "bit rate that the interface must have, kbit/s")
@@ -115,7 +117,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
                    "LCM URL to check; default: LCM_DEFAULT_URL, else LCM's own")
       ->type_name("URL");
   verb->add_flag("--json", options->json, "print one JSON document");
-  verb->callback([options, &exit_code] { exit_code = run(*options); });
+  verb->callback([options, &exit_code] { exit_code = doctor::run(*options); });
 }
 
 }  // namespace takt

@@ -3,7 +3,7 @@
 #include "apps/takt/doctor/checkup.hpp"
 #include "master/lcm/link/lcm_url.hpp"
 
-namespace takt {
+namespace takt::doctor {
 namespace {
 
 constexpr std::uint64_t wanted_buffer = 2 << 20;  // bytes, the size that LCM requests
@@ -42,4 +42,4 @@ std::vector<Remark> check_lcm(const std::string& url, const std::filesystem::pat
   return remarks;
 }
 
-}  // namespace takt
+}  // namespace takt::doctor

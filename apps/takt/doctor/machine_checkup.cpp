@@ -3,7 +3,7 @@
 
 #include "apps/takt/doctor/checkup.hpp"
 
-namespace takt {
+namespace takt::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,4 +65,4 @@ std::vector<Remark> judge_realtime(const RtReport& report) {
            "SCHED_FIFO " + std::to_string(report.priority) + " and locked memory are granted"}};
 }
 
-}  // namespace takt
+}  // namespace takt::doctor

@@ -14,6 +14,7 @@
 #include "apps/takt/soak/soak_jobs.hpp"
 
 namespace takt {
+namespace soak {
 namespace {
 
 struct Arguments {
@@ -126,9 +127,10 @@ int run(Arguments& arguments) {
 }
 
 }  // namespace
+}  // namespace soak
 
 void add_soak(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<soak::Arguments>();
   auto* command = app.add_subcommand(
       "soak", "runs random fault sequences in virtual time and checks invariants");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
@@ -174,7 +176,7 @@ void add_soak(CLI::App& app, int& exit_code) {
       "  takt soak share/demo/two_axes.yaml --seed 17 --part front --verbose");
   command->callback([arguments, &exit_code] {
     try {
-      exit_code = run(*arguments);
+      exit_code = soak::run(*arguments);
     } catch (const std::exception& exception) {
       std::cerr << "takt soak: " << exception.what() << '\n';
       exit_code = 2;

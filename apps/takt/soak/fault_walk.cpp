@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -152,4 +152,4 @@ sim::Faults fault_walk(const BusPlan& plan, sim::Random random, Time from, Time 
   return Walk{plan, random, from, until}.take();
 }
 
-}  // namespace takt
+}  // namespace takt::soak

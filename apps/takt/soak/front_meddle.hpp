@@ -7,7 +7,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/gateway/front_round.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Cycles as the front thread sees them.
 struct SeenCycles {
@@ -30,4 +30,4 @@ struct FrontMeddle {
   std::function<bool(unsigned program, const image_t& image)> hears{};
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -18,7 +18,7 @@
 #include "apps/takt/soak/troubles.hpp"
 #include "master/sim/bus/world.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -316,4 +316,4 @@ SoakOutcome soak_front(const LoadedNetwork& network, const SoakOptions& options)
   return std::make_unique<Run>(network, options)->run();
 }
 
-}  // namespace takt
+}  // namespace takt::soak

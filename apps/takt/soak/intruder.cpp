@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace takt {
+namespace takt::soak {
 
 void Intruder::act() noexcept {
   std::array<StampedFrame, 64> heard;
@@ -65,4 +65,4 @@ CobId Intruder::identifier() noexcept {
   }
 }
 
-}  // namespace takt
+}  // namespace takt::soak

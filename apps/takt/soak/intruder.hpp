@@ -3,7 +3,7 @@
 #include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// A foreign device on the bus that sends rubbish: random identifiers, lengths and contents, and
 /// frames that nearly make sense (PDOs of a wrong length, SDO responses that nobody requested,
@@ -31,4 +31,4 @@ class Intruder {
   bool gone_ = false;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

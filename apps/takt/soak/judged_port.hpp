@@ -5,7 +5,7 @@
 #include "apps/takt/soak/judge/output_judge.hpp"
 #include "master/sim/bus/sim_port.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Wraps the simulation's port: the judge sees each frame that the master sends, and the intruder
 /// acts whenever the master sleeps.
@@ -42,4 +42,4 @@ class JudgedPort {
 };
 static_assert(Port<JudgedPort>);
 
-}  // namespace takt
+}  // namespace takt::soak

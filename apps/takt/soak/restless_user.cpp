@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace takt {
+namespace takt::soak {
 
 using namespace std::chrono_literals;
 
@@ -114,4 +114,4 @@ void RestlessUser::reset_all(Time now) {
   submit(request, now);
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -8,7 +8,7 @@
 #include "master/rt/exchange/exchange.hpp"
 #include "master/sim/random.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Acts as the applications of a run: it moves axes, changes outputs, pauses without notice, and
 /// sends requests of every kind at random times.
@@ -50,4 +50,4 @@ class RestlessUser {
   std::map<std::uint64_t, Time> open_;  ///< send times of the requests without a reply, by id
 };
 
-}  // namespace takt
+}  // namespace takt::soak

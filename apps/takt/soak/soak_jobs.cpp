@@ -11,7 +11,7 @@
 
 #include "apps/takt/soak/front_run.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 /// A message that a worker writes into the pipe. It is shorter than PIPE_BUF, so that it arrives in
@@ -155,4 +155,4 @@ void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
   }
 }
 
-}  // namespace takt
+}  // namespace takt::soak

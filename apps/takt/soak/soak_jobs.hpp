@@ -4,7 +4,7 @@
 
 #include "apps/takt/soak/soak_run.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Selects which runs are made with each seed.
 enum class SoakPart : std::uint8_t {
@@ -34,4 +34,4 @@ struct SoakReport {
 void run_jobs(const LoadedNetwork& network, const SoakPlan& plan,
               const std::function<void(const SoakReport&)>& told);
 
-}  // namespace takt
+}  // namespace takt::soak

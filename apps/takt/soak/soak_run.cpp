@@ -17,7 +17,7 @@
 #include "master/rt/bus_loop.hpp"
 #include "master/sim/bus/sim_port.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -201,4 +201,4 @@ SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options) {
   return std::make_unique<Run>(network, options)->run();
 }
 
-}  // namespace takt
+}  // namespace takt::soak

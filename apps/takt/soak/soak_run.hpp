@@ -9,11 +9,13 @@
 #include "eds_parser/network_file/load_network.hpp"
 
 namespace takt {
-
 struct Exchange;
-namespace sim {
+}
+namespace takt::sim {
 class World;
 }
+
+namespace takt::soak {
 
 struct SoakOptions {
   std::uint64_t seed = 1;
@@ -47,4 +49,4 @@ struct SoakOutcome {
 /// same seed gives the same run.
 SoakOutcome soak(const LoadedNetwork& network, const SoakOptions& options);
 
-}  // namespace takt
+}  // namespace takt::soak

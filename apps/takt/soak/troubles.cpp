@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -153,4 +153,4 @@ void Troubles::tell(Time now, const char* what, Time span) const {
   std::fprintf(stderr, "\n");
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -12,7 +12,7 @@
 #include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// The objects that the troubles act on.
 struct Cast {
@@ -63,4 +63,4 @@ class Troubles final : public Actor {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

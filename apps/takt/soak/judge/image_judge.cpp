@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace takt {
+namespace takt::soak {
 
 std::uint64_t bits_of(const Frame& frame, unsigned offset, unsigned count) noexcept {
   std::uint64_t value = 0;
@@ -86,4 +86,4 @@ void ImageJudge::judge(const ImageView& image) {
   ++images_;
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -7,7 +7,7 @@
 #include "master/rt/exchange/process_image.hpp"
 #include "master/sim/bus/wire_frame.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Returns `count` bits of the frame's data from bit `offset` on, least significant first. CiA 301,
 /// 7.1.4.
@@ -50,4 +50,4 @@ class ImageJudge final : public sim::BusObserver {
   std::uint64_t frames_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -10,7 +10,7 @@
 #include "apps/takt/soak/judge/true_axes.hpp"
 #include "eds_parser/table/limit_names.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -278,4 +278,4 @@ void LimitJudge::blame(const Place& place, double value, LimitKind kind, const s
                      std::string{name(kind)} + ": " + what);
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -11,7 +11,7 @@
 #include "master/sim/bus/world.hpp"
 #include "master/wire/frame.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Checks every limited output against `limits:` of the network file: range, step, velocity,
 /// acceleration and torque. The judge reads the frames that the devices receive and the TPDOs on
@@ -89,4 +89,4 @@ class LimitJudge {
   std::uint64_t judged_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 constexpr std::array<const char*, 5> boot_names{"idle", "booting", "ready", "failed", "lost"};
@@ -67,4 +67,4 @@ std::uint64_t NodeJudge::boots(const StatusSnapshot& status) const noexcept {
   return sum;
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -7,7 +7,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/rt/exchange/status_board.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Checks that every node is always in a known state, that each boot makes progress, and that all
 /// nodes are ready at the end.
@@ -37,4 +37,4 @@ class NodeJudge {
   std::vector<Progress> progress_;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -5,7 +5,7 @@
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "master/wire/nmt.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 constexpr std::uint64_t enabled = 0x0F;  // controlword: bits of "enable operation"
@@ -120,4 +120,4 @@ void OutputJudge::judge_pdo(const PdoRow& row, const Frame& frame, Time now) {
   }
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -8,7 +8,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Remembers the commands and checks the frames that the master passes to the interface against
 /// them: the master sends a value only within the time to live of its command, two SYNCs never
@@ -50,4 +50,4 @@ class OutputJudge {
   Time restarted_ = never;   ///< time of a start at 1 whose NMT command is not yet known
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -6,7 +6,7 @@
 
 #include "apps/takt/soak/judge/true_axes.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 StopJudge::StopJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
     : world_{world}, verdict_{verdict} {
@@ -60,4 +60,4 @@ void StopJudge::judge(StopResult result) {
   }
 }
 
-}  // namespace takt
+}  // namespace takt::soak

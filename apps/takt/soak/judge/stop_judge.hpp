@@ -8,7 +8,7 @@
 #include "master/core/network/ordered_stop.hpp"
 #include "master/sim/bus/world.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// Checks the result of an ordered stop against the simulated drives themselves: an axis that the
 /// master confirms must have been at standstill when its power stage went off, and the power stage
@@ -44,4 +44,4 @@ class StopJudge {
   std::uint64_t confirmed_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

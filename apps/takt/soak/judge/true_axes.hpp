@@ -6,7 +6,7 @@
 #include "master/sim/bus/world.hpp"
 #include "master/sim/device/device.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// The present state of an axis, read from its simulated drive and not from frames.
 struct TrueAxis {
@@ -33,4 +33,4 @@ inline TrueAxis true_axis(sim::World& world, NodeId node, unsigned number) noexc
   return {.statusword = read(0x6041), .position = read(0x6064), .velocity = read(0x606C)};
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -6,7 +6,7 @@
 
 #include "eds_parser/table/time.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// An invariant that a run has broken, and when.
 struct Violation {
@@ -37,4 +37,4 @@ class Verdict {
   std::optional<Violation> violation_;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

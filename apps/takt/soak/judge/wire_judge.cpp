@@ -6,7 +6,7 @@
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 
-namespace takt {
+namespace takt::soak {
 namespace {
 
 using namespace std::chrono_literals;
@@ -147,4 +147,4 @@ void WireJudge::blame_stale(const Signal& signal, std::uint64_t value, const Kno
   verdict_.blame("no output is older than its time to live", what);
 }
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -9,7 +9,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/wire/frame.hpp"
 
-namespace takt {
+namespace takt::soak {
 
 /// A set of senders of commands: one bit for each program.
 using SenderBit = std::uint32_t;
@@ -81,4 +81,4 @@ class WireJudge {
   std::uint64_t moves_ = 0;
 };
 
-}  // namespace takt
+}  // namespace takt::soak

@@ -7,7 +7,7 @@
 
 #include "test/support/folder.hpp"
 
-namespace takt {
+namespace takt::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ TEST(Doctor, JudgesSocketBuffersOnlyWhereLcmNeedsThem) {
 }
 
 }  // namespace
-}  // namespace takt
+}  // namespace takt::doctor
