@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::ptrdiff_t longest_line = 255;  // CiA 306, 4.2
 
-struct Line {
+struct IniLine {
   const char* first;
   const char* last;              ///< after the last character
   const char* equals = nullptr;  ///< the first `=`, if any
@@ -30,8 +30,8 @@ class Lines {
 
   bool done() const noexcept { return at_ == end_; }
 
-  Line take() noexcept {
-    Line line{.first = at_, .last = next()};
+  IniLine take() noexcept {
+    IniLine line{.first = at_, .last = next()};
     while (line.last != end_ && *line.last == '=') {
       if (line.equals == nullptr) line.equals = line.last;
       line.last = next();
@@ -51,7 +51,7 @@ class Lines {
   static constexpr std::size_t block_size = 64;
 
   /// Handles tabs, other control characters, and bytes that only look like one of these characters.
-  void take_odd(Line& line) noexcept {
+  void take_odd(IniLine& line) noexcept {
     if (*line.last == '=' && line.equals == nullptr) line.equals = line.last;
     line.last = next();
   }
@@ -116,7 +116,7 @@ class Reader {
   }
 
  private:
-  void read_line(const Line& line) {
+  void read_line(const IniLine& line) {
     const char* first = line.first;
     const char* last = line.last;
     while (first != last && is_blank(*first)) ++first;
@@ -152,7 +152,7 @@ class Reader {
     }
   }
 
-  void tell_long(const Line& line) {
+  void tell_long(const IniLine& line) {
     if (!report_.wants("long-line")) return;
     report_.warning({number_, 1}, "long-line",
                     "line of " + std::to_string(line.last - line.first) +

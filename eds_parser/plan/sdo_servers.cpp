@@ -45,8 +45,8 @@ class SdoServers {
  public:
   explicit SdoServers(const NodeSource& node) : node_{node} {}
 
-  std::vector<SdoServer> active() const {
-    std::vector<SdoServer> servers;
+  std::vector<DeviceSdoServer> active() const {
+    std::vector<DeviceSdoServer> servers;
     for (std::uint16_t index = first_further; index <= last_further; ++index) {
       if (const auto server = at(index)) servers.push_back(*server);
     }
@@ -54,7 +54,7 @@ class SdoServers {
   }
 
  private:
-  std::optional<SdoServer> at(std::uint16_t index) const {
+  std::optional<DeviceSdoServer> at(std::uint16_t index) const {
     const SdoSpec* own_request = written({index, 1});
     const SdoSpec* own_answer = written({index, 2});
     const auto request = cob_id({index, 1}, own_request);
@@ -62,15 +62,15 @@ class SdoServers {
     const bool configured = own_request != nullptr || own_answer != nullptr;
     if (!request || !answer) return configured ? std::nullopt : of_factory(index);
     const SdoSpec* own = own_request != nullptr ? own_request : own_answer;
-    return SdoServer{.index = index,
-                     .channel = {.request = *request, .answer = *answer},
-                     .pos = own != nullptr ? own->pos : node_.spec->pos,
-                     .doubt = {}};
+    return DeviceSdoServer{.index = index,
+                           .channel = {.request = *request, .answer = *answer},
+                           .pos = own != nullptr ? own->pos : node_.spec->pos,
+                           .doubt = {}};
   }
 
   /// Returns the server that the device has at delivery according to its device data, unless a DCF
   /// states its configuration.
-  std::optional<SdoServer> of_factory(std::uint16_t index) const {
+  std::optional<DeviceSdoServer> of_factory(std::uint16_t index) const {
     const SubObject* sub = node_.dictionary->find(ObjectKey{index, 1});
     const bool left_off = sub != nullptr && is_configured(*node_.dictionary, *sub);
     if (node_.data == nullptr || left_off) return std::nullopt;
@@ -78,10 +78,10 @@ class SdoServers {
     const auto found = std::ranges::find(facts, index, &SdoServerFact::index);
     if (found == facts.end()) return std::nullopt;
     const auto id = [this](std::uint32_t base) { return CobId::base(base + node_.id.value()); };
-    return SdoServer{.index = index,
-                     .channel = {.request = id(found->request), .answer = id(found->answer)},
-                     .pos = node_.spec->pos,
-                     .doubt = node_.data->cite(found->fact)};
+    return DeviceSdoServer{.index = index,
+                           .channel = {.request = id(found->request), .answer = id(found->answer)},
+                           .pos = node_.spec->pos,
+                           .doubt = node_.data->cite(found->fact)};
   }
 
   /// Returns the last write of the object. Entries of `configuration_file` come before those of
@@ -156,7 +156,7 @@ std::int64_t cob_id_of_file(const ObjectDictionary& dictionary, ObjectKey key) {
   return meant ? id : 0;
 }
 
-std::vector<SdoServer> active_sdo_servers(const NodeSource& node) {
+std::vector<DeviceSdoServer> active_sdo_servers(const NodeSource& node) {
   return SdoServers{node}.active();
 }
 
@@ -164,7 +164,7 @@ void check_sdo_channel(const NodeSource& node, NetworkReport& report) {
   const Sourced<SdoChannel>& wanted = node.spec->sdo_channel;
   if (!wanted.given || *wanted == default_sdo_channel(node.id)) return;
   const ServersOfFile servers{*node.dictionary, *wanted};
-  const auto of_device_data = [&](const SdoServer& server) {
+  const auto of_device_data = [&](const DeviceSdoServer& server) {
     return !server.doubt.empty() && server.channel == *wanted;
   };
   if (servers.has_wanted()) return;

@@ -10,7 +10,7 @@ namespace takt {
 
 /// A further SDO server of a device, in addition to the default server: 0x1201..0x127F. CiA 301,
 /// 7.5.2.33.
-struct SdoServer {
+struct DeviceSdoServer {
   std::uint16_t index = 0;
   SdoChannel channel;
   SourcePos pos;  ///< place in the network file
@@ -20,7 +20,7 @@ struct SdoServer {
 
 /// Returns the further SDO servers that are on according to the network file, else the device file,
 /// else the device data.
-std::vector<SdoServer> active_sdo_servers(const NodeSource& node);
+std::vector<DeviceSdoServer> active_sdo_servers(const NodeSource& node);
 
 /// Returns a COB-ID entry of the device file for this node. Returns 0 if there is no such entry. A
 /// plain number in an EDS also gives 0, because it is that of the node from which the EDS was

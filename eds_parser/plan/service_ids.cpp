@@ -57,7 +57,7 @@ class ServiceIdCollector {
   }
 
   void servers(const NodeSource& node) {
-    for (const SdoServer& server : active_sdo_servers(node)) {
+    for (const DeviceSdoServer& server : active_sdo_servers(node)) {
       for (const CobId id : {server.channel.request, server.channel.answer}) {
         if (!of_own_default(node.id, id) && !of_own_channel(*node.spec, id))
           enter(node, server, id);
@@ -65,7 +65,7 @@ class ServiceIdCollector {
     }
   }
 
-  void enter(const NodeSource& node, const SdoServer& server, CobId id) {
+  void enter(const NodeSource& node, const DeviceSdoServer& server, CobId id) {
     const std::string channel = "the SDO channel " + std::to_string(server.index - 0x1200 + 1) +
                                 " (" + hex(server.index, 4) + ") of node `" + node.spec->name + "`";
     const bool certain = server.doubt.empty();
@@ -86,7 +86,7 @@ class ServiceIdCollector {
                         clash + switched_off_by(node, server));
   }
 
-  static std::string switched_off_by(const NodeSource& node, const SdoServer& server) {
+  static std::string switched_off_by(const NodeSource& node, const DeviceSdoServer& server) {
     const std::string index = hex(server.index, 4);
     const std::string other_id = ", or give one of the nodes another id";
     if (node.dictionary->find(ObjectKey{server.index, 1}) != nullptr) {

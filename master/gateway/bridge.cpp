@@ -266,7 +266,7 @@ void Bridge::tell_damaged(const std::string& channel, DecodeFault fault) {
 }
 
 void Bridge::take_events() {
-  const TimeBudget budget{clock_, front_budget::events};
+  const FrontBudget budget{clock_, FrontBudget::events};
   Event event;
   do {
     events_left_ = master_.take(event);

@@ -21,8 +21,8 @@
 #include "master/gateway/notice/notice_limit.hpp"
 #include "master/gateway/notice/pdo_outages.hpp"
 #include "master/lcm/clocks.hpp"
+#include "master/lcm/front_budget.hpp"
 #include "master/lcm/messages.hpp"
-#include "master/lcm/time_budget.hpp"
 #include "master/lcm/transport.hpp"
 #include "master/master.hpp"
 
@@ -115,7 +115,7 @@ class Bridge {
   void tell_lost_events();
   Notice fallback_notice(Event event) const;
   void remember(const Event& event);
-  void take_replies(const TimeBudget& budget);
+  void take_replies(const FrontBudget& budget);
   void take_reply(const Reply& reply);
   void serve_requests();
   void take_messages();

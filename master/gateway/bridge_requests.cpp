@@ -12,12 +12,12 @@ constexpr Time most_ahead = std::chrono::seconds{1};     // difference of the cl
 }  // namespace
 
 void Bridge::serve_requests() {
-  const TimeBudget budget{clock_, front_budget::requests};
+  const FrontBudget budget{clock_, FrontBudget::requests};
   take_replies(budget);
   transfers_left_ = transfers_.on_time(clocks_.now(), budget);
 }
 
-void Bridge::take_replies(const TimeBudget& budget) {
+void Bridge::take_replies(const FrontBudget& budget) {
   Reply reply;
   do {
     replies_left_ = master_.take(reply);

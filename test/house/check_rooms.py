@@ -158,8 +158,6 @@ PENDING_ARROWS = {
     ("eds_parser/network_file/read_devices.cpp", "eds_parser/plan/pdo/pdo_compiler.hpp"),
     ("eds_parser/plan/axis_compiler.cpp", "eds_parser/read/object_words.hpp"),
 }
-# Types that have two definitions. The list only shrinks.
-PENDING_DOUBLES = {"takt::RawRange", "takt::SdoServer", "takt::TimeBudget"}
 
 MOST_LINES = 400
 MOST_FILES = 30  # of a room; a note
@@ -257,7 +255,7 @@ def doubles(types):
     """(path, line, what) of each type that has a definition before it. `types`: of all files, (path, name, line, anonymous)."""
     first = {}
     for path, name, line, anonymous in types:
-        if anonymous or name in PENDING_DOUBLES:
+        if anonymous:
             continue
         if name in first:
             yield path, line, f"{name} is defined in {first[name][0]}:{first[name][1]} too"
@@ -324,9 +322,7 @@ def check(root):
     errors += equal_names(path for path, _ in sources(root, LIBRARIES))
     errors += unmirrored(root)
     notes += [f"{room}: {count} files: is it one idea?" for room, count in sizes.items() if count > MOST_FILES]
-    named = collections.Counter(name for _, name, _, anonymous in types if not anonymous)
-    mended = [*sorted(" -> ".join(pair) for pair in PENDING_ARROWS - arrows),
-              *sorted(name for name in PENDING_DOUBLES if named[name] < 2)]
+    mended = sorted(" -> ".join(pair) for pair in PENDING_ARROWS - arrows)
     return errors, notes, mended
 
 
@@ -415,7 +411,7 @@ def self_test():
     complaints += [f"wrongly refused: {path}:{line}: {what}" for path, line, what in refused]
     if len(notes) != 2:
         complaints.append("a long file or a large room was not reported")
-    if len(mended) != len(PENDING_ARROWS) + len(PENDING_DOUBLES):
+    if len(mended) != len(PENDING_ARROWS):
         complaints.append("an exception that is no longer needed was not reported")
     if not list(upward({"a": ("", "b"), "b": ("", "")})) or list(upward({"a": ("", "b/c.hpp"), "b": ("", "a")})):
         complaints.append("a circle of rooms was not reported, or one where there is none")

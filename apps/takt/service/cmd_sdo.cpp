@@ -43,9 +43,9 @@ struct SdoOptions {
 };
 
 /// Makes SDO transfers through the daemon or directly on the bus.
-class SdoAccess {
+class SdoRoute {
  public:
-  static std::expected<SdoAccess, LiveError> open(const SdoOptions& options);
+  static std::expected<SdoRoute, LiveError> open(const SdoOptions& options);
 
   std::expected<Value, LiveError> upload(ObjectKey object);
   std::expected<void, LiveError> download(ObjectKey object, const Value& value);
@@ -65,9 +65,9 @@ class SdoAccess {
   int timeout_ms_ = 0;
 };
 
-std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
-  SdoAccess access;
-  access.timeout_ms_ = options.timeout_ms;
+std::expected<SdoRoute, LiveError> SdoRoute::open(const SdoOptions& options) {
+  SdoRoute route;
+  route.timeout_ms_ = options.timeout_ms;
   if (!options.bus.empty()) {
     const auto id = parse_node_id(options.node);
     if (!id) {
@@ -76,23 +76,23 @@ std::expected<SdoAccess, LiveError> SdoAccess::open(const SdoOptions& options) {
                                            "knows names, and --bus does not use the daemon",
                                        2}};
     }
-    access.node_ = id->value();
+    route.node_ = id->value();
     const std::chrono::milliseconds given{options.timeout_ms};
-    access.direct_.emplace(options.bus, *id, given.count() == 0 ? direct_timeout : given);
-    return access;
+    route.direct_.emplace(options.bus, *id, given.count() == 0 ? direct_timeout : given);
+    return route;
   }
   auto daemon = DaemonClient::find(options.live);
   if (!daemon) return std::unexpected{daemon.error()};
   const auto node = daemon->node(options.node);
   if (!node) return std::unexpected{node.error()};
   if (*node == 0) return std::unexpected{LiveError{"an SDO transfer needs one node, not `all`", 2}};
-  access.node_ = *node;
-  access.daemon_.emplace(std::move(*daemon));
-  return access;
+  route.node_ = *node;
+  route.daemon_.emplace(std::move(*daemon));
+  return route;
 }
 
-std::expected<reply_t, LiveError> SdoAccess::ask(const char* service, ObjectKey object,
-                                                 const Value& value) {
+std::expected<reply_t, LiveError> SdoRoute::ask(const char* service, ObjectKey object,
+                                                const Value& value) {
   request_t request{};
   request.service = service;
   request.node_id = node_;
@@ -110,7 +110,7 @@ std::expected<reply_t, LiveError> SdoAccess::ask(const char* service, ObjectKey 
   return reply;
 }
 
-std::expected<Value, LiveError> SdoAccess::upload(ObjectKey object) {
+std::expected<Value, LiveError> SdoRoute::upload(ObjectKey object) {
   if (direct_) return direct_->upload(object);
   const auto reply = ask("sdo_upload", object, {});
   if (!reply) return std::unexpected{reply.error()};
@@ -119,7 +119,7 @@ std::expected<Value, LiveError> SdoAccess::upload(ObjectKey object) {
   return value;
 }
 
-std::expected<void, LiveError> SdoAccess::download(ObjectKey object, const Value& value) {
+std::expected<void, LiveError> SdoRoute::download(ObjectKey object, const Value& value) {
   if (direct_) return direct_->download(object, value);
   if (value.size() > request_bytes) {
     return std::unexpected{LiveError{"the daemon takes at most " + std::to_string(request_bytes) +
@@ -132,14 +132,14 @@ std::expected<void, LiveError> SdoAccess::download(ObjectKey object, const Value
   return {};
 }
 
-std::expected<Value, LiveError> SdoAccess::upload_file(ObjectKey object, std::size_t limit,
-                                                       const Progress& progress) {
+std::expected<Value, LiveError> SdoRoute::upload_file(ObjectKey object, std::size_t limit,
+                                                      const Progress& progress) {
   if (direct_) return direct_->upload(object, limit, progress);
   return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.upload(limit);
 }
 
-std::expected<void, LiveError> SdoAccess::download_file(ObjectKey object, const Value& value,
-                                                        const Progress& progress) {
+std::expected<void, LiveError> SdoRoute::download_file(ObjectKey object, const Value& value,
+                                                       const Progress& progress) {
   if (direct_) return direct_->download(object, value, progress);
   return FileTransfer{*daemon_, {node_, object, timeout_ms_}, progress}.download(value);
 }
@@ -157,16 +157,16 @@ int read(const SdoOptions& options) {
   if (!type && !options.type.empty()) {
     return complain("'" + options.type + "' is not a type like u16, i32, f32, string, hex", 2);
   }
-  auto access = SdoAccess::open(options);
-  if (!access) return complain(access.error().sentence, access.error().code);
-  const auto value = access->upload(*object);
+  auto route = SdoRoute::open(options);
+  if (!route) return complain(route.error().sentence, route.error().code);
+  const auto value = route->upload(*object);
   if (!value) return transfer_failed(options, *object, value.error());
   if (type && !fits(*type, *value)) {
     return transfer_failed(options, *object, {misfit_text(options.type, *type, *value), 1});
   }
   const std::string text = type ? value_text(*type, *value) : untyped_text(*value);
   if (options.live.json) {
-    const nlohmann::json json{{"node", access->node()},   {"index", object->index},
+    const nlohmann::json json{{"node", route->node()},    {"index", object->index},
                               {"sub", object->sub},       {"size", value->size()},
                               {"data", hex_text(*value)}, {"text", text}};
     std::puts(json_text(json).c_str());
@@ -177,9 +177,9 @@ int read(const SdoOptions& options) {
 }
 
 int download_value(const SdoOptions& options, ObjectKey object, const Value& value) {
-  auto access = SdoAccess::open(options);
-  if (!access) return complain(access.error().sentence, access.error().code);
-  const auto done = access->download(object, value);
+  auto route = SdoRoute::open(options);
+  if (!route) return complain(route.error().sentence, route.error().code);
+  const auto done = route->download(object, value);
   return done ? 0 : transfer_failed(options, object, done.error());
 }
 
@@ -198,13 +198,13 @@ int write(const SdoOptions& options) {
 int upload_file(const SdoOptions& options) {
   const auto object = parse_object(options.object);
   if (!object) return complain("'" + options.object + "' is not an object like 1F50:1", 2);
-  auto access = SdoAccess::open(options);
-  if (!access) return complain(access.error().sentence, access.error().code);
+  auto route = SdoRoute::open(options);
+  if (!route) return complain(route.error().sentence, route.error().code);
   const Interrupt interrupt;
   TransferProgress progress;
   const auto value =
-      access->upload_file(*object, options.limit,
-                          [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+      route->upload_file(*object, options.limit,
+                         [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   if (!value) return transfer_failed(options, *object, value.error());
   progress.finish(value->size());
   std::ofstream file{options.file, std::ios::binary};
@@ -220,11 +220,11 @@ int download_file(const SdoOptions& options) {
   const auto content = read_whole_file(options.file);
   if (!content) return complain(content.error(), 2);
   const auto bytes = std::as_bytes(std::span{*content});
-  auto access = SdoAccess::open(options);
-  if (!access) return complain(access.error().sentence, access.error().code);
+  auto route = SdoRoute::open(options);
+  if (!route) return complain(route.error().sentence, route.error().code);
   const Interrupt interrupt;
   TransferProgress progress;
-  const auto done = access->download_file(
+  const auto done = route->download_file(
       *object, {bytes.begin(), bytes.end()},
       [&](std::size_t through, std::size_t total) { progress.show(through, total); });
   if (!done) return transfer_failed(options, *object, done.error());

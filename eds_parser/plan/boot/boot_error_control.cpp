@@ -7,9 +7,9 @@
 namespace takt {
 namespace {
 
-class ErrorControl : BootPart {
+class ErrorControlSteps : BootPart {
  public:
-  explicit ErrorControl(const BootPart& part) : BootPart{part} {}
+  explicit ErrorControlSteps(const BootPart& part) : BootPart{part} {}
 
   void append() {
     if (context.producer_ms != 0 && steps.writable({0x1017, 0})) {
@@ -174,7 +174,7 @@ class Emergency : BootPart {
 
 }  // namespace
 
-void append_error_control(const BootPart& part) { ErrorControl{part}.append(); }
+void append_error_control(const BootPart& part) { ErrorControlSteps{part}.append(); }
 
 void append_emergency(const BootPart& part) { Emergency{part}.append(); }
 

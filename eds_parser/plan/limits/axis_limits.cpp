@@ -162,7 +162,7 @@ void AxisLimits::position(const Sourced<RangeSpec>& range) {
   entry.high = range->high;
   for (const SignalIndex signal : positions_) {
     if (!has_unit(signal, "position", range.pos)) return;
-    table_.narrow(signal, table_.raw_range(signal, range->low, range->high), LimitKind::position,
+    table_.narrow(signal, table_.raw_bounds(signal, range->low, range->high), LimitKind::position,
                   range.pos);
     entry.signals.push_back(signal);
   }

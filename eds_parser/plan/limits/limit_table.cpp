@@ -36,27 +36,27 @@ OutputLimit& LimitTable::row(SignalIndex signal) {
   return rows.emplace_back(OutputLimit{.signal = signal});
 }
 
-void LimitTable::narrow(SignalIndex signal, RawRange range, LimitKind kind, SourcePos pos) {
+void LimitTable::narrow(SignalIndex signal, RawBounds bounds, LimitKind kind, SourcePos pos) {
   OutputLimit& limit = row(signal);
-  limit.low = std::max(limit.low, range.low);
-  limit.high = std::min(limit.high, range.high);
+  limit.low = std::max(limit.low, bounds.low);
+  limit.high = std::min(limit.high, bounds.high);
   limit.range = kind;
   const auto place = static_cast<std::size_t>(&limit - plan_.limits.outputs.data());
   positions_[place] = pos;
 }
 
-RawRange LimitTable::raw_range(SignalIndex index, std::optional<double> low,
-                               std::optional<double> high) const {
+RawBounds LimitTable::raw_bounds(SignalIndex index, std::optional<double> low,
+                                 std::optional<double> high) const {
   const Signal& what = signal(index);
   const auto raw = [&what](double si) {
     const double counts = (si - what.offset) / what.scale;
     return is_real(what.type) ? counts : std::round(counts);
   };
-  RawRange range;
+  RawBounds bounds;
   if (what.scale < 0) std::swap(low, high);
-  if (low) range.low = raw(*low);
-  if (high) range.high = raw(*high);
-  return range;
+  if (low) bounds.low = raw(*low);
+  if (high) bounds.high = raw(*high);
+  return bounds;
 }
 
 double LimitTable::raw_size(SignalIndex index, double si) const {

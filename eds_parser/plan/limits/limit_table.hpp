@@ -10,7 +10,7 @@
 namespace takt {
 
 /// The first and the last permitted value in raw counts.
-struct RawRange {
+struct RawBounds {
   double low = -OutputLimit::none;
   double high = OutputLimit::none;
 };
@@ -25,12 +25,12 @@ class LimitTable {
   const Signal& signal(SignalIndex index) const { return plan_.layout.signals[index]; }
   OutputLimit& row(SignalIndex signal);
   /// Narrows the permitted values of an output. `pos` is the place of the limit in the file.
-  void narrow(SignalIndex signal, RawRange range, LimitKind kind, SourcePos pos);
+  void narrow(SignalIndex signal, RawBounds bounds, LimitKind kind, SourcePos pos);
 
   /// Converts absolute SI values to raw counts. The result is rounded to whole counts if the signal
   /// is an integer.
-  RawRange raw_range(SignalIndex signal, std::optional<double> low,
-                     std::optional<double> high) const;
+  RawBounds raw_bounds(SignalIndex signal, std::optional<double> low,
+                       std::optional<double> high) const;
   /// Converts a difference or a magnitude to raw counts.
   double raw_size(SignalIndex signal, double si) const;
 

@@ -124,7 +124,7 @@ class LimitsCompiler {
     line.unit = table_.signal(*signal).unit;
     line.signals = {*signal};
     if (limit.min.given || limit.max.given) {
-      table_.narrow(*signal, table_.raw_range(*signal, line.low, line.high), LimitKind::range,
+      table_.narrow(*signal, table_.raw_bounds(*signal, line.low, line.high), LimitKind::range,
                     limit.pos);
     } else {
       plan_.limits.lines.pop_back();

@@ -11,20 +11,20 @@ constexpr std::uint32_t window_periods = 8;
 constexpr std::uint32_t most_heartbeats = 12;  // a change of state may add a heartbeat
 constexpr std::uint32_t most_surplus = 2;      // surplus answers
 
-enum class Request : std::uint8_t { other, transfer, block };
+enum class SeenRequest : std::uint8_t { other, transfer, block };
 
 /// Classifies the frame of a client. CiA 301, 7.2.4.3: the beginning of every transfer has exactly
 /// one answer.
-Request request_of(const Frame& frame) noexcept {
+SeenRequest request_of(const Frame& frame) noexcept {
   switch (frame.data[0] >> 5U) {
     case 1:
     case 2:
-      return Request::transfer;
+      return SeenRequest::transfer;
     case 5:
     case 6:
-      return Request::block;
+      return SeenRequest::block;
     default:
-      return Request::other;
+      return SeenRequest::other;
   }
 }
 
@@ -60,10 +60,10 @@ std::optional<DuplicateSign> TwinWatch::on_heartbeat(Time now) noexcept {
 
 void TwinWatch::on_sdo_requests(std::span<const Frame> frames) noexcept {
   for (const Frame& frame : frames) {
-    const Request request = frame.id == sdo_request_ ? request_of(frame) : Request::other;
-    if (request == Request::other) continue;
+    const SeenRequest request = frame.id == sdo_request_ ? request_of(frame) : SeenRequest::other;
+    if (request == SeenRequest::other) continue;
     objects_ = {sdo_object(frame), objects_[0]};
-    block_ = request == Request::block;
+    block_ = request == SeenRequest::block;
     asked_ += !block_;
   }
 }

@@ -124,7 +124,7 @@ void AsciiServer::flush(Client& client) {
   }
 }
 
-void AsciiServer::receive(Client& client, const TimeBudget& budget) {
+void AsciiServer::receive(Client& client, const FrontBudget& budget) {
   std::array<char, 4096> chunk;
   take_lines(client, budget);
   while (!client.closed && !client.ended && !client.unhandled) {
@@ -141,7 +141,7 @@ void AsciiServer::receive(Client& client, const TimeBudget& budget) {
 }
 
 /// Takes whole lines. Lines for which the budget has no time left wait in `unread`.
-void AsciiServer::take_lines(Client& client, const TimeBudget& budget) {
+void AsciiServer::take_lines(Client& client, const FrontBudget& budget) {
   std::size_t from = 0;
   client.unhandled = false;
   for (std::size_t end = client.unread.find('\n'); end != std::string::npos && !client.closed;
@@ -222,7 +222,7 @@ void AsciiServer::serve() {
 
 /// If the budget ends before all clients are served, the next round begins with the next client.
 void AsciiServer::receive_all() {
-  const TimeBudget budget{clock_, front_budget::gateway};
+  const FrontBudget budget{clock_, FrontBudget::gateway};
   const std::size_t count = clients_.size();
   if (turn_ >= count) turn_ = 0;
   const std::size_t first = turn_;

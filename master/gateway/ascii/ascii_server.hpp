@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "master/lcm/accept_pause.hpp"
-#include "master/lcm/time_budget.hpp"
+#include "master/lcm/front_budget.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/file_descriptor.hpp"
 
@@ -84,8 +84,8 @@ class AsciiServer {
   void accept_clients();
   bool displace_silent();
   void receive_all();
-  void receive(Client& client, const TimeBudget& budget);
-  void take_lines(Client& client, const TimeBudget& budget);
+  void receive(Client& client, const FrontBudget& budget);
+  void take_lines(Client& client, const FrontBudget& budget);
   void take_line(Client& client, std::string_view line);
   void drop_long_line(Client& client);
   void close_foreign(Client& client);

@@ -194,7 +194,7 @@ void Transfers::forget(Job& job) {
   job.buffer = buffer;
 }
 
-bool Transfers::on_time(Time now, const TimeBudget& budget) {
+bool Transfers::on_time(Time now, const FrontBudget& budget) {
   for (Job& job : jobs_) watch(job, now);
   for (std::size_t idle = 0; idle < jobs_.size();) {
     Job& job = jobs_[turn_];

@@ -11,7 +11,7 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/request.hpp"
 #include "master/gateway/command/requests.hpp"
-#include "master/lcm/time_budget.hpp"
+#include "master/lcm/front_budget.hpp"
 
 namespace takt {
 
@@ -40,7 +40,7 @@ class Transfers {
   bool finish(const Reply& reply);
   /// Reports progress, ends transfers whose sender is gone, and then does one step of each transfer
   /// in turn until the budget ends. Returns true if steps may be left over.
-  bool on_time(Time now, const TimeBudget& budget);
+  bool on_time(Time now, const FrontBudget& budget);
 
  private:
   enum class Stage : std::uint8_t { free, filling, running, done, failed };

@@ -37,7 +37,7 @@ void LcmTransport::on_message(const lcm_recv_buf_t* buffer, const char* channel,
 
 void LcmTransport::serve(const MessageHandler& handler) {
   handler_ = &handler;
-  const TimeBudget budget{clock_, front_budget::lcm};
+  const FrontBudget budget{clock_, FrontBudget::lcm};
   do {
     const int handled = lcm_handle_timeout(lcm_.get(), 0);
     if (handled < 0) good_ = false;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "master/lcm/time_budget.hpp"
+#include "master/lcm/front_budget.hpp"
 #include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 

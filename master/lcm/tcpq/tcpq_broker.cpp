@@ -168,7 +168,7 @@ void TcpqBroker::take(Client& client, const tcpq::Message& message, Time now,
 
 /// If the budget ends before all clients are served, the next round begins with the next client.
 void TcpqBroker::receive(Time now, const MessageHandler& handler) {
-  const TimeBudget budget{options_.clock, front_budget::broker};
+  const FrontBudget budget{options_.clock, FrontBudget::broker};
   const std::size_t count = clients_.size();
   if (turn_ >= count) turn_ = 0;
   const std::size_t first = turn_;

@@ -8,9 +8,9 @@
 
 #include "master/lcm/accept_pause.hpp"
 #include "master/lcm/channel_patterns.hpp"
+#include "master/lcm/front_budget.hpp"
 #include "master/lcm/rate_limit.hpp"
 #include "master/lcm/tcpq/tcpq_connection.hpp"
-#include "master/lcm/time_budget.hpp"
 #include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 

@@ -64,7 +64,7 @@ void TcpqClient::serve(const MessageHandler& handler) {
   const auto take = [&](const tcpq::Message& message) {
     if (message.type == tcpq::Type::publish) handler(message.channel, message.data);
   };
-  connection_->receive(take, TimeBudget{clock_, front_budget::broker});
+  connection_->receive(take, FrontBudget{clock_, FrontBudget::broker});
   if (connection_->closed()) {
     connection_.reset();
     next_try_ = std::chrono::steady_clock::now() + retry_pause;

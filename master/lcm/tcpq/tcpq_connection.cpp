@@ -56,7 +56,7 @@ void Connection::flush() noexcept {
 }
 
 void Connection::receive(const std::function<void(const Message&)>& handler,
-                         const TimeBudget& budget) {
+                         const FrontBudget& budget) {
   std::array<std::byte, 16384> chunk;
   drained_ = false;
   // LCM's client sends a message in five small pieces without TCP_NODELAY. Each piece must be
@@ -76,7 +76,7 @@ void Connection::receive(const std::function<void(const Message&)>& handler,
 
 /// Returns false if the budget ended before the messages did, or if the connection is closed.
 bool Connection::hand_over(const std::function<void(const Message&)>& handler,
-                           const TimeBudget& budget) {
+                           const FrontBudget& budget) {
   unhandled_ = false;
   while (const auto message = parser_.next()) {
     handler(*message);

@@ -5,8 +5,8 @@
 #include <poll.h>
 #include <vector>
 
+#include "master/lcm/front_budget.hpp"
 #include "master/lcm/tcpq/tcpq_parser.hpp"
-#include "master/lcm/time_budget.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt::tcpq {
@@ -33,7 +33,7 @@ class Connection {
   void flush() noexcept;
   /// Reads and hands over messages until nothing is left or the budget is used up. Each call makes
   /// progress, however small the budget is.
-  void receive(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
+  void receive(const std::function<void(const Message&)>& handler, const FrontBudget& budget);
   /// Returns true if the last receive() found the end of what had arrived.
   bool drained() const noexcept { return drained_; }
   /// Returns true if the last receive() read messages that it had no time to hand over.
@@ -46,7 +46,7 @@ class Connection {
   void close() noexcept { closed_ = true; }
 
  private:
-  bool hand_over(const std::function<void(const Message&)>& handler, const TimeBudget& budget);
+  bool hand_over(const std::function<void(const Message&)>& handler, const FrontBudget& budget);
 
   FileDescriptor socket_;
   Parser parser_;

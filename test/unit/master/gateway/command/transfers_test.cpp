@@ -44,7 +44,7 @@ class TransfersTest : public testing::Test {
     on_time();
   }
   /// Runs all steps that are due.
-  void on_time() { EXPECT_FALSE(transfers.on_time(now, TimeBudget{clock, 1s})); }
+  void on_time() { EXPECT_FALSE(transfers.on_time(now, FrontBudget{clock, 1s})); }
   void reply(SdoFault fault = SdoFault::none, std::uint32_t abort_code = 0) {
     Reply answer{.id = submitted.back().id};
     answer.fault = fault;
@@ -179,7 +179,7 @@ TEST_F(TransfersTest, ALongFileTakesStepsThatABudgetEnds) {
   EXPECT_EQ(buffers[0].data.size(), 1U << 16) << "the message itself made one step";
 
   int rounds = 0;
-  while (transfers.on_time(now, TimeBudget{clock, 0s}) && rounds < 100) ++rounds;
+  while (transfers.on_time(now, FrontBudget{clock, 0s}) && rounds < 100) ++rounds;
 
   EXPECT_EQ(rounds, 15);
   ASSERT_EQ(submitted.size(), 1U);
@@ -197,11 +197,11 @@ TEST_F(TransfersTest, PartsThatAreAskedForGoOutOneByOneWhereTheBudgetIsShort) {
   EXPECT_TRUE(states.empty());
 
   for (std::size_t sent = 1; sent <= 4; ++sent) {
-    EXPECT_TRUE(transfers.on_time(now, TimeBudget{clock, 0s}));
+    EXPECT_TRUE(transfers.on_time(now, FrontBudget{clock, 0s}));
     ASSERT_EQ(states.size(), sent);
     EXPECT_EQ(last().offset, static_cast<std::int64_t>(1024 * (sent - 1)));
   }
-  EXPECT_FALSE(transfers.on_time(now, TimeBudget{clock, 0s}));
+  EXPECT_FALSE(transfers.on_time(now, FrontBudget{clock, 0s}));
   EXPECT_EQ(states.size(), 4U);
 }
 

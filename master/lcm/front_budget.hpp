@@ -1,0 +1,36 @@
+#pragma once
+#include <chrono>
+#include <functional>
+
+#include "eds_parser/table/time.hpp"
+
+namespace takt {
+
+/// The clock of the front thread: CLOCK_MONOTONIC, or a clock of a test.
+using FrontClock = std::function<Time()>;
+
+/// The rest of the time that one source may occupy the front thread in a round. The remaining
+/// messages wait for the next round, which begins with the images again. A source may exceed its
+/// budget by one message.
+class FrontBudget {
+ public:
+  static constexpr Time lcm = std::chrono::microseconds{500};
+  static constexpr Time broker = std::chrono::microseconds{500};
+  static constexpr Time gateway = std::chrono::microseconds{250};
+  /// For replies of the bus thread to requests, and for the files of transfers. The requests
+  /// themselves come from the sources above.
+  static constexpr Time requests = std::chrono::microseconds{250};
+  /// For events of the bus thread, which may come by the hundred.
+  static constexpr Time events = std::chrono::microseconds{250};
+
+  /// `clock` must outlive the budget.
+  FrontBudget(const FrontClock& clock, Time span) : clock_{clock}, end_{clock() + span} {}
+
+  bool is_left() const { return clock_() < end_; }
+
+ private:
+  const FrontClock& clock_;
+  Time end_;
+};
+
+}  // namespace takt
