@@ -93,7 +93,8 @@ class Printer {
       : options_{options},
         node_{node},
         reader_{network == nullptr ? std::make_unique<FrameText>()
-                                   : std::make_unique<FrameText>(*network)} {}
+                                   : std::make_unique<FrameText>(network->plan, network->devices)} {
+  }
 
   /// Returns false if this was the last frame to print.
   bool print(const CandumpLine& line) {

@@ -4,6 +4,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/black_box/replay.hpp"
 
 namespace takt {

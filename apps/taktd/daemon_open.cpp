@@ -10,6 +10,7 @@
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
 #include "eds_parser/lcm/lcm_channel.hpp"
+#include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/linux/clock.hpp"
 #include "master/linux/passing_trouble.hpp"
 

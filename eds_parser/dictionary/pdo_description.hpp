@@ -52,6 +52,11 @@ struct PdoDescription {
   }
 };
 
+/// Returns true for an index of the communication and mapping records of RPDOs and TPDOs.
+constexpr bool is_pdo_parameter(std::uint16_t index) noexcept {
+  return index >= 0x1400 && index <= 0x1BFF;
+}
+
 /// Returns the first mapping record whose number of entries is writable, or nullptr if every
 /// mapping is fixed.
 const Object* mappable_record(const ObjectDictionary& dictionary) noexcept;

@@ -2,9 +2,9 @@
 
 #include <array>
 
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/network_file/map_reader.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
-#include "eds_parser/plan/pdo/pdo_compiler.hpp"
 
 namespace takt {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "eds_parser/read/object_words.hpp"
 #include "eds_parser/table/waits.hpp"
 
 namespace takt {

@@ -52,10 +52,6 @@ struct LoadedRecording {
   std::optional<std::string> fault;  ///< reason why the recording can't be replayed, a sentence
 };
 
-/// Returns a hash of everything in the plan that affects the actions of the master. The names of
-/// bus and interface and the requested real-time options do not count.
-std::string plan_fingerprint(const BusPlan& plan);
-
 /// Writes `stem.log` (in the format of `candump -L`), `stem.events.json` and `stem.journal`.
 /// `records` are the records of a tape. The three files have other names until all of them are
 /// complete; if one can't be written, none is left behind. On failure, returns a sentence.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/black_box/recording_file.hpp"
 #include "master/black_box/replay.hpp"
 #include "master/rt/bus_loop.hpp"

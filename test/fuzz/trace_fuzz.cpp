@@ -28,7 +28,7 @@ const takt::LoadedNetwork& network() {
 /// What `takt dump` does with each line. What it prints is a line of candump with the same frame.
 void dump(std::string_view text) {
   takt::FrameText alone;
-  takt::FrameText named{network()};
+  takt::FrameText named{network().plan, network().devices};
   takt::RecordedLines lines;
   std::istringstream in{std::string{text}};
   for (std::string line; std::getline(in, line);) {

@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "eds_parser/dictionary/pdo_description.hpp"
+
 namespace takt::learn {
 namespace {
 
@@ -56,7 +58,7 @@ std::vector<LearnedPdo> learned_pdos(const LearnedValues& values) {
   std::set<std::pair<bool, std::uint16_t>> seen;
   for (auto at = values.lower_bound({0x1400, 0}); at != values.end(); ++at) {
     const std::uint16_t index = at->first.index;
-    if (!is_pdo_object(index)) break;
+    if (!is_pdo_parameter(index)) break;
     seen.emplace(index >= 0x1800, static_cast<std::uint16_t>((index & 0x1FFU) + 1));
   }
   std::vector<LearnedPdo> pdos;

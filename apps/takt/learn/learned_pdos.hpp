@@ -26,9 +26,4 @@ struct LearnedPdo {
 /// each in ascending order.
 std::vector<LearnedPdo> learned_pdos(const LearnedValues& values);
 
-/// Returns true for the communication and mapping records of RPDOs and TPDOs.
-constexpr bool is_pdo_object(std::uint16_t index) noexcept {
-  return index >= 0x1400 && index <= 0x1BFF;
-}
-
 }  // namespace takt::learn

@@ -7,6 +7,7 @@
 
 #include "apps/takt/learn/device_files.hpp"
 #include "apps/takt/learn/learned_pdos.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/dictionary/standard_types.hpp"
 #include "eds_parser/write/object_sections.hpp"
 
@@ -164,7 +165,7 @@ class EdsMaker {
       entry.default_text.assign(value.first.begin(), value.first.end());
     } else if (type != DataType::domain) {
       LearnedValue seen = value;
-      if (!is_pdo_object(key.index)) seen.last = value.first;
+      if (!is_pdo_parameter(key.index)) seen.last = value.first;
       entry.default_text = fmt::format("0x{:X}", seen.number().value_or(0));
     }
   }

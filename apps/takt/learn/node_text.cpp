@@ -8,6 +8,7 @@
 #include "apps/takt/learn/sdo_value_text.hpp"
 #include "apps/takt/learn/yaml_text.hpp"
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/specification/object_units.hpp"
 #include "master/wire/sdo_abort.hpp"
 
@@ -272,7 +273,7 @@ class NodeText {
     bool opened = false;
     for (const LearnedWrite& write : configuration_) {
       const ObjectKey key = write.transfer.object;
-      if (is_pdo_object(key.index) || has_key_of_its_own(key) || is_own_cycle(key)) continue;
+      if (is_pdo_parameter(key.index) || has_key_of_its_own(key) || is_own_cycle(key)) continue;
       if (!opened) line("sdo:");
       opened = true;
       const std::string why = why_not(write);

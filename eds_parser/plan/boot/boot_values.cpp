@@ -9,7 +9,7 @@
 #include <set>
 
 #include "eds_parser/dictionary/integer_of.hpp"
-#include "eds_parser/plan/pdo/pdo_compiler.hpp"
+#include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/specification/device_data.hpp"
 #include "eds_parser/specification/object_units.hpp"
 

@@ -13,9 +13,5 @@ std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& re
 /// Returns a copy of the dictionary with the values that `sdo:` writes into PDO parameters
 /// (0x1400..0x1BFF). The PDOs are then compiled as the device will have them.
 ObjectDictionary with_pdo_writes(const ObjectDictionary& dictionary, const NodeSpec& spec);
-/// Returns true for an index of the PDO parameter records.
-constexpr bool is_pdo_parameter(std::uint16_t index) noexcept {
-  return index >= 0x1400 && index <= 0x1BFF;
-}
 
 }  // namespace takt

@@ -12,27 +12,9 @@
 #include "master/core/network/axis_source.hpp"
 #include "master/core/network/axis_stop.hpp"
 #include "master/core/node_status.hpp"
+#include "master/core/stop_state.hpp"
 
 namespace takt {
-
-/// Stage of the ordered stop of a bus.
-enum class StopStage : std::uint8_t {
-  running,     ///< No stop was requested.
-  fallback,    ///< Every output takes its declared fallback.
-  quick_stop,  ///< The axes stop quickly; each is disabled after it was seen at standstill.
-  disable,     ///< The time is over; axes that are still enabled are disabled.
-  disarm,      ///< The supervision of the master by the devices is disarmed.
-  nmt,         ///< The nodes receive their last NMT command.
-  done,        ///< The stop is over; SYNC may end.
-};
-
-/// Whether the ordered stop was confirmed. The numbers are those of `stop` in status_t.
-enum class StopResult : std::uint8_t {
-  none,         ///< No stop was requested.
-  under_way,    ///< The result is not decided yet.
-  confirmed,    ///< Every axis was seen at standstill and disabled, or was disabled before.
-  unconfirmed,  ///< Some axis was not.
-};
 
 /// One CiA 402 axis and the places of its values in the image. Values that are not mapped are read
 /// by SDO.

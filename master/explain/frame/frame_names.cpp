@@ -112,11 +112,11 @@ std::string communication_object_name(ObjectKey key) {
 }
 
 std::string FrameNames::node(unsigned id) const {
-  if (network_ != nullptr) {
-    for (const NodePlan& node : network_->plan.nodes) {
+  if (plan_ != nullptr) {
+    for (const NodePlan& node : plan_->nodes) {
       if (node.id.value() == id) return node.name;
     }
-    if (id == network_->plan.master_id.value()) return "master";
+    if (id == plan_->master_id.value()) return "master";
   }
   return fmt::format("node {}", id);
 }
@@ -124,8 +124,8 @@ std::string FrameNames::node(unsigned id) const {
 std::string FrameNames::object(unsigned node, ObjectKey key) const {
   std::string text = fmt::format("{:04X}:{:02X}", key.index, key.sub);
   std::string name = communication_object_name(key);
-  if (network_ != nullptr) {
-    for (const Signal& signal : network_->plan.layout.signals) {
+  if (plan_ != nullptr) {
+    for (const Signal& signal : plan_->layout.signals) {
       if (signal.node.value() == node && signal.object == key) name = signal.name;
     }
   }
@@ -134,20 +134,18 @@ std::string FrameNames::object(unsigned node, ObjectKey key) const {
 }
 
 DataType FrameNames::type(unsigned node, ObjectKey key) const {
-  if (network_ != nullptr) {
-    for (const DeviceTable& device : network_->devices) {
-      if (device.node.value() != node) continue;
-      const auto at = std::ranges::lower_bound(device.objects, key, {}, &DeviceObject::key);
-      if (at != device.objects.end() && at->key == key) return at->type;
-    }
+  for (const DeviceTable& device : devices_) {
+    if (device.node.value() != node) continue;
+    const auto at = std::ranges::lower_bound(device.objects, key, {}, &DeviceObject::key);
+    if (at != device.objects.end() && at->key == key) return at->type;
   }
   const Range* range = range_of(key.index);
   return range != nullptr && key.sub == 0 ? range->type : DataType::unknown;
 }
 
 std::string_view FrameNames::emcy(unsigned node, std::uint16_t code) const {
-  if (network_ != nullptr) {
-    for (const NodePlan& known : network_->plan.nodes) {
+  if (plan_ != nullptr) {
+    for (const NodePlan& known : plan_->nodes) {
       if (known.id.value() != node) continue;
       const auto own = std::ranges::find(known.emcy_texts, code, &EmcyText::code);
       if (own != known.emcy_texts.end()) return own->text;
@@ -157,8 +155,8 @@ std::string_view FrameNames::emcy(unsigned node, std::uint16_t code) const {
 }
 
 std::optional<NodeId> FrameNames::emcy_sender(CobId id) const {
-  if (network_ != nullptr) {
-    for (const NodePlan& node : network_->plan.nodes) {
+  if (plan_ != nullptr) {
+    for (const NodePlan& node : plan_->nodes) {
       if (node.emcy_cob_id == id) return node.id;
     }
   }

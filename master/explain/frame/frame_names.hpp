@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "eds_parser/network_file/load_network.hpp"
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/device_table.hpp"
 
 namespace takt {
 
@@ -13,8 +15,9 @@ namespace takt {
 class FrameNames {
  public:
   FrameNames() = default;
-  /// Keeps a reference to the network.
-  explicit FrameNames(const LoadedNetwork& network) : network_{&network} {}
+  /// Keeps a reference to the plan of the network and to the tables of its devices.
+  FrameNames(const BusPlan& plan, std::span<const DeviceTable> devices)
+      : plan_{&plan}, devices_{devices} {}
 
   /// Returns the name of a node, `shoulder`, or `node 5` if the name is unknown.
   std::string node(unsigned id) const;
@@ -31,10 +34,11 @@ class FrameNames {
   std::optional<NodeId> emcy_sender(CobId id) const;
 
   /// Returns the plan of the network, or null without a network.
-  const BusPlan* plan() const { return network_ == nullptr ? nullptr : &network_->plan; }
+  const BusPlan* plan() const { return plan_; }
 
  private:
-  const LoadedNetwork* network_ = nullptr;
+  const BusPlan* plan_ = nullptr;
+  std::span<const DeviceTable> devices_;
 };
 
 /// Returns the name of an object of the communication profile (`1017:00`: "producer heartbeat

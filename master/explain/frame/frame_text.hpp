@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/device_table.hpp"
 #include "master/explain/frame/error_control_text.hpp"
 #include "master/explain/frame/frame_names.hpp"
 #include "master/explain/frame/meaning.hpp"
@@ -14,8 +17,9 @@ namespace takt {
 class FrameText {
  public:
   FrameText() : sdo_{names_} {}
-  /// Keeps a reference to the network, which gives the names and PDOs.
-  explicit FrameText(const LoadedNetwork& network) : names_{network}, sdo_{names_, network} {}
+  /// Keeps references to the plan and to the tables of its devices, which give the names and PDOs.
+  FrameText(const BusPlan& plan, std::span<const DeviceTable> devices)
+      : names_{plan, devices}, sdo_{names_, plan, devices} {}
   FrameText(const FrameText&) = delete;
   FrameText& operator=(const FrameText&) = delete;
 

@@ -41,16 +41,17 @@ SdoChannels::SdoChannels(const FrameNames& names) : names_{&names} {
   }
 }
 
-SdoChannels::SdoChannels(const FrameNames& names, const LoadedNetwork& network)
+SdoChannels::SdoChannels(const FrameNames& names, const BusPlan& plan,
+                         std::span<const DeviceTable> devices)
     : SdoChannels{names} {
-  for (const DeviceTable& device : network.devices) {
+  for (const DeviceTable& device : devices) {
     for (std::uint16_t index = second_server; index <= last_server; ++index) {
       const auto request = cob_id(device, {index, 1});
       const auto answer = cob_id(device, {index, 2});
       if (request && answer) add(device.node.value(), {*request, *answer});
     }
   }
-  for (const NodePlan& node : network.plan.nodes) {
+  for (const NodePlan& node : plan.nodes) {
     if (node.sdo.channel) add(node.id.value(), *node.sdo.channel);
   }
 }

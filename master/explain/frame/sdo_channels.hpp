@@ -1,7 +1,10 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/device_table.hpp"
 #include "eds_parser/table/sdo_access.hpp"
 #include "master/explain/frame/frame_names.hpp"
 #include "master/explain/frame/meaning.hpp"
@@ -16,7 +19,7 @@ class SdoChannels {
  public:
   explicit SdoChannels(const FrameNames& names);
   /// Adds the channels of the network.
-  SdoChannels(const FrameNames& names, const LoadedNetwork& network);
+  SdoChannels(const FrameNames& names, const BusPlan& plan, std::span<const DeviceTable> devices);
 
   /// Describes a frame. Returns std::nullopt if it belongs to no SDO channel.
   std::optional<FrameMeaning> meaning(const Frame& frame);

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "master/lcm/envelope/checked_transport.hpp"
-#include "master/lcm/link/lcm_transport.hpp"
 #include "master/lcm/link/lcm_url.hpp"
+#include "master/lcm/link/open_transport.hpp"
 #include "master/lcm/tcpq/tcpq_client.hpp"
 #include "master/linux/clock.hpp"
 
@@ -21,17 +21,6 @@ bool url_is_given(const std::string& url) {
   return !url.empty() || (environment != nullptr && *environment != '\0');
 }
 
-std::expected<std::unique_ptr<Transport>, std::string> open_one(const LcmUrl& url) {
-  if (url.scheme == "tcpq") return std::make_unique<TcpqClient>(url.address, url.port);
-  if (url.scheme == "udpm") {
-    const std::string obstacle = multicast_obstacle(url);
-    if (!obstacle.empty()) return std::unexpected{url.text + ": " + obstacle};
-  }
-  auto lcm = LcmTransport::create(url.text);
-  if (!lcm) return std::unexpected{url.text + ": LCM can't be opened"};
-  return lcm;
-}
-
 }  // namespace
 
 std::expected<LcmClient, std::string> LcmClient::open(
@@ -40,7 +29,7 @@ std::expected<LcmClient, std::string> LcmClient::open(
   const auto parsed = parse_lcm_url(choose_lcm_url(url, {}));
   if (!parsed) return std::unexpected{parsed.error()};
   LcmClient client;
-  auto first = open_one(*parsed);
+  auto first = open_transport(*parsed);
   if (first) client.transports_.push_back(std::move(*first));
   const bool hub =
       !url_is_given(url) && tcpq_server_answers("127.0.0.1", tcpq::default_port, hub_answer_limit);
@@ -48,7 +37,9 @@ std::expected<LcmClient, std::string> LcmClient::open(
     client.transports_.push_back(std::make_unique<TcpqClient>("127.0.0.1", tcpq::default_port));
   }
   if (client.transports_.empty()) {
-    return std::unexpected{first.error() +
+    const std::string& obstacle = first.error();
+    return std::unexpected{parsed->text + ": " +
+                           (obstacle.empty() ? "LCM can't be opened" : obstacle) +
                            ". No hub answers at tcpq://127.0.0.1:7700 either: is "
                            "taktd running?"};
   }

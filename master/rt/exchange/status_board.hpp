@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "master/core/network/ordered_stop.hpp"
 #include "master/core/node_status.hpp"
 #include "master/core/pdo_status.hpp"
+#include "master/core/stop_state.hpp"
 #include "master/rt/exchange/seqlock.hpp"
 #include "master/rt/port.hpp"
 

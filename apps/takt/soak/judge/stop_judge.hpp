@@ -5,7 +5,7 @@
 #include "apps/takt/soak/judge/verdict.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/event.hpp"
-#include "master/core/network/ordered_stop.hpp"
+#include "master/core/stop_state.hpp"
 #include "master/sim/bus/world.hpp"
 
 namespace takt::soak {

@@ -2,13 +2,22 @@
 #include <gtest/gtest.h>
 #include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/device_table.hpp"
 #include "master/explain/frame/frame_text.hpp"
 
 namespace takt::test {
 
-inline LoadedNetwork network_with_shoulder() {
-  LoadedNetwork network;
+struct KnownNetwork {
+  BusPlan plan;
+  std::vector<DeviceTable> devices;
+};
+
+inline KnownNetwork network_with_shoulder() {
+  KnownNetwork network;
   NodePlan node{.name = "shoulder",
                 .id = 5_node,
                 .description_file = {},
@@ -64,9 +73,9 @@ class FrameTextFixture : public testing::Test {
     return read(named_, id, bytes);
   }
 
-  LoadedNetwork network_ = network_with_shoulder();
+  KnownNetwork network_ = network_with_shoulder();
   FrameText plain_;
-  FrameText named_{network_};
+  FrameText named_{network_.plan, network_.devices};
 };
 
 }  // namespace takt::test

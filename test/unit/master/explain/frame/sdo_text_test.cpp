@@ -47,7 +47,7 @@ TEST_F(SdoTextTest, ASegmentWithoutItsBeginningIsNotInvented) {
 TEST_F(SdoTextTest, ASecondSdoChannelIsOfItsNode) {
   network_.plan.nodes[0].sdo.channel = {.request = CobId::base(0x645),
                                         .answer = CobId::base(0x5C5)};
-  FrameText reader{network_};
+  FrameText reader{network_.plan, network_.devices};
 
   EXPECT_EQ(read(reader, 0x645, {0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
             "SDO shoulder (channel 2) is asked: read 1018:01 vendor id");
@@ -90,7 +90,7 @@ TEST_F(SdoTextTest, SdoChannelsOfTheDescriptionAreFollowedApart) {
   };
   server(1, {0x45, 0x06, 0x00, 0x20});  // 29 bits
   server(2, {0xC5, 0x05, 0x00, 0x20});
-  FrameText reader{network_};
+  FrameText reader{network_.plan, network_.devices};
   const auto long_id = [&](std::uint32_t id, std::initializer_list<std::uint8_t> bytes) {
     const FrameMeaning told = reader.meaning(make_frame(CobId::extended(id), bytes));
     return std::string{told.service} + " " + told.text;
