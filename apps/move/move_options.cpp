@@ -57,7 +57,9 @@ ParsedMove parse_move(int argc, char** argv) {
   auto* const to = app.add_option("--to", options.to, "target of each axis, or one for all");
   to->delimiter(',')->check(finite);
   app.add_flag("--sine", only_sine, "move in a sine (without --to: only in a sine)");
-  app.add_option("--for", options.seconds, "duration of the whole motion")
+  app.add_option("--for", options.seconds,
+                 "longest duration of the whole motion; the sine fills it\n"
+                 "(default: 10 s, or what the motion needs)")
       ->transform(CLI::AsNumberWithUnit(
           std::map<std::string, double>{{"s", 1.0}, {"ms", 1e-3}, {"min", 60.0}},
           CLI::AsNumberWithUnit::CASE_INSENSITIVE, "TIME"))

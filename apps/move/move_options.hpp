@@ -18,7 +18,9 @@ struct MoveOptions {
   std::vector<double> to;
   bool point = true;
   bool sine = true;
-  double seconds = 10.0;  ///< duration of the point-to-point move and the sine together
+  /// Longest duration of the move and the sine together. Empty means what the move takes, and a
+  /// sine up to the tenth second, but at least one period.
+  std::optional<double> seconds;
   std::optional<double> amplitude;
   double frequency = 0.5;
   std::optional<double> velocity;

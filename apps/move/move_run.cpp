@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "apps/move/mode_hint.hpp"
+#include "apps/move/motion_time.hpp"
 #include "apps/move/paced_motion.hpp"
 #include "apps/move/sine.hpp"
-#include "apps/move/synchronised_move.hpp"
 
 namespace takt {
 namespace {
@@ -20,6 +20,8 @@ constexpr int exit_not_followed = 1;
 constexpr int exit_wrong_use = 2;
 constexpr int exit_no_daemon = 3;
 
+/// Duration of the motion if there is no --for and the move leaves time for a sine, seconds.
+constexpr double usual_seconds = 10.0;
 /// Duration from full speed to standstill when the motion is held, seconds.
 constexpr double hold_ramp = 0.2;
 /// Most set-points under way, in cycles: one for the next SYNC, one in the queues of this machine,
@@ -52,7 +54,9 @@ int MoveRun::run() {
   if (!hear_bus()) return exit_no_daemon;
   if (!fits()) return exit_wrong_use;
   begin();
-  good_ = devices_answer() && enable() && move();
+  good_ = devices_answer();
+  if (good_ && !fits_time()) return exit_wrong_use;
+  good_ = good_ && enable() && move();
   if (commanding_ && !restarted_) disable();
   return sum_up();
 }
@@ -154,8 +158,7 @@ bool MoveRun::enable() {
   return false;
 }
 
-Eigen::VectorXd MoveRun::target() const {
-  Eigen::VectorXd from = axes_.target_positions();
+Eigen::VectorXd MoveRun::target(Eigen::VectorXd from) const {
   if (options_.to.empty()) {
     for (AxisControl::Index i = 0; i < from.size(); ++i) {
       from(i) += sizes_[static_cast<std::size_t>(i)].distance;
@@ -166,12 +169,26 @@ Eigen::VectorXd MoveRun::target() const {
   return Eigen::VectorXd::Map(options_.to.data(), from.size());
 }
 
+SynchronisedMove MoveRun::planned_move(const Eigen::VectorXd& from) const {
+  std::vector<MotionLimits> limits(sizes_.size());
+  std::ranges::transform(sizes_, limits.begin(), &MoveSizes::limits);
+  return {from, target(from), limits};
+}
+
+/// Returns true if the motion ends within --for. No axis is enabled for a motion that does not.
+bool MoveRun::fits_time() {
+  if (!options_.seconds) return true;
+  const MotionTime time{.move = options_.point ? planned_move(axes_.positions()).duration() : 0.0,
+                        .sine = options_.sine ? 1.0 / options_.frequency : 0.0};
+  const std::string why = too_long(time, *options_.seconds);
+  if (!why.empty()) progress_.say(why);
+  return why.empty();
+}
+
 bool MoveRun::move() {
-  double left = options_.seconds;
+  double left = options_.seconds.value_or(usual_seconds);
   if (options_.point) {
-    std::vector<MotionLimits> limits(sizes_.size());
-    std::ranges::transform(sizes_, limits.begin(), &MoveSizes::limits);
-    const SynchronisedMove move{axes_.target_positions(), target(), limits};
+    const SynchronisedMove move = planned_move(axes_.target_positions());
     progress_.say(fmt::format("moving all axes together, {:.2f} s", move.duration()));
     if (!follow("move", move.duration(), [&](double t) { return move.position(t); })) return false;
     left -= move.duration();
@@ -195,10 +212,7 @@ bool MoveRun::swing(double seconds) {
                            units_[axis]);
   }
   if (!reduced.empty()) progress_.say("amplitude reduced to stay within the limits: " + reduced);
-  const double longer = sine.duration() - seconds;
-  progress_.say(fmt::format(
-      "sine of {:g} Hz, {:.2f} s{}", options_.frequency, sine.duration(),
-      longer > 0.0 ? fmt::format(", one period: {:.2f} s longer than --for", longer) : ""));
+  progress_.say(fmt::format("sine of {:g} Hz, {:.2f} s", options_.frequency, sine.duration()));
   return follow("sine", sine.duration(), [&](double t) { return sine.position(t); });
 }
 

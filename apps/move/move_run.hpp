@@ -10,6 +10,7 @@
 #include "apps/move/move_sizes.hpp"
 #include "apps/move/pace.hpp"
 #include "apps/move/progress.hpp"
+#include "apps/move/synchronised_move.hpp"
 
 namespace takt {
 
@@ -31,7 +32,9 @@ class MoveRun {
   bool fits();
   void begin();
   bool devices_answer();
+  bool fits_time();
   bool enable();
+  SynchronisedMove planned_move(const Eigen::VectorXd& from) const;
   bool move();
   bool swing(double seconds);
   bool follow(const char* what, double duration, const Trajectory& trajectory);
@@ -49,7 +52,7 @@ class MoveRun {
   std::string verdict() const;
   std::string too_far() const;
   int sum_up() const;
-  Eigen::VectorXd target() const;
+  Eigen::VectorXd target(Eigen::VectorXd from) const;
 
   AxisGroup& group_;
   AxisControl& axes_;
