@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -57,11 +58,19 @@ struct Request {
 };
 static_assert(std::is_trivially_copyable_v<Request>);
 
+/// What the SDO server of a node did instead of answering a request in time.
+struct SdoSilence {
+  Time
+      late{};  ///< longest time until the answer to a request that had timed out; 0 means none came
+  std::optional<ObjectKey> answered{};  ///< object of an answer that did not fit the request
+};
+
 /// The answer to a request. Every request is answered exactly once.
 struct Reply {
   std::uint64_t id = 0;
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
+  SdoSilence silence{};  ///< SdoFault::timeout only
   /// Bytes of `data` that are used.
   std::uint16_t size = 0;
   std::array<std::byte, request_bytes> data{};

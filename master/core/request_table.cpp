@@ -85,8 +85,10 @@ bool RequestTable::take(Reply& reply) noexcept {
   reply.id = slot.request.id;
   reply.fault = slot.fault;
   reply.abort_code = slot.abort_code;
+  reply.silence = slot.silence;
   reply.size = slot.request.size;
   std::copy_n(slot.request.data.begin(), reply.size, reply.data.begin());
+  slot.silence = {};
   slot.state = RequestSlot::State::free;
   --answered_;
   return true;

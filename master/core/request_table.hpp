@@ -17,6 +17,7 @@ struct RequestSlot {
   Request request;
   SdoFault fault = SdoFault::none;
   std::uint32_t abort_code = 0;
+  SdoSilence silence{};
 };
 
 /// The requests of applications. There is one lane for the SDO of each node, lane 0 for NMT and one

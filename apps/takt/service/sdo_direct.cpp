@@ -40,7 +40,8 @@ class Drive {
     if (Interrupt::asked()) {
       return std::unexpected{LiveError{"interrupted; the transfer was aborted", 1}};
     }
-    std::string why = fault_text(result.fault, result.abort_code);
+    std::string why = fault_text(result.fault, result.abort_code,
+                                 {.late = client_.lateness(), .answered = client_.answered()});
     if (result.fault == SdoFault::too_long && limit_ != 0) {
       why = "the object is longer than the limit of " + std::to_string(limit_) + " bytes (--limit)";
     }

@@ -76,6 +76,9 @@ void NodeSession::answer_request(const SdoResult& result) noexcept {
   if (transfer != nullptr) {
     transfer->done.store(static_cast<std::uint32_t>(result.size), std::memory_order_relaxed);
   }
+  if (result.fault == SdoFault::timeout) {
+    active_->silence = {.late = client_.lateness(), .answered = client_.answered()};
+  }
   const bool carries = upload && transfer == nullptr && result.fault == SdoFault::none;
   shared_.requests.answer(*active_, result.fault, result.abort_code, carries ? result.size : 0);
   active_ = nullptr;

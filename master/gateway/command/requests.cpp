@@ -51,9 +51,21 @@ std::optional<NmtCommand> nmt_command(std::int16_t code) noexcept {
   return std::nullopt;
 }
 
+std::string silence_text(const SdoSilence& silence) {
+  std::string text = "the device did not answer in time";
+  if (silence.answered) {
+    text += "; it sent an answer for " + to_string(*silence.answered) + " instead";
+  } else if (silence.late != Time{}) {
+    text += "; it answered an earlier request after " +
+            std::to_string(silence.late / std::chrono::milliseconds{1}) +
+            " ms: raise `sdo_timeout_ms` of the node, or the time-out of this request";
+  }
+  return text;
+}
+
 }  // namespace
 
-std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
+std::string fault_text(SdoFault fault, std::uint32_t abort_code, const SdoSilence& silence) {
   const auto abort = [&] {
     return hex(abort_code, 8) + " (" + std::string{abort_text(abort_code)} + ")";
   };
@@ -65,7 +77,7 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
     case SdoFault::aborted_by_master:
       return "the device violated the SDO protocol; takt ended the transfer with " + abort();
     case SdoFault::timeout:
-      return "the device did not answer in time";
+      return silence_text(silence);
     case SdoFault::too_long:
       return "the value is longer than " + std::to_string(request_bytes) +
              " bytes, the maximum of a request; read it as a file";
@@ -96,7 +108,7 @@ std::string fault_text(SdoFault fault, std::uint32_t abort_code) {
 
 std::string lss_fault_text(const Reply& reply) {
   if (reply.size < lss_result_bytes || reply.size > reply.data.size()) {
-    return fault_text(reply.fault, reply.abort_code);
+    return fault_text(reply.fault, reply.abort_code, reply.silence);
   }
   return lss_failure_text(unpack_lss_result(
       std::span{reply.data}.subspan(reply.size - lss_result_bytes).first<lss_result_bytes>()));
@@ -293,8 +305,9 @@ std::optional<reply_t> Requests::finish(const Reply& reply, Time now, const std:
   reply_t message = reply_to(known.message);
   message.good = reply.fault == SdoFault::none ? 1 : 0;
   message.abort_code = reply.abort_code;
-  message.text = reply.fault == SdoFault::lss_failed ? lss_fault_text(reply)
-                                                     : fault_text(reply.fault, reply.abort_code);
+  message.text = reply.fault == SdoFault::lss_failed
+                     ? lss_fault_text(reply)
+                     : fault_text(reply.fault, reply.abort_code, reply.silence);
   if (reply.fault == SdoFault::axes_not_stopped && !axes.empty()) message.text += ":\n" + axes;
   const RequestKind kind = found->second.kind;
   if (kind != RequestKind::sdo_download && kind != RequestKind::nmt) {

@@ -84,6 +84,6 @@ class Requests {
 std::string lss_fault_text(const Reply& reply);
 
 /// Returns why an SDO transfer or a command failed, in words; empty if it did not fail.
-std::string fault_text(SdoFault fault, std::uint32_t abort_code);
+std::string fault_text(SdoFault fault, std::uint32_t abort_code, const SdoSilence& silence = {});
 
 }  // namespace takt

@@ -171,7 +171,7 @@ bool Transfers::finish(const Reply& reply) {
     job->text =
         reply.fault == SdoFault::too_long
             ? "the object is longer than the " + std::to_string(job->total) + " requested bytes"
-            : fault_text(reply.fault, reply.abort_code);
+            : fault_text(reply.fault, reply.abort_code, reply.silence);
   }
   if (good && job->request.kind == RequestKind::sdo_upload) {
     job->buffer->data.resize(job->buffer->done.load());

@@ -42,6 +42,40 @@ TEST_F(NetworkTest, AnswersAWriteAndReportsItsAbort) {
   EXPECT_EQ(sent_count(tx({0x2B, 0x40, 0x60, 0x00, 0x06})), 1);
 }
 
+TEST_F(NetworkTest, AReplyToASilentDeviceNamesTheAnswerForAnotherObject) {
+  add_drive();
+  device().objects[{0x1018, 1}] = bytes({1, 0, 0, 0});
+  start();
+  run(100ms);
+  device().tamper = [](Frame& frame) { frame.data[3] = 4; };
+  network->submit(read(7, {0x1018, 1}), now);
+  run(3s);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].fault, SdoFault::timeout);
+  EXPECT_EQ(replies[0].silence.answered, (ObjectKey{0x1018, 4}));
+  EXPECT_EQ(replies[0].silence.late, Time{});
+}
+
+TEST_F(NetworkTest, AReplyToALateDeviceSaysHowLateItAnsweredBefore) {
+  add_drive();
+  start();
+  run(100ms);
+  device().latency = 300ms;
+  Request impatient = read(7, {0x1000, 0});
+  impatient.timeout = 100ms;
+  network->submit(impatient, now);
+  run(1s);
+  impatient.id = 8;
+  network->submit(impatient, now);
+  run(1s);
+  ASSERT_EQ(replies.size(), 2U);
+  EXPECT_EQ(replies[0].fault, SdoFault::timeout);
+  EXPECT_EQ(replies[0].silence.late, Time{}) << "the answer has not come yet";
+  EXPECT_EQ(replies[1].fault, SdoFault::timeout);
+  EXPECT_GE(replies[1].silence.late, 300ms);
+  EXPECT_LT(replies[1].silence.late, 310ms);
+}
+
 TEST_F(NetworkTest, KeepsRequestsWaitingBehindTheBoot) {
   add_drive();
   start();

@@ -155,6 +155,22 @@ TEST_F(RequestsTest, AbortIsToldInWords) {
   EXPECT_NE(answer->text.find("0x06020000"), std::string::npos);
 }
 
+TEST_F(RequestsTest, ATimeOutNamesWhatTheDeviceDidInstead) {
+  using std::chrono_literals::operator""ms;
+  EXPECT_EQ(fault_text(SdoFault::timeout, 0), "the device did not answer in time");
+  EXPECT_EQ(fault_text(SdoFault::timeout, 0, {.answered = ObjectKey{0x1018, 2}}),
+            "the device did not answer in time; it sent an answer for 1018:02 instead");
+
+  requests.take(upload(1), now);
+  const auto answer = requests.finish(
+      {.id = submitted[0].id, .fault = SdoFault::timeout, .silence = {.late = 900ms}}, now);
+
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->text,
+            "the device did not answer in time; it answered an earlier request after 900 ms: raise "
+            "`sdo_timeout_ms` of the node, or the time-out of this request");
+}
+
 TEST_F(RequestsTest, NonsenseIsAnsweredAtOnceAndNeverSubmitted) {
   std::int64_t id = 1;
   const auto refused = [&](auto change) {
