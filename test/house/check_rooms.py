@@ -42,7 +42,8 @@ ROOMS = {
                              "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
     "eds_parser/plan/image": ("the process image: signals, units, fallbacks",
                               "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
-    "eds_parser/plan/limits": ("limits of outputs", "eds_parser/report eds_parser/plan/pdo eds_parser/plan/device"),
+    "eds_parser/plan/limits": ("limits of outputs",
+                               "eds_parser/report eds_parser/dictionary eds_parser/plan/pdo eds_parser/plan/device"),
     "eds_parser/plan": ("specification and dictionaries -> bus plan",
                         "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo "
                         "eds_parser/plan/device eds_parser/plan/boot eds_parser/plan/image eds_parser/plan/limits"),

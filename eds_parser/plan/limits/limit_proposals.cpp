@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
+#include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/table/limit_names.hpp"
 
@@ -101,6 +103,40 @@ class Proposal {
 };
 
 }  // namespace
+
+namespace {
+
+/// Returns the limits of the device file in raw counts. The result is empty if one of them is
+/// missing or if they permit all values of the data type.
+std::optional<std::pair<double, double>> file_range(const SubObject& sub, unsigned bits) {
+  const auto low = integer_of(sub.low_limit);
+  const auto high = integer_of(sub.high_limit);
+  if (!low || !high || *low >= *high) return std::nullopt;
+  const double values = std::exp2(bits);
+  const double permitted = static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
+  if (permitted >= values - 1.0) return std::nullopt;  // some files leave out one end
+  return std::pair{static_cast<double>(*low), static_cast<double>(*high)};
+}
+
+}  // namespace
+
+void propose_range(LimitLine& line, const Signal& output, const NodeSource& node) {
+  std::string low = "...";
+  std::string high = "...";
+  line.because = "enter what the machine withstands";
+  const SubObject* const sub = node.dictionary->find(output.object);
+  if (const auto range = sub == nullptr ? std::nullopt : file_range(*sub, output.bits)) {
+    const double first = range->first * output.scale + output.offset;
+    const double last = range->second * output.scale + output.offset;
+    low = number(std::min(first, last));
+    high = number(std::max(first, last));
+    line.because = "LowLimit and HighLimit of the device file";
+  }
+  const std::string sub_index =
+      output.object.sub == 0 ? "" : ", sub_index: " + std::to_string(output.object.sub);
+  line.proposal = "objects: [{index: " + hex(output.object.index) + sub_index + ", min: " + low +
+                  ", max: " + high + "}]";
+}
 
 void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
                    const LimitTable& table) {

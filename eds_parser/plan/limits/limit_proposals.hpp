@@ -11,4 +11,8 @@ namespace takt {
 void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
                    const LimitTable& table);
 
+/// Proposes an entry of `limits: {objects: [...]}` for an output that has no limit. The numbers are
+/// the LowLimit and the HighLimit of the device file if these are narrower than the data type.
+void propose_range(LimitLine& line, const Signal& output, const NodeSource& node);
+
 }  // namespace takt

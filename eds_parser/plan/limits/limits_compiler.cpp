@@ -6,6 +6,7 @@
 #include <string>
 
 #include "eds_parser/plan/limits/axis_limits.hpp"
+#include "eds_parser/plan/limits/limit_proposals.hpp"
 #include "eds_parser/plan/limits/limit_table.hpp"
 
 namespace takt {
@@ -73,6 +74,33 @@ class LimitsCompiler {
       AxisLimits{source, index, axis, plan_, table_, report_}.compile(own);
     }
     for (const ObjectLimitSpec& limit : limits.objects) object(index, limit);
+    propose_ranges(index);
+  }
+
+  /// Adds a line for each other output of the node that is a number and has no limit.
+  void propose_ranges(std::size_t node_index) {
+    const auto& signals = plan_.layout.signals;
+    for (std::size_t i = plan_.layout.inputs; i < signals.size(); ++i) {
+      const Signal& output = signals[i];
+      if (output.node_index != node_index || !needs_range(output)) continue;
+      LimitLine line{.node_index = static_cast<std::uint8_t>(node_index),
+                     .object = output.object,
+                     .unit = output.unit};
+      propose_range(line, output, nodes_[node_index].node);
+      plan_.limits.lines.push_back(std::move(line));
+    }
+  }
+
+  /// Returns false for bits, for digital outputs (CiA 401) and for the objects of a drive, whose
+  /// limits are those of its axis.
+  bool needs_range(const Signal& output) const {
+    const std::uint16_t index = output.object.index;
+    const bool of_axis = plan_.nodes[output.node_index].cia402 && index >= 0x6000 && index < 0xA000;
+    const bool digital = output.bits <= 8 || (index >= 0x6200 && index < 0x6400);
+    const auto limits_it = [&](const LimitLine& line) {
+      return line.node_index == output.node_index && line.axis == 0 && line.object == output.object;
+    };
+    return !of_axis && !digital && std::ranges::none_of(plan_.limits.lines, limits_it);
   }
 
   /// Returns false if a mapping has errors. They are already reported, and no limit is to blame.

@@ -138,6 +138,29 @@ TEST(Limits, OfASingleOutputAreInItsUnit) {
   EXPECT_EQ(net.plan.limits.outputs[0].rate, OutputLimit::none);
 }
 
+TEST(Limits, OfASingleOutputAreProposed) {
+  EXPECT_THAT(text_of(drive("", "{index: 0x2003}")),
+              HasSubstr("arm 2003:00  range         none  proposal: `objects: [{index: 0x2003, "
+                        "min: ..., max: ...}]` (enter what the machine withstands)\n"));
+  std::string eds = tiny_eds();
+  const std::size_t wide = eds.find("[2003]\n") + 7;
+  eds.insert(wide, "LowLimit=10\nHighLimit=500\n");
+  EXPECT_THAT(text_of(drive("      objects: [{index: 0x2003, scale: 0.1, unit: V}]\n",
+                            "{index: 0x2003}", units, eds)),
+              HasSubstr("proposal: `objects: [{index: 0x2003, min: 1, max: 50}]` (LowLimit and "
+                        "HighLimit of the device file)\n"));
+  eds.replace(eds.find("LowLimit=10\nHighLimit=500"), 25, "LowLimit=0\nHighLimit=0xFFFFFFFF");
+  EXPECT_THAT(text_of(drive("", "{index: 0x2003}", units, eds)), HasSubstr("min: ..., max: ...}"));
+}
+
+TEST(Limits, OfASingleOutputAreNotProposedAgain) {
+  EXPECT_THAT(
+      text_of(drive("    limits: {objects: [{index: 0x2003, max: 10}]}\n", "{index: 0x2003}")),
+      Not(HasSubstr("proposal: `objects")));
+  EXPECT_THAT(text_of(drive("")), Not(HasSubstr("proposal: `objects")))
+      << "the controlword and the set-points of a drive";
+}
+
 TEST(Limits, AreAbsentWhereNobodyGivesThem) {
   EXPECT_THAT(drive("").plan.limits.outputs, IsEmpty());
 }
