@@ -3,7 +3,7 @@
 
 check_rooms.py [ROOT]       checks ROOT (default: this checkout)
 check_rooms.py --self-test  shows that each rule can fail
-check_rooms.py --table      prints the rooms as a Markdown table
+check_rooms.py --table      prints the rooms as Markdown tables, one for each library
 
 Rules: a room includes only the rooms (or single headers) of its line, and no rooms form a circle; the pure rooms use C++ and
 its standard library alone and read no clock; no two headers of one library have the same name; no two types have the same
@@ -27,16 +27,19 @@ EDS = "eds_parser/report eds_parser/dictionary eds_parser/ini eds_parser/read"
 ROOMS = {
     TABLE: ("compiled tables: all that the master knows of a network", ""),
     "eds_parser/lcm": ("names, URLs and message types of a bus on LCM", ""),
-    "eds_parser/report": ("findings and their places, suggestions, differences of texts", ""),
+    "eds_parser/report": ("findings with their positions, suggestions for misspelled words, differences of texts", ""),
     "eds_parser/dictionary": ("the object dictionary of one device", "eds_parser/report eds_parser/ini/number.hpp"),
-    "eds_parser/ini": ("what a line of an EDS says: sections, keys, numbers, $NODEID", "eds_parser/report eds_parser/dictionary"),
-    "eds_parser/read": ("text of an EDS or DCF -> dictionary", "eds_parser/report eds_parser/dictionary eds_parser/ini"),
-    "eds_parser/check": ("dictionary -> findings", "eds_parser/report eds_parser/dictionary eds_parser/ini"),
-    "eds_parser/write": ("DCF, concise DCF, mended EDS", EDS),
-    "eds_parser/specification": ("what network file and device data say, as data", "eds_parser/report eds_parser/dictionary"),
+    "eds_parser/ini": ("the notation of an EDS: sections, keys, numbers, $NODEID", "eds_parser/report eds_parser/dictionary"),
+    "eds_parser/read": ("reads the text of an EDS or DCF into a dictionary",
+                        "eds_parser/report eds_parser/dictionary eds_parser/ini"),
+    "eds_parser/check": ("checks a dictionary against the rules for EDS files",
+                         "eds_parser/report eds_parser/dictionary eds_parser/ini"),
+    "eds_parser/write": ("writes DCF files, concise DCF files and corrected EDS files", EDS),
+    "eds_parser/specification": ("the content of the network file and of the device data, as plain data",
+                                 "eds_parser/report eds_parser/dictionary"),
     "eds_parser/plan/pdo": ("PDOs of a node: mapping, transmission, COB-IDs",
                             "eds_parser/report eds_parser/dictionary eds_parser/specification"),
-    "eds_parser/plan/device": ("what a device has and cannot do: its start values, rules of the device data",
+    "eds_parser/plan/device": ("rules of the device data, and the start values of a simulated device",
                                "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
     "eds_parser/plan/boot": ("the boot of a node, step by step",
                              "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
@@ -44,49 +47,50 @@ ROOMS = {
                               "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo"),
     "eds_parser/plan/limits": ("limits of outputs",
                                "eds_parser/report eds_parser/dictionary eds_parser/plan/pdo eds_parser/plan/device"),
-    "eds_parser/plan": ("specification and dictionaries -> bus plan",
+    "eds_parser/plan": ("compiles the specification and the dictionaries into the bus plan",
                         "eds_parser/report eds_parser/dictionary eds_parser/specification eds_parser/plan/pdo "
                         "eds_parser/plan/device eds_parser/plan/boot eds_parser/plan/image eds_parser/plan/limits"),
     "eds_parser/budget": ("response times of all frames", "eds_parser/report eds_parser/plan"),
-    "eds_parser/network_file": ("YAML -> specification, and the whole way to a plan",
+    "eds_parser/network_file": ("reads the YAML file into a specification, and runs all steps up to the plan",
                                 EDS + " eds_parser/lcm eds_parser/check eds_parser/specification eds_parser/plan "
                                 "eds_parser/budget"),
-    "eds_parser/export": ("DBC, C++ header, LCM types", "eds_parser/lcm"),
+    "eds_parser/export": ("writes the plan for other tools: DBC, C++ header, LCM types", "eds_parser/lcm"),
     "eds_parser/print": ("dictionaries, budgets and findings as text and JSON",
                          "eds_parser/report eds_parser/dictionary eds_parser/plan eds_parser/budget"),
     "eds_parser/print/plan": ("plans and their differences as text and JSON",
                               "eds_parser/report eds_parser/lcm eds_parser/plan eds_parser/print"),
 
-    "master/wire": ("codecs of each service", ""),
-    "master/core": ("what all machines share: the machine itself, events, requests, states", "master/wire"),
+    "master/wire": ("the bytes of each CANopen service: one codec for each", ""),
+    "master/core": ("what the protocol machines share: their interface, events, requests, states", "master/wire"),
     "master/core/sdo": ("SDO client and the master's own server", "master/wire master/core"),
     "master/core/lss": ("LSS", "master/wire master/core"),
     "master/core/pdo": ("process data: expected set, set-points, limits, PDOs on request", "master/wire master/core"),
     "master/core/node": ("one node: session, boot, heartbeat, guarding", "master/wire master/core master/core/sdo"),
     "master/core/network": ("all nodes: NMT, start, ordered stop, TIME",
                             "master/wire master/core master/core/sdo master/core/lss master/core/node"),
-    "master/explain": ("facts of the master in sentences", "master/wire " + CORE),
-    "master/explain/frame": ("frames in words", "master/wire master/explain"),
+    "master/explain": ("turns events, boot failures and states into sentences", "master/wire " + CORE),
+    "master/explain/frame": ("tells the CANopen meaning of a frame in words", "master/wire master/explain"),
     "master/trace": ("recordings of candump, PCAN and Vector, line by line", "master/wire"),
     "master/rt/exchange": ("what crosses between the bus thread and the front thread", "master/core master/rt/port.hpp"),
-    "master/rt/journal": ("what decided a run: recorded and played back",
+    "master/rt/journal": ("records everything that decides a run, and plays it back",
                           "master/wire master/core master/rt/exchange master/rt/port.hpp"),
-    "master/rt": ("the cycle",
+    "master/rt": ("the cycle of the bus thread",
                   "master/wire master/rt/exchange master/rt/journal master/core master/core/pdo master/core/network"),
     "master/linux": ("threads, clocks, files and sockets", "master/wire"),
     "master/linux/can": ("SocketCAN", "master/wire master/linux master/rt/port.hpp"),
     "master/linux/unix_bus": ("the bus between processes", "master/linux master/linux/can/can_frame.hpp master/rt/port.hpp"),
     "master/linux/bus": ("a bus by its name: who may open it, who talks on it",
                          "master/wire master/core master/linux master/linux/can master/linux/unix_bus"),
-    "master": ("the face: a master for one bus", "master/rt master/rt/exchange"),
+    "master": ("the class `Master`: a master for one bus", "master/rt master/rt/exchange"),
     "master/sim": ("random numbers, clocks and deadlines of the simulation", ""),
     "master/sim/dictionary": ("the objects of a simulated device", ""),
-    "master/sim/service": ("its services: SDO, EMCY, heartbeat, guarding, SYNC, TIME, LSS", "master/wire master/sim/dictionary"),
-    "master/sim/pdo": ("its PDOs", "master/wire master/sim/dictionary master/sim/service"),
-    "master/sim/model": ("what it does: CiA 402, 401, 406",
+    "master/sim/service": ("services of a simulated device: SDO, EMCY, heartbeat, guarding, SYNC, TIME, LSS",
+                           "master/wire master/sim/dictionary"),
+    "master/sim/pdo": ("PDOs of a simulated device", "master/wire master/sim/dictionary master/sim/service"),
+    "master/sim/model": ("applications of simulated devices: CiA 402, 401, 406",
                          "master/sim master/sim/dictionary master/sim/service master/sim/pdo"),
-    "master/sim/family": ("what device families do otherwise", "master/sim/dictionary master/sim/model"),
-    "master/sim/device": ("the device as a whole",
+    "master/sim/family": ("simulated devices of particular families", "master/sim/dictionary master/sim/model"),
+    "master/sim/device": ("the simulated device as a whole",
                           "master/wire master/sim master/sim/dictionary master/sim/service master/sim/pdo master/sim/model"),
     "master/sim/bus": ("the wire, its faults, and the world of all devices",
                        "master/wire master/sim master/sim/device master/rt/port.hpp"),
@@ -95,21 +99,21 @@ ROOMS = {
     "master/lcm/tcpq": ("LCM's tcpq:// protocol, both sides", "master/lcm master/linux"),
     "master/lcm/link": ("a connection to LCM, whatever the machine allows",
                         "eds_parser/lcm master/lcm master/lcm/envelope master/lcm/tcpq master/linux"),
-    "master/gateway/notice": ("what people are told", "master/wire master/core master/explain master/lcm"),
-    "master/gateway/message": ("images and states -> messages",
+    "master/gateway/notice": ("notices for people, and limits on their number", "master/wire master/core master/explain master/lcm"),
+    "master/gateway/message": ("turns images and states into LCM messages",
                                "eds_parser/lcm master/lcm master/rt/exchange master/gateway/notice"),
-    "master/gateway/command": ("messages -> set-points, requests, transfers; leases",
+    "master/gateway/command": ("turns LCM messages into set-points, requests and transfers; leases",
                                "master/wire master/core master/core/lss master/lcm master/gateway/notice master/gateway/message"),
-    "master/gateway/ascii": ("CiA 309-3",
+    "master/gateway/ascii": ("text commands of CiA 309-3",
                              "master/wire master/core master/core/lss master/lcm master/linux master/linux/unix_bus "
                              "master/gateway/message master/gateway/front_guest.hpp"),
-    "master/gateway": ("the front thread",
+    "master/gateway": ("the work of the front thread",
                        "master master/wire master/core master/explain master/lcm master/rt/exchange "
                        "master/gateway/notice master/gateway/message master/gateway/command"),
     "master/black_box": ("recordings of the master, and their replay",
                          "master/core master/explain master/trace master/linux master/rt master/rt/journal"),
 
-    "apps/command_line": ("options, numbers, durations, guesses: of all programs", "eds_parser/report master/lcm"),
+    "apps/command_line": ("options, numbers, durations and suggestions of all command lines", "eds_parser/report master/lcm"),
     "apps/axis": ("the library that applications use",
                   "master/lcm master/lcm/link master/lcm/envelope master/gateway/message"),
     "apps/move": ("takt-move", "apps/axis apps/command_line master/lcm master/lcm/envelope"),
@@ -119,24 +123,24 @@ ROOMS = {
     "apps/takt/service": ("commands that talk to devices: SDO, LSS, NMT, parameters, scan",
                           "apps/command_line apps/takt/live apps/takt/learn/device_files.hpp master/wire master/core "
                           "master/core/sdo master/core/lss master/lcm master/gateway/message master/gateway/command " + LINUX),
-    "apps/takt/audit": ("what devices do when the master dies",
+    "apps/takt/audit": ("finds out what each device does when the master dies",
                         "apps/command_line apps/takt/live apps/takt/service eds_parser/network_file"),
-    "apps/takt/doctor": ("is this machine fit for a bus?",
+    "apps/takt/doctor": ("checks whether this machine is fit for a bus",
                          "apps/command_line apps/takt/live master/lcm/link " + LINUX),
-    "apps/takt/import": ("what becomes of a bus.yml or a nodelist",
+    "apps/takt/import": ("explains what takt makes of a bus.yml or a nodelist",
                          "apps/command_line master/lcm eds_parser/specification eds_parser/network_file " + EDS),
-    "apps/takt/learn": ("network files from recordings",
+    "apps/takt/learn": ("makes network files from recordings",
                         "apps/command_line master/wire master/trace master/explain/frame eds_parser/specification "
                         "eds_parser/network_file eds_parser/write " + EDS),
-    "apps/takt/simulate/program": ("daemon and applications in virtual time",
+    "apps/takt/simulate/program": ("runs the daemon and applications in virtual time",
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
-    "apps/takt/simulate": ("a whole network in virtual time, and what became of it",
+    "apps/takt/simulate": ("runs a whole network in virtual time, and reports the outcome",
                            "apps/command_line apps/axis apps/takt/simulate/program eds_parser/network_file eds_parser/report "
                            "eds_parser/ini master/core master/explain master/gateway/command master/rt master/rt/exchange "
                            "master/linux/bus " + SIM),
-    "apps/takt/soak/judge": ("who says whether a run was right",
+    "apps/takt/soak/judge": ("checks the invariants of a run",
                              "master/wire master/core master/rt/exchange master/sim/device " + SIM),
-    "apps/takt/soak": ("random walks of faults",
+    "apps/takt/soak": ("runs random sequences of faults",
                        "apps/command_line apps/takt/simulate apps/takt/simulate/program apps/takt/soak/judge "
                        "eds_parser/network_file master/explain master/gateway master/rt master/rt/exchange " + SIM),
     "apps/takt": ("the tool: commands on files",
@@ -411,10 +415,17 @@ def self_test():
     return 1 if complaints else 0
 
 
-def print_table():
-    print("| room | what it is about | may include |\n|---|---|---|")
+def table(library):
+    """The lines of the Markdown table of one library; share/doc/architecture.md has them."""
+    yield "| room | content | may include |"
+    yield "|---|---|---|"
     for room, (about, may) in ROOMS.items():
-        print(f"| `{room}/` | {about} | {', '.join(f'`{other}`' for other in may.split())} |")
+        if room.split("/")[0] == library:
+            yield f"| `{room}/` | {about} | {', '.join(f'`{other}`' for other in may.split())} |"
+
+
+def print_tables():
+    print("\n\n".join("\n".join(table(library)) for library in LIBRARIES))
     return 0
 
 
@@ -422,7 +433,7 @@ def main():
     if sys.argv[1:] == ["--self-test"]:
         return self_test()
     if sys.argv[1:] == ["--table"]:
-        return print_table()
+        return print_tables()
     root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
     errors, notes = check(root)
     for path, line, what in errors:
