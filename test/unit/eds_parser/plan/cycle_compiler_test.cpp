@@ -98,7 +98,7 @@ TEST(CycleCompiler, HeartbeatsGrowSlowerOnACrowdedBus) {
 
 TEST(CycleCompiler, ABitRateThatTheDeviceDoesNotKnowIsWarnedOf) {
   EXPECT_THAT(drives(1, "sync_period: 50000, baudrate: 250").said("bit-rate"),
-              HasSubstr("knows 500, 1000 kbit/s"));
+              HasSubstr("supports 500, 1000 kbit/s"));
 }
 
 }  // namespace

@@ -238,7 +238,7 @@ TEST(BootCompiler, InterpolationPeriodsAreExactOrWarnedOf) {
   EXPECT_THAT(odd.said("interpolation-period"), HasSubstr("can't express"));
 
   const auto own = compile(arm("sdo: [{index: 0x60C2, sub_index: 1, value: 50}]"));
-  EXPECT_THAT(own.said("interpolation-period"), HasSubstr("makes 50000 us"));
+  EXPECT_THAT(own.said("interpolation-period"), HasSubstr("sets 50000 us"));
 }
 
 TEST(BootCompiler, ValuesOfSdoAreCheckedAgainstTheEds) {

@@ -89,7 +89,7 @@ TEST(DeviceDataHeartbeat, OfAnSdoEntryIsJudgedToo) {
 
 TEST(DeviceDataHeartbeat, OfALenze8400IsRoundedToo) {
   EXPECT_THAT(test::lenze8400("heartbeat_producer: 107").said("device-data"),
-              HasSubstr("keeps 105 ms"));
+              HasSubstr("rounds this time down to 105 ms"));
 }
 
 TEST(DeviceDataHeartbeat, NeedsItsStep) {

@@ -20,7 +20,7 @@ TEST(DeviceDataPdos, RefusesTransmissionTypesThatADrv28Lacks) {
   }
   const std::string said = drv28("tpdo: {2: {transmission: 0}}").said("device-data");
   EXPECT_NE(said.find("TPDO2 of node `pump` can't have transmission type 0 on Astraada DRV-28, "
-                      "only 1..240, 254, 255"),
+                      "which allows only 1..240, 254, 255"),
             std::string::npos)
       << said;
   EXPECT_NE(said.find("astraada_drv28.yaml:"), std::string::npos);

@@ -114,7 +114,7 @@ TEST(WithoutDeviceData, AnExponentOfUnsignedTypeHasASign) {
       "253}]";
 
   EXPECT_THAT(compile(arm(sdo), eds).said("interpolation-period"),
-              testing::HasSubstr("makes 20000 us"));
+              testing::HasSubstr("sets 20000 us"));
 }
 
 // Joystick receivers send TPDOs without NMT start, and an NMT command would silence them.

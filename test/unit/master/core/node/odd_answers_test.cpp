@@ -145,7 +145,7 @@ TEST_F(OddAnswers, AnAnswerForObjectZeroIsNoSilence) {
   };
   boot(identity_steps(), 5s);
   const std::string text = describe(plan, *find(EventKind::boot_failed));
-  EXPECT_NE(text.find("the device answers with 0000:00 where 1018:01 was asked for"),
+  EXPECT_NE(text.find("the device answers with 0000:00 where 1018:01 was requested"),
             std::string::npos)
       << text;
 }

@@ -59,8 +59,8 @@ TEST(LimitsAtEnabling, RefuseTheControlwordIfTheTargetIsNotAtTheActualPosition) 
     ASSERT_EQ(told.size(), 1U);
     EXPECT_THAT(describe(axes.plan(), told[0]),
                 HasSubstr("the set-point 0.008 rad that signal (607A:00) still has is outside its "
-                          "limits: step 0.492, limit 0.01; the command that would make the axis "
-                          "follow it isn't sent"));
+                          "limits: step 0.492, limit 0.01; takt does not send the command that "
+                          "would make the axis follow it"));
   }
 }
 

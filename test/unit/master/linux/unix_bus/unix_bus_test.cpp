@@ -124,8 +124,8 @@ TEST_F(UnixBus, LeavesTheSocketOfAnotherProgramAlone) {
 
     ASSERT_FALSE(opened);
     EXPECT_EQ(opened.error().message, "unix:" + path_ +
-                                          ": another program listens there, which is no bus of "
-                                          "takt; the bus needs a path of its own");
+                                          ": another program listens there, and it is not a bus "
+                                          "of takt; the bus needs its own path");
     const FileDescriptor client{socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
     EXPECT_EQ(connect(client.get(), generic, sizeof *address), 0) << "it still answers";
   }
