@@ -273,7 +273,9 @@ void read_lists(MapReader& reader, NodeSpec& node) {
     node.tpdos = read_pdos(*list, "tpdo", owner, report);
   }
   if (const YamlNode* list = reader.take("rpdo")) {
+    const std::size_t errors = report.errors();
     node.rpdos = read_pdos(*list, "rpdo", owner, report);
+    node.has_rpdo_errors = report.errors() != errors;
   }
   if (const YamlNode* list = reader.take("sdo")) {
     node.sdo = read_objects(*list, "sdo", owner, report);
@@ -335,6 +337,8 @@ NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
   ignore_scales(reader);
   reader.ignore(not_supported, "has no effect in this version of takt");
   const YamlNode* misnamed = node.find("dcf") == nullptr ? reader.take("eds") : nullptr;
+  if (reader.has_slip_of("rpdo")) spec.has_rpdo_errors = true;
+  if (reader.has_slip_of("units")) spec.units.has_errors = true;
   reader.finish_shared(node.find("driver") != nullptr ? driver_key : std::string_view{});
   if (node.kind != YamlNode::Kind::map && node.kind != YamlNode::Kind::null) return spec;
   if (!has_id && !reader.has_slip_of("node_id"))

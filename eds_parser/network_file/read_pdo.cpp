@@ -200,6 +200,8 @@ std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos) {
     if (const auto value = read_index(*node, reader.report())) index = {*value, node->pos, true};
   }
   reader.integer("sub_index", sub, {0, 0xFF});
+  const bool has_bad_sub = !sub.given && reader.take("sub_index") != nullptr;
+  if (index.given && has_bad_sub) return std::nullopt;
   if (index.given) return ObjectKey{*index, *sub};
   if (!has_index && reader.is_map() && !reader.has_slip_of("index")) {
     reader.report().error(pos, "missing-key", reader.what() + " lacks `index`");

@@ -11,12 +11,14 @@ constexpr std::size_t most_timeouts = 256;
 void read_channel(MapReader& outer, NodeSpec& node) {
   const YamlNode* map = outer.take("sdo_channel");
   if (map == nullptr) return;
+  const std::size_t errors = outer.report().errors();
   MapReader reader{*map, "`sdo_channel` of " + outer.what(), outer.report()};
   Sourced<std::uint32_t> request;
   Sourced<std::uint32_t> answer;
   reader.integer("request", request, {0x581, 0x7FF});
   reader.integer("answer", answer, {0x581, 0x7FF});
   reader.finish();
+  if (outer.report().errors() != errors) return;
   if (!request.given || !answer.given || *request == *answer) {
     outer.report().error(
         map->pos, "missing-key",
@@ -29,23 +31,23 @@ void read_channel(MapReader& outer, NodeSpec& node) {
 }
 
 void read_timeout(const YamlNode& item, MapReader& outer, NodeSpec& node) {
-  MapReader reader{item, "`sdo_timeouts` of " + outer.what(), outer.report()};
-  Sourced<std::uint16_t> index;
-  Sourced<std::uint8_t> sub;
+  NetworkReport& report = outer.report();
+  const std::size_t errors = report.errors();
+  MapReader reader{item, "an entry of `sdo_timeouts` of " + outer.what(), report};
   Sourced<std::uint32_t> timeout;
-  reader.integer("index", index);
-  reader.integer("sub_index", sub);
   reader.integer("timeout_ms", timeout, {1, 600'000, " ms"});
+  const bool has_sub = reader.take("sub_index") != nullptr;
+  const auto key = read_object_key(reader, item.pos);
   reader.finish();
-  if (!index.given || !timeout.given) {
-    outer.report().error(
-        item.pos, "missing-key",
-        "an entry of `sdo_timeouts` has the form `{index: 0x1F50, timeout_ms: 20000}`");
+  if (report.errors() != errors) return;
+  if (!key || !timeout.given) {
+    report.error(item.pos, "missing-key",
+                 "an entry of `sdo_timeouts` has the form `{index: 0x1F50, timeout_ms: 20000}`");
     return;
   }
   SdoObjectTimeout& entry = node.sdo_timeouts.emplace_back();
-  entry.index = *index;
-  if (sub.given) entry.sub = *sub;
+  entry.index = key->index;
+  if (has_sub) entry.sub = key->sub;
   entry.timeout = std::chrono::milliseconds{*timeout};
 }
 

@@ -40,6 +40,7 @@ std::optional<UnitSpec> read_unit(const YamlNode& node, const std::string& what,
 
 UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report) {
   UnitsSpec units;
+  const std::size_t errors = report.errors();
   MapReader reader{node, "`units` of " + owner, report};
   const auto quantity = [&](std::string_view key, std::optional<UnitSpec>& out) {
     if (const YamlNode* map = reader.take(key)) {
@@ -66,6 +67,7 @@ UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkRepo
     }
   }
   reader.finish();
+  units.has_errors = report.errors() != errors;
   return units;
 }
 

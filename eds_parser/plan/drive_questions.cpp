@@ -43,6 +43,7 @@ bool is_written(const NodePdos& node, ObjectKey object) {
 }
 
 void ask_for_mode(const NodePdos& node, NetworkReport& report) {
+  if (node.node.spec->has_rpdo_errors) return;  // the mode may stand where the error is
   std::vector<ObjectKey> asked;
   for (const EffectivePdo& pdo : node.pdos) {
     if (pdo.is_tpdo || pdo.use != PdoUse::exchanged) continue;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,7 @@ class NetworkReport {
       : file_{std::move(file)}, findings_{findings} {}
 
   void error(SourcePos pos, std::string_view rule, std::string message) {
+    ++errors_;
     add(pos, Severity::error, rule, std::move(message));
   }
   void warning(SourcePos pos, std::string_view rule, std::string message) {
@@ -25,6 +27,9 @@ class NetworkReport {
     add(pos, Severity::note, rule, std::move(message));
   }
   const std::string& file() const noexcept { return file_; }
+  /// Returns the number of errors so far. If it is higher after a part of the file was read, that
+  /// part has errors.
+  std::size_t errors() const noexcept { return errors_; }
 
  private:
   void add(SourcePos pos, Severity severity, std::string_view rule, std::string message) {
@@ -38,6 +43,7 @@ class NetworkReport {
 
   std::string file_;
   Findings& findings_;
+  std::size_t errors_ = 0;
 };
 
 }  // namespace takt

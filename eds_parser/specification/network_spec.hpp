@@ -91,6 +91,8 @@ struct UnitsSpec {
   std::optional<UnitSpec> acceleration;
   std::optional<UnitSpec> torque;
   std::vector<ObjectUnitSpec> objects;  ///< `objects: [{index, sub_index, scale, unit}]`
+  /// The section has errors or is misspelled. A missing unit is then no error of its own.
+  bool has_errors = false;
 
   const std::optional<UnitSpec>& of(Quantity quantity) const noexcept {
     switch (quantity) {
@@ -236,6 +238,8 @@ struct NodeSpec {
   SimSpec sim;
   std::vector<PdoSpec> tpdos;
   std::vector<PdoSpec> rpdos;
+  /// `rpdo` has errors or is misspelled. A missing output is then no error of its own.
+  bool has_rpdo_errors = false;
   std::vector<SdoSpec> sdo;
 };
 

@@ -41,7 +41,7 @@ class ValueCheck {
                     "`safe_values` of " + owner() + ": " + object_text(safe.object, *sub) + " (" +
                         std::string{name(sub->type)} + ") does not hold " + std::to_string(*value));
     }
-    if (in_an_rpdo(node_, safe.object)) return;
+    if (node_.node.spec->has_rpdo_errors || in_an_rpdo(node_, safe.object)) return;
     report_.error(safe.pos, "not-an-output",
                   "`safe_values` of " + owner() + ": no RPDO carries " +
                       object_text(safe.object, *sub) +

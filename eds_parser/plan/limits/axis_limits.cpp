@@ -128,6 +128,7 @@ std::string AxisLimits::unit_of(LimitKind kind) const {
 bool AxisLimits::has_unit(SignalIndex index, std::string_view kind, SourcePos pos) {
   const Signal& signal = table_.signal(index);
   if (!signal.unit.empty() || signal.scale != 1.0 || signal.offset != 0.0) return true;
+  if (node_.spec->units.has_errors) return false;
   report_.error(
       pos, "limits",
       "`" + std::string{kind} + "` in `limits` of " + owner() + ": " + signal.name + " (" +
@@ -144,6 +145,7 @@ bool AxisLimits::follows_position(LimitKind kind) const {
 }
 
 void AxisLimits::tell_other_unit(LimitKind kind, SourcePos pos) {
+  if (node_.spec->units.has_errors) return;
   report_.warning(
       pos, "limits",
       "`" + std::string{name(kind)} + "` of " + owner() + " is in " + unit_of(kind) +

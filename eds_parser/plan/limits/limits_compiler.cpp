@@ -53,14 +53,15 @@ class LimitsCompiler {
     const NodeSource& source = nodes_[index].node;
     const LimitsSpec& limits = source.spec->limits;
     const std::set<std::uint8_t> axes = axes_of(index);
+    const bool complete = every_output_is_mapped(nodes_[index]);
     for (const AxisOverrideSpec& own : limits.axes) {
-      if (axes.contains(own.axis)) continue;
+      if (axes.contains(own.axis) || !complete) continue;
       report_.error(own.pos, "limits",
                     "no RPDO of node `" + source.spec->name + "` carries a set-point of axis " +
                         std::to_string(own.axis));
     }
     const auto place = first_place(limits.all);
-    if (place && axes.empty() && every_output_is_mapped(nodes_[index])) {
+    if (place && axes.empty() && complete) {
       report_.error(*place, "limits",
                     "no RPDO of node `" + source.spec->name +
                         "` carries a set-point of a drive (607A, 60FF, 6071 ...): write the limits "
@@ -103,15 +104,18 @@ class LimitsCompiler {
     return !of_axis && !digital && std::ranges::none_of(plan_.limits.lines, limits_it);
   }
 
-  /// Returns false if a mapping has errors. They are already reported, and no limit is to blame.
+  /// Returns false if an RPDO has errors. They are already reported, and no limit is to blame.
   static bool every_output_is_mapped(const NodePdos& node) {
-    return std::ranges::all_of(node.node.spec->rpdos, [&](const PdoSpec& written) {
+    const auto is_mapped = [&](const PdoSpec& written) {
+      if (!*written.enabled) return true;
       const auto pdo = std::ranges::find_if(node.pdos, [&](const EffectivePdo& one) {
         return !one.is_tpdo && one.number == written.number;
       });
-      return !written.mapping.given ||
-             (pdo != node.pdos.end() && pdo->mapping.size() >= written.mapping->size());
-    });
+      if (pdo == node.pdos.end() || pdo->bits > 64) return false;
+      return !written.mapping.given || pdo->mapping.size() >= written.mapping->size();
+    };
+    const NodeSpec& spec = *node.node.spec;
+    return !spec.has_rpdo_errors && std::ranges::all_of(spec.rpdos, is_mapped);
   }
 
   /// Returns the axes that have a set-point in an RPDO.
@@ -135,6 +139,7 @@ class LimitsCompiler {
   void object(std::size_t node_index, const ObjectLimitSpec& limit) {
     const auto signal = table_.find(node_index, limit.object, true);
     if (!signal) {
+      if (!every_output_is_mapped(nodes_[node_index])) return;
       report_.error(limit.pos, "limits",
                     "`limits` of node `" + plan_.nodes[node_index].name + "`: no RPDO carries " +
                         to_string(limit.object) + ", so no command can contain this object");

@@ -94,7 +94,28 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"scale: 1.0e-6", "scale: 0", "scale"},
         Mistake{"fallback: quick_stop", "fallback: stop_quick", "fallback"},
         Mistake{"profile: cia402", "profile: cia404", "profile"},
-        Mistake{"sync_period: 4000", "sync_periode: 4000", "did you mean `sync_period`"}));
+        Mistake{"sync_period: 4000", "sync_periode: 4000", "did you mean `sync_period`"},
+        // A limit is not to blame for an output or a unit that has an error itself.
+        Mistake{"{index: 0x607A}", "{index: 607A}", "`607A` is hexadecimal without 0x"},
+        Mistake{"{index: 0x607A}", "{index: 607Ah}", "`607Ah` is not a whole number"},
+        Mistake{"{index: 0x607A}", "{index: 0x6O7A}", "`0x6O7A` is not a whole number"},
+        Mistake{"{index: 0x607A}", "{index: 0x607A}, {index: 0x60FF}", "maps 80 bits"},
+        Mistake{"    units:", "    unts:", "did you mean `units`"},
+        Mistake{"units: {position:", "units: {positon:", "did you mean `position`"},
+        Mistake{"{scale: 1.0e-6, unit: m}", "{unit: m, scale: 1 um}", "`1 um` is not a number"},
+        Mistake{"{scale: 1.0e-6, unit: m}", "micrometers", "has to be a map"},
+        // entries of lists
+        Mistake{"index: 0x6081,", "index: 0x1018, sub_index: 0A,", "`0A` is not a whole number"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{index: 1F5A, timeout_ms: 9}]\n    sdo: [",
+                "`1F5A` is hexadecimal without 0x: write 0x1F5A"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{index: 0x1F5A, timeout_ms: 9 s}]\n    sdo: [",
+                "`9 s` is not a whole number"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{indx: 0x1F5A, timeout_ms: 9}]\n    sdo: [",
+                "did you mean `index`"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{timeout_ms: 9}]\n    sdo: [", "lacks `index`"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{index: 0x1F5A}]\n    sdo: [", "has the form"},
+        Mistake{"    sdo: [", "    sdo_channel: {request: 0x645, answer: abc}\n    sdo: [",
+                "`abc` is not a whole number"}));
 
 }  // namespace
 }  // namespace takt

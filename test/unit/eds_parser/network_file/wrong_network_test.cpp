@@ -47,6 +47,12 @@ TEST_F(WrongNetwork, SafeValuesThatNoRpdoCarriesAreErrors) {
               HasSubstr("7777:00 is not in"));
 }
 
+TEST_F(WrongNetwork, SafeValuesAreNotToBlameForAnRpdoWithAnError) {
+  EXPECT_THAT(of_axis("    rpdo: {1: {mapping: [{index: 607A}]}}\n"
+                      "    safe_values: [{index: 0x607A, value: 1}]\n"),
+              AllOf(HasSubstr("[not-a-number]"), Not(HasSubstr("[not-an-output]"))));
+}
+
 TEST_F(WrongNetwork, SafeValuesHaveToFitTheirObject) {
   EXPECT_THAT(of_axis("    rpdo: {1: {mapping: [{index: 0x607A}]}}\n"
                       "    safe_values: [{index: 0x607A, value: 99999999999}]\n"),

@@ -66,6 +66,14 @@ TEST_F(Careful, AModeThatIsMappedOrWrittenIsNone) {
   EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x607A]") + ", profile: none"), Not(HasSubstr("[mode]")));
 }
 
+TEST_F(Careful, AnRpdoWithAnErrorDoesNotAskForAMode) {
+  const std::string told = of_drive(
+      "rpdo: {1: {transmission: 1, mapping: [0x6040, 0x607A]}, 2: {transmission: 1, mapping: "
+      "[6060h]}, 3: {enabled: false}, 4: {enabled: false}}");
+
+  EXPECT_THAT(told, AllOf(HasSubstr("`6060h` is not a whole number"), Not(HasSubstr("[mode]"))));
+}
+
 // on_loss
 
 TEST_F(Careful, SeveralDrivesWithoutADecisionOnTheLossOfOneAreAWarning) {
