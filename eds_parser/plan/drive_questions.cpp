@@ -4,8 +4,10 @@
 #include <array>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/profile_of.hpp"
 #include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/specification/object_units.hpp"
@@ -13,11 +15,21 @@
 namespace takt {
 namespace {
 
-/// Set-points that act only in some modes of operation.
-constexpr std::array<std::uint16_t, 3> targets{0x607A, 0x60FF, 0x6071};
+/// A set-point that acts only in some modes of operation, and the cyclic one of these modes
+/// (CiA 402-2, 0x6060).
+struct Target {
+  std::uint16_t index;
+  int mode;
+  std::string_view mode_name;
+};
+constexpr std::array<Target, 3> targets{{{0x607A, 8, "cyclic synchronous position"},
+                                         {0x60FF, 9, "cyclic synchronous velocity"},
+                                         {0x6071, 10, "cyclic synchronous torque"}}};
 
-bool is_target(ObjectKey object) {
-  return std::ranges::find(targets, first_axis(object.index)) != targets.end();
+/// Returns nullptr for other objects.
+const Target* target_of(ObjectKey object) {
+  const auto found = std::ranges::find(targets, first_axis(object.index), &Target::index);
+  return found == targets.end() ? nullptr : &*found;
 }
 
 /// Returns the object 0x6060 of the axis that an object belongs to.
@@ -34,12 +46,43 @@ bool is_sent(const NodePdos& node, ObjectKey object) {
   });
 }
 
-/// Returns true if `sdo:` or a value of a DCF writes the object.
-bool is_written(const NodePdos& node, ObjectKey object) {
-  const auto& list = node.node.spec->sdo;
-  if (std::ranges::find(list, object, &SdoSpec::object) != list.end()) return true;
-  const SubObject* sub = node.node.dictionary->find(object);
-  return node.node.dictionary->is_dcf && sub != nullptr && sub->parameter_value.has_value();
+bool is_received(const NodePdos& node, ObjectKey object) {
+  return std::ranges::any_of(node.pdos, [object](const EffectivePdo& pdo) {
+    return pdo.is_tpdo && pdo.use == PdoUse::exchanged &&
+           std::ranges::find(pdo.mapping, object, &EffectiveEntry::object) != pdo.mapping.end();
+  });
+}
+
+bool has_sdo_entry(const NodeSpec& node, ObjectKey object) {
+  return std::ranges::find(node.sdo, object, &SdoSpec::object) != node.sdo.end();
+}
+
+/// Returns true if the boot or a DCF sets the object to a mode. The value 0 is no mode.
+bool is_set(const NodePdos& node, ObjectKey mode) {
+  const NodeSpec& spec = *node.node.spec;
+  if (*spec.boot && has_sdo_entry(spec, mode)) return written_object(node.node, mode) != 0;
+  const SubObject* sub = node.node.dictionary->find(mode);
+  if (!node.node.dictionary->is_dcf || sub == nullptr) return false;
+  return integer_of(sub->parameter_value).value_or(0) != 0;
+}
+
+std::string lack_of(const NodeSpec& node, ObjectKey mode) {
+  const std::string text = "the mode of operation, " + to_string(mode);
+  if (!has_sdo_entry(node, mode)) return "nothing sets " + text;
+  return *node.boot ? "`sdo` sets " + text + ", to 0, which is no mode"
+                    : "nothing sets " + text + " (`boot: false` writes no `sdo`)";
+}
+
+/// Returns what sets the mode. If only `sdo` does, applications see the mode by 0x6061 alone.
+std::string advice_for(const NodePdos& node, const Target& target, ObjectKey mode) {
+  const std::string map = "Map " + hex(mode.index, 4) + " into an RPDO";
+  if (!*node.node.spec->boot) return map;
+  const ObjectKey display{static_cast<std::uint16_t>(mode.index + 1), 0};
+  const bool is_hidden =
+      node.node.dictionary->find(display) != nullptr && !is_received(node, display);
+  return map + ", or write `sdo: [{index: " + hex(mode.index, 4) +
+         ", value: " + std::to_string(target.mode) + "}]` (" + std::string{target.mode_name} + ")" +
+         (is_hidden ? " and map " + hex(display.index, 4) + " into a TPDO" : "");
 }
 
 void ask_for_mode(const NodePdos& node, NetworkReport& report) {
@@ -48,17 +91,17 @@ void ask_for_mode(const NodePdos& node, NetworkReport& report) {
   for (const EffectivePdo& pdo : node.pdos) {
     if (pdo.is_tpdo || pdo.use != PdoUse::exchanged) continue;
     for (const EffectiveEntry& entry : pdo.mapping) {
+      const Target* target = target_of(entry.object);
       const ObjectKey mode = mode_of(entry.object);
-      const bool open = is_target(entry.object) && node.node.dictionary->find(mode) != nullptr &&
-                        !is_sent(node, mode) && !is_written(node, mode);
+      const bool open = target != nullptr && node.node.dictionary->find(mode) != nullptr &&
+                        !is_sent(node, mode) && !is_set(node, mode);
       if (!open || std::ranges::find(asked, mode) != asked.end()) continue;
       asked.push_back(mode);
       report.warning(entry.pos, "mode",
                      pdo.label() + " of node `" + node.node.spec->name + "` carries " +
-                         to_string(entry.object) + ", but nothing sets the mode of operation, " +
-                         to_string(mode) + ": the drive may ignore the set-points. Map " +
-                         hex(mode.index, 4) + " into an RPDO, or write `sdo: [{index: " +
-                         hex(mode.index, 4) + ", value: 8}]` (cyclic synchronous position)");
+                         to_string(entry.object) + ", but " + lack_of(*node.node.spec, mode) +
+                         ": the drive may ignore the set-points. " +
+                         advice_for(node, *target, mode));
     }
   }
 }

@@ -66,6 +66,43 @@ TEST_F(Careful, AModeThatIsMappedOrWrittenIsNone) {
   EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x607A]") + ", profile: none"), Not(HasSubstr("[mode]")));
 }
 
+TEST_F(Careful, TheModeThatIsAdvisedIsThatOfTheSetPoint) {
+  EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x607A]")),
+              HasSubstr("value: 8}]` (cyclic synchronous position)"));
+  EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x60FF]")),
+              HasSubstr("value: 9}]` (cyclic synchronous velocity)"));
+  EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x6071]")),
+              HasSubstr("value: 10}]` (cyclic synchronous torque)"));
+}
+
+TEST_F(Careful, AModeOfZeroIsNoMode) {
+  EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x607A]") + ", sdo: [{index: 0x6060, value: 0}]"),
+              AllOf(HasSubstr("carries 607A:00, but `sdo` sets the mode of operation, 6060:00, to "
+                              "0, which is no mode: the drive may ignore the set-points"),
+                    HasSubstr("[mode]")));
+  EXPECT_THAT(of_drive(rpdo1("[0x6040, 0x607A]") + ", sdo: [{index: 0x6060, value: -1}]"),
+              Not(HasSubstr("[mode]")))
+      << "a mode of the manufacturer";
+}
+
+TEST_F(Careful, AModeThatTheBootDoesNotWriteIsNotSet) {
+  const std::string told =
+      of_drive(rpdo1("[0x6040, 0x607A]") + ", boot: false, sdo: [{index: 0x6060, value: 8}]");
+
+  EXPECT_THAT(told, AllOf(HasSubstr("nothing sets the mode of operation, 6060:00 (`boot: false` "
+                                    "writes no `sdo`): the drive may ignore the set-points. Map "
+                                    "0x6060 into an RPDO [mode]"),
+                          Not(HasSubstr("or write"))));
+}
+
+TEST_F(Careful, AModeThatNoTpdoShowsIsToBeMappedToo) {
+  const std::string rpdos = rpdo1("[0x6040, 0x607A]");
+  EXPECT_THAT(of_drive(rpdos + ", " + tpdo1("transmission: 1, mapping: [0x6041, 0x6064]")),
+              HasSubstr("(cyclic synchronous position) and map 0x6061 into a TPDO [mode]"));
+  EXPECT_THAT(of_drive(rpdos + ", " + tpdo1("transmission: 1, mapping: [0x6041, 0x6061]")),
+              HasSubstr("(cyclic synchronous position) [mode]"));
+}
+
 TEST_F(Careful, AnRpdoWithAnErrorDoesNotAskForAMode) {
   const std::string told = of_drive(
       "rpdo: {1: {transmission: 1, mapping: [0x6040, 0x607A]}, 2: {transmission: 1, mapping: "
