@@ -36,6 +36,9 @@ class CobIdAssigner {
     each([&](NodePdos& n, EffectivePdo& p) {
       if (device(p) && is_own(n, p)) claim_of_device(n, p);
     });
+    each([&](NodePdos& n, EffectivePdo& p) {
+      if (!p.has_cob_id && p.is_tpdo && p.number <= 4) claim_predefined(n, p);
+    });
     // TPDOs come first, so that an RPDO finds its sender.
     for (const bool is_tpdo : {true, false}) {
       each([&](NodePdos& n, EffectivePdo& p) {
@@ -193,10 +196,48 @@ class CobIdAssigner {
                   "no COB-ID is free for " + user.text() + " in 0x181..0x57F");
   }
 
+  /// Gives a TPDO its predefined COB-ID. If an RPDO of another device has this COB-ID in the
+  /// network file, they are a link. Otherwise a COB-ID that is taken remains with its owner.
+  void claim_predefined(NodePdos& node, EffectivePdo& pdo) {
+    const CobId id = CobId::base(predefined(pdo, node.node.id));
+    if (!service_at(id).empty()) return;
+    const auto other = used_.find(id);
+    if (other == used_.end()) return take(node, pdo, id);
+    if (!is_link(node, pdo, other->second)) return;
+    pdo.cob_id = id;
+    pdo.has_cob_id = true;
+    link(pdo, other->second, {&pdo, &node.node});
+  }
+
   void claim_automatic(NodePdos& node, EffectivePdo& pdo) {
     const std::uint32_t id = automatic(node, pdo);
     if (id == 0) return none_free({&pdo, &node.node}, pdo);
+    if (pdo.number <= 4 && id != predefined(pdo, node.node.id)) tell_taken(node, pdo, id);
     take(node, pdo, CobId::base(id));
+  }
+
+  /// Reports that a PDO can't have its predefined COB-ID. This is an error if the network file
+  /// gives it to two TPDOs: to one by its number, to the other one by `auto`.
+  void tell_taken(const NodePdos& node, EffectivePdo& pdo, std::uint32_t free) {
+    const User user{&pdo, &node.node};
+    const CobId own = CobId::base(predefined(pdo, node.node.id));
+    const auto other = used_.find(own);
+    const bool is_twice = other != used_.end() && pdo.is_tpdo && other->second.pdo->is_tpdo &&
+                          other->second.pdo->origin == CobIdOrigin::network_file;
+    if (is_twice) {
+      const User& owner = other->second;
+      report_.error(owner.pdo->cob_id_pos, "cob-id-clash",
+                    "`cob_id` " + to_string(own) + " of " + owner.text() +
+                        " is the predefined COB-ID of " + user.text() +
+                        ", which has no `cob_id` of its own: write `cob_id: " + hex(free, 3) +
+                        "` for " + user.text() + ", or another `cob_id` for " + owner.text());
+      return;
+    }
+    report_.note(
+        pdo.cob_id_pos, "cob-id-moved",
+        "the predefined COB-ID " + to_string(own) + " of " + user.text() + " " +
+            (other == used_.end() ? service_at(own) : "is used by " + other->second.text()) +
+            "; takt uses " + hex(free, 3));
   }
 
   /// Returns the predefined COB-ID if it is free, else the lowest free identifier. Identifiers

@@ -22,7 +22,8 @@ bool is_restricted(std::uint32_t id) noexcept;
 /// changed, and neither are COB-IDs of device files that work. An absolute COB-ID of a device file
 /// that clashes becomes node-relative, with a note. The exception is a link: an RPDO with the
 /// COB-ID of another device's TPDO receives that TPDO. `auto` gives PDO 1..4 the predefined
-/// connection set, and other PDOs the lowest free identifier in 0x181..0x57F. `services` holds
+/// connection set, and other PDOs the lowest free identifier in 0x181..0x57F. It is an error if the
+/// network file gives the predefined COB-ID of an `auto` TPDO to another TPDO. `services` holds
 /// identifiers that no PDO may have, each with a phrase for messages ("is TIME").
 void assign_cob_ids(std::span<NodePdos> nodes, const std::map<CobId, std::string>& services,
                     NetworkReport& report);

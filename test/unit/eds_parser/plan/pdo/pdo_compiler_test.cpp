@@ -334,6 +334,70 @@ TEST(CobIds, AnIdOfTheNetworkFileAndOneOfAnEdsMakeALinkToo) {
                              HasSubstr("RPDO1 of node `c` receives TPDO1 of node `b`")));
 }
 
+TEST(CobIds, AnIdOfATpdoThatIsThePredefinedOneOfAnAutomaticTpdoIsAnError) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, tpdo: {1: {cob_id: auto}}}\n"
+      "b: {node_id: 2, dcf: x, tpdo: {1: {cob_id: 0x181}}}\n");
+
+  EXPECT_THAT(net.complaints(), ElementsAre("3:44 error [cob-id-clash]"));
+  EXPECT_THAT(net.said("cob-id-clash"),
+              HasSubstr("`cob_id` 0x181 of TPDO1 of node `b` is the predefined COB-ID of TPDO1 of "
+                        "node `a`, which has no `cob_id` of its own: write `cob_id: 0x183` for "
+                        "TPDO1 of node `a`, or another `cob_id` for TPDO1 of node `b`"));
+}
+
+TEST(CobIds, AnIdOfAnRpdoThatIsThePredefinedOneOfAnAutomaticTpdoMakesALink) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, tpdo: {1: {cob_id: auto}}}\n"
+      "b: {node_id: 2, dcf: x, rpdo: {1: {cob_id: 0x181}}}\n");
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
+  EXPECT_EQ(net.plan.pdos.rpdos.size(), 1U);
+  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
+}
+
+TEST(CobIds, ALinkOfTheEdsIsKeptWithAnAutomaticTpdo) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "a: {node_id: 1, dcf: x, tpdo: {1: {cob_id: auto}}, rpdo: {1: {enabled: false}}}\n"
+      "b: {node_id: 2, dcf: x}\n",
+      listener);
+
+  EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
+  EXPECT_THAT(net.said("linked"), HasSubstr("RPDO1 of node `b` receives TPDO1 of node `a`"));
+}
+
+TEST(CobIds, AnAutomaticTpdoHasItsPredefinedIdBeforeAnEdsThatUsesItForAnotherNode) {
+  const auto net = compile(
+      "master: {sync_period: 10000}\n"
+      "b: {node_id: 2, dcf: x}\n"
+      "a: {node_id: 1, dcf: x, tpdo: {1: {cob_id: auto}}}\n",
+      test::tiny_objects() + test::pdo(true, 1, "0x40000181", 1, {"0x60410010"}));
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_EQ(net.plan.pdos.tpdos.at(0).cob_id, CobId::base(0x181));
+  EXPECT_EQ(net.plan.pdos.tpdos.at(1).cob_id, CobId::base(0x182));
+}
+
+TEST(CobIds, AnAutomaticIdThatIsNotThePredefinedOneIsANote) {
+  const auto with = [](const std::string& of_a, const std::string& of_b) {
+    return compile("master: {sync_period: 10000}\na: {node_id: 1, dcf: x, " + of_a +
+                   "}\nb: {node_id: 2, dcf: x, " + of_b + "}\n");
+  };
+  const auto service = with("tpdo: {1: {cob_id: auto}}", "emcy_cob_id: 0x181");
+  EXPECT_THAT(service.said("cob-id-moved"),
+              HasSubstr("the predefined COB-ID 0x181 of TPDO1 of node `a` is EMCY of node `b`; "
+                        "takt uses 0x183"));
+  const auto rpdos = with("rpdo: {1: {cob_id: auto}}", "rpdo: {1: {cob_id: 0x201}}");
+  EXPECT_THAT(rpdos.complaints(), IsEmpty());
+  EXPECT_THAT(rpdos.said("cob-id-moved"),
+              HasSubstr("the predefined COB-ID 0x201 of RPDO1 of node `a` is used by RPDO1 of node "
+                        "`b`; takt uses 0x183"));
+}
+
 TEST(CobIds, RestrictedRangesAreThoseOfTable40) {
   for (const std::uint32_t id : {0x000U, 0x07FU, 0x101U, 0x180U, 0x581U, 0x5FFU, 0x601U, 0x67FU,
                                  0x6E0U, 0x6FFU, 0x701U, 0x7FFU}) {
