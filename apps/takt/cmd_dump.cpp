@@ -13,6 +13,7 @@
 #include <optional>
 #include <unistd.h>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
@@ -286,7 +287,7 @@ void add_dump(CLI::App& app, int& exit_code) {
   dump->add_option("files", options->files,
                    "network file (.yaml), recording (.log, .trc, .asc; - for stdin)")
       ->type_name("[NET.yaml] [FILE]");
-  dump->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
+  add_bus(*dump, options->bus, "can0, vcan0, unix:PATH")->type_name("BUS");
   add_number(*dump, "-n,--count", options->count, "end after this number of frames");
   dump->add_flag("--json", options->json, "print one JSON object per frame");
   dump->add_option("--only", options->only, "print only these services, for example SDO,EMCY")

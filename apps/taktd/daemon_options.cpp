@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/duration.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "eds_parser/lcm/lcm_url.hpp"
@@ -48,7 +49,7 @@ std::expected<DaemonOptions, int> read_command_line(int argc, char** argv) {
   std::string run_for;
   int typed = 0;  // 1 for --typed, -1 for --no-typed, 0 for neither
   app.add_option("NET.yaml", options.network_file, "network file")->required();
-  app.add_option("--bus", options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
+  add_bus(app, options.bus, "can0, vcan0 ...; unix:PATH; sim")->type_name("IFACE");
   app.add_option("--rt", rt, "enforce: start with real time only; try: report what is missing; off")
       ->check(one_of({"enforce", "try", "off"}))
       ->type_name("MODE");

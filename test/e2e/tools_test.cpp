@@ -170,6 +170,31 @@ TEST(ToolsWithoutABus, ExitWith3) {
   EXPECT_NE(ended.output.find("nocan7"), std::string::npos);
 }
 
+// A script may pass a variable that is not set.
+TEST(AnEmptyBus, IsWrongUseForEachProgram) {
+  const Folder folder;
+  const std::string network = slow_network(folder.path()).string();
+
+  for (std::vector<std::string> line : {std::vector<std::string>{TAKTD, network, "--check"},
+                                        {TAKTD, network, "--for", "1s"},
+                                        {TAKT, "audit", network},
+                                        {TAKT, "doctor"},
+                                        {TAKT, "dump", network},
+                                        {TAKT, "lss", "find"},
+                                        {TAKT, "nmt", "start", "1"},
+                                        {TAKT, "scan"},
+                                        {TAKT, "sdo", "read", "1", "1000"},
+                                        {TAKT, "sim", network, "--for", "1s"}}) {
+    line.insert(line.end(), {"--bus", ""});
+    const Ended ended = run(line, folder.path());
+    EXPECT_EQ(ended.exit_code, 2) << line[0] << " " << line[1];
+    EXPECT_NE(ended.output.find("the name of the bus is empty: name a bus, such as can0, or leave "
+                                "--bus out (`interface:` in a network file names the bus, too)"),
+              std::string::npos)
+        << line[1] << ": " << ended.output;
+  }
+}
+
 TEST(Top, ShowsNodesAndValuesScrollsByArrowsAndQuitsOnQ) {
   const Folder folder;
   DaemonProcess daemon{slow_network(folder.path())};

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <unistd.h>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/audit/ask_devices.hpp"
@@ -115,9 +116,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand(
       "audit", "tells what devices do if the master, the cable or the bus fails");
   command->add_option("NET", arguments->network, "network file (YAML, also a bus.yml)")->required();
-  command
-      ->add_option("--bus", arguments->bus,
-                   "ask the devices on this bus directly; stop the daemon first")
+  add_bus(*command, arguments->bus, "ask the devices on this bus directly; stop the daemon first")
       ->type_name("IFACE");
   command->add_flag("--live", arguments->through_daemon, "ask the devices through the daemon");
   add_number(*command, "--timeout", arguments->timeout_ms, "longest wait for each answer, ms")

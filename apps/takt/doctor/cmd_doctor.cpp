@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -105,7 +106,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
       "  takt doctor\n"
       "  takt doctor --bus can0 --bitrate 500");
   auto options = std::make_shared<doctor::DoctorOptions>();
-  verb->add_option("--bus", options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
+  add_bus(*verb, options->bus, "CAN interface: can0, vcan0")->type_name("IFACE");
   add_number(*verb, "--bitrate", options->bitrate_kbit,
              "bit rate that the interface must have, kbit/s")
       ->check(CLI::Range(10, 1000))

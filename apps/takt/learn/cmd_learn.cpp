@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
@@ -129,7 +130,7 @@ void add_learn(CLI::App& app, int& exit_code) {
       ->add_option("--eds-dir", options->folders,
                    "folder with EDS and DCF files; takt searches subfolders, too")
       ->type_name("DIR");
-  command->add_option("--bus", options->interface, "use only this interface of the recording");
+  add_bus(*command, options->interface, "use only this interface of the recording");
   add_number(*command, "--bitrate", options->bitrate_kbit,
              "bit rate, kbit/s; a recording does not contain it")
       ->check(CLI::Range(10U, 1000U))

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/known_words.hpp"
@@ -313,7 +314,7 @@ CLI::App* add_verb(CLI::App& lss, const char* name, const char* text, Takes take
                    const std::shared_ptr<LssOptions>& options) {
   auto* verb = lss.add_subcommand(name, text);
   if (takes != Takes::nothing) add_identity(*verb, *options, takes);
-  verb->add_option("--bus", options->access.bus, "use can0 or unix:PATH directly, not a daemon")
+  add_bus(*verb, options->access.bus, "use can0 or unix:PATH directly, not a daemon")
       ->type_name("IFACE");
   add_number(*verb, "--timeout", options->access.timeout_ms,
              "wait per answer, ms; default 100 in scans, 5000 to store, else 1000")

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/takt/live/daemon_client.hpp"
@@ -76,7 +77,7 @@ void add_nmt(CLI::App& app, int& exit_code) {
       ->required()
       ->check(one_of({"start", "stop", "preop", "reset", "reset-comm"}));
   verb->add_option("NODE", options->node, "node id (also the master's), name, or all")->required();
-  verb->add_option("--bus", options->bus, "work directly on can0 or unix:PATH, without a daemon")
+  add_bus(*verb, options->bus, "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
   add_live_options(*verb, options->live);
   verb->callback([options, &exit_code] { exit_code = run(*options); });

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
@@ -189,7 +190,7 @@ void add_scan(CLI::App& app, int& exit_code) {
       "command changes nothing.\n"
       "Examples:\n  takt scan --bus can0\n  takt scan --bus can0 --eds-dir vendor/ --json");
   auto options = std::make_shared<ScanOptions>();
-  verb->add_option("--bus", options->bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
+  add_bus(*verb, options->bus, "can0, vcan0, unix:PATH")->required()->type_name("IFACE");
   verb->add_option("--eds-dir", options->folders,
                    "folder with EDS and DCF files to match with the devices")
       ->type_name("DIR");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/interrupt.hpp"
 #include "apps/command_line/json_text.hpp"
@@ -238,7 +239,7 @@ CLI::App* add_verb(CLI::App& sdo, const char* name, const char* text,
   verb->add_option("NODE", options->node, "node id or name")->required();
   verb->add_option("OBJ", options->object, "object 6041 or 1018:1; index and sub-index in hex")
       ->required();
-  verb->add_option("--bus", options->bus, "work directly on can0 or unix:PATH, without a daemon")
+  add_bus(*verb, options->bus, "work directly on can0 or unix:PATH, without a daemon")
       ->type_name("IFACE");
   add_number(*verb, "--timeout", options->timeout_ms,
              "longest silence of the device, ms (`sdo_timeout_ms` of the node; 1000 with --bus)")

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <thread>
 
+#include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -100,7 +101,7 @@ void add_sim(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
   auto* command = app.add_subcommand("sim", "simulates devices on a CAN interface in real time");
   command->add_option("NET.yaml", arguments->network, "network file")->required();
-  command->add_option("--bus", arguments->bus, "vcan0, can0 or unix:PATH");
+  add_bus(*command, arguments->bus, "vcan0, can0 or unix:PATH");
   command->add_option("--only", arguments->only, "simulate only these nodes, by name or number")
       ->delimiter(',');
   command->add_option("--for", arguments->run_for, "end after this time; default: run until SIGINT")
