@@ -229,6 +229,7 @@ class NetworkCompiler {
         .reboot_delay = milliseconds(spec.reboot_delay_ms.value_or(default_reboot_delay_ms))};
     node.longest_reboot_delay = longest_reboot_delay(spec, node.reboot_delay);
     node.heartbeat_timeout = error_control_.heartbeat_timeout(source.node);
+    node.consumes_master = *spec.heartbeat_consumer;
     node.heartbeat_period = milliseconds(*spec.boot ? error_control_.producer_ms(source.node) : 0);
     node.guard = error_control_.guard(source.node);
     node.emcy_cob_id = emcy_cob_id(source.node);

@@ -102,6 +102,7 @@ struct NodePlan {
   GuardPlan guard{};                         ///< only for a node without heartbeat
   Time heartbeat_period{};                   ///< producer time of the device; 0 = not known
   std::vector<HeartbeatConsumer> watches{};  ///< its heartbeat consumers after the boot
+  bool consumes_master = true;               ///< `heartbeat_consumer`: it may watch the master
   Time life_guarding{};                      ///< longest pause of guarding it accepts; 0 = no limit
   std::optional<CobId> emcy_cob_id{};        ///< empty = 0x080 + node-ID
   bool start_later = false;  ///< StartUpPlan::start_all starts it, not its boot plan

@@ -136,6 +136,36 @@ TEST(AuditAdvice, RemovesTheEntryThatSwitchesTheHeartbeatConsumerOff) {
   EXPECT_TRUE(mentions(unwanted, "`sdo` in the network file sets 1016:01"));
 }
 
+// Either line alone leaves the device without a watch over the master.
+TEST(AuditAdvice, NamesBothLinesWhereTheMasterIsSilentAndTheConsumerIsSwitchedOff) {
+  const Audit audit =
+      audit_of(two_nodes({"heartbeat_consumer: false"}, {}, "heartbeat_producer: 0"));
+  const auto applied = two_nodes({"heartbeat_consumer: true"}, {}, "heartbeat_producer: 100");
+
+  EXPECT_EQ(audit.nodes[0].master_remedy, "master: {heartbeat_producer: 100}   # ms");
+  EXPECT_EQ(audit.nodes[0].remedy,
+            Lines{"heartbeat_consumer: true   # 1016: the device watches the master"});
+  EXPECT_EQ(audit.nodes[1].remedy, Lines{});
+  EXPECT_EQ(audit_of(applied).nodes[0].verdict, Failsafe::stops);
+}
+
+TEST(AuditAdvice, FreesAnEntryThatTheNetworkFileGivesToAnotherNode) {
+  const std::string second = "{index: 0x1016, sub_index: 2, value: 0x07012C}]";
+  const std::string both = "sdo: [{index: 0x1016, sub_index: 1, value: 0x06012C}, " + second;
+
+  const NodeAudit drive = audit_of(two_nodes({both}, {})).nodes[0];
+  const NodeAudit unwanted = audit_of(two_nodes({both, "heartbeat_consumer: false"}, {})).nodes[0];
+  const NodeAudit freed = audit_of(two_nodes({"sdo: [" + second}, {})).nodes[0];
+
+  EXPECT_EQ(drive.verdict, Failsafe::goes_on);
+  EXPECT_EQ(drive.remedy, Lines{});
+  EXPECT_TRUE(mentions(drive, "`sdo` in the network file sets 1016:01: remove it there"));
+  EXPECT_FALSE(mentions(drive, "only its power, or a hardware enable, stops"));
+  EXPECT_EQ(unwanted.remedy,
+            Lines{"heartbeat_consumer: true   # 1016: the device watches the master"});
+  EXPECT_EQ(freed.verdict, Failsafe::stops);
+}
+
 /// The boot chooses 1016:01, and warns that it can't be written.
 Lines advice_of_second_entry(const std::string& master, const std::string& key) {
   auto network = two_nodes({key}, {}, master);

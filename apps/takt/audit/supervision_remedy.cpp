@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 constexpr std::int64_t usual_heartbeat_ms = 100;
 constexpr double usual_multiplier = 3.0;
 constexpr double longest_consumer_ms = 65535.0;  // 0x1016 has 16 bits for the time
+constexpr const char* master_line = "master: {heartbeat_producer: 100}   # ms";
 constexpr std::int64_t guard_ms = 100;
 constexpr std::int64_t life_time_factor = 3;
 
@@ -85,15 +86,6 @@ std::uint64_t number_of(const BootStep& step) {
   return number;
 }
 
-/// Returns true if the boot writes the master into an entry of 0x1016. It does so with
-/// `heartbeat_consumer: true`, which is the default.
-bool boot_writes_consumer(const BusPlan& plan, const NodePlan& node) {
-  return std::ranges::any_of(node.boot_plan.steps, [&](const BootStep& step) {
-    return step.object.index == 0x1016 && step.object.sub != 0 &&
-           is_of_master(plan, number_of(step));
-  });
-}
-
 /// Returns true if the boot writes a value into this entry of 0x1016 with which the device does not
 /// watch the master. `sdo` of the network file does that. A value of a DCF gives way to the
 /// boot's own value.
@@ -110,6 +102,38 @@ std::string explicit_entry(const BusPlan& plan, const NodePlan& node, std::uint8
                 "sdo: [{index: 0x1016, sub_index: %u, value: 0x%06X}]   # watches the master",
                 unsigned{sub}, static_cast<unsigned>(consumer_entry(plan, node)));
   return line.data();
+}
+
+/// Returns the first entry to which `sdo` of the network file gives another node, and which accepts
+/// the master's node-ID and time.
+std::optional<std::uint8_t> given_away(const BusPlan& plan, const NodePlan& node,
+                                       const DeviceValues& values) {
+  for (std::uint8_t sub = 1; sub <= entries_of(values); ++sub) {
+    if (!is_overwritten(plan, node, sub)) continue;
+    if (values.takes({0x1016, sub}, consumer_entry(plan, node))) return sub;
+  }
+  return std::nullopt;
+}
+
+/// Adds the lines without which the boot does not write the master into 0x1016.
+void let_boot_write_consumer(const BusPlan& plan, const NodePlan& node, SupervisionRemedy& remedy) {
+  if (plan.master_heartbeat == Time{}) remedy.master = master_line;
+  if (node.consumes_master) return;
+  remedy.node.emplace_back("heartbeat_consumer: true   # 1016: the device watches the master");
+}
+
+/// Adds the lines for a device whose entries of 0x1016 all watch other nodes. Returns false if the
+/// network file can't free one of them.
+bool free_an_entry(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
+                   SupervisionRemedy& remedy) {
+  const auto entry = given_away(plan, node, values);
+  if (!entry) return false;
+  let_boot_write_consumer(plan, node, remedy);
+  remedy.removal = "each entry of 1016 watches another node, and `sdo` in the network file sets " +
+                   to_string(ObjectKey{0x1016, *entry}) +
+                   ": remove it there, then takt writes the master into the entry, and the device "
+                   "watches that other node no longer";
+  return true;
 }
 
 /// Adds the lines with which the device watches the guarding requests of the master. A guard plan
@@ -135,21 +159,19 @@ void watch_guarding(const NodePlan& node, const DeviceValues& values, Supervisio
 bool watch_heartbeat(const BusPlan& plan, const NodePlan& node, const DeviceValues& values,
                      SupervisionRemedy& remedy) {
   const auto chosen = chosen_entry(plan, values);
-  const bool by_default = chosen && values.takes({0x1016, *chosen}, consumer_entry(plan, node));
+  if (!chosen) return free_an_entry(plan, node, values, remedy);
+  const bool by_default = values.takes({0x1016, *chosen}, consumer_entry(plan, node));
   const auto wide = by_default ? std::nullopt : wide_entry(plan, node, values);
   if (!by_default && !wide) return false;
-  const bool silent = plan.master_heartbeat == Time{};
-  if (silent) remedy.master = "master: {heartbeat_producer: 100}   # ms";
   if (wide) {
+    if (plan.master_heartbeat == Time{}) remedy.master = master_line;
     remedy.why = "entry " + to_string(ObjectKey{0x1016, *chosen}) +
                  " can't be written, or by the limits of the EDS does not hold the master's node "
                  "id and a time, but another entry does: name that entry, or correct the EDS";
     remedy.node.push_back(explicit_entry(plan, node, *wide));
     return true;
   }
-  if (!silent && node.boot && !boot_writes_consumer(plan, node)) {  // set to false
-    remedy.node.emplace_back("heartbeat_consumer: true   # 1016: the device watches the master");
-  }
+  let_boot_write_consumer(plan, node, remedy);
   if (is_overwritten(plan, node, *chosen)) {
     remedy.removal =
         "`sdo` in the network file sets " + to_string(ObjectKey{0x1016, *chosen}) +
