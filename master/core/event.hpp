@@ -59,6 +59,10 @@ struct BootFailure {
   Time elapsed{};          ///< time since the boot began
   Time late{};  ///< longest time until the answer to a request that had timed out; 0 means that no
                 ///< such answer came
+  /// How long no frame of the SDO server had come when the step failed, at most the time since the
+  /// step began.
+  Time quiet{};
+  bool empty_answer = false;  ///< the device has sent an SDO frame without any byte
   /// Object of an answer that did not fit the request.
   std::optional<ObjectKey> answered{};
   /// The node was sent to PRE-OPERATIONAL twice for the step, and refused the write both times

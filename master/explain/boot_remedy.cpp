@@ -159,16 +159,40 @@ std::string against_short_answer(const BootFailure& failure) {
   Frame frame;
   frame.length = failure.received_size;
   frame.data = failure.received;
+  const std::string faulty =
+      ": its SDO server is faulty. Look for other firmware, or for whatever cuts the frames on "
+      "their way";
+  if (frame.length == 0 && failure.empty_answer) {
+    return "the device answers with an empty frame instead of 8 bytes" + faulty;
+  }
   if (frame.length == 0 || frame.length >= sdo_answer_bytes(frame)) return {};
   return "the device answers with " + std::to_string(int{frame.length}) +
-         " bytes instead of 8, so that a part of the answer is missing: its SDO server is faulty. "
-         "Look for other firmware, or for whatever cuts the frames on their way";
+         " bytes instead of 8, so that a part of the answer is missing" + faulty;
+}
+
+/// The device has answered a request after its time-out.
+bool was_late(const NodePlan& node, const BootFailure& failure) noexcept {
+  return failure.late > node.sdo_timeout && node.sdo_timeout > Time{};
+}
+
+/// Lateness explains the failure. If the device has sent nothing for longer than its answers were
+/// ever late, the device is silent now, and its late answers were an earlier matter.
+bool is_late(const NodePlan& node, const BootFailure& failure) noexcept {
+  return was_late(node, failure) && failure.quiet <= failure.late;
+}
+
+/// The sentence about late answers that came before the device became silent.
+std::string about_earlier_lateness(const NodePlan& node, const BootFailure& failure) {
+  if (!was_late(node, failure)) return {};
+  return " Before that, the device has answered a request after " + time_text(failure.late) +
+         ": raise `sdo_timeout_ms` of this node, too, which is " + time_text(node.sdo_timeout) +
+         " now";
 }
 
 /// For a server that answers late, with too few bytes, or with another object than the requested
 /// one.
 std::string against_odd_answers(const NodePlan& node, const BootFailure& failure) {
-  if (failure.late > node.sdo_timeout && node.sdo_timeout > Time{}) {
+  if (is_late(node, failure)) {
     return "the device answers after " + time_text(failure.late) + ": raise `sdo_timeout_ms` of " +
            "this node, which is " + time_text(node.sdo_timeout) + " now";
   }
@@ -236,7 +260,9 @@ std::string against_timeout(const BusPlan& plan, const NodePlan& node, const Boo
            " (flash memory takes seconds): raise `sdo_timeout_ms` of this node. The master did not "
            "repeat the write, because the write might act twice";
   }
-  return against_silence(plan, node, failure);
+  const std::string silence = against_silence(plan, node, failure);
+  const std::string late = about_earlier_lateness(node, failure);
+  return late.empty() || silence.ends_with('?') ? silence + late : silence + "." + late;
 }
 
 std::string against_dead_node(const BootStep& step) {

@@ -87,10 +87,11 @@ std::string received_text(const NodePlan& node, const BootStep& step, const Boot
     return std::to_string(int{failure.restarts}) +
            " boot-up messages while the node was being booted";
   }
-  if (failure.received_size == 0) return silence_text(step, failure);
+  if (failure.received_size == 0 && !failure.empty_answer) return silence_text(step, failure);
   const auto bytes =
       std::span{failure.received}.first(std::min<std::size_t>(failure.received_size, 8));
-  const std::string text = frame_text(node.sdo.channel_of(node.id).answer, bytes);
+  std::string text = frame_text(node.sdo.channel_of(node.id).answer, bytes);
+  if (bytes.empty()) text += " an empty frame";
   return failure.fault == SdoFault::timeout ? text + ", then " + silence_text(step, failure) : text;
 }
 

@@ -40,7 +40,8 @@ NOT_KEPT = {
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
     "SdoClient": {PLAN: "channel_ block_use_ segments_", IDLE: "state_ to_send_ result_ no_block_",
                   ANEW: "toggle_ left_stream_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
-                        "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_ late_now_ unfit_ asked_at_ previous_answer_"},
+                        "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_ late_now_ unfit_ asked_at_ heard_at_ "
+                        "empty_answer_ previous_answer_"},
     "SyncCounter": {PLAN: "overflow_"},
     "SyncFollower": {PLAN: "id_ declared_ tolerance_ timeout_ reaction_ overflow_", SHARED: "events_"},
     "SyncGate": {PLAN: "tolerance_"},

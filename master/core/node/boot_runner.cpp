@@ -117,6 +117,7 @@ Time BootRunner::deadline() const noexcept {
 }
 
 void BootRunner::excuse(Time away) noexcept {
+  entered_ += away;
   for (Time* const limit : {&deadline_, &wait_until_}) {
     if (*limit != never) *limit += away;
   }
@@ -166,6 +167,7 @@ void BootRunner::enter(Time now) noexcept {
   attempts_ = 0;
   received_ = 0;
   bootup_in_step_ = heartbeat_in_step_ = preop_again_ = false;
+  entered_ = now;
   deadline_ = wait_until_ = now + step.timeout;
   begin(step);
 }

@@ -189,6 +189,7 @@ class BootRunner {
   NmtState heard_ = NmtState::unknown;
   bool heartbeat_seen_ = false;
   Time began_{};
+  Time entered_{};                          // when the step began
   Time deadline_ = never;                   // deadline of the step
   Time wait_until_ = never;                 // end of a wait within the step
   std::optional<ObjectKey> cob_id_object_;  // the COB-ID object that was read or written last
@@ -198,6 +199,7 @@ class BootRunner {
   SdoResult refused_;  // result of the write that is being read back
   Frame refused_sent_;
   Frame refused_received_;
+  bool refused_empty_ = false;
   std::size_t received_ = 0;
   std::array<std::byte, request_bytes> buffer_{};
   BootFailure failure_;

@@ -210,6 +210,7 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
   refused_ = result;
   refused_sent_ = client.last_sent();
   refused_received_ = client.last_received();
+  refused_empty_ = client.empty_answer();
   phase_ = Phase::confirm_next;
 }
 
@@ -254,6 +255,8 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .running = running_,
               .elapsed = now - began_,
               .late = client.lateness(),
+              .quiet = now - std::max(entered_, client.heard_at()),
+              .empty_answer = transfer && (confirming ? refused_empty_ : client.empty_answer()),
               .answered = transfer ? client.answered() : std::nullopt,
               .preop_again = preop_again_ && result.abort_code == abort_code::device_state};
   for (std::size_t i = 0; i < failure_.value.size() && i < failure_.value_size; ++i) {

@@ -62,6 +62,7 @@ void SdoClient::begin(State state, ObjectKey object, Time timeout) noexcept {
   done_ = 0;
   announced_.reset();
   block_unheard_ = false;
+  empty_answer_ = false;
   left_stream_ = false;
   if (state != State::block_upload && state != State::block_download) return begin_plain(state);
   state_ = state;
@@ -245,12 +246,14 @@ bool SdoClient::is_of_earlier_block(const Frame& frame) const noexcept {
 }
 
 void SdoClient::on_frame(const Frame& frame, Time now) noexcept {
+  heard_at_ = now;
   note_late(frame, now);
   // While a request waits to be sent, every answer belongs to an earlier one.
   if (state_ == State::idle || state_ == State::settling) return;
   if (to_send_) return;
   if (!is_whole(frame)) {
     last_received_ = frame;  // for reports
+    empty_answer_ = empty_answer_ || frame.length == 0;
     return;
   }
   if (state_ == State::block_upload || state_ == State::block_download) return on_block(frame, now);

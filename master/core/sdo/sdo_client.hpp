@@ -104,6 +104,10 @@ class SdoClient {
   /// The last frame of the server in the newest transfer, for reports. A length of 0 means that
   /// there is none.
   const Frame& last_received() const noexcept { return last_received_; }
+  /// The server has sent a frame without any byte in the newest transfer.
+  bool empty_answer() const noexcept { return empty_answer_; }
+  /// When the newest frame of the server came, whatever it was.
+  Time heard_at() const noexcept { return heard_at_; }
   /// The object of an answer that did not fit the request; std::nullopt if there was none.
   std::optional<ObjectKey> answered() const noexcept { return answered_; }
   /// The longest time until the answer to a request that had timed out; 0 means that no such answer
@@ -201,7 +205,9 @@ class SdoClient {
   bool late_possible_ = false;
   bool late_now_ = false;  ///< the newest frame answers a request that has timed out
   bool unfit_ = false;     ///< an answer to the newest request was ignored because it does not fit
-  Time asked_at_{};        ///< when the newest frame was sent
+  bool empty_answer_ = false;          ///< a frame without any byte came in the newest transfer
+  Time asked_at_{};                    ///< when the newest frame was sent
+  Time heard_at_{};                    ///< when the newest frame of the server came
   std::optional<ObjectKey> answered_;  ///< object of an answer that did not fit the request
   Frame previous_answer_;              ///< the last answer of the previous transfer
   Frame last_sent_;

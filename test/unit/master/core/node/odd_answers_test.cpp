@@ -124,6 +124,49 @@ TEST_F(OddAnswers, ALostAnswerBeforeASilentObjectIsNotTakenForSlowness) {
   EXPECT_EQ(text.find("raise `sdo_timeout_ms`"), std::string::npos) << text;
 }
 
+// The time-out is 100 ms. The last late answer comes 200 ms before the boot fails.
+TEST_F(OddAnswers, SilenceAfterOneLateAnswerIsToldAsSilence) {
+  prepare = [](FakeNode& node) {
+    node.heartbeats(10s, 20ms);
+    node.tamper = [&node, answers = 0](Frame& frame) mutable {
+      const bool late = frame.data[1] == 0x18 && frame.data[3] == 2 && answers++ < 2;
+      node.latency = late ? 170ms : 1ms;
+    };
+    node.loses = [](const Frame& frame) { return frame.data[1] == 0x18 && frame.data[3] == 4; };
+  };
+  boot(identity_steps(), 5s);
+  EXPECT_EQ(failure().fault, SdoFault::timeout);
+  EXPECT_EQ(failure().letter, 'O');
+  EXPECT_GE(failure().late, 170ms);
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  const auto silence = text.find("its SDO server does not answer");
+  const auto late = text.find("Before that, the device has answered a request after 17");
+  EXPECT_NE(late, std::string::npos) << text;
+  EXPECT_LT(silence, late) << text;
+  EXPECT_NE(text.find("raise `sdo_timeout_ms` of this node, too, which is 100 ms now"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("the device answers after"), std::string::npos) << text;
+}
+
+TEST_F(OddAnswers, AnEmptyFrameIsNoSilence) {
+  prepare = [](FakeNode& node) {
+    node.tamper = [](Frame& frame) {
+      if (frame.data[1] != 0x18) return;
+      frame.length = 0;
+      frame.data = {};
+    };
+  };
+  boot(identity_steps(), 5s);
+  const std::string text = describe(plan, *find(EventKind::boot_failed));
+  EXPECT_NE(text.find("585  an empty frame, then nothing within 100 ms"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("the device answers with an empty frame instead of 8 bytes: its SDO server "
+                      "is faulty"),
+            std::string::npos)
+      << text;
+}
+
 TEST_F(OddAnswers, FramesWithTooFewBytesAreNamed) {
   prepare = [](FakeNode& node) {
     node.tamper = [](Frame& frame) {
