@@ -111,6 +111,32 @@ TEST(Preoperational, WithoutStartNodesWhoStartedItselfIsStartedAgain) {
   EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
 }
 
+// The device reports OPERATIONAL before it is reset, and then only after the command.
+TEST(Preoperational, WithoutStartNodesAHeartbeatBeforeTheResetDoesNotCount) {
+  sim::Fault beats = always(override_value);
+  beats.object = ObjectKey{0x1017, 0};
+  beats.value = {std::byte{200}, std::byte{0}};  // ms
+  Plant plant{valve("", "start_nodes: false"), {beats, always(self_start), always(preop_only)}};
+  plant.run_without_master(1s);
+  plant.run(3s);
+  EXPECT_EQ(plant.node().boot, BootState::ready);
+  EXPECT_EQ(commands(plant), (std::vector<std::uint8_t>{0x82, 0x80}));
+  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::preoperational);
+}
+
+TEST(Preoperational, WithoutStartNodesKeepAliveLeavesAnOperationalNodeInIt) {
+  sim::Fault beats = always(override_value);
+  beats.object = ObjectKey{0x1017, 0};
+  beats.value = {std::byte{200}, std::byte{0}};  // ms
+  Plant plant{valve("reset: keep_alive, heartbeat_producer: 200", "start_nodes: false"),
+              {beats, always(self_start), always(preop_only)}};
+  plant.run_without_master(1s);
+  plant.run(5s);
+  EXPECT_EQ(plant.node().boot_letter, 'L');
+  EXPECT_TRUE(commands(plant).empty());
+  EXPECT_EQ(plant.device(5).state(), sim::DeviceState::operational);
+}
+
 /// Starts node 5 just before it receives a write, as a device that starts by itself does.
 struct SelfStart final : sim::BusObserver {
   SelfStart(Plant& started, int number) : plant{started}, times{number} {
