@@ -1,5 +1,6 @@
 #include "master/core/network/axis_stop.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace takt {
@@ -9,8 +10,13 @@ constexpr Time silent_after = std::chrono::milliseconds{500};
 
 }  // namespace
 
-void Standstill::rest(Time now, bool within) noexcept {
-  if (!within || !resting_) since_ = now;
+/// A rest that this value begins lasts since `from`.
+void Standstill::rest(Time from, Time now, bool within) noexcept {
+  if (!within || !resting_) {
+    since_ = last_ = from;
+    pause_ = Time{};
+  }
+  pause_ = std::max(pause_, now - last_);
   samples_ = within ? samples_ + 1 : 0;
   resting_ = within;
   last_ = now;
@@ -22,7 +28,7 @@ void Standstill::take(Time now, const AxisSample& sample) noexcept {
     velocity_ = *sample.velocity;
     velocity_at_ = from_ = now;
     by_position_ = false;
-    rest(now, std::abs(velocity_) <= velocity_window_);
+    rest(now, now, std::abs(velocity_) <= velocity_window_);
     if (sample.position) set_anchor(now, *sample.position);
     return;
   }
@@ -53,7 +59,7 @@ void Standstill::take_position(Time now, std::int64_t position) noexcept {
   position_at_ = now;
   from_ = anchor_at_;
   const bool within = std::abs(position - anchor_) <= position_window_;
-  rest(now, within);
+  rest(anchor_at_, now, within);
   if (within) return;
   set_anchor(now, position);
   samples_ = 1;

@@ -54,7 +54,8 @@ struct AxisSample {
 
 /// Judges whether an axis moves, by 0x606C or, while no value of it comes, by differences of
 /// 0x6064. Standstill is certain when `enough_samples` values or more have stayed within a window
-/// for `standstill_time` or longer.
+/// for `standstill_time` or longer, without the longest pause between two of them: frames from
+/// before a pause of the bus may come after it, and a single pause proves nothing.
 class Standstill {
  public:
   /// Shortest rest that counts as certain standstill.
@@ -69,7 +70,7 @@ class Standstill {
   void take(Time now, const AxisSample& sample) noexcept;
   /// The value has stayed within the window for long enough.
   bool certain() const noexcept {
-    return resting_ && samples_ >= enough_samples && last_ - since_ >= standstill_time;
+    return resting_ && samples_ >= enough_samples && last_ - since_ - pause_ >= standstill_time;
   }
   /// The newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
@@ -84,7 +85,7 @@ class Standstill {
   bool by_position() const noexcept { return by_position_; }
 
  private:
-  void rest(Time now, bool within) noexcept;
+  void rest(Time from, Time now, bool within) noexcept;
   void take_position(Time now, std::int64_t position) noexcept;
   void set_anchor(Time now, std::int64_t position) noexcept;
 
@@ -99,6 +100,7 @@ class Standstill {
   Time from_{};  ///< The beginning of the time in which the newest value was measured.
   std::uint32_t samples_ = 0;  ///< Successive values within the window, with the anchor.
   Time since_{};               ///< start of the current rest
+  Time pause_{};               ///< The longest pause between two values of the current rest.
   Time last_{};                ///< The time of the newest value.
   bool measured_ = false;
   bool resting_ = false;

@@ -344,6 +344,24 @@ TEST(AxisStop, JudgesByThePositionWhereNoVelocityComes) {
   EXPECT_EQ(axis.state(), AxisState::standing);
 }
 
+/// The axis moves one count in 2 ms. Frames that waited in the device come after a pause of 62 ms.
+TEST(AxisStop, DoesNotCountAPauseOfTheBusAsRest) {
+  AxisStop axis;
+  Time now = 1s;
+  axis.begin(now, AxisPrior::exposed);
+  const auto frame = [&](std::int64_t position) {
+    axis.step(now += 2ms, {.statusword = operation_enabled, .velocity = {}, .position = position});
+  };
+  for (std::int64_t i = 0; i < 24; ++i) frame(i);
+  now += 60ms;
+  for (std::int64_t i = 24; i < 28; ++i) {
+    frame(i);
+    EXPECT_EQ(axis.state(), AxisState::braking) << i;
+  }
+  for (int i = 0; i < 26; ++i) frame(27);
+  EXPECT_EQ(axis.state(), AxisState::standing) << "50 ms of frames show that it rests";
+}
+
 TEST(OrderedStop, NeverConfirmsADriveWhoseNodeIsLost) {
   Stop stop;
   stop.step(10);
