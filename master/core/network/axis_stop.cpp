@@ -24,32 +24,36 @@ void Standstill::rest(Time from, Time now, bool within) noexcept {
 }
 
 void Standstill::take(Time now, const AxisSample& sample) noexcept {
+  // A value that was read by SDO was measured between its request and its answer.
+  const Time asked = sample.motion_asked.value_or(now);
   if (sample.velocity) {
     velocity_ = *sample.velocity;
-    velocity_at_ = from_ = now;
+    velocity_at_ = now;
+    from_ = asked;
     by_position_ = false;
     rest(now, now, std::abs(velocity_) <= velocity_window_);
-    if (sample.position) set_anchor(now, *sample.position);
+    if (sample.position) set_anchor(now, asked, *sample.position);
     return;
   }
   if (!sample.position) return;
   // The velocity that the drive reports takes precedence while it is new.
   if (velocity_at_ && now - *velocity_at_ < standstill_time) {
-    return set_anchor(now, *sample.position);
+    return set_anchor(now, asked, *sample.position);
   }
-  take_position(now, *sample.position);
+  take_position(now, asked, *sample.position);
 }
 
-void Standstill::set_anchor(Time now, std::int64_t position) noexcept {
+void Standstill::set_anchor(Time now, Time asked, std::int64_t position) noexcept {
   anchor_ = position_ = position;
   position_at_ = anchor_at_ = now;
+  anchor_from_ = asked;
 }
 
-void Standstill::take_position(Time now, std::int64_t position) noexcept {
+void Standstill::take_position(Time now, Time asked, std::int64_t position) noexcept {
   by_position_ = true;
   if (!position_at_) {
     samples_ = 1;
-    return set_anchor(now, position);
+    return set_anchor(now, asked, position);
   }
   if (now > *position_at_) {
     const double seconds = std::chrono::duration<double>(now - *position_at_).count();
@@ -57,11 +61,11 @@ void Standstill::take_position(Time now, std::int64_t position) noexcept {
   }
   position_ = position;
   position_at_ = now;
-  from_ = anchor_at_;
+  from_ = anchor_from_;
   const bool within = std::abs(position - anchor_) <= position_window_;
   rest(anchor_at_, now, within);
   if (within) return;
-  set_anchor(now, position);
+  set_anchor(now, asked, position);
   samples_ = 1;
 }
 

@@ -48,6 +48,10 @@ struct AxisSample {
   std::optional<std::int64_t> statusword;
   std::optional<std::int64_t> velocity;  ///< 0x606C
   std::optional<std::int64_t> position;  ///< 0x6064
+  /// When the statusword was requested by SDO; empty for one that a TPDO has brought.
+  std::optional<Time> word_asked{};
+  /// As word_asked, for the velocity and the position.
+  std::optional<Time> motion_asked{};
 
   bool empty() const noexcept { return !statusword && !velocity && !position; }
 };
@@ -75,9 +79,9 @@ class Standstill {
   /// The newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
   /// As moves(), for a value that is newer than `start` by more than `grace`. A difference of
-  /// positions must lie behind `start` as a whole.
+  /// positions must lie behind `start` as a whole, and an SDO must be requested after `start`.
   bool moves_after(Time start, Time grace) const noexcept {
-    return moves() && from_ >= start && last_ - start > grace;
+    return moves() && from_ >= start && (by_position_ ? last_ : from_) - start > grace;
   }
   /// The unit is that of 0x606C in the device, or counts of 0x6064 per second.
   std::int64_t velocity() const noexcept { return velocity_; }
@@ -86,14 +90,15 @@ class Standstill {
 
  private:
   void rest(Time from, Time now, bool within) noexcept;
-  void take_position(Time now, std::int64_t position) noexcept;
-  void set_anchor(Time now, std::int64_t position) noexcept;
+  void take_position(Time now, Time asked, std::int64_t position) noexcept;
+  void set_anchor(Time now, Time asked, std::int64_t position) noexcept;
 
   std::int64_t velocity_window_;
   std::int64_t position_window_;  ///< largest distance in standstill_time that counts as standstill
   std::int64_t velocity_ = 0;
   std::int64_t anchor_ = 0;  ///< Differences are measured from this position.
   Time anchor_at_{};
+  Time anchor_from_{};  ///< When the anchor was requested, else anchor_at_.
   std::int64_t position_ = 0;
   std::optional<Time> position_at_;
   std::optional<Time> velocity_at_;  ///< The time of the newest 0x606C.

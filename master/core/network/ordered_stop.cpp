@@ -120,6 +120,8 @@ void OrderedStop::take(std::size_t axis, const AxisSample& sample) noexcept {
   if (sample.statusword) answers_[axis].statusword = sample.statusword;
   if (sample.velocity) answers_[axis].velocity = sample.velocity;
   if (sample.position) answers_[axis].position = sample.position;
+  if (sample.word_asked) answers_[axis].word_asked = sample.word_asked;
+  if (sample.motion_asked) answers_[axis].motion_asked = sample.motion_asked;
 }
 
 /// Collects the samples: the values of TPDOs that have come since the previous step, and values
@@ -128,13 +130,16 @@ void OrderedStop::look(Time now, const StopView& view) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisSample sample = std::exchange(answers_[i], AxisSample{});
     const bool exchanging = view.exchanging[axes_[i].node_index];
-    const auto read = [&](AxisSource& source, std::optional<std::int64_t>& value) {
+    const auto read = [&](AxisSource& source, std::optional<std::int64_t>& value,
+                          std::optional<Time>& asked) {
       const auto received = source.take(now, view.received);
-      if (received && exchanging) value = received;
+      if (!received || !exchanging) return;
+      value = received;
+      asked.reset();
     };
-    read(sources_[i].word, sample.statusword);
-    read(sources_[i].velocity, sample.velocity);
-    read(sources_[i].position, sample.position);
+    read(sources_[i].word, sample.statusword, sample.word_asked);
+    read(sources_[i].position, sample.position, sample.motion_asked);
+    read(sources_[i].velocity, sample.velocity, sample.motion_asked);
     stops_[i].step(now, sample);
     if (axes_[i].controlword && exchanging) stops_[i].note_command();
   }

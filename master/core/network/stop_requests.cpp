@@ -88,7 +88,8 @@ void StopRequests::add_jobs(const BusPlan& plan, std::uint8_t node_index) {
 void StopRequests::begin() noexcept {
   for (std::size_t i = 0; i < polls_.size(); ++i) {
     const bool by_position = axes_[i].position && !axes_[i].velocity;
-    polls_[i] = {.waiting = polls_[i].waiting, .by_position = by_position};
+    polls_[i] = {
+        .waiting = polls_[i].waiting, .by_position = by_position, .asked = polls_[i].asked};
   }
   std::ranges::fill(failed_, std::uint8_t{0});
   next_job_ = answered_ = turn_ = 0;
@@ -181,7 +182,9 @@ const Request* StopRequests::next(Time now, const OrderedStop& stop,
   if (stop.stage() == StopStage::running || stop.axes_done()) return nullptr;
   for (std::size_t left = polls_.size(); left != 0; --left) {
     turn_ = turn_ + 1 < polls_.size() ? turn_ + 1 : 0;
-    if (due_of_axis(turn_, now, stop, exchanging[axes_[turn_].node_index])) return &request_;
+    if (!due_of_axis(turn_, now, stop, exchanging[axes_[turn_].node_index])) continue;
+    polls_[turn_].asked = now;
+    return &request_;
   }
   return nullptr;
 }
@@ -260,7 +263,12 @@ void StopRequests::take_value(std::size_t axis, Word word, const Reply& reply,
   const int unused = 32 - 8 * static_cast<int>(reply.size);
   const auto value = static_cast<std::int32_t>(raw << unused) >> unused;
   AxisSample sample;
-  if (word == Word::status) sample.statusword = raw & 0xFFFF;
+  if (word == Word::status) {
+    sample.statusword = raw & 0xFFFF;
+    sample.word_asked = poll.asked;
+  } else {
+    sample.motion_asked = poll.asked;
+  }
   if (word == Word::velocity) sample.velocity = value;
   if (word == Word::position) sample.position = value;
   stop.take(axis, sample);

@@ -69,6 +69,7 @@ class StopRequests {
     std::int64_t writing = -1;  // controlword that is being written by SDO; -1 means none
     std::int64_t written = -1;  // controlword that the device has accepted by SDO; -1 means none
     Time due{};
+    Time asked{};        // when the newest request was made
     Time write_again{};  // earliest next write, after the device has refused a controlword
   };
   /// One write that disarms a device. Without an object, the job is the NMT command enter

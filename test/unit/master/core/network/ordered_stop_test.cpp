@@ -328,6 +328,44 @@ TEST_F(RareVelocity, ShowsThatTheAxisCoasts) {
   EXPECT_EQ(axis.velocity(), 8000);
 }
 
+/// An axis that disables itself at the end of its ramp. Its velocity is read by SDO, and the
+/// answers come 300 ms after the requests.
+class LateVelocity : public testing::Test {
+ protected:
+  void SetUp() override {
+    axis.begin(now, AxisPrior::exposed);
+    axis.step(now, {.statusword = operation_enabled, .velocity = {}, .position = {}});
+    now += 100ms;
+    axis.step(now, {.statusword = switch_on_disabled, .velocity = {}, .position = {}});
+  }
+  void answer(Time asked, std::int64_t velocity) {
+    now = asked + 300ms;
+    axis.step(now, {.statusword = switch_on_disabled,
+                    .velocity = velocity,
+                    .position = {},
+                    .motion_asked = asked});
+  }
+
+  AxisStop axis;
+  Time now = 1s;
+};
+
+TEST_F(LateVelocity, IsThatOfTheTimeOfItsRequest) {
+  answer(1090ms, 4000);
+  EXPECT_EQ(axis.state(), AxisState::settling) << "requested before the axis disabled itself";
+  answer(1400ms, 0);
+  answer(1710ms, 0);
+  answer(2020ms, 0);
+  EXPECT_EQ(axis.state(), AxisState::stopped);
+}
+
+TEST_F(LateVelocity, ShowsThatTheAxisCoasts) {
+  answer(1120ms, 4000);
+  EXPECT_EQ(axis.state(), AxisState::settling) << "the end of the ramp may still show";
+  answer(1450ms, 4000);
+  EXPECT_EQ(axis.state(), AxisState::dropped);
+}
+
 TEST(AxisStop, JudgesByThePositionWhereNoVelocityComes) {
   AxisStop axis;
   Time now = 1s;
