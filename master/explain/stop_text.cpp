@@ -85,6 +85,8 @@ std::string axis_stop_text(const BusPlan& plan, const Event& event) {
       return "the drive is lost, no answer for " + time_text(Time{event.value});
     case AxisVerdict::refused:
       return refusal_text(event);
+    case AxisVerdict::unproven:
+      return "was disabled before a value could show that it stood still";
   }
   return "was not stopped";
 }

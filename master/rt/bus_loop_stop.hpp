@@ -15,6 +15,7 @@ inline std::int64_t event_value(const AxisStop& axis, AxisVerdict verdict, Time 
     case AxisVerdict::stopped:
     case AxisVerdict::moving:
     case AxisVerdict::enabled:
+    case AxisVerdict::unproven:
       return axis.velocity();
     case AxisVerdict::silent:
     case AxisVerdict::lost:

@@ -12,6 +12,10 @@ Time distance_of(const BusPlan& plan, const PdoRow& row) {
   return std::max(row.inhibit, row.event_timer);
 }
 
+bool is_stale(SignalIndex signal, const ReceivedValues& received) noexcept {
+  return (received.stale[signal / 64U] >> (signal % 64U) & 1U) != 0;
+}
+
 }  // namespace
 
 AxisSource::AxisSource(const BusPlan& plan, std::optional<SignalIndex> signal) : signal_{signal} {
@@ -23,13 +27,19 @@ AxisSource::AxisSource(const BusPlan& plan, std::optional<SignalIndex> signal) :
 std::optional<std::int64_t> AxisSource::take(Time now, const ReceivedValues& received) noexcept {
   if (!signal_) return std::nullopt;
   const std::uint32_t before = std::exchange(frames_, received.marks[row_].received);
-  stale_ = (received.stale[*signal_ / 64U] >> (*signal_ % 64U) & 1U) != 0;
+  stale_ = is_stale(*signal_, received);
   if (!std::exchange(begun_, true)) {
     newest_ = now;
     return std::nullopt;
   }
   if (before == frames_) return std::nullopt;
   newest_ = now;
+  return received.values[*signal_];
+}
+
+std::optional<std::int64_t> AxisSource::newest(const ReceivedValues& received) const noexcept {
+  if (!signal_ || slow_ || is_stale(*signal_, received)) return std::nullopt;
+  if (received.marks[row_].received == 0) return std::nullopt;
   return received.values[*signal_];
 }
 

@@ -29,6 +29,8 @@ class AxisSource {
   void begin() noexcept { begun_ = false; }
   /// Returns the value if a frame has come since the previous call.
   std::optional<std::int64_t> take(Time now, const ReceivedValues& received) noexcept;
+  /// Returns the newest value, from before the stop too, unless it may be old.
+  std::optional<std::int64_t> newest(const ReceivedValues& received) const noexcept;
   /// The value comes by TPDO, and often enough to judge an axis by it.
   bool serves(Time now) const noexcept {
     return signal_ && !slow_ && !stale_ && now - newest_ < longest_silence;

@@ -103,8 +103,10 @@ void AxisStop::begin(Time now, AxisPrior prior) noexcept {
 ///   unseen    it is disabled after a command           as braking: it may have been enabled
 ///   asked, rested: as unseen
 ///   braking   enabled, certainly at standstill         standing
+///   braking   disabled, and drops()                    dropped
 ///   braking   disabled                                 settling
 ///   braking   disabled, certainly at standstill        stopped
+///   standing  disabled, and drops()                    dropped
 ///   standing  disabled                                 stopped
 ///   standing  enabled, moves again                     braking
 ///   settling  disabled, certainly at standstill        stopped
@@ -151,11 +153,46 @@ void AxisStop::go(AxisState state, Time now) noexcept {
   entered_ = now;
 }
 
+void AxisStop::recall(std::optional<std::int64_t> statusword,
+                      std::optional<std::int64_t> velocity) noexcept {
+  if (statusword && disabled(*statusword)) {
+    motion_ = Motion::rests;
+  } else if (velocity) {
+    motion_ = standstill_.rests_at(*velocity) ? Motion::rests : Motion::moves;
+    velocity_enabled_ = *velocity;
+  }
+}
+
+/// A value counts once a statusword shows that the axis was still enabled then.
+void AxisStop::note_motion(Time now, const AxisSample& sample) noexcept {
+  if (!sample.statusword || !powered_) return;
+  if (standstill_.moves()) {
+    motion_ = Motion::moves;
+    velocity_enabled_ = standstill_.velocity();
+  } else if (standstill_.rests(sample.word_asked.value_or(now))) {
+    motion_ = Motion::rests;
+  }
+}
+
+/// Returns true if this statusword shows that an axis in this state was disabled before it stood
+/// still. A drive without power may report the velocity 0 although its axis coasts, so only values
+/// from before count: a drive with 0x605A = 0 must have shown its standstill, and a drive in the
+/// state "fault" must not have moved. All other drives may disable themselves at the end of the
+/// ramp.
+bool AxisStop::drops(AxisState state, std::int64_t statusword) const noexcept {
+  if (!disabled(statusword)) return false;
+  const bool brakes = state == AxisState::braking;
+  if (coasts_ && (brakes || state == AxisState::standing)) return motion_ != Motion::rests;
+  const bool fault = (statusword & 0x4F) == 0x08;
+  return brakes && fault && motion_ == Motion::moves;
+}
+
 void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   if (!sample.empty()) answered_ = now;
   standstill_.take(now, sample);
   if (sample.statusword) powered_ = !disabled(*sample.statusword);
   disabled_seen_ = disabled_seen_ || (sample.statusword && !powered_);
+  note_motion(now, sample);
   if (!seen() && !sample.statusword) return;
   // A velocity without a statusword does not tell whether the axis is enabled.
   const bool needs_word = state_ == AxisState::standing || state_ == AxisState::braking;
@@ -164,7 +201,11 @@ void AxisStop::step(Time now, const AxisSample& sample) noexcept {
   // enough to stay, even if the standstill is not certain again.
   if (state_ == AxisState::standing && powered_ && !standstill_.moves()) return;
   const bool in_doubt = state_ == AxisState::unseen && commanded_;
-  go(next(in_doubt ? AxisState::braking : state_, judge()), now);
+  const AxisState state = in_doubt ? AxisState::braking : state_;
+  if (!sample.statusword || !drops(state, *sample.statusword)) return go(next(state, judge()), now);
+  unproven_ = motion_ == Motion::unknown;
+  velocity_then_ = velocity_enabled_;
+  go(AxisState::dropped, now);
 }
 
 void AxisStop::cut() noexcept {
@@ -207,6 +248,7 @@ AxisVerdict AxisStop::verdict(Time now, bool exchanging) const noexcept {
   if (confirmed()) return AxisVerdict::stopped;
   if (state_ == AxisState::unseen && refusal_ != 0) return AxisVerdict::refused;
   const bool answers = silence(now) < silent_after;
+  if (state_ == AxisState::dropped && unproven_) return AxisVerdict::unproven;
   if (state_ == AxisState::dropped || (state_ == AxisState::cut && disabled_seen_)) {
     return AxisVerdict::moving;
   }

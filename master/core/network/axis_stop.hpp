@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 
 #include "eds_parser/table/bus_plan.hpp"
@@ -19,7 +20,7 @@ enum class AxisState : std::uint8_t {
   settling,  ///< The axis disabled itself before its standstill was certain.
   stopped,   ///< The axis was seen at standstill and disabled.
   cut,       ///< The time was over: the axis was commanded to disable although it still moved.
-  dropped,   ///< The axis was disabled and continued to move.
+  dropped,   ///< The axis was disabled while it moved, or while nothing showed that it stood still.
 };
 
 /// What is known of an axis when the stop begins.
@@ -34,12 +35,13 @@ enum class AxisPrior : std::uint8_t {
 
 /// What the front side reports of one axis after the stop.
 enum class AxisVerdict : std::uint8_t {
-  stopped,  ///< The stop is confirmed, or there was nothing to stop.
-  moving,   ///< The axis was disabled while it moved.
-  enabled,  ///< The axis was not disabled.
-  silent,   ///< No answer has come for some time.
-  lost,     ///< The node does not exchange PDOs and does not answer.
-  refused,  ///< The node answers, but refuses the read of the statusword.
+  stopped,   ///< The stop is confirmed, or there was nothing to stop.
+  moving,    ///< The axis was disabled while it moved.
+  enabled,   ///< The axis was not disabled.
+  silent,    ///< No answer has come for some time.
+  lost,      ///< The node does not exchange PDOs and does not answer.
+  refused,   ///< The node answers, but refuses the read of the statusword.
+  unproven,  ///< The axis was disabled, and nothing showed before that it stood still.
 };
 
 /// What was read of an axis since the last call. A value is empty unless a frame has brought it
@@ -78,6 +80,15 @@ class Standstill {
   }
   /// The newest value lies outside the window.
   bool moves() const noexcept { return measured_ && !resting_; }
+  /// The newest value shows standstill and is no newer than `latest`. One difference of positions
+  /// shows nothing.
+  bool rests(Time latest) const noexcept {
+    return last_ <= latest && resting_ && (!by_position_ || certain());
+  }
+  /// This value of 0x606C lies within the window.
+  bool rests_at(std::int64_t velocity) const noexcept {
+    return std::abs(velocity) <= velocity_window_;
+  }
   /// As moves(), for a value that is newer than `start` by more than `grace`. A difference of
   /// positions must lie behind `start` as a whole, and an SDO must be requested after `start`.
   bool moves_after(Time start, Time grace) const noexcept {
@@ -125,13 +136,18 @@ class AxisStop {
   static constexpr Time settling_grace = std::chrono::milliseconds{40};
 
   AxisStop() noexcept : AxisStop{AxisPlan{}} {}
-  explicit AxisStop(const AxisPlan& plan) noexcept : standstill_{plan} {}
+  explicit AxisStop(const AxisPlan& plan) noexcept
+      : standstill_{plan}, coasts_{plan.quick_stop_option == 0} {}
 
   /// Begins the stop of this axis.
   void begin(Time now, AxisPrior prior) noexcept;
   /// Notes that a controlword that may change the state of the axis may have reached it. If the
   /// next statusword shows that the axis is disabled, it may have been enabled before.
   void note_command() noexcept { commanded_ = true; }
+  /// Takes the newest values from before the stop. They only tell whether an axis moved before the
+  /// stop has disabled it.
+  void recall(std::optional<std::int64_t> statusword,
+              std::optional<std::int64_t> velocity) noexcept;
   /// Takes a new sample and advances the stop.
   void step(Time now, const AxisSample& sample) noexcept;
   /// The time in which the axis can come to standstill is over.
@@ -187,17 +203,25 @@ class AxisStop {
     off_rest,  ///< The axis is disabled and certainly at standstill.
     off_move,  ///< The axis is disabled and moves.
   };
+  /// What is known of the axis while it was enabled.
+  enum class Motion : std::uint8_t { unknown, rests, moves };
   static AxisState next(AxisState state, Seen seen) noexcept;
   Seen judge() const noexcept;
   void go(AxisState state, Time now) noexcept;
+  void note_motion(Time now, const AxisSample& sample) noexcept;
+  bool drops(AxisState state, std::int64_t statusword) const noexcept;
 
   Standstill standstill_;
+  bool coasts_;  ///< 0x605A is 0: the quick stop disables the drive at once.
   AxisState state_ = AxisState::unseen;
   AxisPrior prior_ = AxisPrior::exposed;
   std::uint32_t refusal_ = 0;  ///< The abort code of the newest refused read; 0 means none.
   bool commanded_ = false;     ///< see note_command()
   bool powered_ = true;
-  bool disabled_seen_ = false;  ///< The axis was seen disabled during this stop.
+  bool disabled_seen_ = false;         ///< The axis was seen disabled during this stop.
+  bool unproven_ = false;              ///< see AxisVerdict::unproven
+  Motion motion_ = Motion::unknown;    ///< The motion while the axis was enabled.
+  std::int64_t velocity_enabled_ = 0;  ///< The velocity of Motion::moves.
   Time entered_{};
   Time answered_{};
   std::int64_t velocity_then_ = 0;  ///< The velocity when the axis was disabled.

@@ -130,6 +130,10 @@ void OrderedStop::look(Time now, const StopView& view) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisSample sample = std::exchange(answers_[i], AxisSample{});
     const bool exchanging = view.exchanging[axes_[i].node_index];
+    if (stage_ == StopStage::fallback && steps_ == 1 && exchanging) {
+      stops_[i].recall(sources_[i].word.newest(view.received),
+                       sources_[i].velocity.newest(view.received));
+    }
     const auto read = [&](AxisSource& source, std::optional<std::int64_t>& value,
                           std::optional<Time>& asked) {
       const auto received = source.take(now, view.received);

@@ -170,6 +170,42 @@ TEST(OrderedStop, DoesNotConfirmADriveThatCoasts) {
   EXPECT_EQ(stop.verdict(1), AxisVerdict::stopped);
 }
 
+/// Two drives that a quick stop disables at once (605A = 0).
+BusPlan coasting() {
+  BusPlan plan = test::axes();
+  for (NodePlan& node : plan.nodes) node.axes = {AxisPlan{.quick_stop_option = 0}};
+  return plan;
+}
+
+TEST(OrderedStop, DoesNotConfirmADriveThatTheQuickStopDisablesWhileItMoves) {
+  Stop stop{operation_enabled, coasting()};
+  stop.speed = {150, 0};
+  stop.step(10);
+  stop.words = {switch_on_disabled, switch_on_disabled};
+  stop.speed = {};
+  stop.step(100);
+  EXPECT_EQ(stop.machine.result(), StopResult::unconfirmed);
+  EXPECT_EQ(stop.verdict(0), AxisVerdict::moving);
+  EXPECT_EQ(stop.machine.axis(0).velocity(), 75'000);
+  EXPECT_EQ(stop.verdict(1), AxisVerdict::unproven) << "positions over 18 ms show no standstill";
+}
+
+/// The first statusword of the stop shows that the quick stop has disabled the drive.
+TEST(OrderedStop, RemembersTheVelocityFromBeforeTheQuickStop) {
+  for (const std::int64_t velocity : {8000, 0}) {
+    BusPlan plan = coasting();
+    plan.layout.signals[2].object = ObjectKey{0x606C, 0};
+    Stop stop{operation_enabled, plan};
+    stop.place[0] = velocity;
+    stop.step();
+    stop.words[0] = switch_on_disabled;
+    stop.place[0] = 0;
+    stop.step(40);
+    EXPECT_EQ(stop.verdict(0), velocity == 0 ? AxisVerdict::stopped : AxisVerdict::moving);
+    EXPECT_EQ(stop.machine.axis(0).velocity(), velocity);
+  }
+}
+
 TEST(OrderedStop, DoesNotDisableAMovingAxisAsLongAsThereIsTime) {
   Stop stop;
   stop.speed = {150, 0};
@@ -326,6 +362,46 @@ TEST_F(RareVelocity, ShowsThatTheAxisCoasts) {
   velocities(7000, 1);
   EXPECT_EQ(axis.state(), AxisState::dropped);
   EXPECT_EQ(axis.velocity(), 8000);
+}
+
+TEST(AxisStop, DoesNotConfirmAFaultWhileTheAxisMoves) {
+  constexpr std::int64_t fault = 0x0218;
+  for (const std::int64_t velocity : {8000, 0}) {
+    AxisStop axis;
+    axis.begin(1s, AxisPrior::exposed);
+    axis.step(1002ms, {.statusword = operation_enabled, .velocity = velocity, .position = {}});
+    Time now = 1002ms;
+    for (int i = 0; i < 40; ++i) {
+      axis.step(now += 2ms, {.statusword = fault, .velocity = 0, .position = {}});
+    }
+    EXPECT_EQ(axis.state(), velocity == 0 ? AxisState::stopped : AxisState::dropped);
+    EXPECT_EQ(axis.velocity(), velocity);
+  }
+}
+
+TEST(AxisStop, DoesNotCountAVelocityAfterTheNewestEnabledStatusword) {
+  AxisStop axis{AxisPlan{.quick_stop_option = 0}};
+  Time now = 1s;
+  axis.begin(now, AxisPrior::exposed);
+  axis.step(now += 2ms, {.statusword = operation_enabled, .velocity = 8000, .position = {}});
+  for (int i = 0; i < 40; ++i) {
+    axis.step(now += 2ms, {.statusword = {}, .velocity = 0, .position = {}});
+  }
+  axis.step(now += 2ms, {.statusword = switch_on_disabled, .velocity = 0, .position = {}});
+  EXPECT_EQ(axis.state(), AxisState::dropped) << "the statusword was late";
+  EXPECT_EQ(axis.velocity(), 8000);
+}
+
+TEST(AxisStop, IsConfirmedWhereTheAxisWasDisabledBeforeTheStop) {
+  AxisStop axis{AxisPlan{.quick_stop_option = 0}};
+  Time now = 1s;
+  axis.begin(now, AxisPrior::exposed);
+  axis.note_command();
+  axis.recall(switch_on_disabled, std::nullopt);
+  for (int i = 0; i < 40; ++i) {
+    axis.step(now += 2ms, {.statusword = switch_on_disabled, .velocity = 0, .position = {}});
+  }
+  EXPECT_EQ(axis.state(), AxisState::stopped);
 }
 
 /// An axis that disables itself at the end of its ramp. Its velocity is read by SDO, and the
