@@ -70,6 +70,8 @@ void NodeSession::on_boot_done(Time now) noexcept {
   status_.boot_tried = true;
   status_.boot_letter = runner_.keeps_running() ? 'L' : '\0';
   ++status_.boot_count;
+  // No NMT command has started a node that was found OPERATIONAL, but it has to stay so.
+  if (runner_.keeps_running()) wanted_ = NmtState::operational;
   same_failures_ = failed_boots_ = 0;
   client_.forget_lateness();
   counter_excused_ = false;

@@ -178,6 +178,23 @@ TEST_F(NetworkTest, BringsBackANodeThatLeftOperationalByItself) {
   EXPECT_TRUE(network->exchanges_pdos(0));
 }
 
+/// Status L of CiA 302-2: the boot sends no NMT command.
+TEST_F(NetworkTest, BringsBackANodeThatWasFoundOperational) {
+  std::vector<BootStep>& steps = add_drive().boot_plan.steps;
+  steps.insert(steps.begin(),
+               {.action = BootAction::await_alive, .letter = 'E', .target = 3, .timeout = 200ms});
+  device().state = 5;
+  start();
+  run(300ms);
+  ASSERT_EQ(status().boot_letter, 'L');
+  ASSERT_EQ(sent_count(nmt({0x01, 0x05})), 0);
+  device().state = 0x7F;
+  run(2s);
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_EQ(sent_count(nmt({0x01, 0x05})), 1);
+  EXPECT_TRUE(network->exchanges_pdos(0));
+}
+
 TEST_F(NetworkTest, LeavesANodeWhereAnApplicationHasPutIt) {
   add_drive();
   start();
