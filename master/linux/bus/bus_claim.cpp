@@ -29,10 +29,13 @@ std::string real_interface(const std::string& name) {
   return known ? real.data() : name;
 }
 
+/// Returns the absolute path without symbolic links, also of a file that does not exist yet.
 std::string real_path(const std::string& path) {
   std::error_code error;
-  const auto real = std::filesystem::weakly_canonical(path, error);
-  return error ? path : real.string();
+  const auto absolute = std::filesystem::absolute(path, error);
+  if (error) return path;
+  const auto real = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.string() : real.string();
 }
 
 /// FNV-1a hash, for paths that are longer than the name of a socket may be.

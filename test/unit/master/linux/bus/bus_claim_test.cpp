@@ -56,6 +56,23 @@ TEST_F(BusClaimTest, IsOfTheBusWhateverTheWayToIt) {
   EXPECT_FALSE(BusClaim::take(bus("a/../b/bus")));
 }
 
+/// A claim is taken before the socket of the bus exists.
+TEST_F(BusClaimTest, OfARelativePathIsForItsFolder) {
+  const auto before = std::filesystem::current_path();
+  const BusName relative{.kind = BusName::Kind::unix_path, .name = "bus"};
+  for (const char* name : {"a", "b"}) std::filesystem::create_directory(folder_ / name);
+  std::filesystem::current_path(folder_ / "a");
+  const auto first = BusClaim::take(relative);
+  std::filesystem::current_path(folder_ / "b");
+  const auto elsewhere = BusClaim::take(relative);
+  const auto same = BusClaim::take(bus("a/bus"));
+  std::filesystem::current_path(before);
+
+  EXPECT_TRUE(first);
+  EXPECT_TRUE(elsewhere) << "another bus of the same name";
+  EXPECT_FALSE(same) << "the same bus by its absolute path";
+}
+
 TEST_F(BusClaimTest, TellsLongPathsApart) {
   const std::string folder(150, 'x');
   const auto first = BusClaim::take(bus(folder + "/1"));
