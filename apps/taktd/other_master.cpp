@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time shortest_listening = 1100ms;  // most masters have a heartbeat of a second or less
-constexpr Time longest_listening = 1500ms;
+constexpr Time longest_listening = 5s;
 constexpr Time status_is_alive = 5s;
 constexpr std::size_t longest_name = 64;  // bytes of a foreign name that are shown in a sentence
 
@@ -34,7 +34,7 @@ std::vector<std::string> OtherMaster::warnings() const {
 
 Time OtherMaster::listening_time() const noexcept {
   const Time heartbeat = plan_.master_heartbeat;
-  return std::clamp(heartbeat + heartbeat / 2, shortest_listening, longest_listening);
+  return std::clamp(heartbeat + heartbeat / 10, shortest_listening, longest_listening);
 }
 
 void OtherMaster::on_frame(const Frame& frame) {

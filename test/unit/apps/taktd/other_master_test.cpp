@@ -132,10 +132,10 @@ TEST_F(OtherMasterTest, IsListenedForAtLeastASecondWhateverTheHeartbeatOfThisOne
 }
 
 TEST_F(OtherMasterTest, IsListenedForLongerThanItsHeartbeatTakesAndNotForEver) {
-  plan.master_heartbeat = 900ms;
-  EXPECT_EQ(other.listening_time(), 1350ms);
+  plan.master_heartbeat = 3s;
+  EXPECT_EQ(other.listening_time(), 3300ms);
   plan.master_heartbeat = 60s;
-  EXPECT_EQ(other.listening_time(), 1500ms);
+  EXPECT_EQ(other.listening_time(), 5s);
 }
 
 }  // namespace
