@@ -50,7 +50,9 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_uni
       ::chmod(path.c_str(), 0660) != 0 || ::listen(socket.get(), 8) != 0) {
     return failed("unix:" + path, errno);
   }
-  return std::unique_ptr<AsciiServer>{new AsciiServer{std::move(socket), "unix:" + path, path}};
+  std::unique_ptr<AsciiServer> server{new AsciiServer{std::move(socket), "unix:" + path, path}};
+  server->own_file_ = file_at(path);
+  return server;
 }
 
 std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp(
@@ -66,8 +68,15 @@ std::expected<std::unique_ptr<AsciiServer>, std::string> AsciiServer::listen_tcp
   return std::unique_ptr<AsciiServer>{new AsciiServer{std::move(listener->socket), where, {}}};
 }
 
+std::optional<AsciiServer::FileId> AsciiServer::file_at(const std::string& path) {
+  struct stat found{};
+  if (lstat(path.c_str(), &found) != 0) return std::nullopt;
+  return FileId{.device = found.st_dev, .inode = found.st_ino};
+}
+
+/// Another program may have replaced the file meanwhile.
 AsciiServer::~AsciiServer() {
-  if (!path_.empty()) ::unlink(path_.c_str());
+  if (own_file_ && file_at(path_) == own_file_) ::unlink(path_.c_str());
 }
 
 void AsciiServer::accept_clients() {

@@ -1,7 +1,9 @@
 #pragma once
+#include <cstdint>
 #include <expected>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <poll.h>
 #include <string>
 #include <string_view>
@@ -61,6 +63,12 @@ class AsciiServer {
   const std::string& where() const noexcept { return where_; }
 
  private:
+  /// A file, whatever its name is.
+  struct FileId {
+    std::uint64_t device = 0;
+    std::uint64_t inode = 0;
+    bool operator==(const FileId&) const = default;
+  };
   struct Client {
     int id = 0;
     FileDescriptor socket;
@@ -81,6 +89,7 @@ class AsciiServer {
       const std::string& path);
   static std::expected<std::unique_ptr<AsciiServer>, std::string> listen_tcp(
       const std::string& port);
+  static std::optional<FileId> file_at(const std::string& path);
   void accept_clients();
   bool displace_silent();
   void receive_all();
@@ -96,7 +105,8 @@ class AsciiServer {
 
   FileDescriptor listener_;
   std::string where_;
-  std::string path_;  // file to remove at the end
+  std::string path_;
+  std::optional<FileId> own_file_;  // socket at `path_` to remove at the end
   Handler handler_{};
   FrontClock clock_{};
   std::vector<std::unique_ptr<Client>> clients_;  // oldest first

@@ -289,6 +289,14 @@ TEST_F(AsciiServerTest, TakesThePlaceOfADeadDaemonOnly) {
   EXPECT_TRUE(std::filesystem::exists(path_));
 }
 
+TEST_F(AsciiServerTest, LeavesTheFileOfWhoeverHasReplacedItsSocket) {
+  listen();
+  std::filesystem::remove(path_);
+  std::ofstream{path_} << "a file of somebody";
+  server.reset();
+  EXPECT_TRUE(std::filesystem::exists(path_));
+}
+
 TEST_F(AsciiServerTest, WithoutADescriptorLeftTheWaitingConnectionDoesNotWakeItForAWhile) {
   listen();
   const FileDescriptor waiting{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
