@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/live_arguments.hpp"
@@ -8,6 +9,7 @@
 #include "eds_parser/print/plan/plan_diff.hpp"
 #include "eds_parser/print/plan/plan_diff_json.hpp"
 #include "eds_parser/print/plan/print_plan.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -37,7 +39,7 @@ bool told_good(const LoadedNetwork& network, bool quiet) {
   const bool bad = has_error(network.findings);
   for (const Finding& finding : network.findings) {
     if (finding.severity == Severity::note && (quiet || bad)) continue;
-    std::cerr << to_string(finding) << '\n';
+    std::cerr << printable_text(to_string(finding)) << '\n';
   }
   return !bad;
 }
@@ -131,7 +133,9 @@ int print(const PlanOptions& options) {
   if (options.json) {
     print_plan_json(std::cout, network.plan, what);
   } else {
-    print_plan_text(std::cout, network.plan, what);
+    std::ostringstream text;
+    print_plan_text(text, network.plan, what);
+    std::cout << printable_lines(text.str());
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/black_box/replay.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -33,12 +34,13 @@ struct Options {
 };
 
 int fail(const std::string& sentence) {
-  fmt::print(stderr, "takt replay: {}\n", sentence);
+  fmt::print(stderr, "takt replay: {}\n", printable_lines(sentence));
   return usage;
 }
 
 void print(const Decision& decision) {
-  fmt::print("{:>14.6f}  {}\n", 1e-9 * static_cast<double>(decision.time), decision.text);
+  fmt::print("{:>14.6f}  {}\n", 1e-9 * static_cast<double>(decision.time),
+             printable_text(decision.text));
 }
 
 /// Returns the network file: the one of the options, otherwise the path in the recording, otherwise
@@ -59,7 +61,8 @@ int run(const Options& options) {
   const std::string file = find_network(options, recording->head);
   LoadedNetwork network = load_network(file);
   for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", to_string(finding));
+    if (finding.severity == Severity::error)
+      fmt::print(stderr, "{}\n", printable_text(to_string(finding)));
   }
   if (has_error(network.findings)) {
     if (!options.network.empty()) return usage;
@@ -76,10 +79,11 @@ int run(const Options& options) {
   const ReplayOutcome outcome = replay(network.plan, *recording, [&](const Decision& decision) {
     if (!options.quiet) print(decision);
   });
-  fmt::print("{}: {} cycles replayed, {} of {} decisions as recorded\n", recording->head.reason,
-             outcome.cycles, outcome.decisions, recording->decisions.size());
+  fmt::print("{}: {} cycles replayed, {} of {} decisions as recorded\n",
+             printable_text(recording->head.reason), outcome.cycles, outcome.decisions,
+             recording->decisions.size());
   if (!outcome.difference) return good;
-  fmt::print("first difference: {}\n", *outcome.difference);
+  fmt::print("first difference: {}\n", printable_lines(*outcome.difference));
   return differs;
 }
 

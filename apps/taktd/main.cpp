@@ -40,7 +40,7 @@ bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
 int run(const DaemonOptions& options) {
   LoadedNetwork network = load_network(options.network_file);
   for (const Finding& finding : network.findings) {
-    std::fprintf(stderr, "%s\n", to_string(finding).c_str());
+    std::fprintf(stderr, "%s\n", printable_text(to_string(finding)).c_str());
   }
   if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
   if (options.check) {

@@ -4,6 +4,7 @@
 
 #include "apps/taktd/process/stop_signal.hpp"
 #include "master/explain/boot_report.hpp"
+#include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {
@@ -49,7 +50,7 @@ void Recorder::on_request(const request_t& request) {
   if (waiting_.size() == most_waiting)
     return refuse("too many requests came at once; send the request again later");
   waiting_.push_back(request);
-  box_->on_request("requested by " + request.sender.substr(0, 64), monotonic_now());
+  box_->on_request("requested by " + printable_text(request.sender.substr(0, 64)), monotonic_now());
 }
 
 void Recorder::serve(Time now) {
