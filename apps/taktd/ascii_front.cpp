@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "master/gateway/front_gap.hpp"
+
 namespace takt {
 
 AsciiFront::AsciiFront(const BusPlan& plan)
@@ -24,8 +26,9 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(
       {.connected = [&gateway](int client) { gateway.connect(client); },
        .line = [&gateway](int client, std::string_view line) { gateway.command(client, line); },
        .old_line =
-           [&front = *front](int client, std::string_view line) {
-             front.gateway_.refuse_waited(client, line, front.bridge_->newest_gap());
+           [&gateway](int client, std::string_view line, Time gap) {
+             if (FrontGap::harms_requests(gap)) return gateway.refuse_waited(client, line, gap);
+             gateway.refuse_waited_outputs(client, line, gap);
            },
        .too_long = [&gateway](int client) { gateway.refuse_long_line(client); },
        .gone = [&gateway](int client) { gateway.disconnect(client); },
@@ -37,7 +40,10 @@ std::expected<std::unique_ptr<AsciiFront>, std::string> AsciiFront::open(
 }
 
 void AsciiFront::serve() {
-  if (std::exchange(gaps_, bridge_->gaps()) != bridge_->gaps()) server_->mark_waiting();
+  bridge_->notice_gap();
+  const bool any = std::exchange(gaps_, bridge_->gaps()) != bridge_->gaps();
+  const bool any_long = std::exchange(long_gaps_, bridge_->long_gaps()) != bridge_->long_gaps();
+  if (any) server_->mark_waiting(any_long ? bridge_->newest_long_gap() : bridge_->newest_gap());
   server_->serve();
 }
 

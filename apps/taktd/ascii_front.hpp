@@ -38,7 +38,8 @@ class AsciiFront {
   Bridge* bridge_ = nullptr;
   AsciiGateway gateway_;
   std::unique_ptr<AsciiServer> server_;
-  std::uint64_t gaps_ = 0;  // value of Bridge::gaps() at the last serve()
+  std::uint64_t gaps_ = 0;       // value of Bridge::gaps() at the last serve()
+  std::uint64_t long_gaps_ = 0;  // value of Bridge::long_gaps() then
 };
 
 }  // namespace takt

@@ -84,8 +84,9 @@ void Bridge::notice_gap() {
   if (!gap_.ran(now)) return;
   skip_images_ = true;
   first_cycle_ = not_yet;
-  if (!gap_.discards_requests(now)) return;
   ++gaps_;
+  if (!gap_.discards_requests(now)) return;
+  ++long_gaps_;
   const auto milliseconds = gap_.length() / std::chrono::milliseconds{1};
   tell({.when = now,
         .cycle = cycle_at(now),
@@ -230,6 +231,7 @@ bool Bridge::command(const std::string& sender, std::span<const SignalIndex> sig
   command.session = options_.session;
   command.instance = instance_;
   command.sender = sender;
+  notice_gap();  // this thread may have stood still since it looked for the line of the client
   const Time now = clocks_.now();
   command.num_values = static_cast<std::int32_t>(signals.size());
   for (const SignalIndex signal : signals) {

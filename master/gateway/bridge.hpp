@@ -60,10 +60,14 @@ class Bridge {
   /// refused. Refusals are reported; commands that may have waited during a gap are only counted.
   bool command(const std::string& sender, std::span<const SignalIndex> signals,
                std::span<const std::int64_t> values);
-  /// Number of gaps in which this thread did not run for so long that waiting requests are
-  /// discarded.
+  /// Checks whether this thread stood still. If so, messages that waited meanwhile have no effect.
+  void notice_gap();
+  /// Number of gaps in which this thread did not run. Set-points that waited are discarded.
   std::uint64_t gaps() const noexcept { return gaps_; }
+  /// Number of gaps that were so long that waiting requests are discarded too.
+  std::uint64_t long_gaps() const noexcept { return long_gaps_; }
   Time newest_gap() const noexcept { return gap_.length(); }
+  Time newest_long_gap() const noexcept { return gap_.newest_long().length; }
   /// Does everything that can be done now. Returns true if there was an image.
   bool serve();
   /// Returns true if events or replies of the bus thread are, or may be, left for the next round.
@@ -97,8 +101,6 @@ class Bridge {
  private:
   bool publish_images();
   void publish_image(const ImageView& image, bool typed);
-  /// Checks whether this thread stood still. If so, messages that waited meanwhile have no effect.
-  void notice_gap();
   /// Returns the present cycle by the clock; this includes cycles whose images were not seen yet.
   std::uint64_t cycle_at(Time now) const noexcept;
   bool take_at(const command_t& command, Time now, std::optional<std::size_t> only_node = {});
@@ -191,6 +193,7 @@ class Bridge {
   Time judged_{};            // time at which the age of the oldest staged command was judged
   FrontGap gap_;
   std::uint64_t gaps_ = 0;
+  std::uint64_t long_gaps_ = 0;
   bool skip_images_ = false;  // images that waited during a gap are skipped
   /// Commands count from this cycle on: that of the first image whose SYNC came after the newest
   /// gap.

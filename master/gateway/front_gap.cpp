@@ -23,7 +23,7 @@ bool FrontGap::ran(Time now) noexcept {
     length_ = now - last_;
     end_ = now;
     backlog_ = Backlog::possible;
-    if (length_ >= request_gap) newest_long_ = {.length = length_, .end = now};
+    if (harms_requests(length_)) newest_long_ = {.length = length_, .end = now};
   }
   last_ = now;
   return gap;
@@ -36,7 +36,9 @@ bool FrontGap::discards_commands(Time now) const noexcept {
 }
 
 bool FrontGap::discards_requests(Time now) const noexcept {
-  return discards_commands(now) && length_ >= request_gap;
+  return discards_commands(now) && harms_requests(length_);
 }
+
+bool FrontGap::harms_requests(Time length) noexcept { return length >= request_gap; }
 
 }  // namespace takt

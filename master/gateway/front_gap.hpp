@@ -30,6 +30,8 @@ class FrontGap {
   /// Returns true if requests that arrive now may have waited too long. Short gaps do not harm
   /// requests.
   bool discards_requests(Time now) const noexcept;
+  /// Returns true if a gap of this length harms requests, and not only commands.
+  static bool harms_requests(Time length) noexcept;
 
   /// A gap that was long enough to harm requests.
   struct LongGap {

@@ -138,7 +138,7 @@ class Run {
     front_.images += bridge.images();
     front_.commands_taken += bridge.commands_taken();
     front_.damaged += bridge.damaged();
-    front_.gaps += bridge.gaps();
+    front_.gaps += bridge.long_gaps();
     for (std::size_t i = 0; i < command_refusals; ++i) front_.refused[i] += bridge.refusals()[i];
   }
 

@@ -68,15 +68,22 @@ void AsciiGateway::command(int client, std::string_view line) {
   if (*command) run(client, found->second, **command);
 }
 
-void AsciiGateway::refuse_waited(int client, std::string_view line, Time waited) {
+void AsciiGateway::refuse_waited(int client, std::string_view line, Time gap) {
   const auto command = parse_ascii(line);
   if (!command) return refuse(client, command.error());
   if (!*command) return;
   refuse(client,
          {.sequence = (*command)->sequence,
           .error = AsciiError::internal_state,
-          .why = "taktd did not run for " + std::to_string(waited / std::chrono::milliseconds{1}) +
+          .why = "taktd did not run for " + std::to_string(gap / std::chrono::milliseconds{1}) +
                  " ms, and this line may have waited as long: send it again"});
+}
+
+void AsciiGateway::refuse_waited_outputs(int client, std::string_view line, Time gap) {
+  const auto parsed = parse_ascii(line);
+  const bool sets_outputs = parsed && *parsed && (*parsed)->verb == AsciiVerb::pdo_write;
+  if (sets_outputs) return refuse_waited(client, line, gap);
+  command(client, line);
 }
 
 void AsciiGateway::refuse_long_line(int client) {

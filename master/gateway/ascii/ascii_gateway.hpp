@@ -42,8 +42,11 @@ class AsciiGateway final : public FrontGuest {
   /// Takes one line of any bytes. Each command gets exactly one answer, under the number in front
   /// of the command.
   void command(int client, std::string_view line);
-  /// Refuses a line that waited while the front thread did not run, whatever the line says.
-  void refuse_waited(int client, std::string_view line, Time waited);
+  /// Refuses a line that waited while the front thread did not run for `gap`, whatever the line
+  /// says.
+  void refuse_waited(int client, std::string_view line, Time gap);
+  /// Refuses such a line if it sets outputs, and takes it otherwise.
+  void refuse_waited_outputs(int client, std::string_view line, Time gap);
   /// Answers a line that was dropped because it was too long.
   void refuse_long_line(int client);
 

@@ -178,14 +178,16 @@ void AsciiServer::take_line(Client& client, std::string_view line) {
     if (first == FirstLine::foreign) return close_foreign(client);
     client.has_commanded = first == FirstLine::command;
   }
-  (client.old != 0 ? handler_.old_line : handler_.line)(client.id, line);
+  if (client.old != 0) return handler_.old_line(client.id, line, client.gap);
+  handler_.line(client.id, line);
 }
 
-void AsciiServer::mark_waiting() {
+void AsciiServer::mark_waiting(Time gap) {
   accept_clients();
   for (const auto& client : clients_) {
     int in_socket = 0;
     if (::ioctl(client->socket.get(), FIONREAD, &in_socket) != 0) in_socket = 0;
+    client->gap = client->old == 0 ? gap : std::max(client->gap, gap);
     client->old = client->unread.size() + static_cast<std::size_t>(in_socket);
   }
 }

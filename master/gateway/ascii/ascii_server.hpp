@@ -32,8 +32,9 @@ class AsciiServer {
   struct Handler {
     std::function<void(int client)> connected;
     std::function<void(int client, std::string_view line)> line;
-    /// For lines marked by mark_waiting().
-    std::function<void(int client, std::string_view line)> old_line;
+    /// For lines marked by mark_waiting(). `gap` is the longest gap in which the line may have
+    /// waited.
+    std::function<void(int client, std::string_view line, Time gap)> old_line;
     /// For a line that was too long and was dropped.
     std::function<void(int client)> too_long;
     std::function<void(int client)> gone;
@@ -53,9 +54,9 @@ class AsciiServer {
 
   /// Sends a line and adds its end. Does nothing if the client has gone.
   void send(int client, std::string_view line);
-  /// Tells that the front thread did not run for long. Every line that has begun to arrive by now
+  /// Tells that the front thread did not run for `gap`. Every line that has begun to arrive by now
   /// counts as old.
-  void mark_waiting();
+  void mark_waiting(Time gap);
   /// Accepts clients, takes their lines and sends as much as possible.
   void serve();
   void watch(std::vector<pollfd>& descriptors) const;
@@ -76,6 +77,7 @@ class AsciiServer {
     std::string unread;
     std::string unsent;
     std::size_t old = 0;  // bytes that belong to old lines, first in `unread`, then in the socket
+    Time gap{};           // the longest gap in which these bytes may have waited
     bool has_commanded = false;
     bool unhandled = false;  // whole lines wait for the next round
     bool skips = false;      // the rest of a line that was too long is skipped

@@ -357,14 +357,30 @@ TEST_F(StoppedDaemon, AnswersTransfersThatWaitedOrAreOldByTheirTimeAndDoesNothin
 
 TEST_F(StoppedDaemon, CountsTheGapsAfterWhichLinesOfItsTextGatewayAreOld) {
   EXPECT_EQ(bridge.gaps(), 0U);
-  rig.world->advance_to(rig.world->now() + 200ms);
+  rig.world->advance_to(rig.world->now() + 300ms);
   bridge.serve();
-  EXPECT_EQ(bridge.gaps(), 0U);
+  EXPECT_EQ(bridge.gaps(), 1U);
+  EXPECT_EQ(bridge.long_gaps(), 0U);
+  EXPECT_GE(bridge.newest_gap(), 300ms);
   rig.world->advance_to(rig.world->now() + 2s);
   bridge.serve();
   for (int i = 0; i < 10; ++i) cycle();
+  EXPECT_EQ(bridge.gaps(), 2U);
+  EXPECT_EQ(bridge.long_gaps(), 1U);
+  EXPECT_GE(bridge.newest_long_gap(), 2s);
+}
+
+TEST_F(StoppedDaemon, DiscardsASetPointOfItsTextGatewayIfItStoodStillSinceItLookedForLines) {
+  const std::vector<SignalIndex> signals{
+      static_cast<SignalIndex>(rig.master->plan().layout.inputs)};
+  const std::vector<std::int64_t> values{6};
+  EXPECT_TRUE(bridge.command("gateway", signals, values));
+  rig.world->advance_to(rig.world->now() + 300ms);
+
+  EXPECT_FALSE(bridge.command("gateway", signals, values));
   EXPECT_EQ(bridge.gaps(), 1U);
-  EXPECT_GE(bridge.newest_gap(), 2s);
+  EXPECT_EQ(bridge.commands_taken(), 1U);
+  EXPECT_EQ(refused(CommandRefusal::waited), 1U);
 }
 
 TEST_F(StoppedDaemon, TellsTheKeyTheTimeAndTheSenderOfAFallback) {

@@ -221,6 +221,23 @@ TEST(AsciiGateway, DoesNothingOfALineThatWaitedAndSaysSo) {
   EXPECT_FALSE(rig.gateway.owes(1));
 }
 
+TEST(AsciiGateway, AfterAShortGapRefusesSetPointsThatWaitedAndTakesRequests) {
+  GatewayRig rig{test::axes({.nodes = 1})};
+  ASSERT_TRUE(rig.rig.boot());
+  rig.connect();
+  rig.gateway.refuse_waited_outputs(1, "[7] 1 w p 1 1 15", 950ms);
+  rig.gateway.refuse_waited_outputs(1, "[8] set node 1", 950ms);
+  rig.gateway.refuse_waited_outputs(1, "[9] 1 r 0x1000 0 u32", 950ms);
+
+  EXPECT_EQ(
+      rig.said,
+      (std::deque<std::string>{
+          "[7] ERROR: 102 (request not processed due to internal state: taktd did not run for 950 "
+          "ms, and this line may have waited as long: send it again)",
+          "[8] OK"}));
+  EXPECT_TRUE(rig.gateway.owes(1)) << "the SDO upload is on its way";
+}
+
 TEST(AsciiGateway, ForgetsAClientThatHasLeft) {
   GatewayRig rig{axes({.nodes = 1})};
   ASSERT_TRUE(rig.rig.boot());

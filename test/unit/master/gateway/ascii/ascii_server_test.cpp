@@ -22,7 +22,11 @@ class AsciiServerTest : public testing::Test {
   AsciiServer::Handler handler() {
     return {.connected = [this](int client) { connected.push_back(client); },
             .line = [this](int, std::string_view line) { lines.emplace_back(line); },
-            .old_line = [this](int, std::string_view line) { old_lines.emplace_back(line); },
+            .old_line =
+                [this](int, std::string_view line, Time gap) {
+                  old_lines.emplace_back(line);
+                  gaps.push_back(gap);
+                },
             .too_long = [this](int) { ++too_long; },
             .gone = [this](int client) { gone.push_back(client); },
             .owed = [this](int) { return owed; },
@@ -71,6 +75,7 @@ class AsciiServerTest : public testing::Test {
   test::StepClock clock{std::chrono::microseconds{50}};
   std::unique_ptr<AsciiServer> server;
   std::vector<std::string> old_lines;
+  std::vector<Time> gaps;  // of the old lines
   std::vector<std::string> lines;
   std::vector<std::string> warnings;
   std::vector<int> connected;
@@ -365,7 +370,7 @@ TEST_F(AsciiServerTest, LinesThatHaveBegunToArriveBeforeNobodyServedAreOldOnes) 
             0);
   write(late, "[1] 5 stop\n");
 
-  server->mark_waiting();
+  server->mark_waiting(std::chrono::milliseconds{200});
   serve();
   write(socket, "op\n[5] 5 start\n");
   serve();
@@ -375,6 +380,23 @@ TEST_F(AsciiServerTest, LinesThatHaveBegunToArriveBeforeNobodyServedAreOldOnes) 
   EXPECT_EQ(old_lines, (std::vector<std::string>{"[2] 5 r 0x1000 0 u32", "[3] 5 start",
                                                  "[1] 5 stop", "[4] 5 stop"}));
   EXPECT_EQ(lines, (std::vector<std::string>{"[1] help", "[5] 5 start", "[2] 5 start"}));
+}
+
+TEST_F(AsciiServerTest, AShortGapDoesNotHideALongOneThatALineHasWaitedThrough) {
+  constexpr Time long_gap = std::chrono::seconds{2};
+  constexpr Time short_gap = std::chrono::milliseconds{200};
+  listen();
+  const FileDescriptor client = connect();
+  write(client, "[1] 5 start\n");
+  server->mark_waiting(long_gap);
+  server->mark_waiting(short_gap);
+  serve();
+  write(client, "[2] 5 start\n");
+  server->mark_waiting(short_gap);
+  serve();
+
+  EXPECT_EQ(old_lines, (std::vector<std::string>{"[1] 5 start", "[2] 5 start"}));
+  EXPECT_EQ(gaps, (std::vector<Time>{long_gap, short_gap}));
 }
 
 }  // namespace
