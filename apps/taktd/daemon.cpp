@@ -149,7 +149,7 @@ std::optional<Exit> Daemon::start() {
                                                    .realtime = to_string(realtime_),
                                                    .typed = network_.lcm.typed},
                                      [this](const Notice& notice) { on_notice(notice); });
-  recorder_.attach(*bridge_, session_);
+  recorder_.attach(*bridge_);
   if (gateway_) gateway_->attach(*master_, *bridge_);
   StopSignal::stop_with(&master_->stop_requested());
   if (options_.run_for > Time{0}) end_ = clocks_.now() + options_.run_for;

@@ -24,10 +24,9 @@ std::expected<void, std::string> Recorder::open(const BlackBoxOptions& options, 
   return {};
 }
 
-void Recorder::attach(Bridge& bridge, std::int64_t session) {
+void Recorder::attach(Bridge& bridge) {
   bridge_ = &bridge;
-  session_ = session;
-  bridge.record_with([this](const request_t& request) { on_request(request); });
+  bridge.record_with([this](const request_t& request) { return on_request(request); });
 }
 
 void Recorder::on_fault(const Notice& notice) {
@@ -37,20 +36,17 @@ void Recorder::on_fault(const Notice& notice) {
   box_->on_fault(notice.kind, notice.node, notice.text, monotonic_now());
 }
 
-void Recorder::on_request(const request_t& request) {
-  const auto refuse = [&](const std::string& why) { bridge_->answer(request, false, why); };
-  if (request.session != 0 && request.session != session_) {
-    return refuse("the request is for another session of taktd");
-  }
+std::optional<std::string> Recorder::on_request(const request_t& request) {
   if (!box_) {
-    return refuse(
-        "the black box is off: start taktd with --black-box DIR, or write `black_box: {folder: "
-        "DIR}` in the network file");
+    return "the black box is off: start taktd with --black-box DIR, or write `black_box: {folder: "
+           "DIR}` in the network file";
   }
-  if (waiting_.size() == most_waiting)
-    return refuse("too many requests came at once; send the request again later");
+  if (waiting_.size() == most_waiting) {
+    return "too many requests came at once; send the request again later";
+  }
   waiting_.push_back(request);
   box_->on_request("requested by " + printable_text(request.sender.substr(0, 64)), monotonic_now());
+  return std::nullopt;
 }
 
 void Recorder::serve(Time now) {

@@ -3,6 +3,7 @@
 #include <expected>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <takt/request_t.hpp>
 
@@ -28,7 +29,7 @@ class Recorder {
   Journal* journal() noexcept { return box_ ? &box_->journal() : nullptr; }
   /// From this call on, the recorder accepts requests and reports recordings over LCM. `bridge`
   /// must live until finish() or finish_running() has returned.
-  void attach(Bridge& bridge, std::int64_t session);
+  void attach(Bridge& bridge);
 
   void on_fault(const Notice& notice);
   /// Begins and ends the recordings that are due. To be called often.
@@ -41,14 +42,14 @@ class Recorder {
   void finish_running(const std::string& reason, Time limit);
 
  private:
-  void on_request(const request_t& request);
+  /// Returns why the request can't be served.
+  std::optional<std::string> on_request(const request_t& request);
   void on_written(const std::string& text, const std::string& file);
   void answer_all(bool good, const std::string& text);
 
   Say say_;
   std::unique_ptr<BlackBox> box_;
   Bridge* bridge_ = nullptr;
-  std::int64_t session_ = 0;
   std::deque<request_t> waiting_;  // requests that wait for the next recording
 };
 

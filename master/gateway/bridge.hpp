@@ -81,10 +81,10 @@ class Bridge {
   /// kind.
   void tell(Notice notice);
 
-  /// Answers `record` requests by answer(). Without a handler, the bridge refuses these requests.
-  using Record = std::function<void(const request_t& request)>;
-  void record_with(Record record) { record_ = std::move(record); }
-  /// Answers a request that does not involve the bus thread.
+  /// Begins what `record` requests ask for, and returns why it can't begin. answer() must follow.
+  /// Without a handler, the bridge refuses these requests.
+  void record_with(Requests::Begin record) { record_ = std::move(record); }
+  /// Answers a request that has begun.
   void answer(const request_t& request, bool good, const std::string& text);
 
   const StatusSnapshot& status() const noexcept { return snapshot_; }
@@ -128,6 +128,7 @@ class Bridge {
   void on_request(Bytes data);
   void send(Notice notice);
   reply_t reply_to(const request_t& request) const;
+  void refuse(const request_t& request, const std::string& why);
   void answer_history(const request_t& request);
   void on_transfer(Bytes data);
   void tell_damaged(const std::string& channel, DecodeFault fault);
@@ -159,7 +160,7 @@ class Bridge {
   BridgeOptions options_;
   NoticeSink tell_;
   FrontGuest* guest_ = nullptr;
-  Record record_;
+  Requests::Begin record_;
   Channels channels_;
   ImageMessages image_messages_;
   std::optional<TypedChannels> typed_;

@@ -54,10 +54,11 @@ void Bridge::on_request(Bytes data) {
   const bool fits = !Requests::oversize(*request);
   const std::string trouble = age_trouble(request->utime, now);
   const bool old = fits && request->schema == message_schema && !trouble.empty();
-  if (old) return answer(*request, false, trouble);
+  if (old) return refuse(*request, trouble);
   if (fits && request->service == "emcy_history") return answer_history(*request);
-  if (fits && request->service == "record" && record_) return record_(*request);
-  if (auto reply = requests_.take(*request, now)) answer(std::move(*reply));
+  const bool records = fits && request->service == "record" && record_;
+  auto reply = records ? requests_.take(*request, now, record_) : requests_.take(*request, now);
+  if (reply) answer(std::move(*reply));
 }
 
 std::string Bridge::age_trouble(std::int64_t utime, Time now) const {
@@ -96,11 +97,19 @@ void Bridge::answer(const request_t& request, bool good, const std::string& text
   reply_t reply = reply_to(request);
   reply.good = good ? 1 : 0;
   reply.text = text;
+  requests_.finish(request, reply, clocks_.now());
+  answer(std::move(reply));
+}
+
+void Bridge::refuse(const request_t& request, const std::string& why) {
+  reply_t reply = reply_to(request);
+  reply.text = why;
   answer(std::move(reply));
 }
 
 /// Answers from the log of the bridge, because the bus thread keeps no history.
 void Bridge::answer_history(const request_t& request) {
+  if (auto refused = requests_.refuse_foreign(request)) return answer(std::move(*refused));
   reply_t reply = reply_to(request);
   reply.good = request.node_id > 0 && request.node_id <= 127 ? 1 : 0;
   if (reply.good == 0) {

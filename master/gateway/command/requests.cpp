@@ -178,9 +178,7 @@ std::optional<reply_t> Requests::take_again(const Known& known, const request_t&
 std::optional<reply_t> Requests::take(const request_t& message, Time now) {
   forget(now);
   if (auto why = oversize(message)) return refusal(message, *why);
-  const auto known = std::ranges::find_if(
-      known_, [&](const Known& one) { return same_asker(one.message, message); });
-  if (known != known_.end()) return take_again(*known, message);
+  if (const Known* const known = find(message)) return take_again(*known, message);
   auto request = translate(message);
   if (!request) return refusal(message, request.error());
   request->id = next_id_;
@@ -192,13 +190,44 @@ std::optional<reply_t> Requests::take(const request_t& message, Time now) {
   return std::nullopt;
 }
 
+std::optional<reply_t> Requests::take(const request_t& message, Time now, const Begin& begin) {
+  forget(now);
+  if (auto why = oversize(message)) return refusal(message, *why);
+  if (const Known* const known = find(message)) return take_again(*known, message);
+  if (auto refused = refuse_foreign(message)) return refused;
+  const auto added = known_.insert(known_.end(), {.message = message});
+  const auto why = begin(message);
+  if (!why) return std::nullopt;
+  known_.erase(added);
+  return refusal(message, *why);
+}
+
+void Requests::finish(const request_t& message, const reply_t& reply, Time now) {
+  Known* const known = find(message);
+  if (known == nullptr) return;
+  known->answered = now;
+  known->reply = reply;
+}
+
+Requests::Known* Requests::find(const request_t& message) {
+  const auto found = std::ranges::find_if(
+      known_, [&](const Known& known) { return same_asker(known.message, message); });
+  return found == known_.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> Requests::foreign(const request_t& message) const {
+  if (message.schema != message_schema) return schema_refusal(message.schema);
+  if (message.session == 0 || message.session == options_.session) return std::nullopt;
+  return "the request is for another session of taktd";
+}
+
+std::optional<reply_t> Requests::refuse_foreign(const request_t& message) const {
+  if (const auto why = foreign(message)) return refusal(message, *why);
+  return std::nullopt;
+}
+
 std::expected<Request, std::string> Requests::translate(const request_t& message) const {
-  if (message.schema != message_schema) {
-    return std::unexpected{schema_refusal(message.schema)};
-  }
-  if (message.session != 0 && message.session != options_.session) {
-    return std::unexpected{std::string{"the request is for another session of taktd"}};
-  }
+  if (const auto why = foreign(message)) return std::unexpected{*why};
   if (options_.observe) {
     return std::unexpected{std::string{"taktd only observes (--observe) and sends nothing"}};
   }

@@ -39,6 +39,13 @@ class Requests {
   bool is_echo(const request_t& message, Time now);
   /// Returns an answer that is available at once, or std::nullopt if the answer comes later.
   std::optional<reply_t> take(const request_t& message, Time now);
+  /// Does the same for a request that the front thread serves. `begin` begins it, and returns why
+  /// it can't begin. finish() with the message and the answer must follow.
+  using Begin = std::function<std::optional<std::string>(const request_t& message)>;
+  std::optional<reply_t> take(const request_t& message, Time now, const Begin& begin);
+  void finish(const request_t& message, const reply_t& reply, Time now);
+  /// Returns the refusal of a message that has another schema or is for another session.
+  std::optional<reply_t> refuse_foreign(const request_t& message) const;
   /// Returns the answer for the requester, or std::nullopt if nobody made the request. `axes` has
   /// one line for each axis that the newest stop did not confirm.
   std::optional<reply_t> finish(const Reply& reply, Time now, const std::string& axes = {});
@@ -62,6 +69,8 @@ class Requests {
   std::expected<Request, std::string> translate_sdo(const request_t& message) const;
   std::expected<Request, std::string> translate_pdo(const request_t& message) const;
   static std::expected<Request, std::string> translate_lss(const request_t& message);
+  std::optional<std::string> foreign(const request_t& message) const;
+  Known* find(const request_t& message);
   void forget(Time now);
   std::optional<reply_t> take_again(const Known& known, const request_t& message) const;
   reply_t reply_to(const request_t& message) const;

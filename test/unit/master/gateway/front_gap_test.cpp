@@ -355,6 +355,46 @@ TEST_F(StoppedDaemon, AnswersTransfersThatWaitedOrAreOldByTheirTimeAndDoesNothin
   EXPECT_NE(lcm.transfers[1].text.find("more than 10 s before the clock"), std::string::npos);
 }
 
+TEST_F(StoppedDaemon, AnswersNoHistoryForAnotherSessionOrSchema) {
+  request_t other = request(1);
+  other.session = 8;
+  lcm.arrive(bridge.channels().request, other);
+  other = request(2);
+  other.schema = 1;
+  lcm.arrive(bridge.channels().request, other);
+  other = request(3);
+  other.session = 7;
+  lcm.arrive(bridge.channels().request, other);
+  cycle();
+
+  EXPECT_EQ(lcm.replies, (std::vector<std::string>{"the request is for another session of taktd",
+                                                   schema_refusal(1), ""}));
+}
+
+TEST_F(StoppedDaemon, BeginsARecordingOnceHoweverOftenItsRequestComes) {
+  std::vector<request_t> begun;
+  bridge.record_with([&](const request_t& record) -> std::optional<std::string> {
+    begun.push_back(record);
+    return std::nullopt;
+  });
+  request_t record = request(5);
+  record.service = "record";
+  const auto repeat = [&] {
+    for (int i = 0; i < 20; ++i) cycle();  // 80 ms: more than between two ways of one message
+    lcm.arrive(bridge.channels().request, record);
+    cycle();
+  };
+  repeat();
+  repeat();
+  EXPECT_TRUE(lcm.replies.empty());
+  ASSERT_EQ(begun.size(), 1U);
+  bridge.answer(begun[0], true, "a.log");
+  repeat();
+
+  EXPECT_EQ(begun.size(), 1U);
+  EXPECT_EQ(lcm.replies, (std::vector<std::string>{"a.log", "a.log"}));
+}
+
 TEST_F(StoppedDaemon, CountsTheGapsAfterWhichLinesOfItsTextGatewayAreOld) {
   EXPECT_EQ(bridge.gaps(), 0U);
   rig.world->advance_to(rig.world->now() + 300ms);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "master/lcm/messages.hpp"
 #include "test/unit/master/gateway/a_plan.hpp"
 
 namespace takt {
@@ -60,6 +61,63 @@ TEST_F(RequestsTest, RepeatedRequestIsNotDoneTwice) {
 
   EXPECT_FALSE(requests.take(upload(7), now));
   EXPECT_EQ(submitted.size(), 1U);
+}
+
+TEST_F(RequestsTest, ARequestThatTheFrontServesIsBegunOnceAndItsAnswerRepeated) {
+  request_t record = upload(7);
+  record.service = "record";
+  int begun = 0;
+  const auto begin = [&](const request_t&) -> std::optional<std::string> {
+    ++begun;
+    return std::nullopt;
+  };
+  EXPECT_FALSE(requests.take(record, now, begin));
+  EXPECT_FALSE(requests.take(record, now + 1s, begin)) << "the recording is still going on";
+  reply_t reply{};
+  reply.good = 1;
+  reply.text = "a.log";
+  requests.finish(record, reply, now + 2s);
+
+  const auto again = requests.take(record, now + 3s, begin);
+
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->good, 1);
+  EXPECT_EQ(again->text, "a.log");
+  EXPECT_EQ(begun, 1);
+  EXPECT_EQ(submitted.size(), 0U);
+}
+
+TEST_F(RequestsTest, ARequestThatTheFrontCannotBeginMayBeSentAgainAtOnce) {
+  std::optional<std::string> trouble = "the black box is off";
+  const auto begin = [&](const request_t&) { return trouble; };
+
+  const auto refused = requests.take(upload(7), now, begin);
+
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->good, 0);
+  EXPECT_EQ(refused->text, "the black box is off");
+  trouble.reset();
+  EXPECT_FALSE(requests.take(upload(7), now, begin));
+}
+
+TEST_F(RequestsTest, ARequestThatTheFrontServesHasThisSchemaAndThisSession) {
+  int begun = 0;
+  const auto begin = [&](const request_t&) -> std::optional<std::string> {
+    ++begun;
+    return std::nullopt;
+  };
+  request_t request = upload(7);
+  request.session = 41;
+  const auto other_session = requests.take(request, now, begin);
+  request.session = 42;
+  request.schema = 1;
+  const auto other_schema = requests.take(request, now, begin);
+
+  ASSERT_TRUE(other_session);
+  EXPECT_EQ(other_session->text, "the request is for another session of taktd");
+  ASSERT_TRUE(other_schema);
+  EXPECT_EQ(other_schema->text, schema_refusal(1));
+  EXPECT_EQ(begun, 0);
 }
 
 TEST_F(RequestsTest, RepeatAfterTheAnswerGetsThatAnswerAgain) {
