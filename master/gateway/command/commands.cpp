@@ -35,6 +35,11 @@ std::string overtaken(const command_t& command) {
          std::to_string(command.cycle);
 }
 
+std::string after_release(const command_t& command) {
+  return "the command is not newer than the release of its sender: both are computed from cycle " +
+         std::to_string(command.cycle);
+}
+
 bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 /// Makes the sender's name printable: it comes from outside and goes to terminals and logs.
@@ -193,6 +198,8 @@ bool Commands::check_node(std::size_t node_index, const command_t& command,
                     owned_text(node_index, command, context));
     case LeaseVerdict::overtaken:
       return refuse({context, command, CommandRefusal::overtaken, node}, overtaken(command));
+    case LeaseVerdict::released:
+      return refuse({context, command, CommandRefusal::overtaken, node}, after_release(command));
   }
   return false;
 }

@@ -38,7 +38,7 @@ enum class CommandRefusal : std::uint8_t {
   not_ready,  ///< the node has not booted, or is not operational
   held,       ///< another sender holds the node
   waited,     ///< the command waited while the front thread stood still
-  overtaken,  ///< a command computed from a later cycle was accepted before
+  overtaken,  ///< a command computed from a later cycle, or a release from this one, came before
 };
 inline constexpr std::size_t command_refusals = 13;
 std::string_view name(CommandRefusal refusal) noexcept;  ///< "too_old"

@@ -22,11 +22,13 @@ LeaseTable::LeaseTable(std::size_t nodes, std::uint32_t unlimited)
 
 /// A later cycle that has not come yet cannot judge: the clock goes back if SYNC stood still. A
 /// command of the cycle in which its sender has released the node was sent before the release.
-bool LeaseTable::overtaken(const Lease& lease, std::int64_t instance,
-                           const LeaseTerm& term) noexcept {
-  if (lease.newest > term.now + 1) return false;
-  if (term.computed_from < lease.newest) return true;
-  return lease.released && lease.instance == instance && term.computed_from == lease.newest;
+LeaseVerdict LeaseTable::judge(const Lease& lease, std::int64_t instance,
+                               const LeaseTerm& term) noexcept {
+  if (lease.newest > term.now + 1) return LeaseVerdict::taken;
+  if (term.computed_from < lease.newest) return LeaseVerdict::overtaken;
+  const bool released =
+      lease.released && lease.instance == instance && term.computed_from == lease.newest;
+  return released ? LeaseVerdict::released : LeaseVerdict::taken;
 }
 
 LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const LeaseTerm& term) {
@@ -34,7 +36,8 @@ LeaseVerdict LeaseTable::take(std::size_t node, const Sender& sender, const Leas
   Lease& lease = leases_[node];
   const bool others = term.now < lease.end && lease.instance != sender.instance;
   if (others) return LeaseVerdict::held;
-  if (overtaken(lease, sender.instance, term)) return LeaseVerdict::overtaken;
+  const LeaseVerdict verdict = judge(lease, sender.instance, term);
+  if (verdict != LeaseVerdict::taken) return verdict;
   lease.instance = sender.instance;
   if (lease.sender != sender.name) lease.sender = sender.name;
   lease.end = term.now + (term.cycles == 0 ? unlimited_ : term.cycles);
@@ -51,7 +54,8 @@ bool LeaseTable::release(std::size_t node, std::uint64_t now,
                          std::uint64_t computed_from) noexcept {
   if (node >= leases_.size()) return false;
   Lease& lease = leases_[node];
-  if (overtaken(lease, lease.instance, {.now = now, .computed_from = computed_from})) return false;
+  const LeaseTerm term{.now = now, .computed_from = computed_from};
+  if (judge(lease, lease.instance, term) != LeaseVerdict::taken) return false;
   lease.end = 0;
   lease.newest = computed_from;
   lease.released = true;

@@ -40,6 +40,7 @@ enum class LeaseVerdict : std::uint8_t {
   taken,
   held,       ///< another sender holds the node
   overtaken,  ///< a command that was computed from a later cycle has been accepted before
+  released,   ///< the sender has released the node in the cycle from which it was computed
 };
 
 /// The cycles of a command, and for how many cycles it is valid; 0 means no limit.
@@ -78,7 +79,8 @@ class LeaseTable {
     std::uint64_t newest = 0;  // cycle from which the newest command was computed
     bool released = false;     // the newest command is a release
   };
-  static bool overtaken(const Lease& lease, std::int64_t instance, const LeaseTerm& term) noexcept;
+  static LeaseVerdict judge(const Lease& lease, std::int64_t instance,
+                            const LeaseTerm& term) noexcept;
   std::vector<Lease> leases_;
   std::uint32_t unlimited_;
 };

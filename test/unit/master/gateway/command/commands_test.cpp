@@ -240,6 +240,18 @@ TEST_F(CommandsTest, AnOldReleaseReleasesNothing) {
   EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::overtaken)], 1U);
 }
 
+TEST_F(CommandsTest, ACommandOfTheCycleOfItsReleaseIsNotCalledOlder) {
+  EXPECT_TRUE(take(command({1}, {0x0F})));
+  EXPECT_TRUE(take(release(100)));
+
+  EXPECT_FALSE(take(command({1}, {0x0F})));
+
+  EXPECT_TRUE(
+      told("node 5 (shoulder): the command is not newer than the release of its sender: both are "
+           "computed from cycle 100"));
+  EXPECT_EQ(commands.refusals()[std::to_underlying(CommandRefusal::overtaken)], 1U);
+}
+
 TEST_F(CommandsTest, AReleaseHasATimeToLiveToo) {
   EXPECT_TRUE(take(command({1}, {0x0F})));
   command_t end = release(100);
