@@ -28,7 +28,10 @@ timespec to_timespec(std::chrono::nanoseconds time) {
 }  // namespace
 
 AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
-    : lcm_{std::move(lcm)}, options_{std::move(options)}, instance_{random_number()} {
+    : lcm_{std::move(lcm)},
+      options_{std::move(options)},
+      holders_{options_.sender},
+      instance_{options_.instance != 0 ? options_.instance : random_number()} {
   if (options_.bus.empty()) {
     lcm_->subscribe(any_bus("LAYOUT"));
   } else {
@@ -44,8 +47,10 @@ void AxisGroup::listen_to(std::string_view bus) {
   command_channel_ = channel_name(bus_, "COMMAND");
   secured_channel_ = channel_name(bus_, "SECURED");
   event_channel_ = channel_name(bus_, "EVENT");
+  status_channel_ = channel_name(bus_, "STATUS");
   lcm_->subscribe(image_channel_);
   lcm_->subscribe(event_channel_);
+  lcm_->subscribe(status_channel_);
 }
 
 void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) {
@@ -55,6 +60,8 @@ void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) 
     take_image(data);
   } else if (channel == layout_channel_) {
     take_layout(data);
+  } else if (channel == status_channel_) {
+    take_status(data);
   } else if (channel == event_channel_ && events_.size() < most_events) {
     if (auto event = decode<event_t>(data)) events_.push_back(std::move(*event));
   }
@@ -73,7 +80,15 @@ void AxisGroup::take_layout(std::span<const std::byte> data) {
   const auto part = decode<layout_t>(data);
   if (!part) return;
   if (part->schema != message_schema) return tell_schema(part->schema);
-  new_layout_ |= input_.take(*part);
+  if (!input_.take(*part)) return;
+  new_layout_ = true;
+  holders_.clear();
+}
+
+void AxisGroup::take_status(std::span<const std::byte> data) {
+  const auto part = decode<status_t>(data);
+  const bool fits = part && part->schema == message_schema && input_.has_layout();
+  if (fits && part->session == input_.session()) holders_.take(*part);
 }
 
 void AxisGroup::tell_schema(std::int16_t schema) {
@@ -166,6 +181,10 @@ void AxisGroup::sign_with(EnvelopeKey key) { seal_.emplace(std::move(key), rando
 bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions) {
   axes_.set_positions(positions);
   return send();
+}
+
+const NodeHolder& AxisGroup::holder(AxisControl::Index axis) const {
+  return holders_[axes_.signals(axis).node];
 }
 
 std::chrono::nanoseconds AxisGroup::period() const noexcept {

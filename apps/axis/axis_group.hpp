@@ -11,6 +11,7 @@
 
 #include "apps/axis/axis_control.hpp"
 #include "apps/axis/image_input.hpp"
+#include "apps/axis/node_holders.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/transport.hpp"
 
@@ -21,13 +22,15 @@ struct AxisGroupOptions {
   /// Name of the bus in the network file. Empty selects the first bus whose layout arrives.
   std::string bus;
   /// Name of the sender in events and in status_t. One sender holds the outputs of a node at a
-  /// time.
+  /// time. AxisGroup::holder() tells programs apart by this name, so no other program may have it.
   std::string sender = "axes";
   /// The newest image is stale if it is older than this number of cycles.
   std::int32_t stale_cycles = 5;
   /// Time to live of the commands, in cycles. 0 selects the configured one; the shorter of both
   /// counts.
   std::int32_t time_to_live = 20;
+  /// Number by which taktd tells senders apart. 0 selects a random one.
+  std::int64_t instance = 0;
 };
 
 /// Results of AxisGroup::wait().
@@ -72,6 +75,11 @@ class AxisGroup {
   AxisControl& axes() noexcept { return axes_; }
   /// Returns the layout and the newest image.
   const ImageInput& input() const noexcept { return input_; }
+  /// Returns the program that commands the node of this axis, by the newest status_t of taktd.
+  /// taktd refuses the commands of all other programs for this node. send() takes no notice of it,
+  /// so each application decides for how many status_t another program may hold a node before it
+  /// gives up.
+  const NodeHolder& holder(AxisControl::Index axis) const;
   /// Returns the name of the bus. Empty if none was configured and no layout has arrived.
   const std::string& bus() const noexcept { return bus_; }
   /// Returns the period of SYNC. 0 means that no layout has arrived yet.
@@ -92,6 +100,7 @@ class AxisGroup {
   void listen_to(std::string_view bus);
   void take_image(std::span<const std::byte> data);
   void take_layout(std::span<const std::byte> data);
+  void take_status(std::span<const std::byte> data);
   void tell_schema(std::int16_t schema);
   bool publish(command_t& command);
   bool is_stale() const;
@@ -105,8 +114,10 @@ class AxisGroup {
   std::string command_channel_;
   std::string secured_channel_;
   std::string event_channel_;
+  std::string status_channel_;
   ImageInput input_;
   AxisControl axes_;
+  NodeHolders holders_;
   bool fresh_ = false;
   bool new_layout_ = false;
   bool told_stale_ = false;

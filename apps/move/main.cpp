@@ -1,4 +1,5 @@
 #include <csignal>
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
 #include <sched.h>
@@ -10,6 +11,7 @@
 #include "apps/move/move_run.hpp"
 #include "master/lcm/envelope/checked_transport.hpp"
 #include "master/lcm/envelope/key_file.hpp"
+#include "master/lcm/random_number.hpp"
 
 namespace {
 
@@ -28,6 +30,16 @@ void on_hangup(int) {
 void ask_for_real_time() {
   const sched_param parameters{.sched_priority = 20};
   ::sched_setscheduler(0, SCHED_FIFO, &parameters);
+}
+
+/// The name has digits of the instance, because programs in two containers may have the same
+/// process id.
+takt::AxisGroupOptions group_options(const takt::MoveOptions& options) {
+  const std::int64_t instance = takt::random_number();
+  return {.bus = options.bus,
+          .sender = fmt::format("takt-move {} {:04x}", ::getpid(), instance & 0xFFFF),
+          .stale_cycles = options.stale_cycles,
+          .instance = instance};
 }
 
 }  // namespace
@@ -57,10 +69,7 @@ int main(int argc, char** argv) {
     }
     *lcm = std::make_unique<takt::CheckedTransport>(std::move(*lcm), std::move(*keys));
   }
-  takt::AxisGroup group{std::move(*lcm),
-                        {.bus = options.bus,
-                         .sender = fmt::format("takt-move {}", ::getpid()),
-                         .stale_cycles = options.stale_cycles}};
+  takt::AxisGroup group{std::move(*lcm), group_options(options)};
   if (!options.keys.empty()) {
     const auto keys = takt::load_keys(options.keys);
     if (!keys) {

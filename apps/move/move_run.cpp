@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "apps/move/mode_hint.hpp"
+#include "apps/move/held_axes.hpp"
 #include "apps/move/motion_time.hpp"
-#include "apps/move/paced_motion.hpp"
+#include "apps/move/not_enabled.hpp"
 #include "apps/move/sine.hpp"
 
 namespace takt {
@@ -31,6 +31,11 @@ constexpr double longest_lead = 3;
 constexpr double longest_refusal = 1.0;
 /// Longest wait for an image before the motion is checked again.
 constexpr std::chrono::milliseconds tick{2};
+/// Number of status_t (10 in a second) in sequence in which another program may hold an axis.
+/// Before the motion it may be a program that has died, whose last command lives on for up to a
+/// second.
+constexpr int held_before_motion = 20;
+constexpr int held_in_motion = 6;
 /// Longest wait until all axes are enabled, seconds. A drive needs time for its brake and its DC
 /// link.
 constexpr double enable_seconds = 5.0;
@@ -143,18 +148,14 @@ bool MoveRun::enable() {
   axes_.set_mode(DriveMode::cyclic_position);
   axes_.reset_faults();
   axes_.set_goal(DriveGoal::enabled);
-  const auto ready = [&] { return axes_.all_enabled() && axes_.in_mode(); };
-  if (hold_until(ready, enable_seconds)) return true;
-  if (stop_ != 0) return false;
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-    if (axes_.drive(i).enabled()) continue;
-    progress_.say(fmt::format("{}: not enabled, {}", axes_.name(i), name(axes_.drive(i).state())));
-  }
-  for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
-    const std::string hint =
-        mode_hint(axes_.signals(i), group_.input(), DriveMode::cyclic_position);
-    if (!hint.empty()) progress_.say(axes_.name(i) + ": " + hint);
-  }
+  const auto ready = [&] { return axes_.all_enabled() && axes_.in_mode() && holds_all(group_); };
+  const auto decided = [&] {
+    rest_where_others_hold(group_);
+    return ready() || !held_by_others(group_, held_before_motion).empty();
+  };
+  if (hold_until(decided, enable_seconds) && ready()) return true;
+  if (stop_ != 0 || axes_taken(1)) return false;
+  for (const std::string& line : why_not_ready(group_)) progress_.say(line);
   return false;
 }
 
@@ -223,7 +224,7 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
   while (motion.time() < duration && !(stop_ != 0 && motion.standing())) {
     const Input input = group_.wait(tick);
     const Hold hold = take_input(input);
-    if (restarted_ || axes_lost()) return false;
+    if (restarted_ || axes_lost() || axes_taken(held_in_motion)) return false;
     const std::chrono::duration<double> passed = Clock::now() - last_tick;
     const bool fresh = input == Input::fresh;
     if (!fresh && holding_ == Hold::no) continue;  // wait for the next image
@@ -236,7 +237,22 @@ bool MoveRun::follow(const char* what, double duration, const Trajectory& trajec
     if (motion.refused() > longest_refusal) return not_taken();
     if (fresh) compare(what);
   }
-  return true;
+  return sent_own(motion);
+}
+
+/// Returns true if the target positions that the newest image shows are those of this motion.
+bool MoveRun::sent_own(const PacedMotion& motion) {
+  bool own = true;
+  for (std::size_t i = 0; i < sizes_.size(); ++i) {
+    const auto axis = static_cast<AxisControl::Index>(i);
+    if (motion.apart()(axis) <= sizes_[i].following_limit) continue;
+    own = false;
+    progress_.say(
+        fmt::format("the image shows {:.4f} {} as the target position of {}, which this "
+                    "program did not send",
+                    axes_.sent_positions()(axis), units_[i], axes_.name(axis)));
+  }
+  return own;
 }
 
 void MoveRun::compare(const char* what) {
@@ -294,23 +310,42 @@ bool MoveRun::axes_lost() {
   return true;
 }
 
+/// Returns true if the newest `sequence` status_t show that another program holds an axis.
+bool MoveRun::axes_taken(int sequence) {
+  const std::string why = held_by_others(group_, sequence);
+  if (!why.empty()) progress_.say(why);
+  return !why.empty();
+}
+
+/// Returns true if there is nothing left to disable: the axis is disabled, or another program holds
+/// it.
+bool MoveRun::is_over(AxisControl::Index axis) const {
+  return axes_.drive(axis).reached() || group_.holder(axis).is_other(held_in_motion);
+}
+
 void MoveRun::disable() {
+  if (others_hold_all(group_, held_in_motion)) return;
   progress_.say("disabling the axes, one after the other");
   double left = disable_seconds;
   for (AxisControl::Index i = axes_.size() - 1; i >= 0 && left > 0.0; --i) {
     axes_.set_goal(i, DriveGoal::disabled);
     const auto begin = Clock::now();
-    if (hold_until([&] { return axes_.drive(i).reached(); }, left, second_stop)) continue;
+    if (hold_until([&] { return is_over(i); }, left, second_stop)) continue;
     if (restarted_ || stop_ >= second_stop) break;
     left -= std::chrono::duration<double>(Clock::now() - begin).count();
   }
   axes_.set_goal(DriveGoal::disabled);
-  const auto all_reached = [this] { return axes_.all_reached(); };
-  if (all_reached() || hold_until(all_reached, last_seconds, any_stops)) return;
+  const auto all_over = [this] {
+    for (AxisControl::Index i = 0; i < axes_.size(); ++i) {
+      if (!is_over(i)) return false;
+    }
+    return true;
+  };
+  if (all_over() || hold_until(all_over, last_seconds, any_stops)) return;
   good_ = false;
   if (stop_ >= second_stop) progress_.say("a second signal: not waiting for the axes any longer");
   for (AxisControl::Index i = axes_.size() - 1; i >= 0; --i) {
-    if (axes_.drive(i).reached()) continue;
+    if (is_over(i)) continue;
     progress_.say(axes_.name(i) + " does not confirm that it is disabled");
   }
 }

@@ -9,6 +9,7 @@
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"
 #include "apps/move/pace.hpp"
+#include "apps/move/paced_motion.hpp"
 #include "apps/move/progress.hpp"
 #include "apps/move/synchronised_move.hpp"
 
@@ -43,7 +44,10 @@ class MoveRun {
   double period() const;
   double longest_step() const;
   double real_step();
+  bool sent_own(const PacedMotion& motion);
   bool axes_lost();
+  bool axes_taken(int sequence);
+  bool is_over(AxisControl::Index axis) const;
   bool not_taken();
   void disable();
   /// Takes images and sends commands until `done` is true, and then returns true. Returns false

@@ -28,6 +28,9 @@ class PacedMotion {
   /// Returns for how long the motion has not advanced although nothing holds it, because the bus
   /// takes no set-point.
   double refused() const noexcept { return refused_; }
+  /// Returns how far the set-points that the newest image shows are from the nearest ones of this
+  /// motion, for each axis.
+  const Eigen::VectorXd& apart() const noexcept { return taken_.apart(); }
 
  private:
   Pace pace_;

@@ -4,7 +4,10 @@
 
 namespace takt {
 
-TakenSetPoints::TakenSetPoints(const Eigen::VectorXd& begin) { under_way_.front().shown = begin; }
+TakenSetPoints::TakenSetPoints(const Eigen::VectorXd& begin)
+    : apart_{Eigen::VectorXd::Zero(begin.size())} {
+  under_way_.front().shown = begin;
+}
 
 void TakenSetPoints::sent(double time, const Eigen::VectorXd& shown) {
   if (time <= under_way_[count_ - 1].time) return;
@@ -29,6 +32,7 @@ void TakenSetPoints::seen(const Eigen::VectorXd& shown) {
   const auto taken = under_way_.begin() + static_cast<std::ptrdiff_t>(nearest);
   std::rotate(under_way_.begin(), taken, under_way_.begin() + static_cast<std::ptrdiff_t>(count_));
   count_ -= nearest;
+  apart_ = (under_way_.front().shown - shown).cwiseAbs();
   time_ = under_way_.front().time;
 }
 

@@ -22,6 +22,10 @@ class TakenSetPoints {
   /// Returns the time along the trajectory, in seconds, of the newest set-points that the bus has
   /// taken.
   double time() const noexcept { return time_; }
+  /// Returns how far the set-points that the newest image shows are from the nearest ones that were
+  /// sent, for each axis. Another program sends to the axes if this is more than the rounding of
+  /// the devices.
+  const Eigen::VectorXd& apart() const noexcept { return apart_; }
 
  private:
   struct SetPoint {
@@ -33,6 +37,7 @@ class TakenSetPoints {
   std::array<SetPoint, most> under_way_;  // oldest first; the first is the newest one taken
   std::size_t count_ = 1;
   double time_ = 0.0;
+  Eigen::VectorXd apart_;
 };
 
 }  // namespace takt

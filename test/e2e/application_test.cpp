@@ -243,6 +243,30 @@ TEST(MovingApplication, DisablesItsAxesWhenItsTerminalIsGone) {
   EXPECT_NE(move.output().find("disabling the axes"), std::string::npos) << move.output();
 }
 
+/// The commands of the second program are refused while the first one moves the axes.
+TEST(MovingApplication, NamesTheProgramThatHoldsItsAxesAndEnds) {
+  const Folder folder;
+  DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/two_axes.yaml", {"--bus", "sim"}};
+  ASSERT_TRUE(daemon.hear([&] { return daemon.all_ready(); }));
+  Process first{{TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--sine", "--for", "60s"},
+                folder / "first"};
+  ASSERT_TRUE(first.says("sine of")) << first.output();
+
+  const Ended second = run({TAKT_MOVE, "--lcm-url", daemon.lcm_url(), "--to", "1"}, folder.path());
+
+  EXPECT_EQ(second.exit_code, 1) << second.output;
+  EXPECT_NE(second.output.find("shoulder belongs to 'takt-move "), std::string::npos)
+      << second.output;
+  EXPECT_NE(second.output.find("', and the commands of this program are refused"),
+            std::string::npos)
+      << second.output;
+  EXPECT_EQ(second.output.find("moving all axes"), std::string::npos) << second.output;
+  EXPECT_EQ(second.output.find("The axes followed."), std::string::npos) << second.output;
+
+  first.signal(SIGINT);
+  EXPECT_EQ(first.wait(), 0) << first.output();
+}
+
 TEST(MovingApplication, NamesABusWithoutAxes) {
   const Folder folder;
   DaemonProcess daemon{TAKT_SOURCE_DIR "/share/demo/beckhoff.yaml", {"--bus", "sim"}};

@@ -1,54 +1,20 @@
 #include "apps/axis/axis_group.hpp"
 
-#include <deque>
 #include <gtest/gtest.h>
-#include <utility>
 
 #include "master/lcm/messages.hpp"
+#include "test/unit/apps/axis/fake_lcm.hpp"
 #include "test/unit/apps/axis/messages_for_tests.hpp"
 
 namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::FakeLcm;
+using testing::FakeTransport;
 using testing::image;
+using testing::status;
 using testing::two_axes;
-
-/// An LCM that the test controls.
-struct FakeLcm {
-  std::deque<std::pair<std::string, std::vector<std::byte>>> arriving;
-  std::vector<std::pair<std::string, std::vector<std::byte>>> published;
-  std::vector<std::string> patterns;
-
-  template <class T>
-  void arrive(const std::string& channel, const T& message) {
-    std::vector<std::byte> buffer;
-    encode(message, buffer);
-    arriving.emplace_back(channel, buffer);
-  }
-};
-
-class FakeTransport final : public Transport {
- public:
-  explicit FakeTransport(FakeLcm& lcm) : lcm_{lcm} {}
-  bool publish(const std::string& channel, std::span<const std::byte> data) override {
-    lcm_.published.emplace_back(channel, std::vector<std::byte>{data.begin(), data.end()});
-    return true;
-  }
-  void subscribe(const std::string& pattern) override { lcm_.patterns.push_back(pattern); }
-  void serve(const MessageHandler& handler) override {
-    while (!lcm_.arriving.empty()) {
-      handler(lcm_.arriving.front().first, lcm_.arriving.front().second);
-      lcm_.arriving.pop_front();
-    }
-  }
-  void watch(std::vector<pollfd>&) const override {}
-  bool good() const override { return true; }
-  std::string url() const override { return "test"; }
-
- private:
-  FakeLcm& lcm_;
-};
 
 class Group : public ::testing::Test {
  protected:
@@ -185,6 +151,80 @@ TEST_F(Group, KeepsWhatTheDaemonTells) {
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind, "command_refused");
   EXPECT_TRUE(group_.take_events().empty());
+}
+
+TEST_F(Group, NamesTheProgramThatHoldsAnAxis) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  group_.wait(0ns);
+  EXPECT_EQ(group_.holder(0).name, "");
+  EXPECT_FALSE(group_.holder(0).is_other());
+
+  lcm_.arrive("LIFT_STATUS", status("test", "other 12"));
+  group_.wait(0ns);
+
+  EXPECT_TRUE(group_.holder(0).own);
+  EXPECT_FALSE(group_.holder(0).is_other());
+  EXPECT_EQ(group_.holder(1).name, "other 12");
+  EXPECT_FALSE(group_.holder(1).own);
+  EXPECT_TRUE(group_.holder(1).is_other());
+}
+
+TEST_F(Group, CountsTheStatusesInSequenceThatShowTheSameHolder) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  for (int i = 0; i < 3; ++i) lcm_.arrive("LIFT_STATUS", status("other 12", "other 12"));
+  lcm_.arrive("LIFT_STATUS", status("test", "other 12"));
+  group_.wait(0ns);
+
+  EXPECT_EQ(group_.holder(0).statuses, 1);
+  EXPECT_EQ(group_.holder(1).statuses, 4);
+  EXPECT_TRUE(group_.holder(1).is_other(4));
+  EXPECT_FALSE(group_.holder(1).is_other(5));
+}
+
+TEST_F(Group, BelievesNoStatusOfAnotherSession) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  status_t late = status("other 12", "other 12");
+  late.session = 76;
+  lcm_.arrive("LIFT_STATUS", late);
+  group_.wait(0ns);
+
+  EXPECT_EQ(group_.holder(0).name, "");
+}
+
+TEST_F(Group, ForgetsWhoHeldItsAxesBeforeTheDaemonRestarted) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  lcm_.arrive("LIFT_STATUS", status("other 12", "other 12"));
+  group_.wait(0ns);
+  ASSERT_EQ(group_.holder(0).name, "other 12");
+  layout_t again = two_axes();
+  again.session = 78;
+  lcm_.arrive("LIFT_LAYOUT", again);
+
+  EXPECT_EQ(group_.wait(0ns), Input::restarted);
+  EXPECT_EQ(group_.holder(0).name, "");
+}
+
+TEST_F(Group, SurvivesAStatusOfNodesThatDoNotExist) {
+  lcm_.arrive("LIFT_LAYOUT", two_axes());
+  status_t forged = status("other 12", "other 12");
+  forged.nodes[0].node_id = -1;
+  forged.nodes[1].node_id = 128;
+  lcm_.arrive("LIFT_STATUS", forged);
+  group_.wait(0ns);
+
+  EXPECT_EQ(group_.holder(0).name, "");
+  EXPECT_EQ(group_.holder(1).name, "");
+}
+
+TEST(AxisGroup, CommandsWithTheInstanceOfItsOptions) {
+  FakeLcm lcm;
+  AxisGroup group{std::make_unique<FakeTransport>(lcm),
+                  {.bus = "lift", .sender = "test", .instance = 0xAB12}};
+  group.send();
+  ASSERT_EQ(lcm.published.size(), 1U);
+  const auto command = decode<command_t>(lcm.published[0].second);
+  ASSERT_TRUE(command);
+  EXPECT_EQ(command->instance, 0xAB12);
 }
 
 TEST_F(Group, SurvivesGarbage) {

@@ -1,7 +1,9 @@
 #pragma once
 #include <initializer_list>
+#include <string>
 #include <takt/image_t.hpp>
 #include <takt/layout_t.hpp>
+#include <takt/status_t.hpp>
 
 namespace takt::testing {
 
@@ -50,6 +52,21 @@ inline image_t image(std::int64_t cycle, std::initializer_list<std::int64_t> val
   made.values = values;
   made.values.resize(8);
   made.num_values = 8;
+  return made;
+}
+
+/// Makes a status that shows who holds nodes 5 and 6.
+inline status_t status(const std::string& holder_of_5, const std::string& holder_of_6) {
+  status_t made{};
+  made.schema = 2;
+  made.parts = 1;
+  made.session = session;
+  made.nodes.resize(2);
+  made.nodes[0].node_id = 5;
+  made.nodes[0].holder = holder_of_5;
+  made.nodes[1].node_id = 6;
+  made.nodes[1].holder = holder_of_6;
+  made.num_nodes = 2;
   return made;
 }
 

@@ -50,6 +50,16 @@ TEST(TakenSetPoints, NeverGoBack) {
   EXPECT_EQ(taken.time(), 0.004);
 }
 
+TEST(TakenSetPoints, AreApartFromThoseOfAnotherProgram) {
+  TakenSetPoints taken{Vector{0, 0}};
+  EXPECT_EQ(taken.apart(), (Vector{0, 0}));
+  taken.sent(0.002, Vector{1, 1});
+  taken.seen(Vector{1.25, 0.5});
+  EXPECT_EQ(taken.apart(), (Vector{0.25, 0.5}));
+  taken.seen(Vector{1, 1});
+  EXPECT_EQ(taken.apart(), (Vector{0, 0}));
+}
+
 TEST(TakenSetPoints, ForgetTheOldestOfTooMany) {
   TakenSetPoints taken{Vector{0, 0}};
   for (int i = 1; i <= 100; ++i) taken.sent(i, Vector{i, i});

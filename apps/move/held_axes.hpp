@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+
+#include "apps/axis/axis_group.hpp"
+
+namespace takt {
+
+/// Returns true if the newest status_t shows that this program holds the nodes of all axes.
+bool holds_all(AxisGroup& group);
+/// Returns true if at least the newest `sequence` status_t show that another program holds the
+/// nodes of all axes.
+bool others_hold_all(AxisGroup& group, int sequence);
+/// Returns a sentence for each axis whose node another program has held in at least the newest
+/// `sequence` status_t. Empty if there is none.
+std::string held_by_others(AxisGroup& group, int sequence);
+
+/// Sets the target of each axis that another program holds to its actual position, so that the axis
+/// does not jump if this program holds it afterwards.
+void rest_where_others_hold(AxisGroup& group);
+
+}  // namespace takt
