@@ -142,8 +142,9 @@ class Bus:
         self.refusal = ""  # what the daemon says to commands without a key
         self.command = command_t()
         self.command.schema = SCHEMA
-        self.command.sender = f"axes.py {os.getpid()}"  # The daemon shows it as the holder of nodes.
         self.command.instance = random.SystemRandom().randrange(1, 2**63)  # tells two senders apart
+        # The daemon shows the name as the holder of nodes. Process ids repeat in containers.
+        self.command.sender = f"axes.py {os.getpid()} {self.command.instance & 0xFFFF:04x}"
         try:
             self.link = lcm.LCM()  # LCM_DEFAULT_URL, else LCM's default
         except RuntimeError as wrong:

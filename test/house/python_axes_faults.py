@@ -52,7 +52,7 @@ class Bus:
         self.fault, self.cycle, self.session, self.stale, self.silent = fault, 0, 5, [], False
         self.values, self.handlers, self.commands, self.held = [0x40, 0x40, 1000, -500, 0, 0, 0, 0], {}, [], {}
         self.due, self.released, self.node_names = ["LAYOUT"], False, ("axis1", "axis2")
-        self.sender, self.other = "", ""
+        self.sender, self.instance, self.other = "", 0, ""
 
     def LCM(self):
         return self
@@ -67,7 +67,7 @@ class Bus:
     def publish(self, channel, data):
         command = takt.command_t.decode(data)
         assert command.instance != 0, "a sender without an instance"
-        self.sender = command.sender
+        self.sender, self.instance = command.sender, command.instance
         if command.release:
             self.released = True
             return
@@ -255,6 +255,7 @@ import takt  # noqa: E402  what lcm-gen made
 bus, code, told = run()
 check("two axes move there and back and are disabled", code == GOOD and bus.values[:POSITION] == [0x21, 0x21], told)
 check("and released", bus.released, told)
+check("its name has digits of its instance", bus.sender == f"axes.py {os.getpid()} {bus.instance & 0xFFFF:04x}", bus.sender)
 farthest = max(command.get(TARGET, 0) for command in bus.commands)
 check("by 1000 counts from where they were", farthest == 2000 and bus.values[POSITION] == 1000, farthest)
 good, far = distance("m")
