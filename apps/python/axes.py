@@ -16,8 +16,9 @@ set-point for each axis from it and sends all of them in one command.
 
 If the following error of an axis exceeds its limit, or an axis leaves Operation enabled, or its PDOs
 stop, all axes are disabled in order and the program ends with a message. It does the same after
-Ctrl-C or SIGTERM, but first slows the motion down; a second signal ends it at once. However it ends,
-it releases its outputs, and the drives take the fallback of the network file.
+Ctrl-C, SIGTERM or SIGHUP (the terminal is closed), but first slows the motion down; a second signal
+other than SIGHUP ends it at once. However it ends, it releases its outputs, and the drives take the
+fallback of the network file.
 
 If another program holds an axis, the commands of this one are refused: it names the other program and
 ends. It first waits up to 2 s, because the daemon holds the axes of a program that has died until the
@@ -111,14 +112,19 @@ class OrderedStop(Failure):
 
 
 class StopSignals:
-    """Remembers Ctrl-C and SIGTERM until the motion has slowed down. A second one ends at once."""
+    """Remembers Ctrl-C, SIGTERM and SIGHUP until the motion has slowed down. A second one ends at
+    once, except SIGHUP: it may come several times when a terminal is closed."""
 
     def __init__(self):
         self.name = None
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self.on_signal)
+        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # It is ignored under nohup.
+            signal.signal(signal.SIGHUP, self.on_signal)
 
     def on_signal(self, number, frame):
+        if self.name and number == signal.SIGHUP:
+            return
         if self.name:
             raise Failure("a second signal: not waiting for the axes any longer")
         self.name = signal.Signals(number).name

@@ -113,7 +113,7 @@ def run(fault=lambda bus, cycle: None, kind=Bus, options=()):
     """The bus afterwards, the exit code of axes.py and what it said on stderr."""
     bus, said = kind(fault), io.StringIO()
     sys.modules["lcm"], sys.argv = bus, ["axes.py", "demo", "2", *options]
-    usual = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    usual = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     try:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
             runpy.run_path(str(AXES), run_name="__main__")
@@ -236,6 +236,10 @@ def terminate(bus):
     os.kill(os.getpid(), signal.SIGTERM)
 
 
+def hang_up(bus):
+    os.kill(os.getpid(), signal.SIGHUP)
+
+
 def steps(bus):
     """The largest step between two target positions of the first axis."""
     targets = [command[TARGET] for command in bus.commands if TARGET in command]
@@ -327,6 +331,14 @@ is_disabled("and both axes are disabled then", bus)
 check("after they have slowed down", steps(bus) < 5 and bus.commands[-1][TARGET] > 1100, (steps(bus), bus.commands[-1]))
 ends("SIGTERM before the motion ends it", "stopped by SIGTERM", at(2, terminate))
 ends("a second signal ends it at once", "a second signal", lambda bus, cycle: terminate(bus) if cycle in (300, 310) else None)
+hangs_up_twice = lambda bus, cycle: hang_up(bus) if cycle in (300, 310) else None
+bus = ends("SIGHUP in motion ends it, and may come twice", "stopped by SIGHUP", hangs_up_twice)
+is_disabled("and both axes are disabled then", bus)
+check("after they have slowed down", steps(bus) < 5 and bus.commands[-1][TARGET] > 1100, (steps(bus), bus.commands[-1]))
+usual = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+bus, code, told = run(hangs_up_twice)
+signal.signal(signal.SIGHUP, usual)
+check("under nohup SIGHUP changes nothing", code == GOOD, told)
 evil = type("BusOfEvilNames", (Bus,), {"unit": "fur\x1b[5mlong\u009b"})
 bus, code, told = run(kind=evil)
 check("control characters of the bus do not come to the terminal", "unit 'fur?[5mlong?'" in told, told)
