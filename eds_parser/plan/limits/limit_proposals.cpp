@@ -123,7 +123,7 @@ std::optional<std::pair<double, double>> file_range(const SubObject& sub, unsign
 void propose_range(LimitLine& line, const Signal& output, const NodeSource& node) {
   std::string low = "...";
   std::string high = "...";
-  line.because = "enter what the machine withstands";
+  line.because = "if it is a number: enter what the machine withstands; bit fields need none";
   const SubObject* const sub = node.dictionary->find(output.object);
   if (const auto range = sub == nullptr ? std::nullopt : file_range(*sub, output.bits)) {
     const double first = range->first * output.scale + output.offset;

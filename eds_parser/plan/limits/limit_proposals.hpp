@@ -12,7 +12,9 @@ void propose_limit(LimitLine& line, const NodeSource& node, const BusPlan& plan,
                    const LimitTable& table);
 
 /// Proposes an entry of `limits: {objects: [...]}` for an output that has no limit. The numbers are
-/// the LowLimit and the HighLimit of the device file if these are narrower than the data type.
+/// the LowLimit and the HighLimit of the device file if these are narrower than the data type. The
+/// type does not tell a number from a bit field, such as the control word of a drive with its own
+/// profile, so the proposal says for which of them it is.
 void propose_range(LimitLine& line, const Signal& output, const NodeSource& node);
 
 }  // namespace takt
