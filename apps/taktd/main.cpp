@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
@@ -61,7 +62,9 @@ int run(const DaemonOptions& options) {
     return static_cast<int>(Exit::wrong_use);
   }
   fits_the_bus(network, options.network_file, "warning: ");
-  Daemon daemon{std::move(network), options};
+  std::vector<LoadedNetwork> networks;
+  networks.push_back(std::move(network));
+  Daemon daemon{std::move(networks), options};
   return static_cast<int>(daemon.run());
 }
 

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "apps/taktd/process/stop_signal.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/lcm/printable_text.hpp"
 #include "master/linux/clock.hpp"
@@ -49,10 +48,12 @@ std::optional<std::string> Recorder::on_request(const request_t& request) {
   return std::nullopt;
 }
 
+void Recorder::record(const std::string& why, Time now) {
+  if (box_) box_->on_request(why, now);
+}
+
 void Recorder::serve(Time now) {
-  if (!box_) return;
-  if (StopSignal::take_recording_wish()) box_->on_request("requested by SIGUSR1", now);
-  box_->serve(now);
+  if (box_) box_->serve(now);
 }
 
 bool Recorder::finish(const std::string& reason, Time limit) {

@@ -13,9 +13,9 @@
 
 namespace takt {
 
-/// Owns the daemon's black box and triggers its recordings on faults, on SIGUSR1 and on requests
-/// over LCM. The recorder answers each request once, with the file or with the reason why there is
-/// none. Used only by the front thread.
+/// Owns the black box of a bus and triggers its recordings on faults and on requests over LCM. The
+/// recorder answers each request once, with the file or with the reason why there is none. Used
+/// only by the front thread.
 class Recorder {
  public:
   using Say = std::function<void(Weight weight, const std::string& sentence)>;
@@ -32,6 +32,8 @@ class Recorder {
   void attach(Bridge& bridge);
 
   void on_fault(const Notice& notice);
+  /// Begins a recording, if there is a black box.
+  void record(const std::string& why, Time now);
   /// Begins and ends the recordings that are due. To be called often.
   void serve(Time now);
   /// To be called after the bus thread has ended. Waits for at most `limit`. Returns false if a

@@ -14,12 +14,12 @@ bool Reporter::open_events(const std::string& path) {
 
 void Reporter::say(Weight weight, const std::string& sentence) { log_.say(weight, sentence); }
 
-void Reporter::tell(const Notice& notice) {
+void Reporter::tell(const BusPlan& plan, const Notice& notice) {
   ++told_[static_cast<std::size_t>(notice.weight)];
   say(notice.weight, notice.text);
   if (!events_) return;
   tell_lost();
-  write(notice);
+  write(notice, node_name(plan, notice.node));
   if (events_->has_thread() || std::exchange(without_thread_told_, true)) return;
   say(Weight::warning,
       "--events: no thread can be created for this file; its lines wait, and taktd tries again");
@@ -36,7 +36,7 @@ void Reporter::tell_lost() {
       .text = "--events: " + std::to_string(lost) + " lines could not be written and are lost"};
   ++told_[static_cast<std::size_t>(gap.weight)];
   say(gap.weight, gap.text);
-  write(gap);
+  write(gap, {});
 }
 
 void Reporter::finish(Time limit) {
@@ -49,13 +49,13 @@ void Reporter::finish(Time limit) {
   log_.flush(limit);
 }
 
-void Reporter::write(const Notice& notice) {
+void Reporter::write(const Notice& notice, std::string_view node) {
   using std::chrono::microseconds;
   const Time wall = notice.when + realtime_offset();
   const nlohmann::json line{{"utime", std::chrono::duration_cast<microseconds>(wall).count()},
                             {"cycle", notice.cycle},
                             {"node", notice.node},
-                            {"name", std::string{node_name(plan_, notice.node)}},
+                            {"name", std::string{node}},
                             {"kind", notice.kind},
                             {"severity", std::string{name(notice.weight)}},
                             {"text", notice.text}};

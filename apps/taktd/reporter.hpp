@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "apps/taktd/process/error_log.hpp"
 #include "apps/taktd/process/line_writer.hpp"
@@ -15,12 +16,11 @@ namespace takt {
 /// thread.
 class Reporter {
  public:
-  explicit Reporter(const BusPlan& plan) : plan_{plan} {}
-
   /// Returns false and sets errno if the file cannot be opened.
   bool open_events(const std::string& path);
 
-  void tell(const Notice& notice);
+  /// `plan` is the plan of the bus that the notice is about.
+  void tell(const BusPlan& plan, const Notice& notice);
   /// Writes a sentence of the daemon itself to stderr.
   void say(Weight weight, const std::string& sentence);
 
@@ -33,10 +33,9 @@ class Reporter {
   }
 
  private:
-  void write(const Notice& notice);
+  void write(const Notice& notice, std::string_view node);
   void tell_lost();
 
-  const BusPlan& plan_;
   ErrorLog log_;
   std::unique_ptr<LineWriter> events_;
   bool without_thread_told_ = false;

@@ -15,11 +15,13 @@ constexpr std::array stop_numbers{SIGTERM, SIGINT, SIGHUP};
 
 void wish_recording(int) { recording_wished.store(true, std::memory_order_relaxed); }
 
-std::atomic<std::atomic<bool>*> stop_request{nullptr};
+std::array<std::atomic<std::atomic<bool>*>, StopSignal::most_requests> stop_requests{};
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 void begin_stop() noexcept {
-  if (std::atomic<bool>* const request = stop_request.load()) request->store(true);
+  for (const auto& place : stop_requests) {
+    if (std::atomic<bool>* const request = place.load()) request->store(true);
+  }
 }
 
 void on_stop_signal(int) {
@@ -57,9 +59,16 @@ StopSignal::StopSignal() {
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit fails instead
 }
 
-void StopSignal::stop_with(std::atomic<bool>* request) noexcept {
-  stop_request.store(request);
+void StopSignal::stop_with(std::atomic<bool>& request) noexcept {
+  for (auto& place : stop_requests) {
+    std::atomic<bool>* free = nullptr;
+    if (place.compare_exchange_strong(free, &request)) break;
+  }
   if (count() > 0) begin_stop();
+}
+
+void StopSignal::forget_stops() noexcept {
+  for (auto& place : stop_requests) place.store(nullptr);
 }
 
 void StopSignal::let_through() const noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <csignal>
+#include <cstddef>
 
 namespace takt {
 
@@ -16,10 +17,14 @@ class StopSignal {
   static int count() noexcept;
   /// Returns true if SIGUSR1 has arrived since the last call.
   static bool take_recording_wish() noexcept;
-  /// From this call on, a stop signal sets `request` from within its handler, so that the ordered
-  /// stop begins at once, whatever the front thread is doing. If a stop signal has already arrived,
-  /// the call itself sets `request`. Null ends this.
-  static void stop_with(std::atomic<bool>* request) noexcept;
+  /// Most flags that one process can give to stop_with().
+  static constexpr std::size_t most_requests = 16;
+  /// From this call on, a stop signal also sets `request` from within its handler, so that the
+  /// ordered stop begins at once, whatever the front thread is doing. If a stop signal has already
+  /// arrived, the call itself sets `request`.
+  static void stop_with(std::atomic<bool>& request) noexcept;
+  /// Ends stop_with() for all flags. To be called before the first of them is destroyed.
+  static void forget_stops() noexcept;
   /// From this call on, the signals interrupt the calling thread at any point. Threads that it
   /// starts inherit the mask.
   void let_through() const noexcept;

@@ -24,7 +24,7 @@ TEST(StopSignal, BeginsTheStopWhileTheFrontThreadIsBusyWithSomethingElse) {
     std::atomic<bool> stop{false};
     const StopSignal signals;
     signals.let_through();
-    StopSignal::stop_with(&stop);
+    StopSignal::stop_with(stop);
     ::raise(SIGTERM);
     return stop && StopSignal::count() == 1 ? 0 : 1;
   });
@@ -39,8 +39,23 @@ TEST(StopSignal, BeginsTheStopOfAMasterThatIsMadeAfterTheSignal) {
     ::kill(::getpid(), SIGTERM);
     if (StopSignal::count() != 0) return 1;  // the signal waits for let_through()
     signals.let_through();
-    StopSignal::stop_with(&stop);
+    StopSignal::stop_with(stop);
     return stop ? 0 : 2;
+  });
+
+  EXPECT_EQ(result, 0);
+}
+
+TEST(StopSignal, BeginsTheStopOfEachMaster) {
+  const int result = in_a_child([] {
+    std::atomic<bool> first{false};
+    std::atomic<bool> second{false};
+    const StopSignal signals;
+    signals.let_through();
+    StopSignal::stop_with(first);
+    StopSignal::stop_with(second);
+    ::raise(SIGTERM);
+    return first && second ? 0 : 1;
   });
 
   EXPECT_EQ(result, 0);
@@ -51,8 +66,8 @@ TEST(StopSignal, TouchesNothingOfAMasterThatIsGone) {
     std::atomic<bool> stop{false};
     const StopSignal signals;
     signals.let_through();
-    StopSignal::stop_with(&stop);
-    StopSignal::stop_with(nullptr);
+    StopSignal::stop_with(stop);
+    StopSignal::forget_stops();
     ::raise(SIGTERM);
     return !stop && StopSignal::count() == 1 ? 0 : 1;
   });

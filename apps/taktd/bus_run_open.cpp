@@ -1,4 +1,4 @@
-// Member functions of Daemon that open everything and look for another master before the first
+// Member functions of BusRun that open everything and look for another master before the first
 // frame is sent.
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "apps/taktd/bus_choice.hpp"
-#include "apps/taktd/daemon.hpp"
+#include "apps/taktd/bus_run.hpp"
+#include "apps/taktd/process/stop_signal.hpp"
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/linux/clock.hpp"
@@ -25,43 +26,39 @@ constexpr Time look = std::chrono::milliseconds{10};
 
 }  // namespace
 
-std::optional<Exit> Daemon::open() {
-  if (const auto trouble = claim_bus()) return trouble;
-  if (!options_.events_file.empty() && !reporter_.open_events(options_.events_file)) {
-    const bool passing = is_passing_trouble(errno);
-    reporter_.say(passing ? Weight::warning : Weight::error,
-                  "--events " + options_.events_file + ": can't be written: " +
-                      std::strerror(errno) + (passing ? "; taktd runs without this file" : ""));
-    if (!passing) return Exit::wrong_use;
-  }
-  auto url = parse_lcm_url(choose_lcm_url(options_.lcm_url, network_.lcm.url));
+std::optional<Exit> BusRun::open() {
+  auto url = parse_lcm_url(choose_lcm_url(front_.options.lcm_url, network_.lcm.url));
   if (!url) {
-    reporter_.say(Weight::error, url.error());
+    say(Weight::error, url.error());
     return Exit::wrong_use;
   }
-  if (!options_.gateway.empty()) {
-    auto gateway = AsciiFront::open(options_.gateway, network_.plan, [this](const auto& sentence) {
-      reporter_.say(Weight::warning, sentence);
-    });
-    if (!gateway) {
-      reporter_.say(Weight::error, gateway.error());
-      return Exit::wrong_use;
-    }
-    gateway_ = std::move(*gateway);
-    reporter_.say(Weight::note, "CiA 309-3 gateway on " + gateway_->where());
-  }
+  if (const auto trouble = open_gateway()) return trouble;
   auto bus = DaemonBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
   if (!bus) {
-    reporter_.say(Weight::error, bus.error().message);
+    say(Weight::error, bus.error().message);
     return Exit::bus_trouble;
   }
   bus_ = std::move(*bus);
-  for (const std::string& warning : bus_->warnings()) reporter_.say(Weight::warning, warning);
+  for (const std::string& warning : bus_->warnings()) say(Weight::warning, warning);
   if (const auto trouble = open_black_box()) return trouble;
   return open_lcm(std::move(*url));
 }
 
-std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
+std::optional<Exit> BusRun::open_gateway() {
+  const std::string& where = front_.options.gateway;
+  if (where.empty()) return std::nullopt;
+  auto gateway = AsciiFront::open(where, network_.plan,
+                                  [this](const auto& sentence) { say(Weight::warning, sentence); });
+  if (!gateway) {
+    say(Weight::error, gateway.error());
+    return Exit::wrong_use;
+  }
+  gateway_ = std::move(*gateway);
+  say(Weight::note, "CiA 309-3 gateway on " + gateway_->where());
+  return std::nullopt;
+}
+
+std::optional<Exit> BusRun::open_lcm(LcmUrl url) {
   const Channels channels{network_.plan.name};
   std::vector<std::string> heard = channels.heard();
   if (network_.lcm.typed) {
@@ -70,28 +67,28 @@ std::optional<Exit> Daemon::open_lcm(LcmUrl url) {
   const std::vector<std::string> guarded = heard;
   heard.push_back(channels.status);  // shows another master
   heard.push_back(channel_name(network_.plan.name, "SECURED"));
-  const bool by_environment = lcm_url_is_from_environment(options_.lcm_url, network_.lcm.url);
-  const LcmLink::Hub hub = network_.lcm.broker && options_.lcm_url.empty() ? LcmLink::Hub::own
+  const bool by_environment = lcm_url_is_from_environment(front_.options.lcm_url, network_.lcm.url);
+  const LcmLink::Hub hub = network_.lcm.broker && front_.options.lcm_url.empty() ? LcmLink::Hub::own
                            : by_environment ? LcmLink::Hub::by_environment
                                             : LcmLink::Hub::named;
   link_ = std::make_unique<LcmLink>(
       std::move(url), hub, std::move(heard),
-      [this](Weight weight, const std::string& sentence) { reporter_.say(weight, sentence); });
+      [this](Weight weight, const std::string& sentence) { say(weight, sentence); });
   if (const auto trouble = open_keys(guarded)) return trouble;
   return look_for_master();
 }
 
 /// If the bus has keys, every message that commands the bus must come in an envelope.
-std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
-  const auto file = key_file(options_, network_);
+std::optional<Exit> BusRun::open_keys(std::vector<std::string> guarded) {
+  const auto file = key_file(front_.options, network_);
   if (file.empty()) return std::nullopt;
   auto keys = WatchedKeyFile::open(file);
   if (!keys) {
-    reporter_.say(Weight::error, keys.error());
+    say(Weight::error, keys.error());
     return Exit::wrong_use;
   }
   secured_ = std::make_unique<SecuredTransport>(
-      *link_, clocks_, std::move(*keys),
+      *link_, front_.clocks, std::move(*keys),
       SecuredTransport::Options{
           .bus = network_.plan.name,
           .session = session_,
@@ -101,11 +98,11 @@ std::optional<Exit> Daemon::open_keys(std::vector<std::string> guarded) {
   return std::nullopt;
 }
 
-std::optional<Exit> Daemon::claim_bus() {
-  if (options_.observe) return std::nullopt;
+std::optional<Exit> BusRun::claim() {
+  if (front_.options.observe) return std::nullopt;
   auto claim = BusClaim::take(BusName::parse(bus_name_));
   if (!claim) {
-    reporter_.say(Weight::error, claim.error().message);
+    say(Weight::error, claim.error().message);
     return Exit::bus_trouble;
   }
   claim_.emplace(std::move(*claim));
@@ -113,36 +110,37 @@ std::optional<Exit> Daemon::claim_bus() {
 }
 
 /// Runs before the first frame is sent. Refuses to start if the bus already has a master.
-std::optional<Exit> Daemon::look_for_master() {
-  if (options_.observe) return std::nullopt;
+std::optional<Exit> BusRun::look_for_master() {
+  if (front_.options.observe) return std::nullopt;
   using enum OtherMaster::StatusCounts;
   OtherMaster other{network_.plan, bus_name_, session_, secured_ ? as_warning : as_refusal};
   listen(other);
-  for (const std::string& warning : other.warnings()) reporter_.say(Weight::warning, warning);
+  for (const std::string& warning : other.warnings()) say(Weight::warning, warning);
   if (other.refusal()) {
-    reporter_.say(Weight::error, *other.refusal());
+    say(Weight::error, *other.refusal());
     return Exit::bus_trouble;
   }
   if (StopSignal::count() == 0) return std::nullopt;
-  reporter_.say(Weight::note, "a stop was requested before the start");
+  say(Weight::note, "a stop was requested before the start");
   return Exit::good;
 }
 
 /// Listens for another master on the bus and on LCM. Commands that arrive meanwhile are dropped:
 /// their senders cannot yet have heard from this master.
-void Daemon::listen(OtherMaster& other) {
+void BusRun::listen(OtherMaster& other) {
   DiagnosticSocket* const ear = bus_->diagnostics();
   const std::string status = Channels{network_.plan.name}.status;
-  const Time begin = clocks_.now();
+  const Time begin = front_.clocks.now();
   Time until = begin + lcm_patience;
   const Time frames_until = ear != nullptr ? begin + other.listening_time() : begin;
   bool lcm_is_there = false;
-  for (Time now = begin; now < std::max(frames_until, until); now = clocks_.now()) {
+  std::vector<pollfd> descriptors;
+  for (Time now = begin; now < std::max(frames_until, until); now = front_.clocks.now()) {
     if (other.refusal() || StopSignal::count() > 0) return;
-    descriptors_.clear();
-    if (ear != nullptr) descriptors_.push_back({.fd = ear->fd(), .events = POLLIN, .revents = 0});
-    link_->watch(descriptors_);
-    wait_.wait(descriptors_, never, std::min(std::max(frames_until, until), now + look));
+    descriptors.clear();
+    if (ear != nullptr) descriptors.push_back({.fd = ear->fd(), .events = POLLIN, .revents = 0});
+    link_->watch(descriptors);
+    front_.wait.wait(descriptors, never, std::min(std::max(frames_until, until), now + look));
     if (ear != nullptr) ear->poll([&](const StampedFrame& heard) { other.on_frame(heard.frame); });
     link_->serve([&](std::string_view channel, Bytes data) {
       if (channel != status) return;
@@ -150,23 +148,24 @@ void Daemon::listen(OtherMaster& other) {
     });
     if (lcm_is_there || link_->url().empty()) continue;
     lcm_is_there = true;
-    until = clocks_.now() + (link_->url().starts_with("memq") ? Time{0} : status_listening);
+    until = front_.clocks.now() + (link_->url().starts_with("memq") ? Time{0} : status_listening);
   }
 }
 
-std::optional<Exit> Daemon::open_black_box() {
+std::optional<Exit> BusRun::open_black_box() {
   const RecordingOptions& wanted = network_.recording;
-  const std::string& folder = options_.black_box.empty() ? wanted.folder : options_.black_box;
+  const std::string& folder =
+      front_.options.black_box.empty() ? wanted.folder : front_.options.black_box;
   if (folder.empty()) return std::nullopt;
   RecordingHead head{.bus = network_.plan.name,
                      .interface = network_.plan.interface,
-                     .network = options_.network_file,
+                     .network = front_.options.network_file,
                      .fingerprint = plan_fingerprint(network_.plan),
-                     .observe = options_.observe};
+                     .observe = front_.options.observe};
   const auto opened = recorder_.open({.folder = folder, .bytes = wanted.bytes, .keep = wanted.keep},
                                      network_.plan, std::move(head));
   if (opened) return std::nullopt;
-  reporter_.say(Weight::error, opened.error());
+  say(Weight::error, opened.error());
   return Exit::wrong_use;
 }
 

@@ -1,0 +1,221 @@
+#include "apps/taktd/bus_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <future>
+#include <utility>
+
+#include "apps/taktd/bus_choice.hpp"
+#include "apps/taktd/process/time_limits.hpp"
+#include "apps/taktd/summary.hpp"
+#include "master/explain/boot_report.hpp"
+#include "master/lcm/random_number.hpp"
+#include "master/linux/start_thread.hpp"
+
+namespace takt {
+namespace {
+
+constexpr Time patience = std::chrono::seconds{1};  // beyond the limit of the ordered stop
+constexpr std::size_t heap_bytes = 8 << 20;
+
+}  // namespace
+
+BusRun::BusRun(LoadedNetwork network, const FrontThread& front)
+    : network_{std::move(network)},
+      front_{front},
+      bus_name_{choose_bus(front.options, network_)},
+      session_{random_number()},
+      recorder_{[this](Weight weight, const std::string& text) { say(weight, text); }} {
+  if (front.options.rt) network_.realtime.mode = *front.options.rt;
+  if (front.options.typed) network_.lcm.typed = *front.options.typed;
+}
+
+std::thread BusRun::start_bus_thread(std::function<void()> body) {
+  std::promise<RtReport> promise;
+  auto report = promise.get_future();
+  auto thread = start_thread([options = network_.realtime, body = std::move(body),
+                              promise = std::move(promise)]() mutable {
+    ::pthread_setname_np(::pthread_self(), "takt-bus");
+    const RtReport granted = apply_realtime(options);
+    promise.set_value(granted);
+    if (granted.may_run()) body();
+  });
+  if (!thread) {
+    say(Weight::error,
+        std::string{"the bus thread can't be created: "} + std::strerror(thread.error()));
+    return {};
+  }
+  realtime_ = report.get();
+  bus_thread_runs_ = true;
+  return std::move(*thread);
+}
+
+std::optional<Exit> BusRun::start() {
+  const bool observe = front_.options.observe;
+  prefault_heap(heap_bytes);
+  master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = observe});
+  bus_->attach(*master_, recorder_.journal());
+  master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
+  if (!bus_thread_runs_) return Exit::bus_trouble;
+  say(realtime_.complete() ? Weight::note : Weight::warning, "real time: " + to_string(realtime_));
+  if (!realtime_.may_run()) {
+    say(Weight::error,
+        "--rt enforce: taktd does not start, because the requested real-time settings are not "
+        "available");
+    master_->join();
+    return Exit::refused;
+  }
+  say(Weight::note, plan_summary(network_) + "  on " + bus_name_ + ", LCM channels " +
+                        Channels{network_.plan.name}.image + " ...");
+  Transport& lcm = secured_ ? static_cast<Transport&>(*secured_) : *link_;
+  bridge_ = std::make_unique<Bridge>(*master_, lcm, front_.clocks,
+                                     BridgeOptions{.session = session_,
+                                                   .observe = observe,
+                                                   .interface = bus_name_,
+                                                   .realtime = to_string(realtime_),
+                                                   .typed = network_.lcm.typed},
+                                     [this](const Notice& notice) { on_notice(notice); });
+  recorder_.attach(*bridge_);
+  if (gateway_) gateway_->attach(*master_, *bridge_);
+  return std::nullopt;
+}
+
+Time BusRun::serve() {
+  const bool image = bridge_->serve();
+  if (image) hear_intruders();
+  if (gateway_) gateway_->serve();
+  if (!stopping_) watch_lateness();
+  recorder_.serve(front_.clocks.now());
+  return bridge_->next_message();
+}
+
+void BusRun::watch(std::vector<pollfd>& descriptors) const {
+  link_->watch(descriptors);
+  if (gateway_) gateway_->watch(descriptors);
+}
+
+void BusRun::hear_intruders() {
+  DiagnosticSocket* const ear = bus_->diagnostics();
+  if (ear == nullptr || front_.options.observe) return;
+  ear->poll();
+  Event event;
+  while (ear->take(event)) bridge_->tell(event);
+}
+
+void BusRun::watch_lateness() {
+  const Time limit = network_.realtime.late_limit;
+  if (network_.realtime.mode != RtMode::enforce || limit == Time{0}) return;
+  const Time latest = master_->timing().sync_lateness.snapshot().maximum();
+  if (latest <= limit) return;
+  using std::chrono::microseconds;
+  stop(Exit::too_late,
+       "SYNC was up to " +
+           std::to_string(std::chrono::duration_cast<microseconds>(latest).count()) +
+           " us late, but the limit is " +
+           std::to_string(std::chrono::duration_cast<microseconds>(limit).count()) + " us");
+}
+
+/// Ends the run if the boot of a mandatory node fails before the node was ever ready, and the next
+/// try will not ask the node in another way. A node that was ready before is booted again by its
+/// plan, while the other nodes go on.
+void BusRun::on_notice(const Notice& notice) {
+  front_.reporter.tell(network_.plan, notice);
+  recorder_.on_fault(notice);
+  if (notice.kind == name(EventKind::stopping)) unconfirmed_.clear();
+  if (notice.kind == name(EventKind::axis_not_stopped)) {
+    unconfirmed_ += (unconfirmed_.empty() ? ": " : "; ") + notice.text;
+  }
+  if (notice.kind == name(EventKind::boot_done)) once_ready_.set(notice.node);
+  const bool failed = notice.kind == name(EventKind::boot_failed) && !notice.asks_on;
+  if (!failed || once_ready_[notice.node]) return;
+  for (const NodePlan& node : network_.plan.nodes) {
+    if (node.id.value() == notice.node && node.mandatory) {
+      stop(Exit::node_missing, "node " + std::to_string(notice.node) + " (" + node.name +
+                                   ") is mandatory and did not boot");
+    }
+  }
+}
+
+void BusRun::on_refused_envelope(const std::string& sentence) {
+  bridge_->tell(Notice{.when = front_.clocks.now(),
+                       .cycle = 0,
+                       .node = 0,
+                       .kind = "envelope_refused",
+                       .weight = Weight::warning,
+                       .text = sentence});
+}
+
+void BusRun::stop(Exit reason, const std::string& why) {
+  if (stopping_) return;
+  const Time limit = network_.plan.stop_timeout + patience;
+  stopping_ = true;
+  exit_ = reason;
+  why_ = why;
+  stop_limit_ = front_.clocks.now() + limit;
+  say(reason == Exit::good ? Weight::note : Weight::error, why + "; the ordered stop begins");
+  front_.service.stopping(limit + last_recording + last_lines);
+  master_->request_stop();
+}
+
+void BusRun::end_of_time() {
+  const std::string why = "the time of --for is over";
+  const std::string missing = front_.options.observe ? "" : never_ready();
+  if (missing.empty()) return stop(Exit::good, why);
+  stop(Exit::node_missing, why + ", and these mandatory nodes were never ready: " + missing);
+}
+
+std::string BusRun::never_ready() const {
+  std::string names;
+  const std::vector<NodeStatus>& statuses = bridge_->status().nodes;
+  for (std::size_t i = 0; i < statuses.size(); ++i) {
+    const NodePlan& node = network_.plan.nodes[i];
+    if (!node.mandatory || !node.boot || statuses[i].boot_count != 0) continue;
+    names += (names.empty() ? "" : ", ") + std::to_string(node.id.value()) + " " + node.name;
+  }
+  return names;
+}
+
+bool BusRun::complete() {
+  master_->join();
+  do {
+    bridge_->serve();
+  } while (bridge_->owes_news());
+  judge_stop();
+  const bool recorded = recorder_.finish(exit_ == Exit::good ? "" : why_, last_recording);
+  say(Weight::note, run_summary(*master_, *bridge_, front_.reporter.told(Weight::error),
+                                front_.reporter.told(Weight::warning)));
+  return recorded;
+}
+
+/// Sets the exit code if some axis was not seen at standstill and disabled.
+void BusRun::judge_stop() {
+  StatusSnapshot snapshot;
+  master_->status(snapshot);
+  if (snapshot.bus.stop_result != StopResult::unconfirmed) return;
+  exit_ = Exit::not_stopped;
+  why_ = "the ordered stop was not confirmed" + unconfirmed_;
+  say(Weight::error, why_);
+}
+
+void BusRun::cut_short(bool by_signal) {
+  say(Weight::error, by_signal ? "stopped at once: the ordered stop did not bring the axes to rest"
+                               : "the ordered stop did not end in time");
+  recorder_.finish_running(
+      why_.empty() ? "stopped at once" : why_ + "; the ordered stop did not end", last_recording);
+  exit_ = exit_of_cut_stop();
+}
+
+/// An axis that is not yet confirmed counts as not stopped.
+Exit BusRun::exit_of_cut_stop() const {
+  StatusSnapshot snapshot;
+  master_->status(snapshot);
+  const auto has_axes = [](const NodePlan& node) { return node.cia402; };
+  if (!front_.options.observe && snapshot.bus.stop_result != StopResult::confirmed &&
+      std::ranges::any_of(network_.plan.nodes, has_axes)) {
+    return Exit::not_stopped;
+  }
+  return exit_ == Exit::good ? Exit::bus_trouble : exit_;
+}
+
+}  // namespace takt
