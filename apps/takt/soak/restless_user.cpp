@@ -29,12 +29,21 @@ void RestlessUser::on_image(const ImageView& image, Time now) {
   }
   for (const SineMotion::Value& next : motion_.next(image)) {
     const Signal& signal = plan_.layout.signals[next.signal];
-    const bool free = !plan_.nodes[signal.node_index].cia402;
-    const std::int64_t any =
-        static_cast<std::int64_t>(image.cycle) & ((1LL << (signal.bits - 1)) - 1);
-    command(next.signal, free && signal.bits > 1 && signal.bits < 63 ? any : next.value, now);
+    const bool free = !plan_.nodes[signal.node_index].cia402 && signal.bits > 1 && signal.bits < 63;
+    command(next.signal, free ? any_value(next.signal, image.cycle) : next.value, now);
   }
   exchange_.set_points.publish(now);
+}
+
+/// Returns a value that changes with each cycle and that `limits:` permits.
+std::int64_t RestlessUser::any_value(SignalIndex signal, std::uint64_t cycle) const {
+  std::int64_t most = (1LL << (plan_.layout.signals[signal].bits - 1)) - 1;
+  const auto limit = std::ranges::find(plan_.limits.outputs, signal, &OutputLimit::signal);
+  const bool limited = limit != plan_.limits.outputs.end();
+  if (limited && limit->high < static_cast<double>(most)) {
+    most = std::max<std::int64_t>(0, static_cast<std::int64_t>(limit->high));
+  }
+  return static_cast<std::int64_t>(cycle) % (most + 1);
 }
 
 void RestlessUser::ask(Time now) {

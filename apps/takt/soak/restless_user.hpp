@@ -34,6 +34,7 @@ class RestlessUser {
   static constexpr Time patience = std::chrono::seconds{120};  ///< limit for one reply
 
   void command(SignalIndex signal, std::int64_t value, Time now);
+  std::int64_t any_value(SignalIndex signal, std::uint64_t cycle) const;
   Request request();
   void choose_object(Request& request);
   void submit(Request request, Time now);

@@ -38,6 +38,14 @@ std::optional<SourcePos> first_place(const AxisLimitsSpec& limits) {
   return std::nullopt;
 }
 
+/// Returns true if the device file calls the object a control word or a bit field. The data type
+/// does not tell bits from a number, and only CiA 402 has an index for control words.
+bool has_name_of_bits(const Signal& output) {
+  constexpr std::array<std::string_view, 3> names{"control_word", "controlword", "bit_field"};
+  return std::ranges::any_of(
+      names, [&](std::string_view name) { return output.name.find(name) != std::string::npos; });
+}
+
 class LimitsCompiler {
  public:
   LimitsCompiler(std::span<const NodePdos> nodes, BusPlan& plan, NetworkReport& report)
@@ -92,12 +100,13 @@ class LimitsCompiler {
     }
   }
 
-  /// Returns false for bits, for digital outputs (CiA 401) and for the objects of a drive, whose
-  /// limits are those of its axis.
+  /// Returns false for bits, control words and digital outputs (CiA 401), and for the objects of a
+  /// drive, whose limits are those of its axis.
   bool needs_range(const Signal& output) const {
     const std::uint16_t index = output.object.index;
     const bool of_axis = plan_.nodes[output.node_index].cia402 && index >= 0x6000 && index < 0xA000;
-    const bool digital = output.bits <= 8 || (index >= 0x6200 && index < 0x6400);
+    const bool digital =
+        output.bits <= 8 || (index >= 0x6200 && index < 0x6400) || has_name_of_bits(output);
     const auto limits_it = [&](const LimitLine& line) {
       return line.node_index == output.node_index && line.axis == 0 && line.object == output.object;
     };

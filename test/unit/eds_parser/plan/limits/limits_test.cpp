@@ -162,6 +162,16 @@ TEST(Limits, OfASingleOutputAreNotProposedAgain) {
       << "the controlword and the set-points of a drive";
 }
 
+TEST(Limits, OfControlWordsAndBitFieldsAreNotProposed) {
+  for (const std::string name : {"Control word", "PDO2 ControlWord 1", "Bit field of valves"}) {
+    std::string eds = tiny_eds();
+    const std::size_t at = eds.find("ParameterName=", eds.find("[2003]\n")) + 14;
+    eds.replace(at, eds.find('\n', at) - at, name);
+    EXPECT_THAT(text_of(drive("", "{index: 0x2003}", units, eds)), Not(HasSubstr("2003:00  range")))
+        << name;
+  }
+}
+
 TEST(Limits, AreAbsentWhereNobodyGivesThem) {
   EXPECT_THAT(drive("").plan.limits.outputs, IsEmpty());
 }
