@@ -7,6 +7,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/budget/left_out.hpp"
@@ -124,7 +125,7 @@ int run(const Options& options) {
   bool readable = true;
   for (const Finding& finding : network.findings) {
     if (finding.severity == Severity::note || is_too_full(finding)) continue;
-    std::cerr << to_string(finding) << '\n';
+    std::cerr << finding_text(finding) << '\n';
     readable = readable && finding.severity != Severity::error;
   }
   return readable ? report(options, network, changes, how) : wrong_use;

@@ -15,6 +15,7 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -108,7 +109,9 @@ class Printer {
     if (options_.json) {
       print_json(line, meaning);
     } else {
-      fmt::print("{:<62}  {:<9} {}\n", to_string(line), meaning.service, meaning.text);
+      const std::string text =
+          fmt::format("{:<62}  {:<9} {}", to_string(line), meaning.service, meaning.text);
+      fmt::print("{}\n", printable_text(text));
     }
     return ++printed_ != options_.count;
   }
@@ -245,7 +248,7 @@ int run(const Options& options) {
     if (is_network(file) && !network) {
       network = load_network(file);
       for (const Finding& finding : network->findings) {
-        if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", to_string(finding));
+        if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", finding_text(finding));
       }
       if (has_error(network->findings)) return usage;
     } else if (!log) {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/eds_commands.hpp"
 #include "eds_parser/check/check.hpp"
@@ -43,7 +44,7 @@ EdsFile read_and_check(const std::string& path, unsigned node) {
 int show(const ShowOptions& options) {
   const auto file = read_and_check(options.file, options.node);
   if (!file.readable) {
-    for (const auto& finding : file.findings) std::cerr << to_string(finding) << '\n';
+    for (const auto& finding : file.findings) std::cerr << finding_text(finding) << '\n';
     return 1;
   }
   if (options.json) {
@@ -77,7 +78,7 @@ int check_files(const CheckOptions& options) {
     if (options.json) {
       judged.push_back({path, file.readable, std::move(file.findings)});
     } else {
-      for (const auto& finding : file.findings) std::cout << to_string(finding) << '\n';
+      for (const auto& finding : file.findings) std::cout << finding_text(finding) << '\n';
     }
   }
   if (options.json) print_findings_json(std::cout, judged);

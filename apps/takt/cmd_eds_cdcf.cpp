@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -54,7 +55,7 @@ int encode(const Options& options) {
   const auto [entries, findings] =
       configured_values(read_eds_file(options.file, NodeId::from(options.node)));
   for (const auto& finding : findings) {
-    if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
+    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
   }
   if (has_error(findings)) return 1;
   if (entries.empty()) {

@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -40,7 +41,7 @@ int run(const Options& options) {
   const auto source = read_whole_file(options.file);
   if (!source) return complain(source.error(), 1);
   const auto dcf = write_dcf(*source, options.file, wanted);
-  for (const auto& finding : dcf.findings) std::cerr << to_string(finding) << '\n';
+  for (const auto& finding : dcf.findings) std::cerr << finding_text(finding) << '\n';
   if (has_error(dcf.findings)) return 1;
   const auto written = write_whole_file(options.out, dcf.text);
   return written ? 0 : complain(written.error(), 1);

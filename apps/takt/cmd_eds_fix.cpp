@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/takt/eds_commands.hpp"
@@ -40,7 +41,7 @@ int run(const Options& options) {
   const FixedEds fixed = fix_eds(*source, options.file);
   for (const Finding& finding : fixed.left) {
     if (options.quiet && finding.severity == Severity::note) continue;
-    std::cerr << to_string(finding) << '\n';
+    std::cerr << finding_text(finding) << '\n';
   }
   if (!fixed.readable) return 1;
   const std::string name = options.out.empty() || options.out == "-" ? options.file : options.out;

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "eds_parser/export/cpp_header.hpp"
@@ -53,7 +54,7 @@ Exported as_json(const LoadedNetwork& network, const Options&) {
 int run(const Options& options, Export make) {
   const LoadedNetwork network = load_network(options.file);
   for (const Finding& finding : network.findings) {
-    if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
+    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
   }
   if (has_error(network.findings)) return 2;
   std::error_code error;

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_diff.hpp"
@@ -39,7 +40,7 @@ bool told_good(const LoadedNetwork& network, bool quiet) {
   const bool bad = has_error(network.findings);
   for (const Finding& finding : network.findings) {
     if (finding.severity == Severity::note && (quiet || bad)) continue;
-    std::cerr << printable_text(to_string(finding)) << '\n';
+    std::cerr << finding_text(finding) << '\n';
   }
   return !bad;
 }
@@ -71,7 +72,7 @@ int diff(const PlanOptions& options) {
   if (options.json) {
     print_plan_diff_json(std::cout, first, second, node);
   } else {
-    std::cout << text;
+    std::cout << printable_lines(text);
   }
   return text.empty() ? 0 : 1;
 }
@@ -83,10 +84,12 @@ struct DeviceDataPlans {
 };
 
 void print_device_diff(const DeviceDataPlans& plans, const NodePlan& node) {
-  std::cout << "node " << unsigned{node.id.value()} << ' ' << node.name << ": " << node.device_data
-            << " (" << node.device_data_file << ")\n"
-            << node_diff({plans.without, "without device data"},
-                         {plans.with, node.device_data_file}, node.id);
+  std::ostringstream text;
+  text << "node " << unsigned{node.id.value()} << ' ' << node.name << ": " << node.device_data
+       << " (" << node.device_data_file << ")\n"
+       << node_diff({plans.without, "without device data"}, {plans.with, node.device_data_file},
+                    node.id);
+  std::cout << printable_lines(text.str());
 }
 
 void print_device_diffs_json(const DeviceDataPlans& plans, const std::vector<NodePlan>& nodes,

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/print/plan/plan_fingerprint.hpp"
 #include "master/black_box/replay.hpp"
@@ -61,8 +62,7 @@ int run(const Options& options) {
   const std::string file = find_network(options, recording->head);
   LoadedNetwork network = load_network(file);
   for (const Finding& finding : network.findings) {
-    if (finding.severity == Severity::error)
-      fmt::print(stderr, "{}\n", printable_text(to_string(finding)));
+    if (finding.severity == Severity::error) fmt::print(stderr, "{}\n", finding_text(finding));
   }
   if (has_error(network.findings)) {
     if (!options.network.empty()) return usage;
@@ -72,7 +72,7 @@ int run(const Options& options) {
   if (plan_fingerprint(network.plan) != recording->head.fingerprint) {
     fmt::print(stderr,
                "takt replay: {} or its EDS files have changed since the recording was made\n",
-               file);
+               printable_text(file));
   }
   network.plan.name = recording->head.bus;
   network.plan.interface = recording->head.interface;

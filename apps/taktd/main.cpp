@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/command_line/finding_text.hpp"
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/daemon.hpp"
 #include "apps/taktd/daemon_options.hpp"
@@ -41,7 +42,7 @@ bool has_good_keys(const DaemonOptions& options, const LoadedNetwork& network) {
 int run(const DaemonOptions& options) {
   LoadedNetwork network = load_network(options.network_file);
   for (const Finding& finding : network.findings) {
-    std::fprintf(stderr, "%s\n", printable_text(to_string(finding)).c_str());
+    std::fprintf(stderr, "%s\n", finding_text(finding).c_str());
   }
   if (has_error(network.findings)) return static_cast<int>(Exit::wrong_use);
   if (options.check) {

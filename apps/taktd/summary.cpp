@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "master/lcm/printable_text.hpp"
+
 namespace takt {
 namespace {
 
@@ -31,7 +33,7 @@ std::string plan_summary(const LoadedNetwork& network) {
                         node.boot_plan.steps.size(), node.description_file,
                         node.mandatory ? ", mandatory" : "");
   }
-  return text;
+  return printable_lines(text);  // the names of device files come from the network file
 }
 
 std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_t errors,

@@ -180,7 +180,7 @@ Json json_of(const Finding& finding) {
 /// Replaces bytes that are not UTF-8, for example in a file name, because they must not end the
 /// program.
 std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
 /// Prints `"name":[` and one item on each line.

@@ -37,7 +37,7 @@ void print_findings_json(std::ostream& out, std::span<const JudgedFile> files) {
   json["errors"] = count(Severity::error);
   json["warnings"] = count(Severity::warning);
   json["notes"] = count(Severity::note);
-  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << json.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace takt

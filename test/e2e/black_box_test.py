@@ -72,6 +72,30 @@ def record(binaries, folder, network, url):
     return sorted(box.glob("*.log"), key=lambda log: log.stat().st_mtime_ns)
 
 
+def check_foreign_texts(binaries, folder, log):
+    """A recording of somebody else may contain anything. None of its control characters may be printed."""
+    strange = "\x1b[31m\x07\x7f\x9b"  # ESC, BEL, DEL, CSI of C1
+    events_file = log.with_suffix(".events.json")
+    original = events_file.read_text()
+    network = folder / f"{strange}.yaml"
+    network.write_text((folder / "net.yaml").read_text().replace("period: 20000", "period: 10000"))
+    for network_name in (str(network), f"missing{strange}.yaml"):
+        events = json.loads(original)
+        events["network"] = network_name
+        for key in ("bus", "interface", "reason"):
+            events[key] = key + strange
+        for event in events["events"]:
+            event["text"] += strange
+        events_file.write_text(json.dumps(events))
+        done = subprocess.run([f"{binaries}/takt", "replay", log], capture_output=True)
+        told = (done.stdout + done.stderr).decode()
+        if "[31m" not in told:
+            sys.exit(f"replay quotes nothing of the recording: {told}")
+        if any(c in told for c in "\x1b\x07\x7f\x9b"):
+            sys.exit(f"replay prints control characters: {told!r}")
+    events_file.write_text(original)
+
+
 def main(binaries):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -92,6 +116,8 @@ def main(binaries):
 
         dump = subprocess.run([f"{binaries}/takt", "dump", network, first], capture_output=True, text=True)
         check(dump.returncode == 0 and dump.stdout.count("\n") == events["frames"], "takt dump reads the log", dump)
+
+        check_foreign_texts(binaries, folder, first)
 
         text = first.read_text()
         vendor = " 58A#43181001CDAB0000"

@@ -136,8 +136,8 @@ ROOMS = {
                                    "apps/axis master master/gateway master/lcm master/rt " + SIM),
     "apps/takt/simulate": ("runs a whole network in virtual time, and reports the outcome",
                            "apps/command_line apps/axis apps/takt/simulate/program eds_parser/network_file eds_parser/report "
-                           "eds_parser/ini master/core master/explain master/gateway/command master/rt master/rt/exchange "
-                           "master/linux/bus " + SIM),
+                           "eds_parser/ini master/core master/explain master/gateway/command master/lcm master/rt "
+                           "master/rt/exchange master/linux/bus " + SIM),
     "apps/takt/soak/judge": ("checks the invariants of a run",
                              "master/wire master/core master/rt/exchange master/sim/device " + SIM),
     "apps/takt/soak": ("runs random sequences of faults",

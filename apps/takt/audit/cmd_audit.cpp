@@ -4,6 +4,7 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/audit/ask_devices.hpp"
 #include "apps/takt/audit/audit_report.hpp"
@@ -87,7 +88,7 @@ std::optional<LiveError> ask(const Arguments& arguments, const LoadedNetwork& ne
 int run(const Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
   for (const Finding& finding : network.findings) {
-    if (finding.severity != Severity::note) std::cerr << to_string(finding) << '\n';
+    if (finding.severity != Severity::note) std::cerr << finding_text(finding) << '\n';
   }
   if (has_error(network.findings)) return 2;
   std::vector<DeviceValues> values;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/json_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -93,7 +94,7 @@ void print_text(const Options& options, const Imported& imported) {
     fmt::print("taktd also sets these values, which the file does not mention:\n");
   for (const std::string& line : report.unasked) fmt::print("  {}\n", line);
   for (const Finding& finding : report.others) {
-    fmt::print("{}\n", printable_text(to_string(finding)));
+    fmt::print("{}\n", finding_text(finding));
   }
   if (is_nodelist(options)) {
     fmt::print("{}\n", last_line(options, imported));

@@ -6,6 +6,7 @@
 
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/live_arguments.hpp"
 #include "apps/command_line/text_file.hpp"
 #include "apps/command_line/whole_number.hpp"
@@ -53,7 +54,7 @@ std::optional<LearnedBus> listen(const Options& options) {
 void print(const Findings& findings, bool quiet) {
   for (const Finding& finding : findings) {
     if (quiet && finding.severity == Severity::note) continue;
-    std::cerr << to_string(finding) << '\n';
+    std::cerr << finding_text(finding) << '\n';
   }
 }
 

@@ -7,6 +7,7 @@
 #include "apps/command_line/bus_option.hpp"
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/simulate/device_channel.hpp"
 #include "apps/takt/simulate/fault_file.hpp"
@@ -66,7 +67,7 @@ int run_world(sim::RealtimeWorld& world, std::optional<Time> limit) {
 
 int run(const Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  for (const Finding& finding : network.findings) std::cerr << to_string(finding) << '\n';
+  for (const Finding& finding : network.findings) std::cerr << finding_text(finding) << '\n';
   if (has_error(network.findings)) return 2;
   const std::vector<DeviceTable> devices = chosen(network, arguments);
   if (devices.empty()) return 2;
@@ -75,7 +76,7 @@ int run(const Arguments& arguments) {
       .seed = arguments.seed, .bitrate = network.plan.bitrate, .one_bit_rate = false};
   if (!arguments.faults.empty()) {
     FaultFile file = read_fault_file(arguments.faults, network.plan);
-    for (const Finding& finding : file.findings) std::cerr << to_string(finding) << '\n';
+    for (const Finding& finding : file.findings) std::cerr << finding_text(finding) << '\n';
     if (has_error(file.findings)) return 2;
     options.faults = std::move(file.faults);
   }

@@ -4,6 +4,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/simulate/fault_file.hpp"
 #include "apps/takt/simulate/outcome_report.hpp"
@@ -22,7 +23,7 @@ struct Arguments {
 };
 
 bool tell(const Findings& findings) {
-  for (const Finding& finding : findings) std::cerr << to_string(finding) << '\n';
+  for (const Finding& finding : findings) std::cerr << finding_text(finding) << '\n';
   return has_error(findings);
 }
 

@@ -4,6 +4,7 @@
 
 #include "apps/takt/simulate/outcome_report.hpp"
 #include "master/explain/boot_report.hpp"
+#include "master/lcm/printable_text.hpp"
 
 namespace takt {
 namespace {
@@ -105,7 +106,7 @@ void print_events(std::ostream& out, const SimulationOutcome& outcome) {
                          : "");
   for (std::size_t i = 0; i < std::min(shown_events, outcome.events.size()); ++i) {
     out << fmt::format("  {:>11.3f} ms  {}\n", us(outcome.events[i].when) / 1e3,
-                       outcome.events[i].text);
+                       printable_text(outcome.events[i].text));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "apps/command_line/commands.hpp"
 #include "apps/command_line/duration.hpp"
+#include "apps/command_line/finding_text.hpp"
 #include "apps/command_line/known_words.hpp"
 #include "apps/command_line/whole_number.hpp"
 #include "apps/takt/soak/soak_jobs.hpp"
@@ -84,7 +85,7 @@ void add(Sum& sum, const SoakReport& report) {
 
 int run(Arguments& arguments) {
   const LoadedNetwork network = load_network(arguments.network);
-  for (const Finding& finding : network.findings) std::cerr << to_string(finding) << '\n';
+  for (const Finding& finding : network.findings) std::cerr << finding_text(finding) << '\n';
   if (has_error(network.findings)) return 2;
   SoakPlan& plan = arguments.plan;
   plan.run.duration = *parse_duration(arguments.run_for);

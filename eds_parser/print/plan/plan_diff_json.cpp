@@ -29,7 +29,7 @@ std::string name_of(std::optional<NodeId> node, const PlanSide& before, const Pl
 }
 
 void print(std::ostream& out, const Json& json) {
-  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << json.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace

@@ -267,7 +267,7 @@ void print_plan_json(std::ostream& out, const BusPlan& plan, const PlanPrint& wh
                         {"signals", std::move(signals)}}},
                       {"limits", std::move(limits)},
                       {"lcm", {{"url", what.lcm.url}, {"channels", std::move(channels)}}}};
-  out << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << document.dump(2, ' ', true, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace takt

@@ -92,7 +92,7 @@ TEST(Hostile, JsonOfAnyBytesIsJson) {
   print_json(out, file.dictionary, file.findings);
   print_text(out, file.dictionary);
 
-  EXPECT_NE(out.str().find(R"("default":"\"\\€ä)"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find(R"("default":"\"\\\u20ac\u00e4)"), std::string::npos) << out.str();
 }
 
 }  // namespace
