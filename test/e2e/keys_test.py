@@ -58,8 +58,12 @@ def main(binaries):
             url = re.search(r"LCM_DEFAULT_URL=(tcpq://\S+)", log.read_text())[1]
             read = ["sdo", "read", "io", "1000", "u32", "--lcm-url", url]
             until("an answer to who has the key", lambda: takt(binaries, *read, "--keys", keys).returncode == 0)
-            unsigned = takt(binaries, *read)
-            assert unsigned.returncode == 3 and "does it require a key" in unsigned.stderr, unsigned
+            for request in (read, ["sdo", "upload", "io", "1008", folder / "name", "--lcm-url", url],
+                            ["nmt", "start", "io", "--lcm-url", url], ["record", "--lcm-url", url],
+                            ["lss", "unconfigured", "--lcm-url", url], ["param", "read", "io", "P15.13", "--lcm-url", url]):
+                unsigned = takt(binaries, *request)
+                assert unsigned.returncode == 3, unsigned
+                assert "accepts requests only from programs with a key" in unsigned.stderr, unsigned
             until("a word about it", lambda: "the message came without an envelope" in log.read_text())
 
             status = ["status", "--check-images", "--lcm-url", url]

@@ -16,6 +16,9 @@ namespace takt {
 namespace {
 
 constexpr Time find_limit = std::chrono::milliseconds{2500};
+/// The daemon reports refusals of the same kind once a second. A request that it may have refused
+/// without a report is sent again after this time; a request that it has accepted is served once.
+constexpr Time refusal_pause = std::chrono::milliseconds{1100};
 constexpr Time settle =
     std::chrono::milliseconds{250};  // every bus sends a status within this time
 
@@ -120,7 +123,8 @@ std::expected<DaemonClient, LiveError> DaemonClient::find(const LiveOptions& opt
     if (!keys) return std::unexpected{LiveError{keys.error(), 2}};
     seal.emplace(keys->front(), random_number());
   }
-  auto lcm = open_live(options, {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE")});
+  auto lcm = open_live(
+      options, {any_bus("STATUS"), any_bus("REPLY"), any_bus("TRANSFER_STATE"), any_bus("EVENT")});
   if (!lcm) return std::unexpected{lcm.error()};
   BusViews views;
   const auto found = [&] { return !chosen(views, options.bus_name).empty(); };
@@ -157,25 +161,60 @@ std::expected<reply_t, LiveError> DaemonClient::ask(request_t request, Time limi
   request.session = status_.session;
   request.id = new_request_id();
   request.sender = "takt-" + std::to_string(::getpid());
-  send("REQUEST", encode(request, buffer));
+  const Bytes message = encode(request, buffer);
   const std::string answers = channel_name(status_.bus, "REPLY");
   const Time until = monotonic_now() + limit;
+  Time repeat_at = seal_ ? until : monotonic_now() + refusal_pause;
   std::optional<reply_t> answer;
-  while (!answer && monotonic_now() < until) {
-    lcm_.serve(
-        [&](std::string_view channel, std::span<const std::byte> data) {
+  send("REQUEST", message);
+  while (!answer && !lacks_key_ && monotonic_now() < until) {
+    serve(
+        [&](std::string_view channel, Bytes data) {
           if (channel != answers) return;
           auto reply = decode<reply_t>(data);
           const bool ours = reply && reply->id == request.id && reply->sender == request.sender;
           if (ours) answer = std::move(*reply);
         },
-        until);
+        std::min(until, repeat_at));
+    if (monotonic_now() < repeat_at) continue;
+    repeat_at = until;
+    if (!answer) send("REQUEST", message);
   }
   if (answer) return std::move(*answer);
-  return std::unexpected{LiveError{"the daemon of bus '" + status_.bus + "' did not answer" +
-                                       (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
-                                              : "; does it require a key (--keys)?"),
-                                   3}};
+  return std::unexpected{silence()};
+}
+
+void DaemonClient::serve(const MessageHandler& handler, Time until) {
+  const std::string events = channel_name(status_.bus, "EVENT");
+  lcm_.serve(
+      [&](std::string_view channel, Bytes data) {
+        if (channel == events && !seal_) note_event(data);
+        handler(channel, data);
+      },
+      until);
+}
+
+/// The event may be about another program, but what is refused there is refused here too.
+void DaemonClient::note_event(Bytes data) {
+  const auto event = decode<event_t>(data);
+  if (!event || event->kind != "envelope_refused" || event->session != status_.session) return;
+  for (const char* const what : {"REQUEST", "TRANSFER"}) {
+    lacks_key_ |= event->text.find(' ' + channel_name(status_.bus, what) + ' ') != event->text.npos;
+  }
+}
+
+LiveError DaemonClient::silence() const {
+  const std::string daemon = "the daemon of bus '" + status_.bus + "'";
+  if (lacks_key_) {
+    return {daemon +
+                " accepts requests only from programs with a key: name its key file with --keys "
+                "FILE, or TAKT_KEYS=FILE in the environment",
+            3};
+  }
+  return {daemon + " did not answer" +
+              (seal_ ? "; does it have this key in `lcm: {keys: ...}`?"
+                     : "; does it require a key (--keys)?"),
+          3};
 }
 
 }  // namespace takt

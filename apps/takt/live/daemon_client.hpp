@@ -40,16 +40,25 @@ class DaemonClient {
 
   /// Sends a message on the channel BUS_WHAT, in an envelope if there is a key.
   void send(std::string_view what, Bytes message);
-  /// Gives access to arriving messages, for dialogues of more than one message.
-  LcmClient& lcm() noexcept { return lcm_; }
+  /// Passes arriving messages to `handler`, for dialogues of more than one message. Returns after
+  /// the first ones, at the latest at `until` (monotonic).
+  void serve(const MessageHandler& handler, Time until);
+  /// Returns true if the daemon has refused messages because they came without an envelope, and
+  /// this program has no key.
+  bool lacks_key() const noexcept { return lacks_key_; }
+  /// Explains why there is no answer, and what to do about it.
+  LiveError silence() const;
 
  private:
+  void note_event(Bytes data);
+
   DaemonClient(LcmClient lcm, status_t status, std::optional<EnvelopeSeal> seal)
       : lcm_{std::move(lcm)}, status_{std::move(status)}, seal_{std::move(seal)} {}
 
   LcmClient lcm_;
   status_t status_;
   std::optional<EnvelopeSeal> seal_;  // empty without keys
+  bool lacks_key_ = false;
 };
 
 /// Opens LCM with these options and subscribes to the channels that match `patterns`.

@@ -50,9 +50,9 @@ void FileTransfer::send(transfer_t out) {
 bool FileTransfer::hear(Time until) {
   const std::string channel = channel_name(daemon_.status().bus, "TRANSFER_STATE");
   bool heard = false;
-  while (!heard && monotonic_now() < until) {
-    daemon_.lcm().serve(
-        [&](std::string_view from, std::span<const std::byte> data) {
+  while (!heard && !daemon_.lacks_key() && monotonic_now() < until) {
+    daemon_.serve(
+        [&](std::string_view from, Bytes data) {
           if (from != channel) return;
           auto state = decode<transfer_state_t>(data);
           if (!state || state->id != id_ || state->sender != sender_) return;
@@ -69,8 +69,7 @@ bool FileTransfer::hear(Time until) {
 }
 
 std::unexpected<LiveError> FileTransfer::silent() const {
-  return std::unexpected{
-      LiveError{"the daemon of bus '" + daemon_.status().bus + "' did not answer", 3}};
+  return std::unexpected{daemon_.silence()};
 }
 
 std::expected<void, LiveError> FileTransfer::failure() const {
@@ -85,6 +84,7 @@ std::expected<void, LiveError> FileTransfer::begin(const char* action, std::size
   for (const Time until = monotonic_now() + most_silence; monotonic_now() < until;) {
     send(first);
     if (hear(monotonic_now() + repeat_after)) return failure();
+    if (daemon_.lacks_key()) break;
   }
   return silent();
 }
