@@ -12,6 +12,7 @@
 
 #include "master/lcm/printable_text.hpp"
 #include "master/linux/file_descriptor.hpp"
+#include "master/linux/passing_trouble.hpp"
 
 namespace takt {
 namespace {
@@ -19,6 +20,17 @@ namespace {
 constexpr std::size_t most_bytes = 65536;
 constexpr std::size_t most_keys = 64;
 constexpr std::size_t longest_name = 32;
+
+/// The reason why a file could not be read.
+struct ReadTrouble {
+  std::string sentence;
+  bool passing = false;  ///< another attempt may succeed although the file stays as it is
+};
+
+std::unexpected<ReadTrouble> unreadable(const std::string& path, int error) {
+  return std::unexpected{
+      ReadTrouble{"key file " + path + ": " + std::strerror(error), is_passing_trouble(error)}};
+}
 
 std::unexpected<std::string> failed(const std::string& path, const std::string& why) {
   return std::unexpected{"key file " + path + ": " + why};
@@ -66,16 +78,33 @@ std::expected<void, std::string> check_permissions(const std::string& path,
   return {};
 }
 
-std::expected<std::string, std::string> read_all(int fd, const std::string& path) {
+std::expected<std::string, ReadTrouble> read_all(int fd, const std::string& path) {
   std::string text;
   std::array<char, 4096> chunk;
   for (;;) {
     const ssize_t size = ::read(fd, chunk.data(), chunk.size());
-    if (size < 0) return failed(path, std::strerror(errno));
+    if (size < 0) return unreadable(path, errno);
     if (size == 0) return text;
     text.append(chunk.data(), static_cast<std::size_t>(size));
-    if (text.size() > most_bytes) return failed(path, "the file is longer than 64 KiB");
+    if (text.size() > most_bytes) {
+      return std::unexpected{ReadTrouble{failed(path, "the file is longer than 64 KiB").error()}};
+    }
   }
+}
+
+/// Reads the whole text of a key file that has the right owner and mode.
+std::expected<std::string, ReadTrouble> read_key_file(const std::string& path) {
+  const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
+  if (!file && errno == ELOOP) {
+    return std::unexpected{ReadTrouble{failed(path, "it is not a regular file").error()}};
+  }
+  if (!file) return unreadable(path, errno);
+  struct stat status{};
+  if (::fstat(file.get(), &status) != 0) return unreadable(path, errno);
+  if (auto good = check_permissions(path, status); !good) {
+    return std::unexpected{ReadTrouble{good.error()}};
+  }
+  return read_all(file.get(), path);
 }
 
 bool same_file(const struct stat& a, const struct stat& b) noexcept {
@@ -115,15 +144,8 @@ std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::strin
 }
 
 std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string& path) {
-  const FileDescriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
-  if (!file) {
-    return failed(path, errno == ELOOP ? "it is not a regular file" : std::strerror(errno));
-  }
-  struct stat status{};
-  if (::fstat(file.get(), &status) != 0) return failed(path, std::strerror(errno));
-  if (auto good = check_permissions(path, status); !good) return std::unexpected{good.error()};
-  const auto text = read_all(file.get(), path);
-  if (!text) return std::unexpected{text.error()};
+  const auto text = read_key_file(path);
+  if (!text) return std::unexpected{text.error().sentence};
   return parse_keys(path, *text);
 }
 
@@ -157,9 +179,15 @@ std::expected<WatchedKeyFile, std::string> WatchedKeyFile::open(std::string path
 std::optional<std::expected<void, std::string>> WatchedKeyFile::reread() {
   struct stat now{};
   if (::lstat(path_.c_str(), &now) != 0) now = {};
-  if (!keys_.empty() && same_file(now, seen_)) return std::nullopt;
+  const bool same = same_file(now, seen_);
+  if (!keys_.empty() && same && !retries_) return std::nullopt;
+  const bool told = same && retries_;
   seen_ = now;
-  auto keys = load_keys(path_);
+  const auto text = read_key_file(path_);
+  retries_ = !text && text.error().passing;
+  if (retries_ && told) return std::nullopt;
+  if (!text) return std::unexpected{text.error().sentence};
+  auto keys = parse_keys(path_, *text);
   if (!keys) return std::unexpected{keys.error()};
   keys_ = std::move(*keys);
   return std::expected<void, std::string>{};

@@ -33,7 +33,8 @@ class WatchedKeyFile {
   const std::vector<EnvelopeKey>& keys() const noexcept { return keys_; }
   const std::string& path() const noexcept { return path_; }
   /// Returns std::nullopt if the file is unchanged. Otherwise tells whether the file could be read
-  /// again; after an error the previous keys stay in use.
+  /// again; after an error the previous keys stay in use. If descriptors or memory are missing,
+  /// each further call tries again, and the error is returned only once.
   std::optional<std::expected<void, std::string>> reread();
 
  private:
@@ -42,6 +43,7 @@ class WatchedKeyFile {
   std::string path_;
   std::vector<EnvelopeKey> keys_;
   struct stat seen_{};
+  bool retries_ = false;  ///< the file could not be read for a reason that may pass
 };
 
 }  // namespace takt

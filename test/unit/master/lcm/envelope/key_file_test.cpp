@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "test/support/folder.hpp"
+#include "test/support/no_descriptor_left.hpp"
 
 namespace takt {
 namespace {
@@ -133,6 +134,28 @@ TEST_F(KeyFileTest, IsReadAgainWhenItChangesAndKeepsItsKeysWhenItCantBe) {
   ASSERT_TRUE(read);
   EXPECT_FALSE(*read);
   EXPECT_EQ(file->keys()[0].name, "desk");
+}
+
+TEST_F(KeyFileTest, IsTriedAgainWhileNoDescriptorIsLeftAndTheErrorIsToldOnce) {
+  write("plant " + zeros + "\n");
+  auto file = WatchedKeyFile::open(path);
+  ASSERT_TRUE(file) << file.error();
+  write("desk " + ones + "\n");
+  {
+    const test::NoDescriptorLeft none;
+    const auto read = file->reread();
+    ASSERT_TRUE(read);
+    ASSERT_FALSE(*read);
+    EXPECT_EQ(read->error(), "key file " + path + ": Too many open files");
+    EXPECT_FALSE(file->reread()) << "it is told once";
+    EXPECT_EQ(file->keys()[0].name, "plant");
+  }
+
+  const auto read = file->reread();
+  ASSERT_TRUE(read) << "the file is the same, but it was not read yet";
+  EXPECT_TRUE(*read);
+  EXPECT_EQ(file->keys()[0].name, "desk");
+  EXPECT_FALSE(file->reread());
 }
 
 }  // namespace
