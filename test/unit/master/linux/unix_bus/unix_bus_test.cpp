@@ -1,135 +1,12 @@
-#include "master/linux/unix_bus/unix_bus.hpp"
-
-#include <fcntl.h>
-#include <filesystem>
-#include <fstream>
-#include <gtest/gtest.h>
+// Frames between the members of a bus.
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "master/linux/bus/frame_channel.hpp"
 #include "master/linux/unix_bus/unix_address.hpp"
-#include "master/linux/unix_bus/unix_bus_hub.hpp"
-#include "test/support/folder.hpp"
-#include "test/support/patience.hpp"
+#include "test/unit/master/linux/unix_bus/unix_bus_fixture.hpp"
 
-namespace takt {
+namespace takt::test {
 namespace {
-
-constexpr Time limit = test::patience;  // for another thread; never reached
-
-const Frame sync_frame = make_frame(CobId::base(0x080), {0x01});
-const Frame tpdo = make_frame(CobId::base(0x185), {1, 2, 3, 4, 5, 6, 7, 8});
-
-class UnixBus : public testing::Test {
- protected:
-  UnixBusPort port() {
-    auto opened = UnixBusPort::open({.path = path_, .sync_cob_id = CobId::base(0x080)});
-    EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
-    return std::move(*opened);
-  }
-
-  const test::Folder folder_;
-  const std::string path_ = folder_ / "bus";
-};
-
-/// Receives until `wanted` frames are there.
-std::vector<StampedFrame> receive_all(UnixBusPort& port, std::size_t wanted) {
-  std::vector<StampedFrame> all;
-  const Time until = port.now() + limit;
-  while (all.size() < wanted && port.now() < until) {
-    std::array<StampedFrame, 300> some;
-    port.wait_frame(until);
-    const std::size_t count = port.receive(some);
-    all.insert(all.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
-  }
-  return all;
-}
-
-template <class Condition>
-bool soon(UnixBusPort& port, Condition condition) {
-  const Time until = port.now() + limit;
-  std::array<StampedFrame, 8> some;
-  bool met = condition();  // called only as often as needed, because it may send
-  while (!met && port.now() < until) {
-    port.wait_frame(port.now() + std::chrono::milliseconds{5});
-    port.receive(some);
-    met = condition();
-  }
-  return met;
-}
-
-/// Waits until all members are connected: each has received a frame of the other.
-void make_acquainted(UnixBusPort& a, UnixBusPort& b) {
-  const Time until = a.now() + limit;
-  std::array<StampedFrame, 8> some;
-  bool a_heard = false;
-  bool b_heard = false;
-  while (!(a_heard && b_heard) && a.now() < until) {
-    a.send({&tpdo, 1});
-    b.send({&tpdo, 1});
-    b.wait_frame(b.now() + std::chrono::milliseconds{5});
-    a_heard |= a.receive(some) > 0;
-    b_heard |= b.receive(some) > 0;
-  }
-  ASSERT_TRUE(a_heard && b_heard);
-  // Discard the frames in transit; a marker frame of each member ends them.
-  const Frame marker = make_frame(CobId::base(0x7FF), {});
-  a.send({&marker, 1});
-  b.send({&marker, 1});
-  const auto drain = [&](UnixBusPort& port) {
-    for (;;) {
-      const auto got = receive_all(port, 1);
-      if (got.empty() || got.back().frame.id == marker.id) return;
-    }
-  };
-  drain(a);
-  drain(b);
-}
-
-TEST_F(UnixBus, LeavesAFileAloneThatIsNoSocket) {
-  folder_.write("bus", "the only copy");
-
-  const auto opened = UnixBusPort::open({.path = path_});
-
-  ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("takt does not change it"), std::string::npos)
-      << opened.error().message;
-  std::string content;
-  std::getline(std::ifstream{path_}, content);
-  EXPECT_EQ(content, "the only copy");
-  EXPECT_FALSE(std::filesystem::exists(path_ + ".lock")) << "a file of a bus that there is not";
-}
-
-TEST_F(UnixBus, TakesThePlaceOfASocketThatItsHostHasLeft) {
-  const auto address = unix_address(path_);
-  FileDescriptor left{socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
-  ASSERT_EQ(bind(left.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
-  left.reset();
-
-  EXPECT_TRUE(UnixBusPort::open({.path = path_}));
-}
-
-TEST_F(UnixBus, LeavesTheSocketOfAnotherProgramAlone) {
-  const auto address = unix_address(path_);
-  const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
-  for (const int type : {SOCK_STREAM, SOCK_SEQPACKET}) {
-    std::filesystem::remove(path_);
-    const FileDescriptor other{socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
-    ASSERT_EQ(bind(other.get(), generic, sizeof *address), 0);
-    ASSERT_EQ(listen(other.get(), 64), 0);
-
-    const auto opened = UnixBusPort::open({.path = path_});
-
-    ASSERT_FALSE(opened);
-    EXPECT_EQ(opened.error().message, "unix:" + path_ +
-                                          ": another program listens there, and it is not a bus "
-                                          "of takt; the bus needs its own path");
-    const FileDescriptor client{socket(AF_UNIX, type | SOCK_CLOEXEC, 0)};
-    EXPECT_EQ(connect(client.get(), generic, sizeof *address), 0) << "it still answers";
-  }
-}
 
 TEST_F(UnixBus, CarriesAFrameUnchangedToTheOthersButNotToItsSender) {
   UnixBusPort a = port();
@@ -234,51 +111,6 @@ TEST_F(UnixBus, AFullSocketIsToldAsNoBuffers) {
   EXPECT_EQ(a.news().last_error, ENOBUFS);
 }
 
-TEST_F(UnixBus, AnotherProcessTakesOverWhenTheHostIsKilled) {
-  int ready[2];
-  ASSERT_EQ(pipe(ready), 0);
-  const pid_t host = fork();
-  if (host == 0) {
-    auto own = UnixBusPort::open({.path = path_});
-    const char byte = own ? 'y' : 'n';
-    if (write(ready[1], &byte, 1) != 1) _exit(1);
-    for (;;) pause();
-  }
-  char byte = 0;
-  ASSERT_EQ(read(ready[0], &byte, 1), 1);
-  ASSERT_EQ(byte, 'y');
-  UnixBusPort a = port();
-  UnixBusPort b = port();
-  make_acquainted(a, b);
-
-  kill(host, SIGKILL);
-  waitpid(host, nullptr, 0);
-
-  EXPECT_TRUE(soon(a, [&] { return a.news().interface_down; }));
-  EXPECT_EQ(a.send({&tpdo, 1}).error, ENETDOWN);
-  EXPECT_TRUE(soon(a, [&] { return !a.news().interface_down; }));
-  EXPECT_TRUE(soon(b, [&] { return !b.news().interface_down; }));
-  make_acquainted(a, b);
-  close(ready[0]);
-  close(ready[1]);
-}
-
-TEST_F(UnixBus, WhatTheHostHasTakenArrivesAlthoughItEnds) {
-  for (int run = 0; run < 20; ++run) {
-    auto host = std::make_unique<UnixBusPort>(port());
-    UnixBusPort sender = port();
-    UnixBusPort receiver = port();
-    make_acquainted(sender, receiver);
-    const std::vector<Frame> frames(200, sync_frame);
-
-    const std::size_t taken = sender.send(frames).sent;
-    host.reset();
-
-    EXPECT_EQ(receive_all(receiver, taken).size(), taken);
-    EXPECT_EQ(receiver.news().receive_overruns, 0u);
-  }
-}
-
 /// A tool that sends one command and ends does not read the frames that others send in this time.
 TEST_F(UnixBus, WhatAMemberHasSentArrivesAlthoughItEndsWithoutReading) {
   UnixBusPort resident = port();
@@ -293,32 +125,6 @@ TEST_F(UnixBus, WhatAMemberHasSentArrivesAlthoughItEndsWithoutReading) {
 
     ASSERT_EQ(receive_all(resident, 1).size(), 1U) << "in run " << run;
   }
-}
-
-TEST_F(UnixBus, AGuestHostsOnlyWhereNobodyElseDoes) {
-  const auto guest = [this] {
-    return UnixBusPort::open({.path = path_, .member = BusMember::guest});
-  };
-  auto resident = std::make_unique<UnixBusPort>(port());
-  auto among_others = guest();
-  ASSERT_TRUE(among_others);
-  resident.reset();
-
-  EXPECT_FALSE(connect_unix(*unix_address(path_))) << "the guest has taken over";
-
-  auto alone = guest();
-  ASSERT_TRUE(alone);
-  EXPECT_TRUE(soon(*alone, [&] { return !alone->news().interface_down; }));
-  EXPECT_TRUE(connect_unix(*unix_address(path_)));
-}
-
-TEST_F(UnixBus, ExactlyOneHubHosts) {
-  auto first = UnixBusHub::join(path_);
-  auto second = UnixBusHub::join(path_);
-
-  ASSERT_TRUE(first && second);
-  EXPECT_TRUE(first->hosting());
-  EXPECT_FALSE(second->hosting());
 }
 
 TEST_F(UnixBus, GarbageOfAClientReachesNobody) {
@@ -341,63 +147,5 @@ TEST_F(UnixBus, GarbageOfAClientReachesNobody) {
   EXPECT_EQ(got[0].frame, tpdo);
 }
 
-TEST_F(UnixBus, APathThatIsTooLongIsRefusedWithASentence) {
-  const auto opened = UnixBusPort::open({.path = std::string(200, 'x')});
-
-  ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("107"), std::string::npos);
-}
-
-TEST(SocketPairBus, EchoesTheSyncThatTheDevicesHaveSeen) {
-  auto [master, end] = make_socket_pair_bus();
-  FrameChannel devices{std::move(end)};
-  const Time before = master.now();
-
-  master.send({&sync_frame, 1});
-  StampedFrame seen;
-  ASSERT_TRUE(devices.receive(seen, limit));
-  devices.send(tpdo);
-
-  std::array<StampedFrame, 4> in;
-  ASSERT_EQ(master.receive(in), 1U);
-  EXPECT_EQ(seen.frame, sync_frame);
-  EXPECT_EQ(in[0].frame, tpdo);
-  EXPECT_GE(master.news().last_sync_echo, before);
-}
-
-TEST(SocketPairBus, ABatchIsFullEvenWhereSomeOfItWasForThePortAlone) {
-  auto [master, devices] = make_socket_pair_bus();
-  std::array<StampedFrame, 8> in;
-  for (int i = 0; i < 3; ++i) master.send({&sync_frame, 1});
-  ASSERT_EQ(devices.receive(in), 3U);  // and gives the echoes back
-  const std::vector<Frame> tpdos(10, tpdo);
-  devices.send(tpdos);
-
-  EXPECT_EQ(master.receive(in), 8U);
-  EXPECT_EQ(master.receive(in), 2U);
-}
-
-TEST(SocketPairBus, GoesDownForGoodWhenTheDevicesEnd) {
-  auto [master, end] = make_socket_pair_bus();
-  {
-    const UnixBusPort gone = std::move(end);
-  }
-
-  std::array<StampedFrame, 4> in;
-  EXPECT_EQ(master.receive(in), 0U);
-
-  EXPECT_TRUE(master.news().interface_down);
-  EXPECT_EQ(master.send({&tpdo, 1}).error, ENETDOWN);
-}
-
-TEST(FrameChannel, RefusesNamesThatAreNoBus) {
-  const auto sim = FrameChannel::open("sim");
-  const auto missing = FrameChannel::open("no_such_can_interface");
-
-  ASSERT_FALSE(sim);
-  ASSERT_FALSE(missing);
-  EXPECT_NE(sim.error().message.find("unix:PATH"), std::string::npos);
-}
-
 }  // namespace
-}  // namespace takt
+}  // namespace takt::test
