@@ -1,7 +1,9 @@
 #include "master/linux/unix_bus/unix_bus_hub.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
@@ -17,6 +19,7 @@
 #include "master/linux/file_descriptor.hpp"
 #include "master/linux/left_socket.hpp"
 #include "master/linux/message_batch.hpp"
+#include "master/linux/passing_trouble.hpp"
 #include "master/linux/start_thread.hpp"
 #include "master/linux/unix_bus/unix_address.hpp"
 #include "master/linux/unix_bus/unix_bus_record.hpp"
@@ -28,6 +31,9 @@ constexpr std::size_t max_clients = 64;
 constexpr std::size_t batch_frames = 64;
 constexpr int takeover_poll_ms = 20;
 constexpr int most_takeovers = 25;  // so many times, a program may find the path taken at its start
+/// After an accept() that failed, for example because no descriptor is left, the client waits in
+/// the kernel, and the listening socket is left alone for so long.
+constexpr Time accept_pause = std::chrono::milliseconds{100};
 constexpr int most_batches = 4096;  // most batches of one client that hand_over() forwards
 
 struct Client {
@@ -95,6 +101,7 @@ class UnixBusHub::Impl {
   FileDescriptor stop_;
   FileDescriptor listener_;
   sockaddr_un address_;
+  Time accept_again_{};
   std::vector<Client> clients_;
   MessageBatch<UnixBusRecord, batch_frames, 0> in_;
   MessageBatch<UnixBusRecord, batch_frames, 0> out_;
@@ -142,7 +149,7 @@ void UnixBusHub::Impl::run() {
   while (!hosting()) {
     if (stopping(takeover_poll_ms)) return;
     const auto hosts = try_to_host();
-    if (!hosts && hosts.error() != EADDRINUSE) return;
+    if (!hosts && hosts.error() != EADDRINUSE && !is_passing_trouble(hosts.error())) return;
   }
   serve();
   hand_over();
@@ -153,11 +160,15 @@ void UnixBusHub::Impl::serve() {
   for (;;) {
     polled.clear();
     polled.push_back({.fd = stop_.get(), .events = POLLIN, .revents = 0});
-    polled.push_back({.fd = listener_.get(), .events = POLLIN, .revents = 0});
+    const Time pause = std::max(Time{}, accept_again_ - monotonic_now());
+    const short awaited = pause > Time{} ? 0 : POLLIN;
+    polled.push_back({.fd = listener_.get(), .events = awaited, .revents = 0});
     for (const Client& client : clients_) {
       polled.push_back({.fd = client.socket.get(), .events = POLLIN, .revents = 0});
     }
-    if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) return;
+    const timespec limit = to_timespec(pause);
+    const timespec* const at_most = pause > Time{} ? &limit : nullptr;
+    if (ppoll(polled.data(), polled.size(), at_most, nullptr) < 0 && errno != EINTR) return;
     if (polled[0].revents != 0) return;
     for (std::size_t i = 0; i < clients_.size(); ++i) {
       if (polled[i + 2].revents != 0) forward_from(clients_[i]);
@@ -181,10 +192,14 @@ void UnixBusHub::Impl::hand_over() {
   }
 }
 
-/// Returns false if no client is waiting.
+/// Returns false if no client is waiting, or if it can't be accepted now.
 bool UnixBusHub::Impl::accept_client() {
   FileDescriptor socket{accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
-  if (!socket) return false;
+  if (!socket) {
+    const bool nobody_waits = errno == EAGAIN || errno == EINTR || errno == ECONNABORTED;
+    if (!nobody_waits) accept_again_ = monotonic_now() + accept_pause;
+    return false;
+  }
   if (clients_.size() == max_clients) return true;
   enlarge_send_buffer(socket.get());
   clients_.push_back({.socket = std::move(socket)});
