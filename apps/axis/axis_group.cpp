@@ -1,6 +1,8 @@
 #include "apps/axis/axis_group.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <ctime>
 #include <poll.h>
 #include <span>
@@ -20,6 +22,14 @@ constexpr int most_rounds = 16;
 /// How often wait() checks whether the newest image is stale.
 constexpr std::chrono::milliseconds longest_pause{1};
 
+/// taktd accepts names of 1 to 64 bytes.
+std::string sender_name(const std::string& program, std::int64_t instance) {
+  constexpr std::size_t longest = 64;
+  std::array<char, 10> digits{};
+  std::snprintf(digits.data(), digits.size(), " %08x", static_cast<std::uint32_t>(instance));
+  return program.substr(0, longest + 1 - digits.size()) + digits.data();
+}
+
 timespec to_timespec(std::chrono::nanoseconds time) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
@@ -30,8 +40,9 @@ timespec to_timespec(std::chrono::nanoseconds time) {
 AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
     : lcm_{std::move(lcm)},
       options_{std::move(options)},
-      holders_{options_.sender},
-      instance_{options_.instance != 0 ? options_.instance : random_number()} {
+      instance_{options_.instance != 0 ? options_.instance : random_number()},
+      sender_{sender_name(options_.sender, instance_)},
+      holders_{sender_} {
   if (options_.bus.empty()) {
     lcm_->subscribe(any_bus("LAYOUT"));
   } else {
@@ -168,7 +179,7 @@ bool AxisGroup::publish(command_t& command) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   command.utime = std::chrono::duration_cast<microseconds>(now).count();
   command.instance = instance_;
-  command.sender = options_.sender;
+  command.sender = sender_;
   command.time_to_live = options_.time_to_live;
   const Bytes message = encode(command, buffer_);
   if (!seal_) return lcm_->publish(command_channel_, message);

@@ -21,8 +21,9 @@ namespace takt {
 struct AxisGroupOptions {
   /// Name of the bus in the network file. Empty selects the first bus whose layout arrives.
   std::string bus;
-  /// Name of the sender in events and in status_t. One sender holds the outputs of a node at a
-  /// time. AxisGroup::holder() tells programs apart by this name, so no other program may have it.
+  /// Name of the program in events and in status_t; AxisGroup::sender() adds digits of the instance
+  /// to it, so several programs may have the same name. One sender holds the outputs of a node at a
+  /// time.
   std::string sender = "axes";
   /// The newest image is stale if it is older than this number of cycles.
   std::int32_t stale_cycles = 5;
@@ -80,6 +81,9 @@ class AxisGroup {
   /// so each application decides for how many status_t another program may hold a node before it
   /// gives up.
   const NodeHolder& holder(AxisControl::Index axis) const;
+  /// Returns the name of this sender in events and in status_t: the name of the options and eight
+  /// hex digits of the instance. It tells two running programs of the same name apart.
+  const std::string& sender() const noexcept { return sender_; }
   /// Returns the name of the bus. Empty if none was configured and no layout has arrived.
   const std::string& bus() const noexcept { return bus_; }
   /// Returns the period of SYNC. 0 means that no layout has arrived yet.
@@ -107,6 +111,8 @@ class AxisGroup {
 
   std::unique_ptr<Transport> lcm_;
   AxisGroupOptions options_;
+  std::int64_t instance_;
+  std::string sender_;
   std::string bus_;
   std::string heard_;  // first bus whose layout arrived; only if no bus was configured
   std::string image_channel_;
@@ -124,7 +130,6 @@ class AxisGroup {
   bool told_schema_ = false;
   bool commands_ = false;  // something was sent since the last release
   Clock::time_point arrival_{};
-  std::int64_t instance_;
   std::optional<EnvelopeSeal> seal_;  // empty if there is no key
   std::vector<event_t> events_;
   std::vector<std::byte> buffer_;

@@ -22,7 +22,7 @@ struct NodeHolder {
 /// Remembers which program holds each node.
 class NodeHolders {
  public:
-  /// `sender` is the name of this program in status_t. No other program may have the same name.
+  /// `sender` is the name of this program in status_t, which no other running program has.
   explicit NodeHolders(std::string_view sender) : sender_{sender} {}
 
   void take(const status_t& part);

@@ -11,7 +11,6 @@
 #include "apps/move/move_run.hpp"
 #include "master/lcm/envelope/checked_transport.hpp"
 #include "master/lcm/envelope/key_file.hpp"
-#include "master/lcm/random_number.hpp"
 
 namespace {
 
@@ -32,14 +31,10 @@ void ask_for_real_time() {
   ::sched_setscheduler(0, SCHED_FIFO, &parameters);
 }
 
-/// The name has digits of the instance, because programs in two containers may have the same
-/// process id.
 takt::AxisGroupOptions group_options(const takt::MoveOptions& options) {
-  const std::int64_t instance = takt::random_number();
   return {.bus = options.bus,
-          .sender = fmt::format("takt-move {} {:04x}", ::getpid(), instance & 0xFFFF),
-          .stale_cycles = options.stale_cycles,
-          .instance = instance};
+          .sender = fmt::format("takt-move {}", ::getpid()),
+          .stale_cycles = options.stale_cycles};
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ sleep 2
 "$prefix/bin/taktd" "$demo" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 started="$! $started"  # before its hub
 for _ in $(seq 100); do
-  "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example$' && exit 0 || sleep 0.5
+  "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example [0-9a-f]*$' && exit 0 || sleep 0.5
 done
 echo "the example does not move the axes of a bus that comes after it" >&2
 exit 1

@@ -54,7 +54,7 @@ TEST_F(Group, CommandsOnItsBusInItsName) {
   EXPECT_EQ(lcm_.published[0].first, "LIFT_COMMAND");
   const auto command = decode<command_t>(lcm_.published[0].second);
   ASSERT_TRUE(command);
-  EXPECT_EQ(command->sender, "test");
+  EXPECT_EQ(command->sender, group_.sender());
   EXPECT_EQ(command->time_to_live, 7);
   EXPECT_EQ(command->cycle, 3);
   EXPECT_NE(command->instance, 0);
@@ -159,7 +159,7 @@ TEST_F(Group, NamesTheProgramThatHoldsAnAxis) {
   EXPECT_EQ(group_.holder(0).name, "");
   EXPECT_FALSE(group_.holder(0).is_other());
 
-  lcm_.arrive("LIFT_STATUS", status("test", "other 12"));
+  lcm_.arrive("LIFT_STATUS", status(group_.sender(), "other 12"));
   group_.wait(0ns);
 
   EXPECT_TRUE(group_.holder(0).own);
@@ -172,7 +172,7 @@ TEST_F(Group, NamesTheProgramThatHoldsAnAxis) {
 TEST_F(Group, CountsTheStatusesInSequenceThatShowTheSameHolder) {
   lcm_.arrive("LIFT_LAYOUT", two_axes());
   for (int i = 0; i < 3; ++i) lcm_.arrive("LIFT_STATUS", status("other 12", "other 12"));
-  lcm_.arrive("LIFT_STATUS", status("test", "other 12"));
+  lcm_.arrive("LIFT_STATUS", status(group_.sender(), "other 12"));
   group_.wait(0ns);
 
   EXPECT_EQ(group_.holder(0).statuses, 1);
@@ -225,6 +225,29 @@ TEST(AxisGroup, CommandsWithTheInstanceOfItsOptions) {
   const auto command = decode<command_t>(lcm.published[0].second);
   ASSERT_TRUE(command);
   EXPECT_EQ(command->instance, 0xAB12);
+  EXPECT_EQ(command->sender, "test 0000ab12");
+}
+
+TEST(AxisGroup, TellsItselfFromAnotherProgramOfTheSameName) {
+  FakeLcm lcm;
+  AxisGroup group{std::make_unique<FakeTransport>(lcm), {.bus = "lift", .sender = "test"}};
+  FakeLcm of_other;
+  const AxisGroup other{std::make_unique<FakeTransport>(of_other),
+                        {.bus = "lift", .sender = "test"}};
+  lcm.arrive("LIFT_LAYOUT", two_axes());
+  lcm.arrive("LIFT_STATUS", status(group.sender(), other.sender()));
+  group.wait(0ns);
+
+  EXPECT_TRUE(group.holder(0).own);
+  EXPECT_TRUE(group.holder(1).is_other());
+  EXPECT_EQ(group.holder(1).name, other.sender());
+}
+
+TEST(AxisGroup, HasASenderOfAtMost64Bytes) {
+  FakeLcm lcm;
+  const AxisGroup group{std::make_unique<FakeTransport>(lcm),
+                        {.bus = "lift", .sender = std::string(64, 'x'), .instance = -1}};
+  EXPECT_EQ(group.sender(), std::string(55, 'x') + " ffffffff");
 }
 
 TEST_F(Group, SurvivesGarbage) {

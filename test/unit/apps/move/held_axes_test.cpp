@@ -37,7 +37,8 @@ class HeldAxes : public ::testing::Test {
   }
 
   FakeLcm lcm_;
-  AxisGroup group_{std::make_unique<FakeTransport>(lcm_), {.bus = "lift", .sender = "me 1 0a0b"}};
+  AxisGroup group_{std::make_unique<FakeTransport>(lcm_),
+                   {.bus = "lift", .sender = "me 1", .instance = 0x0a0b}};
   std::int64_t cycle_ = 0;
 };
 
@@ -48,17 +49,17 @@ TEST_F(HeldAxes, AreNobodysBeforeTheFirstStatus) {
 }
 
 TEST_F(HeldAxes, AreNotAllOwnWhileNobodyHoldsOne) {
-  held_by("me 1 0a0b", "");
+  held_by("me 1 00000a0b", "");
   EXPECT_FALSE(holds_all(group_));
   EXPECT_EQ(held_by_others(group_, 1), "");
-  held_by("me 1 0a0b", "me 1 0a0b");
+  held_by("me 1 00000a0b", "me 1 00000a0b");
   EXPECT_TRUE(holds_all(group_));
 }
 
 TEST_F(HeldAxes, AreToldWithTheNameOfTheirHolder) {
-  held_by("me 1 0a0b", "me 1 0c0d");
+  held_by("me 1 00000a0b", "me 1 00000c0d");
   EXPECT_EQ(held_by_others(group_, 1),
-            "elbow belongs to 'me 1 0c0d', and the commands of this program are refused");
+            "elbow belongs to 'me 1 00000c0d', and the commands of this program are refused");
   EXPECT_FALSE(others_hold_all(group_, 1));
 }
 
@@ -72,7 +73,7 @@ TEST_F(HeldAxes, AreToldInOneLine) {
 
 TEST_F(HeldAxes, AreNotToldBecauseOfOneForgedStatus) {
   held_by("other", "other", 5);
-  held_by("me 1 0a0b", "me 1 0a0b");
+  held_by("me 1 00000a0b", "me 1 00000a0b");
   held_by("other", "other", 5);
   EXPECT_EQ(held_by_others(group_, 6), "");
   held_by("other", "other");
@@ -81,7 +82,7 @@ TEST_F(HeldAxes, AreNotToldBecauseOfOneForgedStatus) {
 
 TEST_F(HeldAxes, HaveNoOldTargetWhenAnotherProgramHasMovedThem) {
   at(100, 100);
-  held_by("other", "me 1 0a0b");
+  held_by("other", "me 1 00000a0b");
   at(900, 120);
 
   rest_where_others_hold(group_);
