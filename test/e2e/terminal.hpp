@@ -1,4 +1,5 @@
 #pragma once
+#include <csignal>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   void press(const std::string& keys) const;
+  void signal(int number) const { ::kill(pid_, number); }
   /// Reads until the program has shown `text` since the last call, and calls `meanwhile`
   /// repeatedly. Returns false if the text does not come within `patience`.
   bool shows(const std::string& text, const std::function<void()>& meanwhile = {});

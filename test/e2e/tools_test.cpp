@@ -223,5 +223,16 @@ TEST(Top, SaysWhereItLooksWhenNoDaemonAnswersAndQuits) {
   EXPECT_EQ(top.wait(), 0);
 }
 
+TEST(Top, LeavesTheTerminalAsItWasAfterEachSignalThatEndsIt) {
+  for (const int number : {SIGINT, SIGTERM, SIGQUIT, SIGHUP}) {
+    Terminal top{{TAKT, "top", "--lcm-url", "tcpq://127.0.0.1:9"}};
+    EXPECT_TRUE(top.shows("no daemon"));
+    top.signal(number);
+    EXPECT_TRUE(top.shows("\033[?1049l")) << number;
+    EXPECT_EQ(top.wait(), 0) << number;
+    EXPECT_TRUE(top.is_as_before()) << number;
+  }
+}
+
 }  // namespace
 }  // namespace takt::test

@@ -63,8 +63,9 @@ bool on_key(int key, TopOptions& options) {
 }
 
 void show_live(LcmClient& lcm, BusViews& views, const std::string& bus_name) {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  for (const int number : {SIGINT, SIGTERM, SIGQUIT, SIGHUP}) {
+    std::signal(number, [](int) { interrupted = true; });
+  }
   const Screen screen;
   TopOptions options;
   Time next_frame = monotonic_now();
