@@ -291,11 +291,19 @@ class NodeText {
 
   /// Returns the reason why a write can't be in the list `sdo`. Empty if it can.
   std::string why_not(const LearnedWrite& write) const {
-    if (!write.transfer.whole) return "parts of the value are not in the recording";
+    if (write.transfer.extent == SdoTransfer::Extent::in_parts) {
+      return "parts of the value are not in the recording";
+    }
+    if (write.transfer.extent == SdoTransfer::Extent::too_long) {
+      return "takt learn does not keep a value of this length";
+    }
     const SubObject* sub = described(write.transfer.object);
     if (sub == nullptr) return "not in " + what_.dcf;
     if (sub->access == Access::ro || sub->access == Access::constant) {
       return "read-only in " + what_.dcf;
+    }
+    if (is_longer_than(write.transfer.value, sub->type)) {
+      return "longer than its type in " + what_.dcf;
     }
     if (!sdo_value_text(write.transfer.value, sub->type))
       return "a network file can't hold this value";

@@ -231,7 +231,7 @@ void Recording::transfer(LearnedNode& node, const std::optional<SdoTransfer>& tr
   }
   if (transfer->kind == SdoTransfer::Kind::write) write(node, *transfer);
   LearnedBoot& now = boot(node);
-  if (!transfer->whole || now.values.size() >= most_objects) return;
+  if (transfer->extent != SdoTransfer::Extent::whole || now.values.size() >= most_objects) return;
   const bool written = transfer->kind == SdoTransfer::Kind::write;
   if (written && now.started) return;  // the configuration has ended
   LearnedValue& value = now.values[transfer->object];

@@ -20,7 +20,7 @@ void SdoObserver::begin(SdoTransfer::Kind kind, ObjectKey object) noexcept {
 
 void SdoObserver::keep(std::span<const std::uint8_t> bytes) {
   if (transfer_.value.size() + bytes.size() > most_kept) {
-    transfer_.whole = false;
+    transfer_.extent = SdoTransfer::Extent::too_long;
     return;
   }
   transfer_.value.insert(transfer_.value.end(), bytes.begin(), bytes.end());
@@ -88,8 +88,9 @@ bool SdoObserver::block_request(const Frame& frame) {
 /// Ends a block transfer after its end was confirmed.
 std::optional<SdoTransfer> SdoObserver::block_end() {
   if (block_.running()) return {};
-  transfer_.whole = block_.has_value();
-  if (transfer_.whole) transfer_.value = block_.take_value();
+  using enum SdoTransfer::Extent;
+  transfer_.extent = block_.has_value() ? whole : block_.is_too_long() ? too_long : in_parts;
+  if (transfer_.extent == whole) transfer_.value = block_.take_value();
   return finish();
 }
 

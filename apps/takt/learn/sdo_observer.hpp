@@ -12,10 +12,15 @@ namespace takt::learn {
 /// One SDO transfer of a recording that has ended, successfully or with an abort.
 struct SdoTransfer {
   enum class Kind : std::uint8_t { read, write };
+  enum class Extent : std::uint8_t {
+    whole,
+    too_long,  ///< the value is longer than what is kept
+    in_parts,  ///< some frames were not recorded
+  };
   Kind kind = Kind::read;
   ObjectKey object;
   std::vector<std::uint8_t> value{};
-  bool whole = true;  ///< false if the value is too long to be kept or parts were not recorded
+  Extent extent = Extent::whole;  ///< which part of the value is known
   std::optional<std::uint32_t> abort_code{};
 };
 

@@ -43,15 +43,26 @@ std::optional<std::string> real_text(double value) {
 
 }  // namespace
 
+bool is_longer_than(std::span<const std::uint8_t> bytes, DataType type) {
+  const std::size_t size = byte_width(type);
+  if (is_bytes(type) || bytes.size() <= size) return false;
+  const bool negative = is_signed(type) && (bytes[size - 1] & 0x80U) != 0;
+  const auto filled_with = [&](std::uint8_t filler) {
+    return std::ranges::all_of(bytes.subspan(size), [=](std::uint8_t b) { return b == filler; });
+  };
+  return !filled_with(0) && !(negative && filled_with(0xFF));
+}
+
 std::optional<std::string> sdo_value_text(std::span<const std::uint8_t> bytes, DataType type) {
   if (is_bytes(type)) return quoted(bytes);
-  if (bytes.empty() || bytes.size() > 8) return {};
+  if (bytes.empty() || bytes.size() > 8 || is_longer_than(bytes, type)) return {};
   const std::uint64_t raw = little_endian(bytes);
   if (type == DataType::real32) {
     const double value = std::bit_cast<float>(static_cast<std::uint32_t>(raw));
     return real_text(value);
   }
   if (type == DataType::real64) return real_text(std::bit_cast<double>(raw));
+  if (type == DataType::boolean && raw > 1) return {};
   const unsigned bits = bit_width(type);
   const std::uint64_t cut = bits == 64 ? raw : raw & ((std::uint64_t{1} << bits) - 1);
   if (is_signed(type)) {

@@ -35,6 +35,8 @@ class BlockText {
   /// Returns the value of a transfer that has just ended. It is complete only if has_value().
   std::vector<std::uint8_t> take_value() { return std::move(value_); }
   bool has_value() const noexcept { return whole_ && !value_.empty(); }
+  /// Returns true if the recording shows all segments, but the value has more bytes than are kept.
+  bool is_too_long() const noexcept { return !whole_ && !gap_; }
 
  private:
   std::string segment(const Frame& frame, const std::string& name);

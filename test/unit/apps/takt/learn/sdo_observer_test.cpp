@@ -146,8 +146,38 @@ TEST(SdoObserver, ALongValueIsNotKeptWhole) {
   const auto done = sdo.answer(answered({0x20, 0, 0, 0, 0, 0, 0, 0}));
 
   ASSERT_TRUE(done);
-  EXPECT_FALSE(done->whole);
+  EXPECT_EQ(done->extent, SdoTransfer::Extent::too_long);
   EXPECT_LE(done->value.size(), SdoObserver::most_kept);
+}
+
+/// Downloads a value of so many segments by block transfer. `lost` of them are not in the
+/// recording.
+std::optional<SdoTransfer> block_download(int segments, int lost) {
+  SdoObserver sdo;
+  sdo.request(sent({0xC0, 0x50, 0x1F, 0x01, 0, 0, 0, 0}));
+  sdo.answer(answered({0xA0, 0x50, 0x1F, 0x01, 100, 0, 0, 0}));
+  for (int i = 1; i <= segments; ++i) {
+    const auto number = static_cast<std::uint8_t>((i - 1) % 100 + 1);
+    const auto last = static_cast<std::uint8_t>(i == segments ? 0x80 : 0);
+    const bool is_lost = i % 100 > 0 && i % 100 <= lost;
+    if (!is_lost)
+      sdo.request(sent({static_cast<std::uint8_t>(number | last), 1, 2, 3, 4, 5, 6, 7}));
+    if (number == 100 || last != 0) sdo.answer(answered({0xA2, number, 100, 0, 0, 0, 0, 0}));
+  }
+  sdo.request(sent({0xC1, 0, 0, 0, 0, 0, 0, 0}));
+  return sdo.answer(answered({0xA1, 0, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST(SdoObserver, TellsABlockThatIsTooLongFromOneWithGaps) {
+  const auto whole = block_download(500, 0);
+  const auto too_long = block_download(600, 0);  // 4200 bytes
+  const auto in_parts = block_download(500, 3);
+
+  ASSERT_TRUE(whole && too_long && in_parts);
+  EXPECT_EQ(whole->extent, SdoTransfer::Extent::whole);
+  EXPECT_EQ(whole->value.size(), 3500U);
+  EXPECT_EQ(too_long->extent, SdoTransfer::Extent::too_long);
+  EXPECT_EQ(in_parts->extent, SdoTransfer::Extent::in_parts);
 }
 
 }  // namespace

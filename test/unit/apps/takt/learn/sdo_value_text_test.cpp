@@ -27,6 +27,17 @@ TEST(SdoValueText, QuotesText) {
   EXPECT_EQ(sdo_value_text(Bytes{0, 0x7F}, DataType::domain), R"("\x00\x7F")");
 }
 
+TEST(SdoValueText, CutsNothingButFillersOfAValueThatIsLongerThanItsType) {
+  EXPECT_EQ(sdo_value_text(Bytes{0xFE, 0xFF, 0xFF, 0xFF}, DataType::integer8), "-2");
+  EXPECT_EQ(sdo_value_text(Bytes{0xFE, 0, 0, 0}, DataType::integer8), "-2");
+  EXPECT_EQ(sdo_value_text(Bytes{5, 1, 0, 0}, DataType::unsigned8), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes{5, 0xFF, 0xFF, 0xFF}, DataType::integer8), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes{0, 0, 0x40, 0x40, 1}, DataType::real32), std::nullopt);
+  EXPECT_EQ(sdo_value_text(Bytes{2}, DataType::boolean), std::nullopt);
+  EXPECT_TRUE(is_longer_than(Bytes{5, 1}, DataType::unsigned8));
+  EXPECT_FALSE(is_longer_than(Bytes{'a', 'b'}, DataType::visible_string));
+}
+
 TEST(SdoValueText, SaysWhatANetworkFileCannotHold) {
   EXPECT_EQ(sdo_value_text(Bytes{0x00, 0xFF}, DataType::octet_string), std::nullopt);
   EXPECT_EQ(sdo_value_text(Bytes{}, DataType::unsigned8), std::nullopt);
