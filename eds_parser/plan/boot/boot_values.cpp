@@ -12,6 +12,7 @@
 #include "eds_parser/dictionary/pdo_description.hpp"
 #include "eds_parser/specification/device_data.hpp"
 #include "eds_parser/specification/object_units.hpp"
+#include "eds_parser/table/real_range.hpp"
 
 namespace takt {
 namespace {
@@ -290,8 +291,9 @@ class ValueSteps {
     }
     tell_quoted(sdo, sub);
     if (const auto* real = std::get_if<double>(&sdo.value)) {
-      if (is_real(sub.type)) return to_bytes(Value{*real}, sub.type);
-      wrong_value(sdo, sub, "takes whole numbers");
+      const bool too_large = sub.type == DataType::real32 && exceeds_real32(*real);
+      if (is_real(sub.type) && !too_large) return to_bytes(Value{*real}, sub.type);
+      wrong_value(sdo, sub, too_large ? "holds at most 3.4e38" : "takes whole numbers");
       return {};
     }
     const auto* integer = std::get_if<std::int64_t>(&sdo.value);

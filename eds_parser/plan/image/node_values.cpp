@@ -4,6 +4,7 @@
 #include <string>
 
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
+#include "eds_parser/table/real_range.hpp"
 
 namespace takt {
 namespace {
@@ -36,10 +37,14 @@ class ValueCheck {
     const SubObject* sub = find(safe.object, safe.pos, "`safe_values`");
     if (sub == nullptr) return;
     const auto* value = std::get_if<std::int64_t>(&safe.value);
-    if (value != nullptr && !fits(*value, sub->type)) {
+    const auto* real = std::get_if<double>(&safe.value);
+    const bool too_large =
+        real != nullptr && sub->type == DataType::real32 && exceeds_real32(*real);
+    if ((value != nullptr && !fits(*value, sub->type)) || too_large) {
       report_.error(safe.value_pos, "out-of-range",
                     "`safe_values` of " + owner() + ": " + object_text(safe.object, *sub) + " (" +
-                        std::string{name(sub->type)} + ") does not hold " + std::to_string(*value));
+                        std::string{name(sub->type)} + ") does not hold " +
+                        (too_large ? "more than 3.4e38" : std::to_string(*value)));
     }
     if (node_.node.spec->has_rpdo_errors || in_an_rpdo(node_, safe.object)) return;
     report_.error(safe.pos, "not-an-output",

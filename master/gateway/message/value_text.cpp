@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "eds_parser/table/real_range.hpp"
 #include "master/gateway/message/units.hpp"
 
 namespace takt {
@@ -123,6 +124,7 @@ std::expected<std::vector<std::byte>, std::string> real_bytes(DataType type,
     return std::unexpected{"'" + text + "' is not a number"};
   }
   if (type == DataType::real32) {
+    if (exceeds_real32(value)) return std::unexpected{text + " does not fit REAL32"};
     return wire_bytes(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4);
   }
   return wire_bytes(std::bit_cast<std::uint64_t>(value), 8);

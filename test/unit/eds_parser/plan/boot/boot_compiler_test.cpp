@@ -37,6 +37,17 @@ TEST(BootCompiler, TextInQuotesIsTextForAStringAndANumberForTheRest) {
   EXPECT_THAT(plain.said("out-of-range"), HasSubstr("takes text in quotes"));
 }
 
+TEST(BootCompiler, ANumberThatARealCannotHoldIsAnError) {
+  const std::string eds =
+      test::tiny_eds() + "[2008]\nParameterName=Gain\nDataType=8\nAccessType=rw\n";
+
+  const auto net = compile(arm("sdo: [{index: 0x2008, value: 3.4e38}]"), eds);
+  const auto wrong = compile(arm("sdo: [{index: 0x2008, value: -1.0e+39}]"), eds);
+
+  EXPECT_THAT(net.complaints(), IsEmpty());
+  EXPECT_THAT(wrong.said("out-of-range"), HasSubstr("2008:00 Gain (REAL32) holds at most 3.4e38"));
+}
+
 TEST(BootCompiler, WholeBootOfATinyDriveInOrder) {
   const auto net = compile(arm("sdo: [{index: 0x6081, value: 1000}]"));
 
