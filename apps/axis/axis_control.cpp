@@ -203,7 +203,14 @@ void AxisControl::set_torques(const Eigen::Ref<const Eigen::VectorXd>& si) {
   }
 }
 
+void AxisControl::set_mode(DriveMode mode) noexcept {
+  mode_ = mode;
+  if (mode == DriveMode::profile_position) return;
+  for (Axis& axis : axes_) axis.handshake = {};
+}
+
 void AxisControl::begin_set_points() {
+  if (mode_ != DriveMode::profile_position) return;
   for (Axis& axis : axes_) axis.handshake.begin();
 }
 

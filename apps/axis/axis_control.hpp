@@ -94,8 +94,9 @@ class AxisControl {
   /// Asks for one fault reset of each axis that has a fault. See DriveSequence::reset_fault().
   void reset_faults();
   /// Sets the mode of operation of all axes, at first DriveMode::cyclic_position. The commands
-  /// carry it for each axis whose 0x6060 is mapped.
-  void set_mode(DriveMode mode) noexcept { mode_ = mode; }
+  /// carry it for each axis whose 0x6060 is mapped. Another mode than profile position ends the
+  /// handshakes of begin_set_points().
+  void set_mode(DriveMode mode) noexcept;
   /// Returns true if every axis shows the commanded mode (0x6061). If 0x6061 of an axis is not
   /// mapped, it is enough that the commands carry the mode (0x6060 is mapped). Returns false if
   /// neither object of an axis is mapped, for then its mode is unknown.
@@ -113,8 +114,9 @@ class AxisControl {
   /// Sets the target torque (0x6071) of each axis that is in Operation enabled; all others stay at
   /// zero. A value that is not finite counts as 0.
   void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
-  /// Starts the handshake that hands the new target positions to the drives, in profile position
-  /// mode only. See SetPointHandshake.
+  /// Starts the handshake that hands the new target positions to the drives. It goes on while they
+  /// are in Operation enabled. See SetPointHandshake. Does nothing if the mode is not profile
+  /// position, because the drives then take target positions without a handshake, or none.
   void begin_set_points();
   /// Returns true if no axis has a handshake left that begin_set_points() started.
   bool set_points_taken() const noexcept;

@@ -199,6 +199,22 @@ TEST_F(TwoAxes, AreRaisedAndLoweredByTheHandshakeInProfilePosition) {
   EXPECT_EQ(commanded(controlword_6), 0x003F);
 }
 
+TEST_F(TwoAxes, HaveNoHandshakeOutsideProfilePosition) {
+  axes_.set_goal(DriveGoal::enabled);
+  see({enabled, enabled, 0, 0});
+  axes_.begin_set_points();
+  EXPECT_TRUE(axes_.set_points_taken()) << "nothing would ever acknowledge it";
+
+  axes_.set_mode(DriveMode::profile_position);
+  axes_.begin_set_points();
+  see({enabled, enabled, 0, 0});
+  EXPECT_FALSE(axes_.set_points_taken());
+  axes_.set_mode(DriveMode::cyclic_position);
+  EXPECT_TRUE(axes_.set_points_taken());
+  see({enabled, enabled, 0, 0});
+  EXPECT_EQ(commanded(controlword_5), 0x000F);
+}
+
 TEST_F(TwoAxes, ShowsTargetsInTheCountsThatTheImageWillShow) {
   axes_.set_goal(DriveGoal::enabled);
   see({enabled, enabled, 0, 0});
