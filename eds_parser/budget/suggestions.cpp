@@ -84,7 +84,8 @@ class Search {
     add("lower priority than all synchronous PDOs for " + names_of(moved), with(moved));
   }
 
-  /// Tries inhibit times of twice the worst-case time of the frame.
+  /// Tries inhibit times of twice the worst-case time of the frame, at most the longest possible
+  /// one. A frame that would need more may fit when the others are sent less often.
   void try_inhibit_times() {
     const auto budget = bus_budget(plan_, options_);
     std::vector<PdoChange> longer;
@@ -94,9 +95,9 @@ class Search {
       });
       if (found == budget.rows.end() || found->fits() || !found->worst) continue;
       auto change = change_of(row);
+      constexpr Time::rep longest_ms = 6553;  // 0xFFFF * 100 us
       const auto ms = std::chrono::ceil<std::chrono::milliseconds>(2 * *found->worst).count();
-      if (ms > 6553) return;
-      change.inhibit_time = static_cast<std::uint16_t>(ms * 10);
+      change.inhibit_time = static_cast<std::uint16_t>(std::min(ms, longest_ms) * 10);
       longer.push_back(std::move(change));
     }
     if (longer.empty() || !fits(with(longer))) return;

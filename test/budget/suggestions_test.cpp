@@ -113,6 +113,43 @@ TEST(Suggestions, WhereNoChangeAloneIsEnoughTwoAreTold) {
   EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
 }
 
+/// At 20 kbit/s: TPDO2 leaves so little room that TPDO3, which has the lowest priority, needs
+/// seconds.
+BusPlan with_a_slow_frame(Time inhibit) {
+  auto plan = hand_made_bus(1, 1s);
+  plan.bitrate = 20'000;
+  for (std::uint16_t number = 2; number <= 3; ++number) {
+    auto row = plan.pdos.tpdos[0];
+    row.number = number;
+    row.cob_id = CobId::base(number == 2 ? 0x190U : 0x500U);
+    row.transmission = 255;
+    row.inhibit = number == 2 ? inhibit : 3s;
+    plan.pdos.tpdos.push_back(row);
+  }
+  compile(plan);
+  return plan;
+}
+
+Time worst_of(const BusPlan& plan, const std::string& name) {
+  for (const BudgetRow& row : bus_budget(plan).rows) {
+    if (row.frame.name == name) return row.worst.value_or(Time::max());
+  }
+  return {};
+}
+
+TEST(Suggestions, AFrameThatNeedsMoreThanTheLongestInhibitTimeDoesNotHideThoseOfOthers) {
+  Time inhibit = 8ms;
+  while (worst_of(with_a_slow_frame(inhibit), "TPDO3 n1") < 3500ms) inhibit -= 2us;
+  const auto plan = with_a_slow_frame(inhibit);
+  ASSERT_LT(worst_of(plan, "TPDO3 n1"), 6500ms) << "it has a bound";
+
+  const auto found = suggestions_for(plan);
+
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].text, "longer inhibit times for TPDO2 n1, TPDO3 n1");
+  EXPECT_TRUE(bus_budget(*changed(plan, found[0].changes)).fits());
+}
+
 /// As typed on the command line.
 WhatIf read_back(const WhatIf& changes) {
   WhatIf out;
