@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <mutex>
 #include <poll.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -46,19 +47,34 @@ std::size_t write_all(int fd, std::string_view text) noexcept {
   return done;
 }
 
+/// Writes what the file accepts at once, although the descriptor may be blocking. A pipe that is
+/// ready accepts a short text as a whole. A terminal may be ready and yet accept nothing, so that
+/// its descriptor is non-blocking during this call; programs that share it hardly notice.
+ssize_t write_at_once(int fd, std::string_view text) noexcept {
+  const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent >= 0 || errno != ENOTSOCK) return sent;
+  const int flags = ::fcntl(fd, F_GETFL);
+  const bool waits = flags >= 0 && (flags & O_NONBLOCK) == 0 && ::isatty(fd) != 0;
+  if (waits && ::fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) return -1;
+  const ssize_t written = ::write(fd, text.data(), text.size());
+  const int error = errno;
+  if (waits) ::fcntl(fd, F_SETFL, flags);
+  errno = error;
+  return written;
+}
+
 enum class Takes : std::uint8_t { more, nothing_now, nothing_ever };
 
-/// Writes what the file accepts until `end` and counts the bytes in `done`. The file may be
-/// blocking, so no write is longer than what a pipe that is ready accepts whole.
+/// Writes what the file accepts until `end` and counts the bytes in `done`.
 Takes write_until(int fd, std::string_view text, Time end, std::size_t& done) noexcept {
-  constexpr std::size_t at_once = 512;
+  constexpr std::size_t at_once = 512;  // a pipe that is ready accepts so many bytes as a whole
   while (done < text.size()) {
     const Time left = std::max(end - monotonic_now(), Time{0});
     const auto ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     pollfd room{.fd = fd, .events = POLLOUT, .revents = 0};
     if (::poll(&room, 1, static_cast<int>(ms)) <= 0) return Takes::nothing_now;
     const std::string_view next = text.substr(done, at_once);
-    const ssize_t written = ::write(fd, next.data(), next.size());
+    const ssize_t written = write_at_once(fd, next);
     if (written > 0) done += static_cast<std::size_t>(written);
     if (written > 0 || (written < 0 && errno == EINTR)) continue;
     if (written == 0 || errno != EAGAIN) return Takes::nothing_ever;

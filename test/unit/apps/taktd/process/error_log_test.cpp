@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "apps/taktd/process/open_again.hpp"
@@ -137,6 +138,34 @@ TEST(ErrorLog, WithoutAThreadWaitsForNoTerminalThatNobodyReads) {
 
   EXPECT_FALSE(log.flush(20ms)) << "nobody has read anything";
   EXPECT_THAT(read_until(terminal.master, " xx\r\n"), HasSubstr("no thread can be created"));
+}
+
+/// After `su` the terminal can't be opened again. The test hangs if a write blocks.
+TEST(ErrorLog, WithoutAThreadWaitsForNoTerminalWhoseDescriptorIsThatOfTheShell) {
+  const Terminal terminal;
+  const int shell = terminal.slave.get();
+  ErrorLog log{FileDescriptor{::fcntl(shell, F_DUPFD_CLOEXEC, 3)},
+               [](const std::function<void()>&) { return false; }};
+
+  for (std::size_t i = 0; i < 20'000; ++i) log.say(Weight::note, std::string(i % 300, 'x'));
+
+  EXPECT_FALSE(log.flush(20ms)) << "nobody has read anything";
+  EXPECT_EQ(::fcntl(shell, F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_THAT(read_until(terminal.master, " xx\r\n"), HasSubstr("no thread can be created"));
+}
+
+/// The test hangs if a write blocks.
+TEST(ErrorLog, WithoutAThreadWaitsForNoSocketThatNobodyReads) {
+  for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET}) {
+    int ends[2];
+    ASSERT_EQ(::socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, ends), 0);
+    const FileDescriptor reader{ends[0]};
+    ErrorLog log{FileDescriptor{ends[1]}, [](const std::function<void()>&) { return false; }};
+
+    for (std::size_t i = 0; i < 20'000; ++i) log.say(Weight::note, std::string(i % 300, 'x'));
+
+    EXPECT_FALSE(log.flush(20ms)) << "nobody has read anything";
+  }
 }
 
 TEST(OpenAgain, LeavesTheTerminalOfTheShellBlocking) {
