@@ -25,6 +25,7 @@
 #include "master/rt/port.hpp"
 #include "master/rt/port_watch.hpp"
 #include "master/rt/service_queue.hpp"
+#include "master/rt/services.hpp"
 #include "master/rt/sync_follower.hpp"
 #include "master/rt/sync_gate.hpp"
 #include "master/rt/sync_hold.hpp"
@@ -37,15 +38,10 @@ struct BusLoopOptions {
   Controller* controller = nullptr;  ///< called in each cycle; must outlive the loop
 };
 
-/// True if a replay can continue a recording of this loop from the middle of a run.
-template <class P, class N>
-inline constexpr bool keeps_state = WitnessPort<P> && requires(const N machine) { machine.idle(); };
-
 /// The bus thread runs one SYNC cycle after another. A complete cycle makes six system calls
 /// (sleep, SYNC, sleep, receive, sleep, outputs), a cycle with a missing PDO makes eight; service
-/// frames add more. Nothing allocates, locks or throws after construction. `N` is the state machine
-/// of the services (boot, SDO, NMT).
-template <Port P, class N = Network>
+/// frames add more. Nothing allocates, locks or throws after construction.
+template <Port P, Services S = Network>
 class BusLoop {
  public:
   /// The loop keeps references to `plan`, `port` and `exchange`.
@@ -173,7 +169,7 @@ class BusLoop {
 
   EventQueue events_;
   PdoExchange pdos_;
-  N network_;
+  S network_;
   PdoRequests pdo_requests_;
   TimeProducer time_;
   OrderedStop stop_;

@@ -4,8 +4,8 @@
 
 namespace takt {
 
-template <Port P, class N>
-const SetPointFrame& BusLoop<P, N>::newest_set_points() noexcept {
+template <Port P, Services S>
+const SetPointFrame& BusLoop<P, S>::newest_set_points() noexcept {
   if constexpr (WitnessPort<P>) {
     return port_.set_points(exchange_);
   } else {
@@ -13,8 +13,8 @@ const SetPointFrame& BusLoop<P, N>::newest_set_points() noexcept {
   }
 }
 
-template <Port P, class N>
-bool BusLoop<P, N>::next_request() noexcept {
+template <Port P, Services S>
+bool BusLoop<P, S>::next_request() noexcept {
   if constexpr (WitnessPort<P>) {
     return port_.take_request(exchange_, request_);
   } else {
@@ -22,8 +22,8 @@ bool BusLoop<P, N>::next_request() noexcept {
   }
 }
 
-template <Port P, class N>
-bool BusLoop<P, N>::asked_to_stop() noexcept {
+template <Port P, Services S>
+bool BusLoop<P, S>::asked_to_stop() noexcept {
   if constexpr (WitnessPort<P>) {
     return port_.stop_requested(exchange_);
   } else {
@@ -31,8 +31,8 @@ bool BusLoop<P, N>::asked_to_stop() noexcept {
   }
 }
 
-template <Port P, class N>
-bool BusLoop<P, N>::give_reply() noexcept {
+template <Port P, Services S>
+bool BusLoop<P, S>::give_reply() noexcept {
   if constexpr (WitnessPort<P>) {
     return port_.give_reply(exchange_, reply_);
   } else {
@@ -40,8 +40,8 @@ bool BusLoop<P, N>::give_reply() noexcept {
   }
 }
 
-template <Port P, class N>
-void BusLoop<P, N>::give_event(Event& event) noexcept {
+template <Port P, Services S>
+void BusLoop<P, S>::give_event(Event& event) noexcept {
   event.cycle = clock_.cycle();
   if constexpr (WitnessPort<P>) {
     port_.tell(exchange_, event);

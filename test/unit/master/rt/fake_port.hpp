@@ -9,6 +9,7 @@
 
 #include "master/core/network/network.hpp"
 #include "master/rt/port.hpp"
+#include "master/rt/services.hpp"
 
 namespace takt::test {
 
@@ -134,6 +135,25 @@ class FakeNetwork {
     last_command = last;
   }
   bool stopped() const noexcept { return stopping; }
+  bool boot_refused(std::size_t) const noexcept { return false; }
+  std::span<const LimitReading> limits_read(std::size_t) const noexcept { return {}; }
+  bool writes(std::uint8_t, ObjectKey) const noexcept { return false; }
+  bool stops_drives() const noexcept { return lost_group.has_value(); }
+  bool demands_quick_stop(std::size_t) const noexcept { return lost_group.value_or(false); }
+  void on_sync_loss() noexcept { ++sync_losses; }
+  void on_sync_back() noexcept { ++sync_returns; }
+  bool take_sync_restart() noexcept { return std::exchange(restarts_sync, false); }
+  NmtState own_state() const noexcept { return state; }
+  std::optional<std::uint8_t> awaits_axes() const noexcept { return awaiting; }
+  void axes_at_rest(AxesAtRest how) noexcept { rest = how; }
+  void every_axis_at_rest(AxesAtRest how) noexcept { rest = how; }
+  void drop_awaiting() noexcept { awaiting.reset(); }
+  void give_up_boots(Time) noexcept {}
+  bool idle() const noexcept { return true; }
+  template <class Archive>
+  void keep(Archive& archive) noexcept {
+    archive(state);
+  }
 
   void set_up(std::size_t node, bool up) { up_[node] = up; }
 
@@ -148,6 +168,15 @@ class FakeNetwork {
   bool refuse = false;
   bool stopping = false;
   NmtCommand last_command = NmtCommand::start;
+  /// True while a node is lost whose loss stops drives, false when it is back; std::nullopt if no
+  /// loss stops drives.
+  std::optional<bool> lost_group;
+  int sync_losses = 0;
+  int sync_returns = 0;
+  bool restarts_sync = false;
+  NmtState state = NmtState::operational;
+  std::optional<std::uint8_t> awaiting;  ///< as Network::awaits_axes()
+  std::optional<AxesAtRest> rest;        ///< the newest report on axes that an NMT command awaits
   std::uint64_t lost_events = 0;
   static inline FakeNetwork* newest = nullptr;  ///< the instance in the newest loop
 
@@ -155,5 +184,6 @@ class FakeNetwork {
   std::vector<NodeStatus> status_;
   std::vector<bool> up_;
 };
+static_assert(Services<FakeNetwork>);
 
 }  // namespace takt::test
