@@ -11,6 +11,8 @@
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/rt/bus_loop.hpp"
 #include "master/rt/exchange/exchange.hpp"
+#include "master/rt/journal/recorded_link.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {
 
@@ -37,11 +39,11 @@ class Master {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Connects the master to its bus; call this once, before start() or begin(). `port` must outlive
-  /// the master.
+  /// Connects the master to its bus; call this once, before start() or begin(). The run is recorded
+  /// to `journal`, unless that is null. `port` and `journal` must outlive the master.
   template <Port P>
-  void attach(P& port) {
-    runner_ = std::make_unique<Runner<P>>(plan_, port, *exchange_, options_);
+  void attach(P& port, Journal* journal = nullptr) {
+    runner_ = std::make_unique<Runner<P>>(plan_, port, journal, *exchange_, options_);
   }
 
   /// Runs the cycles on the bus thread until the ordered stop is over.
@@ -124,15 +126,18 @@ class Master {
   };
   template <Port P>
   struct Runner final : AnyRunner {
-    Runner(const BusPlan& plan, P& port, Exchange& exchange, const MasterOptions& options)
-        : loop{plan,
+    Runner(const BusPlan& plan, P& bus, Journal* journal, Exchange& exchange,
+           const MasterOptions& options)
+        : port{bus, journal},
+          loop{plan,
                port,
-               exchange,
+               RecordedLink{exchange, journal},
                {.observe = options.observe, .controller = options.controller}} {}
     void start() noexcept override { loop.start(); }
     void cycle() noexcept override { loop.cycle(); }
     bool done() const noexcept override { return loop.done(); }
-    BusLoop<P> loop;
+    RecordedPort<P> port;
+    BusLoop<RecordedPort<P>, RecordedLink> loop;
   };
 
   void run() noexcept;

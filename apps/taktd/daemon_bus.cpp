@@ -42,11 +42,8 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
 }
 
 void DaemonBus::attach(Master& master, Journal* journal) {
-  const auto record = [&]<class P>(P& port) {
-    master.attach(recorded_.emplace<RecordedPort<P>>(port, journal));
-  };
-  if (simulated_) return record(*simulated_);
-  std::visit(record, *port_);
+  if (simulated_) return master.attach(*simulated_, journal);
+  std::visit([&](auto& port) { master.attach(port, journal); }, *port_);
 }
 
 }  // namespace takt

@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "apps/taktd/simulated_bus.hpp"
@@ -12,7 +11,7 @@
 #include "master/linux/bus/diagnostic_socket.hpp"
 #include "master/linux/bus/open_bus.hpp"
 #include "master/master.hpp"
-#include "master/rt/journal/recorded_port.hpp"
+#include "master/rt/journal/journal.hpp"
 
 namespace takt {
 
@@ -44,9 +43,6 @@ class DaemonBus {
   std::optional<DiagnosticSocket> diagnostics_;
   std::vector<std::string> warnings_;
   std::unique_ptr<SimulatedBus> simulated_;
-  std::variant<std::monostate, RecordedPort<SocketCanPort>, RecordedPort<UnixBusPort>,
-               RecordedPort<SimulatedBus>>
-      recorded_;
 };
 
 }  // namespace takt

@@ -18,7 +18,7 @@ class Replay {
         tell_{tell},
         port_{recording.parts, plan.layout.outputs()},
         exchange_{std::make_unique<Exchange>(plan)},
-        loop_{plan, port_, *exchange_, {.observe = recording.head.observe}} {}
+        loop_{plan, port_, {port_, *exchange_}, {.observe = recording.head.observe}} {}
 
   ReplayOutcome run() {
     if (!begin()) return std::move(outcome_);
@@ -95,7 +95,7 @@ class Replay {
   const std::function<void(const Decision&)>& tell_;
   ReplayPort port_;
   std::unique_ptr<Exchange> exchange_;
-  BusLoop<ReplayPort> loop_;
+  BusLoop<ReplayPort, ReplayedLink> loop_;
   ReplayOutcome outcome_;
 };
 

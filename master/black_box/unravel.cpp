@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "master/core/set_point.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 
 namespace takt {

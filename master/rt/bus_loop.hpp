@@ -21,7 +21,7 @@
 #include "master/rt/beat_clock.hpp"
 #include "master/rt/controller.hpp"
 #include "master/rt/exchange/exchange.hpp"
-#include "master/rt/journal/recorded_port.hpp"
+#include "master/rt/exchange/front_link.hpp"
 #include "master/rt/port.hpp"
 #include "master/rt/port_watch.hpp"
 #include "master/rt/service_queue.hpp"
@@ -41,11 +41,11 @@ struct BusLoopOptions {
 /// The bus thread runs one SYNC cycle after another. A complete cycle makes six system calls
 /// (sleep, SYNC, sleep, receive, sleep, outputs), a cycle with a missing PDO makes eight; service
 /// frames add more. Nothing allocates, locks or throws after construction.
-template <Port P, Services S = Network>
+template <Port P, FrontLink L = DirectLink, Services S = Network>
 class BusLoop {
  public:
-  /// The loop keeps references to `plan`, `port` and `exchange`.
-  BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options = {});
+  /// The loop keeps references to `plan` and `port`, and to the exchange of `front`.
+  BusLoop(const BusPlan& plan, P& port, L front, BusLoopOptions options = {});
   BusLoop(const BusLoop&) = delete;
   BusLoop& operator=(const BusLoop&) = delete;
 
@@ -154,16 +154,12 @@ class BusLoop {
   void give_events() noexcept;
   void write_status() noexcept;
   std::size_t send(std::span<const Frame> frames) noexcept;
-  // Exchange with the front thread. A WitnessPort sees everything that passes here.
-  const SetPointFrame& newest_set_points() noexcept;
-  bool next_request() noexcept;
-  bool asked_to_stop() noexcept;
-  bool give_reply() noexcept;
   void give_event(Event& event) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
 
   const BusPlan& plan_;
   P& port_;
+  L front_;
   Exchange& exchange_;
   BusLoopOptions options_;
 
@@ -216,14 +212,13 @@ class BusLoop {
   Time last_sync_{};  ///< SYNC of the previous cycle
   Time sync_time_{};  ///< SYNC of this cycle, by its echo if there is one
   Time last_status_{};
-  Time published_{};             ///< publish time of the newest image; set only with checkpoints
+  Time published_{};             ///< publish time of the newest image
   std::size_t state_words_ = 0;  ///< size of a checkpoint
 };
 
 }  // namespace takt
 
 #include "master/rt/bus_loop_checkpoint.hpp"
-#include "master/rt/bus_loop_front.hpp"
 #include "master/rt/bus_loop_impl.hpp"
 #include "master/rt/bus_loop_services.hpp"
 #include "master/rt/bus_loop_stop.hpp"

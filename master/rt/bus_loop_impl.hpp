@@ -5,11 +5,12 @@
 
 namespace takt {
 
-template <Port P, Services S>
-BusLoop<P, S>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoopOptions options)
+template <Port P, FrontLink L, Services S>
+BusLoop<P, L, S>::BusLoop(const BusPlan& plan, P& port, L front, BusLoopOptions options)
     : plan_{plan},
       port_{port},
-      exchange_{exchange},
+      front_{front},
+      exchange_{front_.exchange()},
       options_{options},
       pdos_{plan, events_},
       network_{plan, {.observe = options.observe, .nmt_stop = NmtStop::after_axes}},
@@ -30,15 +31,13 @@ BusLoop<P, S>::BusLoop(const BusPlan& plan, P& port, Exchange& exchange, BusLoop
       wire_{plan.bitrate},
       received_(batch),
       quick_stopped_(stop_.axes().size()) {
-  if constexpr (WitnessPort<P>) {
-    StateSize size;
-    keep(size);
-    state_words_ = size.count();
-  }
+  StateSize size;
+  keep(size);
+  state_words_ = size.count();
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::start() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::start() noexcept {
   const Time now = port_.now();
   last_sync_ = now;
   clock_.start(now + clock_.period());
@@ -46,9 +45,9 @@ void BusLoop<P, S>::start() noexcept {
   predict_next_publish(now);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::cycle() noexcept {
-  if constexpr (WitnessPort<P>) port_.begin_cycle(clock_.cycle());
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::cycle() noexcept {
+  front_.begin_cycle(clock_.cycle());
   follow_nodes();
   wait_for_beat();
   begin_beat();
@@ -58,8 +57,8 @@ void BusLoop<P, S>::cycle() noexcept {
   finish_cycle();
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::finish_cycle() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::finish_cycle() noexcept {
   serve();
   stop_drives_after_loss();
   send_outputs();
@@ -69,15 +68,15 @@ void BusLoop<P, S>::finish_cycle() noexcept {
 }
 
 /// Updates which nodes exchange PDOs in this cycle.
-template <Port P, Services S>
-void BusLoop<P, S>::follow_nodes() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::follow_nodes() noexcept {
   hearing_ = false;
   for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
     const bool exchanging = network_.exchanges_pdos(i);
     if (exchanging != exchanging_[i]) {
       exchanging_[i] = exchanging;
       if (exchanging) {
-        pdos_.outputs().open(i, newest_set_points().points);
+        pdos_.outputs().open(i, front_.set_points().points);
         pdos_.outputs().learn(i, network_.limits_read(i), {clock_.cycle(), port_.now()});
       } else {
         pdos_.outputs().shut(i);
@@ -98,8 +97,8 @@ void BusLoop<P, S>::follow_nodes() noexcept {
 }
 
 /// If earlier frames could not leave yet, no other frames may follow them.
-template <Port P, Services S>
-void BusLoop<P, S>::look_at_wire() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::look_at_wire() noexcept {
   if (gate_.doubtful(port_.news())) drain();
   gate_open_ = gate_.open(port_.news(), sync_sent_);
   if (!gate_open_) {
@@ -115,8 +114,8 @@ void BusLoop<P, S>::look_at_wire() noexcept {
 
 /// A late cycle explains only the cycle that follows it. A controller error explains all held
 /// cycles, because the controller may report it some cycles later.
-template <Port P, Services S>
-void BusLoop<P, S>::note_held() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::note_held() noexcept {
   const PortNews news = port_.news();
   if (held_ != 0 && held_because_ == MissedBecause::wire_blocked) return;
   held_because_ = MissedBecause::not_seen;
@@ -125,14 +124,14 @@ void BusLoop<P, S>::note_held() noexcept {
 }
 
 /// Returns the time at which the loop publishes the image of this cycle, whatever is missing in it.
-template <Port P, Services S>
-Time BusLoop<P, S>::end_of_window() const noexcept {
+template <Port P, FrontLink L, Services S>
+Time BusLoop<P, L, S>::end_of_window() const noexcept {
   return std::min(sync_sent_ + plan_.cycle.receive_window,
                   clock_.deadline() + plan_.cycle.output_deadline);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::receive() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::receive() noexcept {
   const Time end = end_of_window();
   // While no node exchanges PDOs (all nodes still boot), the services get the whole slack.
   if (plan_.cycle.sync && hearing_) {
@@ -150,8 +149,8 @@ void BusLoop<P, S>::receive() noexcept {
 
 /// Takes PDOs that are later than predicted as they arrive. Other frames wake this thread as well,
 /// so after a few wake-ups the loop takes the rest at the end of the window.
-template <Port P, Services S>
-void BusLoop<P, S>::await_rest(Time end) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::await_rest(Time end) noexcept {
   for (unsigned wakes = 0; wakes < most_wakes; ++wakes) {
     const bool some = port_.wait_frame(end);
     drain();
@@ -161,8 +160,8 @@ void BusLoop<P, S>::await_rest(Time end) noexcept {
   drain();
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::drain() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::drain() noexcept {
   for (bool more = !follower_.arrived(); more;) {
     const bool left = left_from_ != left_end_;
     const std::size_t first = std::exchange(left_from_, left_end_);
@@ -186,8 +185,8 @@ void BusLoop<P, S>::drain() noexcept {
   }
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::learn(bool in_time) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::learn(bool in_time) noexcept {
   if (pdos_.inputs().expected() == 0) return;
   const Time arrival = pdos_.inputs().last_arrival() - sync_sent_;
   if (in_time) {
@@ -198,15 +197,15 @@ void BusLoop<P, S>::learn(bool in_time) noexcept {
   exchange_.timing.sync_to_last_pdo.record(arrival);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::publish() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::publish() noexcept {
   const PortNews news = port_.news();
   status_.port = news;
   const bool echoed = news.last_sync_echo >= sync_sent_;
   sync_time_ = echoed ? news.last_sync_echo : sync_sent_;
   if (echoed) exchange_.timing.sync_on_wire.record(sync_time_ - clock_.deadline());
   const Time now = port_.now();
-  if constexpr (WitnessPort<P>) published_ = now;
+  published_ = now;
   const Time late = std::max(sync_sent_ - clock_.deadline(), now - end_of_window());
   late_cycle_ = late > clock_.period() / 4;
   const std::uint32_t missing = pdos_.inputs().close(now);
@@ -225,8 +224,8 @@ void BusLoop<P, S>::publish() noexcept {
   pdos_.inputs().forget_marks();
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::run_controller(const ImageStamp& stamp) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::run_controller(const ImageStamp& stamp) noexcept {
   if (options_.controller == nullptr) return;
   const WorkingImage& image = pdos_.image();
   OutputWriter writer{pdos_.outputs(), {.cycle = stamp.cycle, .now = stamp.publish_time}};
@@ -241,8 +240,8 @@ void BusLoop<P, S>::run_controller(const ImageStamp& stamp) noexcept {
                               writer);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::predict_next_publish(Time now) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::predict_next_publish(Time now) noexcept {
   Time next = clock_.deadline() + clock_.period() + prediction_.predicted();
   // After a stall within the cycle, the clock will skip the periods that have passed.
   const Time late = now - next;
@@ -250,15 +249,15 @@ void BusLoop<P, S>::predict_next_publish(Time now) noexcept {
   exchange_.next_publish.store(next.count(), std::memory_order_release);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::send_outputs() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::send_outputs() noexcept {
   if (follower_.arrived()) return;  // SYNC came early: these outputs belong to the next cycle.
   port_.sleep_until(clock_.deadline() + plan_.cycle.output_deadline);
   if (options_.observe || outputs_rest()) return;
   // A master in NMT Stopped sends no RPDOs, except for fallbacks that an inhibit time holds back.
   if (silent() && !pdos_.outputs().pending()) return;
   const Time now = port_.now();
-  const SetPointFrame& commands = newest_set_points();
+  const SetPointFrame& commands = front_.set_points();
   const OutputMoment moment{.cycle = clock_.cycle(), .now = now};
   std::span<const Frame> frames = pdos_.outputs().pack(commands.points, moment);
   if (pdos_.outputs().fresh_commands() != 0) {
@@ -274,15 +273,21 @@ void BusLoop<P, S>::send_outputs() noexcept {
   pdos_.outputs().sent(frames.empty() ? 0 : send(frames), moment);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::give_events() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::give_events() noexcept {
   Event event;
   while (network_.take(event)) give_event(event);
   while (events_.pop(event)) give_event(event);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::write_status() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::give_event(Event& event) noexcept {
+  event.cycle = clock_.cycle();
+  front_.tell(event);
+}
+
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::write_status() noexcept {
   status_.cycle = clock_.cycle();
   status_.stop = stop_.stage();
   status_.stop_result = stop_.result();
@@ -303,8 +308,8 @@ void BusLoop<P, S>::write_status() noexcept {
   if (done_) exchange_.finished.store(true, std::memory_order_release);
 }
 
-template <Port P, Services S>
-std::size_t BusLoop<P, S>::send(std::span<const Frame> frames) noexcept {
+template <Port P, FrontLink L, Services S>
+std::size_t BusLoop<P, L, S>::send(std::span<const Frame> frames) noexcept {
   if (!gate_open_) return 0;
   const SendResult result = port_.send(frames);
   for (const Frame& frame : frames.first(result.sent)) {
@@ -318,9 +323,9 @@ std::size_t BusLoop<P, S>::send(std::span<const Frame> frames) noexcept {
   return result.sent;
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::tell(EventKind kind, Time now, std::int64_t value,
-                         std::uint32_t detail) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::tell(EventKind kind, Time now, std::int64_t value,
+                            std::uint32_t detail) noexcept {
   events_.push(
       {.when = now, .cycle = clock_.cycle(), .kind = kind, .detail = detail, .value = value});
 }

@@ -10,8 +10,8 @@ namespace takt {
 
 /// Cycles that are too full for a dialogue before the outputs must not keep nodes from booting.
 /// This sends one service frame directly behind SYNC; PDOs have priority over it on the wire.
-template <Port P, Services S>
-void BusLoop<P, S>::relieve_services() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::relieve_services() noexcept {
   if (behind_stream(port_.now())) return;
   hand_over(1);
   starved_ = 0;
@@ -19,8 +19,8 @@ void BusLoop<P, S>::relieve_services() noexcept {
 
 /// While this thread stood still, nobody listened. It has read what came in by now; frames that the
 /// socket could not hold must not count as silence of a device.
-template <Port P, Services S>
-void BusLoop<P, S>::excuse_absence() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::excuse_absence() noexcept {
   const Time away = sync_sent_ - std::exchange(last_sync_, sync_sent_) - clock_.period();
   if (away <= longest_lapse * clock_.period()) return;
   network_.on_absence(away);
@@ -29,15 +29,15 @@ void BusLoop<P, S>::excuse_absence() noexcept {
 
 /// Returns true if this thread stood still since SYNC. The time-outs must take this absence into
 /// account before the state machines run again.
-template <Port P, Services S>
-bool BusLoop<P, S>::stalled(Time now) const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::stalled(Time now) const noexcept {
   return now - sync_sent_ > longest_lapse * clock_.period();
 }
 
 /// Runs the state machines and the requests in the slack. A long cycle has many rounds, so that
 /// boots and heartbeats proceed as fast as in a short cycle.
-template <Port P, Services S>
-void BusLoop<P, S>::serve() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::serve() noexcept {
   excuse_absence();
   end_halt();
   serve_round();
@@ -49,8 +49,8 @@ void BusLoop<P, S>::serve() noexcept {
 }
 
 /// Returns false if the outputs come next, or if a followed SYNC came early.
-template <Port P, Services S>
-bool BusLoop<P, S>::rest_until_next_round() noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::rest_until_next_round() noexcept {
   const Time next = port_.now() + round_distance;
   if (next >= clock_.deadline() + plan_.cycle.output_deadline - wire_.worst_dialogue())
     return false;
@@ -61,8 +61,8 @@ bool BusLoop<P, S>::rest_until_next_round() noexcept {
 
 /// A node sends its event-driven PDOs as soon as it is started, often in this round, and not again
 /// until they change.
-template <Port P, Services S>
-void BusLoop<P, S>::expect_started_nodes() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::expect_started_nodes() noexcept {
   if (!services_.has(nmt_cob_id)) return;
   for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
     const bool soon = network_.starts(i) || network_.exchanges_pdos(i);
@@ -72,8 +72,8 @@ void BusLoop<P, S>::expect_started_nodes() noexcept {
 }
 
 /// Runs one round of services. Service frames and their answers end before the outputs.
-template <Port P, Services S>
-void BusLoop<P, S>::serve_round() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::serve_round() noexcept {
   take_requests();
   write_fallbacks();
   ask_for_stop();
@@ -126,8 +126,8 @@ void BusLoop<P, S>::serve_round() noexcept {
 /// Returns true while a device sends a sub-block, or has not ended an abandoned one. A frame of
 /// lower priority would wait for the end of the sub-block in the transmit queue of the controller,
 /// and SYNC would wait behind that frame.
-template <Port P, Services S>
-bool BusLoop<P, S>::behind_stream(Time now) const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::behind_stream(Time now) const noexcept {
   return now < stream_end_ &&
          network_.awaited_sub_blocks() + services_.count(Answer::after_stream) >
              services_.count(Answer::stream);
@@ -136,8 +136,8 @@ bool BusLoop<P, S>::behind_stream(Time now) const noexcept {
 /// Returns the wire time to reserve for answers under way. In operation, this covers everything
 /// that servers owe, so that it fits before the outputs even if it comes at once. `open` counts the
 /// unanswered dialogues of this round.
-template <Port P, Services S>
-Time BusLoop<P, S>::under_way(std::size_t open) const noexcept {
+template <Port P, FrontLink L, Services S>
+Time BusLoop<P, L, S>::under_way(std::size_t open) const noexcept {
   if (!hearing_) return wire_.worst_dialogue() * open;
   const std::size_t queued = services_.to_servers(services_.size());
   const std::size_t owed = std::max(network_.awaited_answers(), queued) - queued;
@@ -146,8 +146,8 @@ Time BusLoop<P, S>::under_way(std::size_t open) const noexcept {
 
 /// Hands over the first `most` service frames, or as many of them as the port takes. Returns their
 /// number.
-template <Port P, Services S>
-std::size_t BusLoop<P, S>::hand_over(std::size_t most) noexcept {
+template <Port P, FrontLink L, Services S>
+std::size_t BusLoop<P, L, S>::hand_over(std::size_t most) noexcept {
   const std::size_t streams = services_.count(Answer::stream);
   const std::size_t count = send(services_.first(most));
   if (services_.unanswered(count)) {
@@ -161,8 +161,8 @@ std::size_t BusLoop<P, S>::hand_over(std::size_t most) noexcept {
   return count;
 }
 
-template <Port P, Services S>
-auto BusLoop<P, S>::send_services(std::size_t& budget, Time under_way) noexcept -> Handed {
+template <Port P, FrontLink L, Services S>
+auto BusLoop<P, L, S>::send_services(std::size_t& budget, Time under_way) noexcept -> Handed {
   if (services_.empty()) return Handed::nothing;
   const Time now = port_.now();
   if (behind_stream(now)) return Handed::nothing;
@@ -182,8 +182,8 @@ auto BusLoop<P, S>::send_services(std::size_t& budget, Time under_way) noexcept 
 }
 
 /// TIME carries the moment at which it is sent, so it never waits in a queue.
-template <Port P, Services S>
-void BusLoop<P, S>::send_time() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::send_time() noexcept {
   const Time now = port_.now();
   if (now < time_.deadline() || options_.observe) return;
   const auto frame = time_.frame(now, port_.news().since_1970);
@@ -193,16 +193,16 @@ void BusLoop<P, S>::send_time() noexcept {
   if (fits && send(one) == 1) time_.sent(now);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::take_requests() noexcept {
-  if (reply_waits_ || !next_request()) return;
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::take_requests() noexcept {
+  if (reply_waits_ || !front_.take_request(request_)) return;
   if (!options_.observe && submit(request_)) return;
   reply_ = Reply{.id = request_.id, .fault = SdoFault::cancelled};
   reply_waits_ = true;
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::write_fallbacks() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::write_fallbacks() noexcept {
   while (fallbacks_.waits()) {
     const bool there = exchanging_[fallbacks_.node_index()];
     if (there && !network_.submit(fallbacks_.request(), port_.now())) return;
@@ -211,16 +211,16 @@ void BusLoop<P, S>::write_fallbacks() noexcept {
   }
 }
 
-template <Port P, Services S>
-bool BusLoop<P, S>::submit(const Request& request) noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::submit(const Request& request) noexcept {
   const Time now = port_.now();
   remember_word(request);
   if (!PdoRequests::takes(request.kind)) return network_.submit(request, now);
   return stop_.stage() == StopStage::running && pdo_requests_.submit(request, now);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::take_answer_of_stop() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::take_answer_of_stop() noexcept {
   const Time now = port_.now();
   if (const auto word = StopRequests::statusword_of(reply_)) memory_[word->axis].see(word->value);
   if (stop_requests_.take(reply_, now, active_stop())) return;
@@ -232,8 +232,8 @@ void BusLoop<P, S>::take_answer_of_stop() noexcept {
                 .value = stop_requests_.refusal()});
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::give_replies() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::give_replies() noexcept {
   for (;;) {
     if (!reply_waits_ && !network_.take(reply_) && !pdo_requests_.take(reply_)) return;
     if (FallbackWriter::owns(reply_)) continue;
@@ -241,7 +241,7 @@ void BusLoop<P, S>::give_replies() noexcept {
       take_answer_of_stop();
       continue;
     }
-    reply_waits_ = !give_reply();
+    reply_waits_ = !front_.give_reply(reply_);
     if (reply_waits_) return;
   }
 }

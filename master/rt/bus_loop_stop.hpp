@@ -28,8 +28,8 @@ inline std::int64_t event_value(const AxisStop& axis, AxisVerdict verdict, Time 
 
 /// LossReaction::quick_stop: the drives make a quick stop and stay disabled until the lost node is
 /// back.
-template <Port P, Services S>
-void BusLoop<P, S>::stop_drives_after_loss() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::stop_drives_after_loss() noexcept {
   if (!network_.stops_drives()) return;
   for (std::size_t i = 0; i < stop_.axes().size(); ++i) {
     const StopAxis& axis = stop_.axes()[i];
@@ -46,8 +46,8 @@ void BusLoop<P, S>::stop_drives_after_loss() noexcept {
   }
 }
 
-template <Port P, Services S>
-StopView BusLoop<P, S>::stop_view() const noexcept {
+template <Port P, FrontLink L, Services S>
+StopView BusLoop<P, L, S>::stop_view() const noexcept {
   return {.received = {.values = pdos_.image().values,
                        .stale = pdos_.image().stale,
                        .marks = pdos_.inputs().marks()},
@@ -58,19 +58,19 @@ StopView BusLoop<P, S>::stop_view() const noexcept {
 }
 
 /// Returns the stop that acts on the axes now. The ordered stop supersedes a halt.
-template <Port P, Services S>
-OrderedStop& BusLoop<P, S>::active_stop() noexcept {
+template <Port P, FrontLink L, Services S>
+OrderedStop& BusLoop<P, L, S>::active_stop() noexcept {
   return stop_.stage() == StopStage::running ? halt_ : stop_;
 }
 
-template <Port P, Services S>
-bool BusLoop<P, S>::stops_in_order(std::size_t axis) noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::stops_in_order(std::size_t axis) noexcept {
   const OrderedStop& stop = active_stop();
   return stop.stage() != StopStage::running && stop.reaches(axis);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::begin_stop(Time now) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::begin_stop(Time now) noexcept {
   tell(EventKind::stopping, now);
   if (options_.observe) {
     stop_.begin_idle(now);
@@ -87,8 +87,8 @@ void BusLoop<P, S>::begin_stop(Time now) noexcept {
 }
 
 /// Returns true while a request that may bring a controlword to this axis is unanswered.
-template <Port P, Services S>
-bool BusLoop<P, S>::word_under_way(const StopAxis& axis) const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::word_under_way(const StopAxis& axis) const noexcept {
   const std::uint8_t node = plan_.nodes[axis.node_index].id.value();
   if (pdo_requests_.reaches(node)) return true;
   const ObjectKey controlword{StopRequests::controlword_of(axis), 0};
@@ -96,8 +96,8 @@ bool BusLoop<P, S>::word_under_way(const StopAxis& axis) const noexcept {
 }
 
 /// Updates the memory of each axis, on which the next stop may rely.
-template <Port P, Services S>
-void BusLoop<P, S>::remember_axes() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::remember_axes() noexcept {
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const StopAxis& axis = stop_.axes()[i];
     const WorkingImage& image = pdos_.image();
@@ -120,8 +120,8 @@ void BusLoop<P, S>::remember_axes() noexcept {
 
 /// Notes a request that may bring a controlword to an axis. The loop does not inspect the content
 /// of an RPDO sent on request: it counts as enabling.
-template <Port P, Services S>
-void BusLoop<P, S>::remember_word(const Request& request) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::remember_word(const Request& request) noexcept {
   const bool writes = request.kind == RequestKind::sdo_download;
   if (!writes && request.kind != RequestKind::pdo_exchange) return;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -134,13 +134,13 @@ void BusLoop<P, S>::remember_word(const Request& request) noexcept {
 }
 
 /// Begins and advances the ordered stop.
-template <Port P, Services S>
-void BusLoop<P, S>::step_stop() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::step_stop() noexcept {
   const Time now = port_.now();
   remember_axes();
   follow_own_state();
   if (stop_.stage() == StopStage::running) {
-    if (!asked_to_stop()) return;
+    if (!front_.stop_requested()) return;
     begin_stop(now);
   }
   const StopStage before = stop_.stage();
@@ -159,8 +159,8 @@ void BusLoop<P, S>::step_stop() noexcept {
   if (done_) tell(EventKind::stopped, now);
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::force_axes(const OrderedStop& stop) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::force_axes(const OrderedStop& stop) noexcept {
   for (std::size_t i = 0; i < stop.axes().size(); ++i) {
     const auto signal = stop.axes()[i].controlword;
     const auto word = stop.controlword(i);
@@ -169,8 +169,8 @@ void BusLoop<P, S>::force_axes(const OrderedStop& stop) noexcept {
 }
 
 /// Reports one event for each axis that was not seen at standstill and disabled.
-template <Port P, Services S>
-void BusLoop<P, S>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept {
   for (std::size_t i = 0; i < stop.axes().size(); ++i) {
     const StopAxis& axis = stop.axes()[i];
     const AxisStop& one = stop.axis(i);
@@ -187,8 +187,8 @@ void BusLoop<P, S>::tell_unconfirmed(const OrderedStop& stop, Time now) noexcept
 
 /// Submits the SDO requests of the stop. A master in NMT Stopped disarms nothing, because it is
 /// still present.
-template <Port P, Services S>
-void BusLoop<P, S>::ask_for_stop() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::ask_for_stop() noexcept {
   const OrderedStop& stop = active_stop();
   const bool halted = &stop == &halt_ && halt_.axes_done();
   if (options_.observe || halted || stop.stage() == StopStage::running) return;
@@ -204,8 +204,8 @@ void BusLoop<P, S>::ask_for_stop() noexcept {
 }
 
 /// Returns the node whose axes must stop before its PDO exchange ends, or every_node.
-template <Port P, Services S>
-std::optional<std::uint8_t> BusLoop<P, S>::halt_target() const noexcept {
+template <Port P, FrontLink L, Services S>
+std::optional<std::uint8_t> BusLoop<P, L, S>::halt_target() const noexcept {
   if (network_.own_state() == NmtState::stopped) return OrderedStop::every_node;
   const auto node = network_.awaits_axes();
   if (!node) return std::nullopt;
@@ -214,8 +214,8 @@ std::optional<std::uint8_t> BusLoop<P, S>::halt_target() const noexcept {
 
 /// A node that NMT stops or sends to PRE-OPERATIONAL no longer exchanges PDOs, and a master in NMT
 /// Stopped makes no SYNC (CiA 301, 7.3.2.2). The loop therefore stops the axes first.
-template <Port P, Services S>
-void BusLoop<P, S>::follow_own_state() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::follow_own_state() noexcept {
   const auto target = halt_target();
   if (options_.observe || stop_.stage() != StopStage::running || !target || halt_is_over()) return;
   const Time now = port_.now();
@@ -224,8 +224,8 @@ void BusLoop<P, S>::follow_own_state() noexcept {
 }
 
 /// Informs the network once the axes are at rest or their time is over.
-template <Port P, Services S>
-void BusLoop<P, S>::step_halt(Time now) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::step_halt(Time now) noexcept {
   if (!halt_.axes_done()) {
     halt_.step(now, stop_view());
     force_axes(halt_);
@@ -237,8 +237,8 @@ void BusLoop<P, S>::step_halt(Time now) noexcept {
   if (halt_.axes_done() || halt_.nothing_to_stop()) network_.axes_at_rest(rest_of(halt_));
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::begin_halt(Time now, std::uint8_t node_index) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::begin_halt(Time now, std::uint8_t node_index) noexcept {
   halt_.begin(now, network_.nodes(), node_index, memory_);
   stop_requests_.begin();
   if (node_index != OrderedStop::every_node) return;
@@ -247,15 +247,15 @@ void BusLoop<P, S>::begin_halt(Time now, std::uint8_t node_index) noexcept {
 }
 
 /// Returns true when the command that the axes of the halt had to stop for has left.
-template <Port P, Services S>
-bool BusLoop<P, S>::halt_is_over() const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::halt_is_over() const noexcept {
   return halt_.stage() != StopStage::running && halt_target() != halt_.target();
 }
 
 /// Gives the controlwords back to the applications. This is done in the cycle after the command,
 /// when the RPDOs of its nodes are shut: none may follow the command.
-template <Port P, Services S>
-void BusLoop<P, S>::end_halt() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::end_halt() noexcept {
   if (!halt_is_over()) return;
   const bool all = halt_.target() == OrderedStop::every_node;
   for (std::size_t i = 0; i < halt_.axes().size(); ++i) {
@@ -268,8 +268,8 @@ void BusLoop<P, S>::end_halt() noexcept {
 
 /// Returns true in NMT Stopped, when the master sends no SYNC. An ordered stop needs SYNC again to
 /// see the axes.
-template <Port P, Services S>
-bool BusLoop<P, S>::silent() const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::silent() const noexcept {
   return stop_.stage() == StopStage::running && halt_.axes_done() &&
          network_.own_state() == NmtState::stopped;
 }

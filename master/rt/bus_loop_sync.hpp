@@ -9,8 +9,8 @@
 
 namespace takt {
 
-template <Port P, Services S>
-void BusLoop<P, S>::wait_for_beat() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::wait_for_beat() noexcept {
   if (follower_.used()) return wait_for_sync();
   port_.sleep_precisely_until(clock_.deadline());
   Time now = port_.now();
@@ -30,29 +30,29 @@ void BusLoop<P, S>::wait_for_beat() noexcept {
 }
 
 /// Records the beat that was due as whole periods late, once the skipped periods are known.
-template <Port P, Services S>
-void BusLoop<P, S>::record_skipped(std::uint64_t missed) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::record_skipped(std::uint64_t missed) noexcept {
   exchange_.timing.sync_lateness.record(static_cast<std::int64_t>(missed) * clock_.period());
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::note_missed(std::uint64_t missed, Time now) noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::note_missed(std::uint64_t missed, Time now) noexcept {
   status_.cycles_missed += missed;
   tell(EventKind::cycles_missed, now, static_cast<std::int64_t>(missed));
 }
 
 /// Returns true for a SYNC of another device that begins the next cycle. The frames behind it stay
 /// for that cycle.
-template <Port P, Services S>
-bool BusLoop<P, S>::begins_cycle(const StampedFrame& stamped) noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::begins_cycle(const StampedFrame& stamped) noexcept {
   if (!follower_.is_sync(stamped.frame)) return false;
   follower_.on_sync(stamped);
   return follower_.arrived();
 }
 
 /// Waits until SYNC arrives, or until shortly after its expected time.
-template <Port P, Services S>
-void BusLoop<P, S>::await_sync() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::await_sync() noexcept {
   const Time until = follower_.end_of_wait(clock_.deadline());
   bool more = follower_.arrived() || port_.wait_frame(until);
   while (more) {
@@ -69,8 +69,8 @@ void BusLoop<P, S>::await_sync() noexcept {
 
 /// A cycle begins with the arrival of SYNC. If no SYNC comes, the cycle begins by the master's own
 /// clock, so that services continue and the loss is detected.
-template <Port P, Services S>
-void BusLoop<P, S>::wait_for_sync() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::wait_for_sync() noexcept {
   const bool was_locked = follower_.locked();
   await_sync();
   followed_ = follower_.arrived();
@@ -98,8 +98,8 @@ void BusLoop<P, S>::wait_for_sync() noexcept {
 }
 
 /// Applies the reaction to the loss of SYNC that the network file configures.
-template <Port P, Services S>
-void BusLoop<P, S>::react_to_sync() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::react_to_sync() noexcept {
   if (follower_.lost() == sync_lost_) return;
   sync_lost_ = follower_.lost();
   status_.sync_losses += sync_lost_;
@@ -115,8 +115,8 @@ void BusLoop<P, S>::react_to_sync() noexcept {
   }
 }
 
-template <Port P, Services S>
-void BusLoop<P, S>::take_fallbacks() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::take_fallbacks() noexcept {
   if (!sync_lost_) {
     call_off_fallbacks();
     return pdos_.outputs().hear_again();
@@ -127,28 +127,28 @@ void BusLoop<P, S>::take_fallbacks() noexcept {
 
 /// Fallbacks that are not yet written must not reach a drive that is commanded again or is being
 /// stopped.
-template <Port P, Services S>
-void BusLoop<P, S>::call_off_fallbacks() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::call_off_fallbacks() noexcept {
   fallbacks_.stop();
   network_.withdraw(FallbackWriter::request_id);
 }
 
-template <Port P, Services S>
-SyncState BusLoop<P, S>::sync_state() const noexcept {
+template <Port P, FrontLink L, Services S>
+SyncState BusLoop<P, L, S>::sync_state() const noexcept {
   if (!follower_.used()) return plan_.cycle.sync ? SyncState::made : SyncState::none;
   if (follower_.lost()) return SyncState::lost;
   return follower_.waiting() ? SyncState::awaited : SyncState::locked;
 }
 
-template <Port P, Services S>
-bool BusLoop<P, S>::outputs_rest() const noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::outputs_rest() const noexcept {
   return sync_lost_ && plan_.cycle.on_sync_loss == SyncLoss::hold &&
          stop_.stage() == StopStage::running;
 }
 
 /// Begins the beat: sends the master's SYNC, or notes whether the followed SYNC came.
-template <Port P, Services S>
-void BusLoop<P, S>::begin_beat() noexcept {
+template <Port P, FrontLink L, Services S>
+void BusLoop<P, L, S>::begin_beat() noexcept {
   const bool heard = follower_.used() ? followed_ : send_sync();
   pdos_.inputs().begin(clock_.cycle(), sync_sent_, heard);
   status_.beats += heard;
@@ -156,8 +156,8 @@ void BusLoop<P, S>::begin_beat() noexcept {
 }
 
 /// Returns false if a SYNC is due and was not sent.
-template <Port P, Services S>
-bool BusLoop<P, S>::send_sync() noexcept {
+template <Port P, FrontLink L, Services S>
+bool BusLoop<P, L, S>::send_sync() noexcept {
   if (!plan_.cycle.sync || options_.observe) return true;
   if (network_.take_sync_restart()) counter_.restart();
   if (silent() || !hold_.open(network_.nodes())) return false;

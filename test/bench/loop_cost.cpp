@@ -13,6 +13,7 @@
 #include <valgrind/callgrind.h>
 
 #include "master/rt/bus_loop.hpp"
+#include "master/rt/journal/recorded_link.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 #include "test/bench/eight_u8.hpp"
 #include "test/bench/memory_port.hpp"
@@ -46,8 +47,8 @@ struct PauseCallgrind {
 
 using Memory = bench::MemoryPort<PauseCallgrind>;
 
-/// `P` is the port of memory, or one that records it.
-template <class P>
+/// `P` and `L` are the port of memory and the direct link, or those that record.
+template <class P, class L>
 class Bench {
  public:
   Bench(unsigned nodes, bool rpdos)
@@ -58,7 +59,7 @@ class Bench {
                                .bitrate = 10'000'000})},
         port{nodes},
         exchange_{std::make_unique<Exchange>(plan_)},
-        loop_{std::make_unique<BusLoop<P>>(plan_, used(), *exchange_)} {
+        loop_{std::make_unique<BusLoop<P, L>>(plan_, used(), link())} {
     loop_->start();
     run(20);  // heartbeats: every node is OPERATIONAL
     port.alive = true;
@@ -96,6 +97,14 @@ class Bench {
     }
   }
 
+  L link() {
+    if constexpr (std::is_same_v<L, DirectLink>) {
+      return *exchange_;
+    } else {
+      return {*exchange_, &journal_};
+    }
+  }
+
   BusPlan plan_;
   Journal journal_{16 << 20};
 
@@ -108,12 +117,12 @@ class Bench {
  private:
   RecordedPort<Memory> recorded_{port, &journal_};
   std::unique_ptr<Exchange> exchange_;
-  std::unique_ptr<BusLoop<P>> loop_;
+  std::unique_ptr<BusLoop<P, L>> loop_;
 };
 
-template <class P>
+template <class P, class L>
 void measure(unsigned nodes) {
-  Bench<P> bench{nodes, !path_only};
+  Bench<P, L> bench{nodes, !path_only};
   constexpr int cycles = 100;
 
   bench.collect = bench.count = true;
@@ -142,6 +151,7 @@ int main(int argc, char** argv) {
     path_only |= argument == "--receive-path";
     recorded |= argument == "--recorded";
   }
-  recorded ? measure<RecordedPort<Memory>>(nodes) : measure<Memory>(nodes);
+  recorded ? measure<RecordedPort<Memory>, RecordedLink>(nodes)
+           : measure<Memory, DirectLink>(nodes);
   return 0;
 }

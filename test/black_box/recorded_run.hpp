@@ -11,6 +11,8 @@
 #include "master/black_box/recording_file.hpp"
 #include "master/black_box/replay.hpp"
 #include "master/rt/bus_loop.hpp"
+#include "master/rt/journal/recorded_link.hpp"
+#include "master/rt/journal/recorded_port.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "test/support/folder.hpp"
 
@@ -31,7 +33,7 @@ class RecordedRun {
                    .spin_jitter = std::chrono::microseconds{5}}},
         port_{sim_port_, &journal},
         exchange{std::make_unique<Exchange>(network.plan)},
-        loop_{network.plan, port_, *exchange} {
+        loop_{network.plan, port_, RecordedLink{*exchange, &journal}} {
     loop_.start();
   }
 
@@ -85,7 +87,7 @@ class RecordedRun {
   std::unique_ptr<Exchange> exchange;
 
  private:
-  BusLoop<RecordedPort<sim::SimPort>> loop_;
+  BusLoop<RecordedPort<sim::SimPort>, RecordedLink> loop_;
 };
 
 inline ReplayOutcome replay_file(const BusPlan& plan, const std::filesystem::path& file) {

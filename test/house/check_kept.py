@@ -15,7 +15,7 @@ SHOWN = "decides nothing: is only shown, or says when to show"
 
 NOT_KEPT = {
     "ArrivalPrediction": {PLAN: "window_"},
-    "BusLoop": {PLAN: "plan_ options_ wire_ state_words_", SHARED: "port_ exchange_", SHOWN: "last_status_",
+    "BusLoop": {PLAN: "plan_ options_ wire_ state_words_", SHARED: "port_ front_ exchange_", SHOWN: "last_status_",
                 IDLE: "events_ stop_ halt_ stop_requests_ fallbacks_ services_ stream_end_ left_from_ left_end_ reply_ reply_waits_ done_",
                 ANEW: "received_ request_ published_"},
     "LssRunner": {IDLE: "master_ state_", ANEW: "commands_ results_ count_ results_count_ timeout_"},

@@ -28,6 +28,7 @@
 #include "master/linux/can/socket_can.hpp"
 #include "master/linux/unix_bus/unix_bus.hpp"
 #include "master/rt/bus_loop.hpp"
+#include "master/rt/journal/recorded_link.hpp"
 #include "master/rt/journal/recorded_port.hpp"
 #include "test/proof/allocation_trap.hpp"
 #include "test/proof/syscall_trap.hpp"
@@ -103,7 +104,8 @@ void run_devices(P& port, const Mishap& mishap, Course& course) {
 
 /// The bus thread: everything is trapped from here.
 template <class P>
-void run_trapped(BusLoop<P>& loop, std::span<const proof::SystemCall> allowed, Course& course) {
+void run_trapped(BusLoop<P, RecordedLink>& loop, std::span<const proof::SystemCall> allowed,
+                 Course& course) {
   proof::trap_system_calls(allowed);
   proof::trap_allocations(true);
   loop.start();
@@ -169,8 +171,8 @@ int prove(const BusPlan& plan, P& master_port, P& device_port, const Circumstanc
   Journal journal{288 << 10};  // holds checkpoints, begins anew now and then
   journal.want();
   RecordedPort<P> port{master_port, &journal};
-  const auto loop = std::make_unique<BusLoop<RecordedPort<P>>>(
-      plan, port, *exchange, BusLoopOptions{.controller = &breaker});
+  const auto loop = std::make_unique<BusLoop<RecordedPort<P>, RecordedLink>>(
+      plan, port, RecordedLink{*exchange, &journal}, BusLoopOptions{.controller = &breaker});
 
   Course course;
   std::thread devices{[&] { run_devices(device_port, given.mishap, course); }};

@@ -159,11 +159,14 @@ class Journal {
   bool checkpoint_due() const noexcept { return tape_->checkpoint_due(); }
   /// Returns room for a checkpoint, or nullptr if the checkpoint is too long for this tape.
   std::uint64_t* checkpoint(std::size_t words) noexcept {
-    return tape_->begin_checkpoint(words) ? claim(Mark::checkpoint, words, words) : nullptr;
+    std::uint64_t* const room =
+        tape_->begin_checkpoint(words) ? claim(Mark::checkpoint, words, words) : nullptr;
+    if (room != nullptr) ++beginnings_;
+    return room;
   }
-  /// Returns the number of tapes begun so far. A new tape repeats everything that is recorded only
-  /// once per tape.
-  unsigned tape() const noexcept { return tapes_begun_; }
+  /// Number of places so far at which a replay can begin: a new tape, and each checkpoint. What is
+  /// recorded only when it changes is recorded again behind each of them.
+  unsigned beginnings() const noexcept { return beginnings_; }
 
   /// Front side: requests the running tape. At the next cycle, recording continues on the other
   /// tape. The front side must not call this again before give_back().
@@ -185,14 +188,14 @@ class Journal {
     running_ = 1 - running_;
     tape_ = &tapes_[running_];
     tape_->clear();
-    ++tapes_begun_;
+    ++beginnings_;
     state_.store(State::changed, std::memory_order_release);
   }
 
   std::array<Tape, 2> tapes_;
   Tape* tape_ = tapes_.data();
   std::size_t running_ = 0;  // constant while the state is `changed`
-  unsigned tapes_begun_ = 1;
+  unsigned beginnings_ = 1;
   std::atomic<State> state_{State::recording};
 };
 

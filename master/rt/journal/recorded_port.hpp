@@ -3,31 +3,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 
-#include "master/rt/exchange/exchange.hpp"
 #include "master/rt/journal/journal.hpp"
-#include "master/rt/journal/journal_request.hpp"
 #include "master/rt/port.hpp"
 
 namespace takt {
-
-/// A port that also stands between the bus loop and the front thread, so that everything that
-/// decides what the loop does passes through it.
-template <class P>
-concept WitnessPort =
-    Port<P> && requires(P port, Exchange& exchange, std::uint64_t cycle, Request& request,
-                        const Reply& reply, const Event& event) {
-      { port.begin_cycle(cycle) } noexcept;
-      { port.set_points(exchange) } noexcept -> std::same_as<const SetPointFrame&>;
-      { port.take_request(exchange, request) } noexcept -> std::same_as<bool>;
-      { port.stop_requested(exchange) } noexcept -> std::same_as<bool>;
-      { port.give_reply(exchange, reply) } noexcept -> std::same_as<bool>;
-      { port.tell(exchange, event) } noexcept;
-      { port.checkpoint_due() } noexcept -> std::same_as<bool>;
-      { port.checkpoint(std::size_t{}) } noexcept -> std::same_as<std::uint64_t*>;
-    };
 
 namespace journal {
 
@@ -70,8 +51,8 @@ inline void get_state(const std::uint64_t* from, PortNews& news) noexcept {
 
 }  // namespace journal
 
-/// Records the answers of another port and the input from the front thread. This adds no system
-/// call and allocates nothing. Without a journal, the port only forwards. Bus thread only.
+/// Records the answers of another port. This adds no system call and allocates nothing. Without a
+/// journal, the port only forwards. Bus thread only.
 template <Port P>
 class RecordedPort {
  public:
@@ -113,56 +94,15 @@ class RecordedPort {
     return news;
   }
 
-  void begin_cycle(std::uint64_t cycle) noexcept {
-    if (journal_ == nullptr) return;
-    journal_->begin_cycle(cycle);
-    if (tape_ == journal_->tape()) return;
-    tape_ = journal_->tape();
-    told_ = {};
-    points_ = nullptr;
-  }
-  bool checkpoint_due() const noexcept { return journal_ != nullptr && journal_->checkpoint_due(); }
-  /// Returns room for the state of the loop, or nullptr if it is too long. Whatever this port has
-  /// recorded once is recorded again behind the checkpoint.
-  std::uint64_t* checkpoint(std::size_t words) noexcept {
-    std::uint64_t* const room = journal_->checkpoint(words);
-    if (room == nullptr) return nullptr;
-    told_ = {};
-    points_ = nullptr;
-    return room;
-  }
-  const SetPointFrame& set_points(Exchange& exchange) noexcept {
-    const SetPointFrame& frame = exchange.set_points.newest();
-    if (journal_ != nullptr) note(frame);
-    return frame;
-  }
-  bool take_request(Exchange& exchange, Request& request) noexcept {
-    if (!exchange.requests.pop(request)) return false;
-    if (journal_ != nullptr) put_request(*journal_, request, exchange.transfers);
-    return true;
-  }
-  bool stop_requested(Exchange& exchange) noexcept {
-    if (!exchange.stop_requested.load(std::memory_order_relaxed)) return false;
-    if (journal_ != nullptr) journal_->put(Mark::stop, 0);
-    return true;
-  }
-  bool give_reply(Exchange& exchange, const Reply& reply) noexcept {
-    if (!exchange.replies.full() && exchange.replies.push(reply)) return true;
-    if (journal_ != nullptr) journal_->put(Mark::replies_full, 0);
-    return false;
-  }
-  void tell(Exchange& exchange, const Event& event) noexcept {
-    exchange.events.push(event);
-    if (journal_ == nullptr) return;
-    std::uint64_t* const room = journal_->claim(Mark::event, 0, journal::event_words);
-    if (room != nullptr) std::memcpy(static_cast<void*>(room), &event, sizeof event);
-  }
-
  private:
   /// The time of day is accurate to a few microseconds at best. The port hides smaller changes from
   /// the loop, because each would need a record.
   void note(PortNews& news) const noexcept {
     constexpr Time jitter = std::chrono::microseconds{50};
+    if (beginnings_ != journal_->beginnings()) {
+      beginnings_ = journal_->beginnings();
+      told_ = {};
+    }
     std::uint64_t parts = 0;
     const Time drift = news.since_1970 - told_.since_1970;
     if (drift > jitter || drift < -jitter) {
@@ -193,23 +133,11 @@ class RecordedPort {
   static std::uint64_t count_of(Time time) noexcept {
     return static_cast<std::uint64_t>(time.count());
   }
-  /// The triple buffer returns another of its frames whenever it has a new set.
-  void note(const SetPointFrame& frame) noexcept {
-    if (&frame == points_) return journal_->put(Mark::set_points, std::uint64_t{0});
-    points_ = &frame;
-    const std::size_t bytes = frame.points.size() * sizeof(SetPoint);
-    std::uint64_t* const room =
-        journal_->claim(Mark::set_points, frame.points.size(), 1 + bytes / 8);
-    if (room == nullptr) return;
-    room[0] = count_of(frame.when);
-    std::memcpy(static_cast<void*>(room + 1), frame.points.data(), bytes);
-  }
 
   P* port_;
   Journal* journal_;
-  unsigned tape_ = 1;
-  mutable PortNews told_;                  // as recorded last
-  const SetPointFrame* points_ = nullptr;  // the frame that the loop received last
+  mutable PortNews told_;  // as recorded last
+  mutable unsigned beginnings_ = 0;
 };
 
 }  // namespace takt

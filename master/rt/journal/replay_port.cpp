@@ -178,7 +178,7 @@ void ReplayPort::begin_cycle(std::uint64_t cycle) noexcept {
   }
 }
 
-const SetPointFrame& ReplayPort::set_points(Exchange&) noexcept {
+const SetPointFrame& ReplayPort::set_points() noexcept {
   const auto count = next(Mark::set_points);
   if (!count || *count == 0) return points_;
   std::span<const std::uint64_t> words;
@@ -194,7 +194,7 @@ const SetPointFrame& ReplayPort::set_points(Exchange&) noexcept {
   return points_;
 }
 
-bool ReplayPort::take_request(Exchange&, Request& request) noexcept {
+bool ReplayPort::take_request(Request& request) noexcept {
   if (!comes(Mark::request)) return false;
   const std::uint64_t count = next(Mark::request).value_or(0);
   std::span<const std::uint64_t> words;
@@ -204,17 +204,14 @@ bool ReplayPort::take_request(Exchange&, Request& request) noexcept {
   return false;
 }
 
-bool ReplayPort::stop_requested(Exchange&) noexcept {
+bool ReplayPort::stop_requested() noexcept {
   return comes(Mark::stop) && next(Mark::stop).has_value();
 }
 
-bool ReplayPort::give_reply(Exchange&, const Reply&) noexcept {
+bool ReplayPort::give_reply() noexcept {
   return !(comes(Mark::replies_full) && next(Mark::replies_full));
 }
 
-void ReplayPort::tell(Exchange& exchange, const Event& event) noexcept {
-  exchange.events.push(event);
-  next(Mark::event);
-}
+void ReplayPort::note_event() noexcept { next(Mark::event); }
 
 }  // namespace takt

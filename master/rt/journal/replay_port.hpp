@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "master/rt/exchange/exchange.hpp"
+#include "master/rt/exchange/front_link.hpp"
 #include "master/rt/journal/journal.hpp"
 #include "master/rt/journal/journal_request.hpp"
 #include "master/rt/journal/recorded_port.hpp"
@@ -71,15 +71,13 @@ class ReplayPort {
   SendResult send(std::span<const Frame> out) noexcept;
   PortNews news() const noexcept;
 
+  // What came from the front thread, for ReplayedLink.
   void begin_cycle(std::uint64_t cycle) noexcept;
-  /// The replay skips the checkpoints of the recording and writes none.
-  bool checkpoint_due() const noexcept { return false; }
-  std::uint64_t* checkpoint(std::size_t) noexcept { return nullptr; }
-  const SetPointFrame& set_points(Exchange& exchange) noexcept;
-  bool take_request(Exchange& exchange, Request& request) noexcept;
-  bool stop_requested(Exchange& exchange) noexcept;
-  bool give_reply(Exchange& exchange, const Reply& reply) noexcept;
-  void tell(Exchange& exchange, const Event& event) noexcept;
+  const SetPointFrame& set_points() noexcept;
+  bool take_request(Request& request) noexcept;
+  bool stop_requested() noexcept;
+  bool give_reply() noexcept;
+  void note_event() noexcept;
 
  private:
   std::optional<std::uint64_t> next(Mark mark) const noexcept;
@@ -105,6 +103,35 @@ class ReplayPort {
   SetPointFrame points_;
   SdoTransfers transfers_;
 };
-static_assert(WitnessPort<ReplayPort>);
+static_assert(Port<ReplayPort>);
+
+/// Plays the front thread of the recording that a ReplayPort plays. Events go to the exchange,
+/// where the replay compares them.
+class ReplayedLink {
+ public:
+  /// Keeps pointers to both arguments.
+  ReplayedLink(ReplayPort& port, Exchange& exchange) noexcept
+      : port_{&port}, exchange_{&exchange} {}
+
+  Exchange& exchange() noexcept { return *exchange_; }
+  const SetPointFrame& set_points() noexcept { return port_->set_points(); }
+  bool take_request(Request& request) noexcept { return port_->take_request(request); }
+  bool stop_requested() noexcept { return port_->stop_requested(); }
+  bool give_reply(const Reply&) noexcept { return port_->give_reply(); }
+  void tell(const Event& event) noexcept {
+    exchange_->events.push(event);
+    port_->note_event();
+  }
+
+  void begin_cycle(std::uint64_t cycle) noexcept { port_->begin_cycle(cycle); }
+  /// The replay skips the checkpoints of the recording and writes none.
+  static constexpr bool checkpoint_due() noexcept { return false; }
+  static constexpr std::uint64_t* checkpoint(std::size_t) noexcept { return nullptr; }
+
+ private:
+  ReplayPort* port_;
+  Exchange* exchange_;
+};
+static_assert(FrontLink<ReplayedLink>);
 
 }  // namespace takt

@@ -24,7 +24,8 @@ class Loop {
       port.answers.push_back({make_frame(CobId::base(0x181 + i), {0x37, 0x02, 1, 0, 0, 0}),
                               Time{300us} + i * Time{100us}});
     }
-    loop = std::make_unique<BusLoop<FakePort, FakeNetwork>>(plan, port, *exchange, options);
+    loop = std::make_unique<BusLoop<FakePort, DirectLink, FakeNetwork>>(plan, port, *exchange,
+                                                                        options);
     network = FakeNetwork::newest;
     start = port.now();
     loop->start();
@@ -59,7 +60,7 @@ class Loop {
   BusPlan plan;
   FakePort port;
   std::unique_ptr<Exchange> exchange;
-  std::unique_ptr<BusLoop<FakePort, FakeNetwork>> loop;
+  std::unique_ptr<BusLoop<FakePort, DirectLink, FakeNetwork>> loop;
   FakeNetwork* network = nullptr;
   Time start{};
   std::size_t most_calls = 0;

@@ -5,7 +5,9 @@
 #include <thread>
 
 #include "master/rt/journal/journal_request.hpp"
+#include "master/rt/journal/recorded_link.hpp"
 #include "master/rt/journal/replay_port.hpp"
+#include "test/unit/master/core/pdo/small_plan.hpp"
 
 namespace takt {
 namespace {
@@ -168,6 +170,68 @@ TEST(JournalRequest, RefusesWhatIsNone) {
   EXPECT_FALSE(get_request(garbage, back, transfers));
   const std::vector<std::uint64_t> huge{1, std::uint64_t{1} << 48, 0, ~0ULL};
   EXPECT_FALSE(get_request(huge, back, transfers));
+}
+
+struct RecordedLinkTest : testing::Test {
+  BusPlan plan = test::axes({.nodes = 1});  // two outputs
+  Journal journal{65536};
+  std::unique_ptr<Exchange> exchange = std::make_unique<Exchange>(plan);
+  RecordedLink link{*exchange, &journal};
+};
+
+TEST_F(RecordedLinkTest, RecordsASetOnceAndAgainBehindEachCheckpoint) {
+  SetPoints& set_points = exchange->set_points;
+  set_points.publish(Time{1000});
+  const SetPointFrame& frame = link.set_points();
+  EXPECT_EQ(frame.when, Time{1000});
+  EXPECT_EQ(&link.set_points(), &frame);
+  ASSERT_TRUE(link.checkpoint_due());
+  ASSERT_NE(link.checkpoint(2), nullptr);
+  link.set_points();
+
+  const std::vector<std::uint64_t> words = journal.last().read();
+  constexpr std::size_t set = 2 + 2 * sizeof(SetPoint) / 8;
+  ASSERT_EQ(words.size(), set + 1 + 3 + set);
+  EXPECT_EQ(words[0], word(Mark::set_points, 2));
+  EXPECT_EQ(words[1], 1000U);
+  EXPECT_EQ(words[set], word(Mark::set_points, 0));
+  EXPECT_EQ(words[set + 1], word(Mark::checkpoint, 2));
+  EXPECT_EQ(words[set + 4], word(Mark::set_points, 2)) << "the set is recorded again";
+}
+
+/// A set without set-points looks like an unchanged one, so it has no words.
+TEST_F(RecordedLinkTest, RecordsNoContentForABusWithoutOutputs) {
+  const auto without = std::make_unique<Exchange>(BusPlan{});
+  RecordedLink empty{*without, &journal};
+  without->set_points.publish(Time{1000});
+  empty.set_points();
+  EXPECT_EQ(journal.last().read(), std::vector{word(Mark::set_points, 0)});
+}
+
+TEST_F(RecordedLinkTest, RecordsOnlyWhatTheFrontThreadHasDone) {
+  Request request;
+  EXPECT_FALSE(link.take_request(request));
+  EXPECT_FALSE(link.stop_requested());
+  EXPECT_TRUE(link.give_reply({}));
+  EXPECT_TRUE(journal.last().read().empty());
+
+  exchange->stop_requested = true;
+  EXPECT_TRUE(link.stop_requested());
+  for (int i = 1; i < 16; ++i) EXPECT_TRUE(link.give_reply({}));
+  EXPECT_FALSE(link.give_reply({}));
+  EXPECT_EQ(journal.last().read(),
+            (std::vector<std::uint64_t>{word(Mark::stop, 0), word(Mark::replies_full, 0)}));
+}
+
+TEST_F(RecordedLinkTest, OnlyForwardsWithoutAJournal) {
+  RecordedLink plain{*exchange, nullptr};
+  exchange->set_points.publish(Time{1000});
+  EXPECT_EQ(plain.set_points().when, Time{1000});
+  EXPECT_FALSE(plain.checkpoint_due());
+  plain.tell({.kind = EventKind::stopping});
+  Event event;
+  ASSERT_TRUE(exchange->events.pop(event));
+  EXPECT_EQ(event.kind, EventKind::stopping);
 }
 
 /// If a frame differs from the recorded one, the replay ends and keeps the difference.

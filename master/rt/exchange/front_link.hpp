@@ -1,0 +1,67 @@
+#pragma once
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+#include "master/core/event.hpp"
+#include "master/core/request.hpp"
+#include "master/rt/exchange/exchange.hpp"
+#include "master/rt/exchange/set_points.hpp"
+
+namespace takt {
+
+/// The front thread as the bus loop sees it: all that the loop takes from there, and the replies
+/// and events that it gives. Beside `Port` this is the only input of the loop, so a recording that
+/// stands at both doors has all that decides what the loop does. A link is a handle that the loop
+/// copies. No function allocates, locks or throws.
+template <class L>
+concept FrontLink = std::copy_constructible<L> &&
+                    requires(L link, const L constant, std::uint64_t cycle, Request& request,
+                             const Reply& reply, const Event& event, std::size_t words) {
+                      /// Images, states and times go straight to the exchange: nothing comes back
+                      /// from there.
+                      { link.exchange() } noexcept -> std::same_as<Exchange&>;
+                      /// The newest set; valid until the next call.
+                      { link.set_points() } noexcept -> std::same_as<const SetPointFrame&>;
+                      { link.take_request(request) } noexcept -> std::same_as<bool>;
+                      { link.stop_requested() } noexcept -> std::same_as<bool>;
+                      /// Returns false if there is no room; the loop then offers the reply again.
+                      { link.give_reply(reply) } noexcept -> std::same_as<bool>;
+                      { link.tell(event) } noexcept;
+
+                      /// A cycle begins. A recording can begin here.
+                      { link.begin_cycle(cycle) } noexcept;
+                      /// The link wants the state of the loop, so that a replay can begin in the
+                      /// middle of a run.
+                      { constant.checkpoint_due() } noexcept -> std::same_as<bool>;
+                      /// Returns room for the state, or nullptr if it is too long.
+                      { link.checkpoint(words) } noexcept -> std::same_as<std::uint64_t*>;
+                    };
+
+/// The link to the front thread of this process, without a recording.
+class DirectLink {
+ public:
+  /// Keeps a reference to `exchange`. A loop that is given an exchange makes this link of it.
+  DirectLink(Exchange& exchange) noexcept : exchange_{&exchange} {}
+
+  Exchange& exchange() noexcept { return *exchange_; }
+  const SetPointFrame& set_points() noexcept { return exchange_->set_points.newest(); }
+  bool take_request(Request& request) noexcept { return exchange_->requests.pop(request); }
+  bool stop_requested() noexcept {
+    return exchange_->stop_requested.load(std::memory_order_relaxed);
+  }
+  bool give_reply(const Reply& reply) noexcept {
+    return !exchange_->replies.full() && exchange_->replies.push(reply);
+  }
+  void tell(const Event& event) noexcept { exchange_->events.push(event); }
+
+  void begin_cycle(std::uint64_t) noexcept {}
+  static constexpr bool checkpoint_due() noexcept { return false; }
+  static constexpr std::uint64_t* checkpoint(std::size_t) noexcept { return nullptr; }
+
+ private:
+  Exchange* exchange_;
+};
+static_assert(FrontLink<DirectLink>);
+
+}  // namespace takt
