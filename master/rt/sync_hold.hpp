@@ -34,6 +34,9 @@ class SyncHold {
     return open_;
   }
 
+  /// SYNC was permitted before.
+  bool is_open() const noexcept { return open_; }
+
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(open_);

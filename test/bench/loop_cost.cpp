@@ -29,18 +29,18 @@ bool path_only = false;  // collect from the return of receive() to the publishe
 int clock_reads = 0;     // until the image is published, counted from there
 
 struct PauseCallgrind {
-  void enter() noexcept {
+  [[gnu::always_inline]] void enter() noexcept {
     if (collecting && !path_only) CALLGRIND_TOGGLE_COLLECT;
   }
-  void leave() noexcept {
+  [[gnu::always_inline]] void leave() noexcept {
     if (collecting && !path_only) CALLGRIND_TOGGLE_COLLECT;
   }
-  void on_received() noexcept {
+  [[gnu::always_inline]] void on_received() noexcept {
     if (!collecting || !path_only) return;
     clock_reads = 2;  // the time of the image, and the next phase
     CALLGRIND_TOGGLE_COLLECT;
   }
-  void on_now() noexcept {
+  [[gnu::always_inline]] void on_now() noexcept {
     if (clock_reads != 0 && --clock_reads == 0) CALLGRIND_TOGGLE_COLLECT;
   }
 };

@@ -15,11 +15,17 @@ SHOWN = "decides nothing: is only shown, or says when to show"
 
 NOT_KEPT = {
     "ArrivalPrediction": {PLAN: "window_"},
-    "BusLoop": {PLAN: "plan_ options_ wire_ state_words_", SHARED: "port_ front_ exchange_", SHOWN: "last_status_",
-                IDLE: "events_ stop_ halt_ stop_requests_ fallbacks_ services_ stream_end_ left_from_ left_end_ reply_ reply_waits_ done_",
-                ANEW: "received_ request_ published_"},
+    "AxisMemories": {PLAN: "axes_", SHARED: "bus_"},
+    "Beat": {PLAN: "plan_", SHARED: "status_ timing_", ANEW: "began_"},
+    "BusLoop": {PLAN: "state_words_", SHARED: "port_ front_", SHOWN: "report_", IDLE: "requests_",
+                ANEW: "nodes_ images_ outputs_ published_"},
+    "BusMachines": {PLAN: "plan observe wire", IDLE: "events service_frames"},
+    "FrameSender": {SHARED: "port_ beat_ status_"},
+    "Intake": {SHARED: "port_ beat_ bus_ timing_", IDLE: "left_from_ left_end_", ANEW: "received_"},
+    "LossStop": {SHARED: "bus_ memories_ stops_"},
     "LssRunner": {IDLE: "master_ state_", ANEW: "commands_ results_ count_ results_count_ timeout_"},
     "LssService": {PLAN: "plan_", SHARED: "requests_ events_", IDLE: "searched_ request_ stopping_"},
+    "MissedCycles": {SHARED: "events_ status_"},
     "Network": {PLAN: "plan_ observe_ nmt_stop_ stops_drives_ index_ emcy_ids_ answers_ dictionary_", SHARED: "events_",
                 IDLE: "stopping_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
                       "rest_"},
@@ -42,10 +48,13 @@ NOT_KEPT = {
                   ANEW: "toggle_ left_stream_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
                         "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_ late_now_ unfit_ asked_at_ heard_at_ "
                         "empty_answer_ previous_answer_"},
+    "Slack": {SHARED: "port_ beat_ sender_ intake_ bus_", IDLE: "stream_end_"},
+    "StopControl": {SHARED: "bus_", IDLE: "stops_ halt_ sequence_"},
     "SyncCounter": {PLAN: "overflow_"},
     "SyncFollower": {PLAN: "id_ declared_ tolerance_ timeout_ reaction_ overflow_", SHARED: "events_"},
     "SyncGate": {PLAN: "tolerance_"},
     "SyncHold": {PLAN: "steps_"},
+    "SyncLossReaction": {SHARED: "bus_ memories_ stops_", IDLE: "fallbacks_"},
     "TimeProducer": {PLAN: "plan_"},
     "TwinWatch": {PLAN: "period_ sdo_request_"},
 }

@@ -35,7 +35,7 @@ struct HistogramSnapshot {
 class Histogram {
  public:
   /// Negative times count as zero.
-  void record(Time time) noexcept {
+  [[gnu::always_inline]] void record(Time time) noexcept {
     std::atomic<std::uint64_t>& bin = counts_[bin_of(time)];
     bin.store(bin.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }

@@ -1,0 +1,87 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "master/core/network/axis_memory.hpp"
+#include "master/core/network/ordered_stop.hpp"
+#include "master/core/network/stop_requests.hpp"
+#include "master/rt/bus_machines.hpp"
+
+namespace takt {
+
+/// Remembers of each axis whether it is disabled, and whether a service may have enabled it since.
+/// The stops rely on this. Bus thread only.
+template <Services S>
+class AxisMemories {
+ public:
+  /// Keeps a reference to `bus`.
+  explicit AxisMemories(BusMachines<S>& bus)
+      : bus_{bus}, axes_{OrderedStop::axes_of(bus.plan)}, memories_(axes_.size()) {}
+
+  std::span<const StopAxis> axes() const noexcept { return axes_; }
+  std::span<const AxisMemory> all() const noexcept { return memories_; }
+  AxisMemory& operator[](std::size_t axis) noexcept { return memories_[axis]; }
+
+  /// Takes what has come and what is commanded. Call this once a cycle.
+  void update() noexcept {
+    for (std::size_t i = 0; i < memories_.size(); ++i) update(axes_[i], memories_[i]);
+  }
+  /// Notes a request that may bring a controlword to an axis. The content of an RPDO sent on
+  /// request is not inspected: it counts as enabling.
+  void note(const Request& request) noexcept {
+    const bool writes = request.kind == RequestKind::sdo_download;
+    if (!writes && request.kind != RequestKind::pdo_exchange) return;
+    for (std::size_t i = 0; i < memories_.size(); ++i) {
+      if (node_of(axes_[i]) != request.node) continue;
+      if (writes && request.object != controlword_of(axes_[i])) continue;
+      const bool known = writes && request.transfer == nullptr && request.size != 0;
+      memories_[i].write(known ? std::to_integer<std::int64_t>(request.data[0]) : enabling_word);
+    }
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(memories_);
+  }
+
+ private:
+  static constexpr std::int64_t enabling_word = 0x0F;  ///< "enable operation"
+
+  static ObjectKey controlword_of(const StopAxis& axis) noexcept {
+    return {StopRequests::controlword_of(axis), 0};
+  }
+  std::uint8_t node_of(const StopAxis& axis) const noexcept {
+    return bus_.plan.nodes[axis.node_index].id.value();
+  }
+  /// A request that may bring a controlword to this axis is not answered yet.
+  bool word_under_way(const StopAxis& axis) const noexcept {
+    const std::uint8_t node = node_of(axis);
+    return bus_.pdo_requests.reaches(node) || bus_.services.writes(node, controlword_of(axis));
+  }
+  void update(const StopAxis& axis, AxisMemory& memory) noexcept {
+    const WorkingImage& image = bus_.pdos.image();
+    std::optional<std::int64_t> statusword;
+    const bool heard = axis.statusword && bus_.exchanging[axis.node_index];
+    if (heard && memory.news(bus_.pdos.inputs().marks()[axis.word_row].received)) {
+      statusword = image.values[*axis.statusword];
+    }
+    std::optional<std::int64_t> controlword;
+    if (axis.controlword && bus_.pdos.outputs().known(*axis.controlword)) {
+      controlword = image.values[*axis.controlword];
+    }
+    if (memory.awaits_answer() && !word_under_way(axis)) memory.note_answer();
+    memory.look(statusword, controlword);
+    const NodeStatus& node = bus_.services.nodes()[axis.node_index];
+    const bool found = node.boot_count == 0 && node.boot != BootState::ready;
+    if (found && OrderedStop::says_operational(node)) memory.note_operational();
+  }
+
+  BusMachines<S>& bus_;
+  std::vector<StopAxis> axes_;
+  std::vector<AxisMemory> memories_;  ///< one element per axis
+};
+
+}  // namespace takt

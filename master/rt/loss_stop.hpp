@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "master/core/network/ordered_stop.hpp"
+#include "master/rt/axis_memories.hpp"
+#include "master/rt/axis_stops.hpp"
+#include "master/rt/bus_machines.hpp"
+
+namespace takt {
+
+/// LossReaction::quick_stop: while a node is lost, the drives of its group make a quick stop and
+/// stay disabled until the node is back. Bus thread only.
+template <Services S>
+class LossStop {
+ public:
+  /// Keeps references to all arguments.
+  LossStop(BusMachines<S>& bus, AxisMemories<S>& memories, AxisStops<S>& stops)
+      : bus_{bus}, memories_{memories}, stops_{stops}, forced_(memories.axes().size()) {}
+
+  /// Call this once a cycle, before the outputs are packed.
+  void step() noexcept {
+    if (!bus_.services.stops_drives()) return;
+    for (std::size_t i = 0; i < forced_.size(); ++i) {
+      const StopAxis& axis = memories_.axes()[i];
+      if (!axis.controlword || stops_.commands(i)) continue;
+      if (bus_.services.demands_quick_stop(axis.node_index)) {
+        bus_.pdos.outputs().force(*axis.controlword, memories_[i].disabled()
+                                                         ? OrderedStop::disable_voltage_word
+                                                         : OrderedStop::quick_stop_word);
+        forced_[i] = 1;
+      } else if (forced_[i] != 0) {
+        bus_.pdos.outputs().release(*axis.controlword);
+        forced_[i] = 0;
+      }
+    }
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(forced_);
+  }
+
+ private:
+  BusMachines<S>& bus_;
+  AxisMemories<S>& memories_;
+  AxisStops<S>& stops_;
+  std::vector<std::uint8_t> forced_;  ///< by axis: 1 while its controlword is forced
+};
+
+}  // namespace takt

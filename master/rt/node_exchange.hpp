@@ -1,0 +1,62 @@
+#pragma once
+#include <cstddef>
+
+#include "master/rt/beat.hpp"
+#include "master/rt/bus_machines.hpp"
+#include "master/rt/exchange/front_link.hpp"
+#include "master/rt/port.hpp"
+
+namespace takt {
+
+/// Decides which nodes exchange PDOs in this cycle, and how their TPDOs are received. Bus thread
+/// only.
+template <Port P, FrontLink L, Services S>
+class NodeExchange {
+ public:
+  /// Keeps references to all arguments.
+  NodeExchange(P& port, L& front, const Beat& beat, BusMachines<S>& bus) noexcept
+      : port_{port}, front_{front}, beat_{beat}, bus_{bus} {}
+
+  /// Call this at the begin of each cycle. `axes_stopped` means that an ordered stop has ended for
+  /// all axes.
+  void update(bool axes_stopped) noexcept {
+    // A master that only observes and does not know SYNC cannot wait for answers to it.
+    const bool beats = !bus_.observe || beat_.follows();
+    // At the end of an ordered stop, a heartbeat sent before the last NMT command may still report
+    // OPERATIONAL.
+    const Reception beating = axes_stopped ? Reception::early : Reception::full;
+    const Reception heard = beats ? beating : Reception::listening;
+    bool takes_pdos = false;
+    BusMachines<S>& bus = bus_;
+    for (std::size_t i = 0; i < bus.plan.nodes.size(); ++i) {
+      const bool exchanging = bus.services.exchanges_pdos(i);
+      if (exchanging != bus.exchanging[i]) [[unlikely]]
+        change(i, exchanging);
+      const bool listen = bus.observe || !bus.plan.nodes[i].boot;
+      takes_pdos = takes_pdos || exchanging || listen;
+      bus.pdos.inputs().set_reception(i, exchanging ? heard : reception_of_other(i, listen));
+    }
+    bus.takes_pdos = takes_pdos;
+  }
+
+ private:
+  /// How the TPDOs of a node are received that does not exchange PDOs yet.
+  Reception reception_of_other(std::size_t node_index, bool listen) const noexcept {
+    if (listen) return Reception::listening;
+    return bus_.services.starts(node_index) ? Reception::early : Reception::off;
+  }
+  void change(std::size_t node_index, bool exchanging) noexcept {
+    bus_.exchanging[node_index] = exchanging;
+    PdoOutputs& outputs = bus_.pdos.outputs();
+    if (!exchanging) return outputs.shut(node_index);
+    outputs.open(node_index, front_.set_points().points);
+    outputs.learn(node_index, bus_.services.limits_read(node_index), {beat_.cycle(), port_.now()});
+  }
+
+  P& port_;
+  L& front_;
+  const Beat& beat_;
+  BusMachines<S>& bus_;
+};
+
+}  // namespace takt

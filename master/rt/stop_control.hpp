@@ -1,0 +1,87 @@
+#pragma once
+#include "master/rt/axis_memories.hpp"
+#include "master/rt/axis_stops.hpp"
+#include "master/rt/bus_machines.hpp"
+#include "master/rt/exchange/front_link.hpp"
+#include "master/rt/loss_stop.hpp"
+#include "master/rt/nmt_halt.hpp"
+#include "master/rt/port.hpp"
+#include "master/rt/stop_sequence.hpp"
+#include "master/rt/sync_loss_reaction.hpp"
+
+namespace takt {
+
+/// All that stops axes, in the order of a cycle: the reaction to the loss of SYNC, the halt before
+/// an NMT command, the ordered stop, and the quick stop after the loss of a node. Bus thread only.
+template <Services S>
+class StopControl {
+ public:
+  /// Keeps a reference to `bus`.
+  explicit StopControl(BusMachines<S>& bus)
+      : bus_{bus},
+        memories_{bus},
+        stops_{bus, memories_},
+        sync_loss_{bus, memories_, stops_},
+        halt_{bus, memories_, stops_, sync_loss_},
+        sequence_{bus, memories_, stops_, sync_loss_},
+        loss_stop_{bus, memories_, stops_} {}
+
+  AxisMemories<S>& memories() noexcept { return memories_; }
+  AxisStops<S>& stops() noexcept { return stops_; }
+  const OrderedStop& ordered() const noexcept { return stops_.ordered(); }
+  /// The ordered stop is complete.
+  bool done() const noexcept { return sequence_.done(); }
+
+  /// Takes whether the SYNC of another device is lost.
+  void follow_sync(bool lost) noexcept { sync_loss_.follow(lost); }
+  /// Ends a halt whose NMT command has left. Call this before the services run.
+  void end_halt() noexcept {
+    if (stops_.halting()) halt_.end_if_over();
+  }
+  /// Submits the SDO requests of the stops. Call this before each round of services.
+  template <Port P>
+  void submit_requests(P& port) noexcept {
+    if (sync_loss_.writes_wait()) sync_loss_.write_fallbacks(port.now());
+    if (stops_.asks()) stops_.ask(port.now());
+  }
+  /// Begins the stops that are asked for, and advances them. Call this after the services have run.
+  template <FrontLink L>
+  void step(L& front, Time now) noexcept {
+    memories_.update();
+    if (!stops_.stopping()) {
+      halt_.step(now);
+      if (front.stop_requested()) sequence_.begin(now);
+    }
+    if (stops_.stopping()) sequence_.step(now);
+  }
+  /// Makes the drives of a lost node's group stop. Call this before the outputs are packed.
+  void stop_after_loss() noexcept { loss_stop_.step(); }
+
+  /// The master sends no SYNC, see NmtHalt.
+  bool silences_master() const noexcept { return stops_.halting() && halt_.silences_master(); }
+  /// The master sends no RPDOs in this cycle. In NMT Stopped it sends only fallbacks that an
+  /// inhibit time holds back.
+  bool withholds_outputs() noexcept {
+    return sync_loss_.withholds_outputs() || (silences_master() && !bus_.pdos.outputs().pending());
+  }
+  /// No stop and no reaction is under way, except for a SYNC that is lost.
+  bool idle() const noexcept {
+    return !stops_.stopping() && !stops_.halting() && !sync_loss_.writes_wait();
+  }
+
+  template <class Archive>
+  void keep(Archive& state) noexcept {
+    state(memories_, sync_loss_, loss_stop_);
+  }
+
+ private:
+  BusMachines<S>& bus_;
+  AxisMemories<S> memories_;
+  AxisStops<S> stops_;
+  SyncLossReaction<S> sync_loss_;
+  NmtHalt<S> halt_;
+  StopSequence<S> sequence_;
+  LossStop<S> loss_stop_;
+};
+
+}  // namespace takt
