@@ -21,6 +21,9 @@ enum class LimitKind : std::uint8_t {
   range,  ///< range of a single output
 };
 
+/// The kind of a set-point of an axis. It decides in which modes the axis follows the set-point.
+enum class AxisQuantity : std::uint8_t { none, position, velocity, torque };
+
 /// Where a limit comes from.
 enum class LimitSource : std::uint8_t {
   none,    ///< no limit is known
@@ -46,7 +49,9 @@ struct LimitLine {
 };
 
 /// The limits of one output that the bus thread checks, in raw counts. Rates are per cycle: the bus
-/// thread multiplies them by the number of cycles that have passed.
+/// thread multiplies them by the number of cycles that have passed. A drive adds an offset (60B0,
+/// 60B1, 60B2) to a target (607A or 60C1, 60FF, 6071), so the limits of the target hold for the sum
+/// of both.
 struct OutputLimit {
   static constexpr double none = std::numeric_limits<double>::infinity();
 
@@ -60,11 +65,15 @@ struct OutputLimit {
   double bend = none;    ///< greatest change of the difference (acceleration), per cycle squared
   double modulus = 0.0;  ///< differences count modulo this; 0 = no modulo
   bool wraps = false;    ///< differences count modulo the width of the object
+  AxisQuantity quantity = AxisQuantity::none;
+  std::optional<SignalIndex> offset{};       ///< of a target: the output that the drive adds to it
+  std::optional<SignalIndex> target{};       ///< of an offset: the output that it is added to
+  std::optional<SignalIndex> controlword{};  ///< 6040 of the axis, for a position
   std::optional<SignalIndex> feedback{};  ///< 6064: value from which the first set-point may start
   std::optional<SignalIndex> statusword{};    ///< shows whether the drive follows set-points
   std::optional<SignalIndex> mode{};          ///< 6060, if it is an output
   std::optional<SignalIndex> mode_display{};  ///< 6061
-  bool profile = false;  ///< 6060 is not an output, and the file sets profile position mode
+  bool idle = false;  ///< 6060 is not an output, and the file sets a mode without `quantity`
 };
 
 /// The field of OutputLimit that a value read from a device sets.
@@ -103,5 +112,14 @@ struct LimitsPlan {
   std::vector<DeviceLimit> device{};   ///< sorted by node
   std::vector<LimitLine> lines{};      ///< sorted by node, axis and kind
 };
+
+/// A target and the offset that a drive adds to it.
+struct LimitSum {
+  SignalIndex target = 0;
+  SignalIndex offset = 0;
+};
+
+/// Returns the sums that a limit holds for.
+std::vector<LimitSum> sums_of(const LimitsPlan& limits, const LimitLine& line);
 
 }  // namespace takt

@@ -35,7 +35,7 @@ NOT_KEPT = {
     "NodeSession": {PLAN: "plan_ managed_", SHARED: "shared_",
                     IDLE: "runner_ active_ next_look_ own_command_ stopping_ loss_"},
     "NodeWatch": {PLAN: "timeout_"},
-    "OutputLimits": {PLAN: "plan_ limits_ axes_ places_ targets_ longest_gap_ seconds_", SHARED: "image_ inputs_"},
+    "OutputLimits": {PLAN: "plan_ limits_ places_ dependents_ longest_gap_ seconds_", SHARED: "image_ inputs_"},
     "PdoInputs": {PLAN: "plan_ fields_ extended_ window_", SHARED: "image_ events_"},
     "PdoInputs::Row": {PLAN: "first count number length node_index every multiplexed deadline"},
     "PdoOutputs": {PLAN: "plan_ inputs_count_ fields_", SHARED: "image_ inputs_ events_",

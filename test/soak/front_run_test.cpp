@@ -120,6 +120,28 @@ TEST_F(LimitMeddled, TorquesHaveNoLimit) {
   expect(unchecked(0x6071, &OutputLimit::low), "pushed.", "torque");
 }
 
+/// The limits of each axis hold for the sum of a target and its offset. The master does not add the
+/// offset.
+class SumMeddled : public LimitMeddled {
+ protected:
+  SumMeddled() { network = load_network(TAKT_SOURCE_DIR "/test/soak/data/summed.yaml"); }
+
+  std::string unadded(std::uint16_t object) {
+    const auto forget = [=](BusPlan& plan) {
+      for (OutputLimit& limit : plan.limits.outputs) {
+        if (plan.layout.signals[limit.signal].object.index == object) limit.offset.reset();
+      }
+    };
+    return broken({.plan = forget}) == "no output leaves its limits"
+               ? what
+               : "not the judge of limits: " + what;
+  }
+};
+
+TEST_F(SumMeddled, NotAtAllBreaksNothing) { EXPECT_EQ(broken({}), "") << what; }
+TEST_F(SumMeddled, PositionOffsetsAreNotAdded) { expect(unadded(0x607A), "shifted.", "step"); }
+TEST_F(SumMeddled, VelocityOffsetsAreNotAdded) { expect(unadded(0x60FF), "spun.", "velocity"); }
+
 /// The front thread predicts the next image only after it has looked for images.
 TEST_F(FrontMeddled, TheFrontThreadSleepsOverAnImage) {
   const auto late = [](FrontRound& round) {

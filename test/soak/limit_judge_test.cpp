@@ -16,7 +16,10 @@ constexpr SignalIndex target = 6;  // 607A of the first axis, unless a test chan
 /// One limited output of an axis at 2 ms. The axis follows, unless a test says otherwise.
 class LimitJudges : public testing::Test {
  protected:
-  LimitJudges() { limit.signal = target; }
+  LimitJudges() {
+    limit.signal = target;
+    limit.quantity = AxisQuantity::position;
+  }
 
   /// Starts with the axis at 1000 and sends the first set-point.
   void begin() {
@@ -24,8 +27,8 @@ class LimitJudges : public testing::Test {
     judge = std::make_unique<LimitJudge>(plan, world, verdict);
     cycle();
     hear(0x37, 1000);
-    judge->sent(target, 1000, true, now);
-    judge->sent(controlword, 0x000F, false, now);
+    give(target, 1000, true);
+    give(controlword, 0x000F, false);
     pass(20);
     EXPECT_TRUE(verdict.good());
   }
@@ -35,6 +38,10 @@ class LimitJudges : public testing::Test {
                              static_cast<std::uint8_t>(position >> 8), 0x00, 0x00}));
   }
   void cycle() { judge->begin_cycle(now += 2ms); }
+  void give(SignalIndex signal, std::uint64_t bits, bool begins) {
+    judge->sent(signal, bits, begins);
+    judge->judge(now);
+  }
   /// Sends the frame with the last value in each cycle.
   void pass(unsigned cycles) {
     for (; cycles != 0; --cycles) send({last});
@@ -42,7 +49,7 @@ class LimitJudges : public testing::Test {
   void send(std::initializer_list<std::int64_t> values) {
     for (const std::int64_t value : values) {
       cycle();
-      judge->sent(target, static_cast<std::uint64_t>(value), false, now);
+      give(target, static_cast<std::uint64_t>(value), false);
       last = value;
     }
   }
@@ -61,6 +68,8 @@ class LimitJudges : public testing::Test {
     signal.object = {index, 0};
     signal.type = type;
     signal.bits = bits;
+    limit.quantity = index == 0x60FF ? AxisQuantity::velocity : AxisQuantity::torque;
+    if (index == 0x607A) limit.quantity = AxisQuantity::position;
   }
 
   BusPlan plan = test::axes();
@@ -179,7 +188,7 @@ TEST_F(LimitJudges, TakeAWayOverTheEndOfTheObject) {
   be(0x607A, DataType::integer32, 32);
   plan.limits.outputs = {limit};
   judge = std::make_unique<LimitJudge>(plan, world, verdict);
-  judge->sent(target, last = 0x7FFF'FFFF, true, now);
+  give(target, last = 0x7FFF'FFFF, true);
   pass(20);
   send({0x8000'0001});
   EXPECT_TRUE(verdict.good());
@@ -279,11 +288,11 @@ TEST_F(LimitJudges, ReadTheStateOfAnAxisFromItsControlwordToo) {
   limit.step = 10;
   begin();
   hear(0x37, 5000);
-  judge->sent(controlword, 0x0002, false, now);
+  give(controlword, 0x0002, false);
   send({5010});
   EXPECT_TRUE(verdict.good());
 
-  judge->sent(controlword, 0x000F, false, now);
+  give(controlword, 0x000F, false);
   pass(8);
   send({5201});
 
@@ -291,7 +300,7 @@ TEST_F(LimitJudges, ReadTheStateOfAnAxisFromItsControlwordToo) {
 }
 
 TEST_F(LimitJudges, HoldProfilePositionsAgainstTheRangeOnly) {
-  limit.profile = true;
+  limit.idle = true;
   limit.step = 10;
   limit.low = -2000;
   limit.high = 2000;
@@ -303,6 +312,61 @@ TEST_F(LimitJudges, HoldProfilePositionsAgainstTheRangeOnly) {
   send({2001});
 
   EXPECT_TRUE(blames("position"));
+}
+
+/// A target velocity and its offset, which are sent in one cycle.
+class SumJudges : public LimitJudges {
+ protected:
+  SumJudges() {
+    be(0x60FF, DataType::integer32, 32);
+    plan.layout.signals[offset] = plan.layout.signals[target];
+    plan.layout.signals[offset].object = {0x60B1, 0};
+    limit.low = -2000;
+    limit.high = 2000;
+    limit.range = LimitKind::velocity;
+    limit.offset = offset;
+  }
+  void send_both(std::int64_t first, std::int64_t second) {
+    cycle();
+    judge->sent(target, static_cast<std::uint64_t>(first), false);
+    judge->sent(offset, static_cast<std::uint64_t>(second), false);
+    judge->judge(now);
+  }
+  static constexpr SignalIndex offset = 7;
+};
+
+TEST_F(SumJudges, BlameASumOutsideTheRangeAndNoPartOfIt) {
+  begin();
+  send_both(3000, -1500);
+  send_both(-1000, 3000);
+  EXPECT_TRUE(verdict.good());
+
+  send_both(1500, 501);
+
+  EXPECT_TRUE(blames("velocity"));
+}
+
+TEST_F(SumJudges, BlameTheChangeOfASum) {
+  limit.rate = 100;
+  limit.rate_of = LimitKind::acceleration;
+  begin();
+  send_both(1500, -450);
+  EXPECT_TRUE(verdict.good());
+
+  send_both(1560, -405);
+
+  EXPECT_TRUE(blames("acceleration"));
+}
+
+TEST_F(SumJudges, BlameTheTargetAloneInAModeThatAddsNoOffset) {
+  limit.idle = true;
+  begin();
+  send_both(1500, 1500);
+  EXPECT_TRUE(verdict.good());
+
+  send_both(2001, 0);
+
+  EXPECT_TRUE(blames("velocity"));
 }
 
 }  // namespace

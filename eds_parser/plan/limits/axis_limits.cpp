@@ -6,22 +6,14 @@
 #include <cmath>
 #include <string>
 
-#include "eds_parser/plan/device/node_objects.hpp"
 #include "eds_parser/plan/limits/limit_proposals.hpp"
 #include "eds_parser/table/limit_names.hpp"
-#include "eds_parser/table/tpdo_of.hpp"
 
 namespace takt {
 namespace {
 
 /// Distance between the objects of two axes of a device (CiA 402).
 constexpr std::uint16_t axis_objects = 0x800;
-
-/// The values of 6060 whose modes do not follow each position set-point (CiA 402-2). Profile
-/// position takes one by the controlword, the others take none.
-constexpr std::array<std::int64_t, 7> modes_without_set_points{1, 2, 3, 4, 6, 9, 10};
-/// Largest relative error of a `modulo` that a person has rounded, for example to 6.2832.
-constexpr double rounded_digits = 1e-4;
 
 }  // namespace
 
@@ -42,7 +34,8 @@ AxisLimits::AxisLimits(const NodeSource& node, std::size_t node_index, std::uint
       table_{table},
       report_{report},
       positions_{outputs({{0x607A, 0}, {0x60C1, 1}})},
-      velocities_{outputs({{0x60FF, 0}, {0x60B1, 0}})} {}
+      velocities_{outputs({{0x60FF, 0}, {0x60B1, 0}})},
+      torques_{outputs({{0x6071, 0}, {0x60B2, 0}})} {}
 
 ObjectKey AxisLimits::object(std::uint16_t index, std::uint8_t sub) const {
   return {static_cast<std::uint16_t>(index + (axis_ - 1) * axis_objects), sub};
@@ -76,6 +69,7 @@ void AxisLimits::compile(const AxisLimitsSpec& limits) {
   jerk(limits.jerk);
   step(limits.step);
   torque(limits.torque);
+  describe_rows();
   describe_position_rows(limits);
   ask_for_turn(limits.modulo);
   warn_of_late_start(limits);
@@ -259,14 +253,13 @@ void AxisLimits::step(const Sourced<double>& limit) {
 }
 
 void AxisLimits::torque(const Sourced<double>& limit) {
-  const std::vector<SignalIndex> signals = outputs({{0x6071, 0}, {0x60B2, 0}});
   if (!limit.given) {
-    if (!signals.empty()) line(LimitKind::torque, LimitSource::none);
+    if (!torques_.empty()) line(LimitKind::torque, LimitSource::none);
     return;
   }
   LimitLine& entry = line(LimitKind::torque, LimitSource::file);
   entry.high = *limit;
-  for (const SignalIndex signal : signals) {
+  for (const SignalIndex signal : torques_) {
     if (!has_unit(signal, "torque", limit.pos)) return;
     magnitude(signal, *limit, LimitKind::torque, limit.pos);
     entry.signals.push_back(signal);
@@ -276,84 +269,6 @@ void AxisLimits::torque(const Sourced<double>& limit) {
 void AxisLimits::jerk(const Sourced<double>& limit) {
   if (!limit.given) return;
   line(LimitKind::jerk, LimitSource::file).high = *limit;
-}
-
-/// Returns the length of the position range limit (CiA 402-2), or 0 if there is none.
-double AxisLimits::turn(ObjectReader read) const {
-  const auto low = read(node_, object(0x607B, 1));
-  const auto high = read(node_, object(0x607B, 2));
-  if (!low || !high || *low >= *high) return 0.0;
-  return static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
-}
-
-/// Returns the length of the range after which a position starts again: `modulo` of the network
-/// file, else 607B as `sdo:` writes it. If `modulo` is a rounded form of the drive's own length,
-/// the exact length is used. With a length that is too short, each turn-over would look like a
-/// movement over the whole range.
-double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
-  if (!modulo.given) return turn(written_object);
-  const double length = table_.raw_size(signal, *modulo);
-  const double of_drive = turn(configured_object);
-  return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
-}
-
-/// Warns if the drive turns over at another position than its limits assume. Its position would
-/// then jump back by a whole turn in one cycle.
-void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
-  if (!modulo.given || positions_.empty()) return;
-  const double length = modulus(modulo, positions_[0]);
-  const double of_drive = turn(configured_object);
-  if (of_drive == length) return;
-  const ObjectKey key = object(0x607B);
-  std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
-                     " counts of " + table_.signal(positions_[0]).name + ", ";
-  text += of_drive > 0 ? "but " + to_string(key) + " (position range limit) wraps after " +
-                             std::to_string(std::llround(of_drive))
-                       : "but nothing sets " + to_string(key) + " (position range limit)";
-  text += ": a drive that doesn't wrap at `modulo` moves back a whole turn at once";
-  if (node_.dictionary->find({key.index, 2}) == nullptr) {
-    return report_.note(modulo.pos, "limits", text + "; the device file does not have this object");
-  }
-  report_.warning(modulo.pos, "limits",
-                  text + ". Write " + to_string(ObjectKey{key.index, 1}) + " and " +
-                      to_string(ObjectKey{key.index, 2}) + " under `sdo:`");
-}
-
-/// Sets the data that a position set-point is compared with.
-void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
-  for (const SignalIndex signal : positions_) {
-    const auto& rows = plan_.limits.outputs;
-    if (std::ranges::find(rows, signal, &OutputLimit::signal) == rows.end()) continue;
-    OutputLimit& row = table_.row(signal);
-    row.wraps = !is_real(table_.signal(signal).type);
-    row.modulus = modulus(limits.modulo, signal);
-    row.feedback = input(0x6064);
-    row.statusword = input(0x6041);
-    row.mode = output(0x6060);
-    row.mode_display = input(0x6061);
-    const auto mode = configured_object(node_, object(0x6060));
-    const auto& modes = modes_without_set_points;
-    row.profile = !row.mode && mode && std::ranges::find(modes, *mode) != modes.end();
-  }
-}
-
-/// Warns that the first limited set-point waits until the device has sent its actual position.
-void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
-  const std::optional<SignalIndex> feedback = input(0x6064);
-  if (positions_.empty() || !feedback) return;
-  const PdoRow* const tpdo = tpdo_of(plan_.pdos, *feedback);
-  if (tpdo == nullptr || !comes_by_event_alone(*tpdo)) return;
-  for (const auto* limit : {&limits.step, &limits.velocity, &limits.acceleration}) {
-    if (!limit->given) continue;
-    const std::string name = "TPDO" + std::to_string(tpdo->number);
-    return report_.warning(
-        limit->pos, "limits",
-        "limits of " + owner() + " hold its set-points back until " + to_string(object(0x6064)) +
-            " has arrived once, but " + name + " sends it only by event (transmission " +
-            std::to_string(tpdo->transmission) + " without `event_timer`): an axis at standstill " +
-            "may never send it. Give " + name +
-            " an `event_timer`, or make it synchronous (`transmission: 1`)");
-  }
 }
 
 }  // namespace takt

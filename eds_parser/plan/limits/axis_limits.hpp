@@ -49,6 +49,11 @@ class AxisLimits {
 
   void add_offset(LimitLine& entry) const;
   void magnitude(SignalIndex signal, double si, LimitKind kind, SourcePos pos);
+  /// Returns nullptr if there is no output, or if it has no limits.
+  OutputLimit* row_of(std::optional<SignalIndex> signal);
+  void describe_rows();
+  void describe_row(OutputLimit& row, AxisQuantity quantity) const;
+  bool can_be_added(SignalIndex target, SignalIndex offset) const;
   void describe_position_rows(const AxisLimitsSpec& limits);
   using ObjectReader = std::optional<std::int64_t> (*)(const NodeSource& node, ObjectKey object);
   double turn(ObjectReader read) const;
@@ -74,6 +79,7 @@ class AxisLimits {
   NetworkReport& report_;
   std::vector<SignalIndex> positions_;   ///< outputs 607A and 60C1:01
   std::vector<SignalIndex> velocities_;  ///< outputs 60FF and 60B1
+  std::vector<SignalIndex> torques_;     ///< outputs 6071 and 60B2
 };
 
 }  // namespace takt

@@ -214,6 +214,9 @@ Json limit_json(const BusPlan& plan, const LimitLine& line) {
            {"high", value(line.high)},
            {"unit", line.unit},
            {"signals", line.signals}};
+  for (const LimitSum& sum : sums_of(plan.limits, line)) {
+    out["sums"].push_back(Json::array({sum.target, sum.offset}));
+  }
   if (line.source == LimitSource::none) {
     out["proposal"] = line.proposal;
     out["because"] = line.because;

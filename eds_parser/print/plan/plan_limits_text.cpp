@@ -32,7 +32,18 @@ std::string value(const LimitLine& line) {
   return line.unit.empty() ? text : text + " " + line.unit;
 }
 
-std::string source(const LimitLine& line) {
+/// Returns for example `, of the sum 60FF:00 + 60B1:00`, or nothing if no offset is added.
+std::string sums(const BusPlan& plan, const LimitLine& line) {
+  std::string text;
+  for (const LimitSum& sum : sums_of(plan.limits, line)) {
+    text += (text.empty() ? ", of the sum " : " and ") +
+            to_string(plan.layout.signals[sum.target].object) + " + " +
+            to_string(plan.layout.signals[sum.offset].object);
+  }
+  return text;
+}
+
+std::string source(const BusPlan& plan, const LimitLine& line) {
   const std::string unchecked = line.kind == LimitKind::jerk
                                     ? ", used for planned motion only"
                                     : ", not checked: no output carries this value";
@@ -40,9 +51,9 @@ std::string source(const LimitLine& line) {
     case LimitSource::none:
       return fmt::format("proposal: `{}` ({})", line.proposal, line.because);
     case LimitSource::file:
-      return "from the network file" + (line.signals.empty() ? unchecked : "");
+      return "from the network file" + (line.signals.empty() ? unchecked : sums(plan, line));
     case LimitSource::device:
-      return "read from the device at boot, " + to_string(line.object);
+      return "read from the device at boot, " + to_string(line.object) + sums(plan, line);
   }
   return {};
 }
@@ -68,7 +79,7 @@ void add_limits(PlanLines& lines, const BusPlan& plan, const std::optional<NodeI
   for (const LimitLine& line : plan.limits.lines) {
     if (!wanted(line)) continue;
     lines.line("  {:<{}}  {:<12}  {:<{}}  {}", owner(plan, line), widest_owner, name(line.kind),
-               value(line), widest_value, source(line));
+               value(line), widest_value, source(plan, line));
   }
 }
 

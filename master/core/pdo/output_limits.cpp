@@ -27,9 +27,8 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
       image_{image},
       inputs_{inputs},
       limits_{plan.limits.outputs},
-      axes_(limits_.size()),
       places_(plan.layout.signals.size(), no_place),
-      targets_(plan.layout.signals.size(), {no_place, no_place}),
+      dependents_(plan.layout.signals.size()),
       slots_(limits_.size()),
       held_(plan.nodes.size(), 0),
       longest_gap_{fewest_cycles},
@@ -40,11 +39,8 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto place = static_cast<std::uint16_t>(i);
     places_[limits_[i].signal] = place;
-    axes_[i] = axis_outputs(plan.layout, limits_[i].signal);
-    for (const auto& signal : {axes_[i].controlword, axes_[i].offset, limits_[i].mode}) {
-      if (!signal) continue;
-      auto& targets = targets_[*signal];
-      (targets[0] == no_place ? targets[0] : targets[1]) = place;
+    for (const auto& signal : {limits_[i].controlword, limits_[i].offset, limits_[i].mode}) {
+      if (signal) dependents_[*signal].push_back(place);
     }
     slots_[i] = fresh_slot(i);
   }
@@ -130,14 +126,24 @@ std::optional<double> OutputLimits::actual(std::size_t place) const noexcept {
   return number(plan_.layout.signals[*feedback], image_.values[*feedback]);
 }
 
+/// The value of the offset, in counts of the limited output.
+double OutputLimits::offset(std::size_t place, std::int64_t raw) const noexcept {
+  const auto added = limits_[place].offset;
+  if (!added) return 0;
+  const Signal& signal = plan_.layout.signals[*added];
+  return number(signal, raw) * (signal.scale / signal_of(place).scale);
+}
+
 /// The set-point that the axis would follow, in counts of the limited output.
 double OutputLimits::set_point(std::size_t place, const AxisCommand& command) const noexcept {
-  const Signal& signal = signal_of(place);
-  const double target = number(signal, command.value);
-  const auto offset = axes_[place].offset;
-  if (!offset || !follows_each(place, command.mode)) return target;
-  const Signal& other = plan_.layout.signals[*offset];
-  return target + number(other, command.offset) * (other.scale / signal.scale);
+  const double target = number(signal_of(place), command.value);
+  return in_force(place, command.mode) ? target + offset(place, command.offset) : target;
+}
+
+/// The set-point that the values sent last are in this commanded mode.
+double OutputLimits::last_set_point(std::size_t place, std::int64_t mode) const noexcept {
+  const Slot& slot = slots_[place];
+  return in_force(place, mode) ? slot.value + slot.offset : slot.value;
 }
 
 AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
@@ -145,9 +151,9 @@ AxisCommand OutputLimits::image_command(std::size_t place) const noexcept {
     return signal ? image_.values[*signal] : 0;
   };
   return {.value = image_.values[limits_[place].signal],
-          .offset = value(axes_[place].offset),
+          .offset = value(limits_[place].offset),
           .mode = value(limits_[place].mode),
-          .order = value(axes_[place].controlword)};
+          .order = value(limits_[place].controlword)};
 }
 
 double OutputLimits::cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept {
@@ -163,7 +169,7 @@ double OutputLimits::most(std::size_t place, double counts, double at) const noe
 }
 
 std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value,
-                                                 bool from_actual) const {
+                                                 bool from_actual) const noexcept {
   const OutputLimit& limit = limits_[place];
   const Slot& slot = slots_[place];
   if (value >= slot.low && value <= slot.high) return std::nullopt;
@@ -173,7 +179,7 @@ std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value
     low = std::min(low, where);
     high = std::max(high, where);
   };
-  if (slot.known) reach(slot.value);
+  if (slot.set_point) reach(*slot.set_point);
   if (from_actual) {
     if (const auto where = actual(place)) reach(*where);
   }
@@ -259,7 +265,7 @@ std::optional<LimitBreach> OutputLimits::judge(std::size_t place, const AxisComm
   std::optional<LimitBreach> found;
   if (from_last) {
     if (command.age == SetPointAge::held) return std::nullopt;
-    const Way way{.distance = distance(place, slot.value, value),
+    const Way way{.distance = distance(place, last_set_point(place, command.mode), value),
                   .cycles = follows ? cycles_since(slot, cycle) : 1.0,
                   .at = value,
                   .start = follows ? Start::moving : Start::standing};
@@ -332,17 +338,16 @@ void OutputLimits::admit(std::size_t place, const AxisCommand& command,
   Slot& slot = slots_[place];
   slot.news = true;
   // An event-driven frame is not sent again for the same value, so the command counts as sent.
-  if (!slot.known || set_point(place, command) != slot.value) return;
+  if (!slot.known || set_point(place, command) != last_set_point(place, command.mode)) return;
   slot.cycle = cycle;
   slot.speed = 0;
   slot.gap = 1;
 }
 
 void OutputLimits::sent(SignalIndex signal, std::uint64_t cycle) noexcept {
-  for (const std::uint16_t place : targets_[signal]) {
-    if (place == no_place) continue;
-    if (axes_[place].controlword == signal) slots_[place].order = image_.values[signal];
-    if (axes_[place].offset == signal && slots_[place].known) note_sent(place, cycle);
+  for (const std::uint16_t place : dependents_[signal]) {
+    if (limits_[place].controlword == signal) slots_[place].order = image_.values[signal];
+    if (limits_[place].offset == signal && slots_[place].known) note_sent(place, cycle);
   }
   if (places_[signal] == no_place) return;
   note_sent(places_[signal], cycle);
@@ -353,14 +358,18 @@ void OutputLimits::note_sent(std::size_t place, std::uint64_t cycle) noexcept {
   Slot& slot = slots_[place];
   const AxisCommand command = image_command(place);
   const double value = set_point(place, command);
-  if (!slot.known || slot.news || value != slot.value) {
+  const double last = last_set_point(place, command.mode);
+  if (!slot.known || slot.news || value != last) {
     const double cycles = cycles_since(slot, cycle);
     const bool moves = slot.known && slot.news && enabled(place);
-    slot.speed = moves ? distance(place, slot.value, value) / cycles : 0.0;
+    slot.speed = moves ? distance(place, last, value) / cycles : 0.0;
     slot.gap = moves ? cycles : 1.0;
-    slot.value = value;
     slot.cycle = cycle;
   }
+  slot.value = number(signal_of(place), command.value);
+  slot.offset = offset(place, command.offset);
+  slot.set_point = value;
+  if (covered_by_target(place, command.mode)) slot.set_point.reset();
   slot.news = false;
   slot.idle = !follows_each(place, command.mode);
 }

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/core/pdo/axis_outputs.hpp"
 #include "master/core/pdo/pdo_inputs.hpp"
 #include "master/core/pdo/working_image.hpp"
 
@@ -29,20 +29,21 @@ enum class SetPointAge : std::uint8_t { commanded, held };
 /// What a command gives to a limited output and to the other outputs of its axis. Values are raw.
 struct AxisCommand {
   std::int64_t value = 0;   ///< of the limited output
-  std::int64_t offset = 0;  ///< 60B0, if it is an output
+  std::int64_t offset = 0;  ///< 60B0, 60B1 or 60B2, if it is an output
   std::int64_t mode = 0;    ///< 6060, if it is an output
   std::int64_t order = 0;   ///< 6040, if it is an output
   SetPointAge age = SetPointAge::commanded;
 };
 
-/// Checks commands against the limits of the plan. The position set-point of an axis is the sum of
-/// its target and of its position offset. A step is measured from the value that was sent last,
+/// Checks commands against the limits of the plan. The set-point of an axis is the sum of a target
+/// and of its offset; in modes in which the drive does not add them, each of them is checked alone.
+/// A step is measured from the value that was sent last,
 /// over the cycles since that value was commanded. If an axis is not enabled and has sent its
 /// actual position, the step is measured from there, because the axis would start from there. An
 /// axis that was not commanded, or whose fallback is in force, may start from either of the two. If
 /// the last value or the actual position is outside the range, commands may come back towards the
-/// range but not go further away. In modes that do not follow each set-point, only the range is
-/// checked. Bus thread only.
+/// range but not go further away. In modes that do not follow each position, only the range of
+/// positions is checked. Bus thread only.
 class OutputLimits {
  public:
   /// Result of place_of() for an output without limits.
@@ -56,13 +57,14 @@ class OutputLimits {
   const OutputLimit& limit(std::size_t place) const noexcept { return limits_[place]; }
   /// The place of the limits of this output.
   std::uint16_t place_of(SignalIndex signal) const noexcept { return places_[signal]; }
-  /// The places of the position targets that this output concerns, because it is the controlword,
-  /// the mode of operation or the position offset of their axis. Unused elements are `no_place`.
-  const std::array<std::uint16_t, 2>& targets_of(SignalIndex signal) const noexcept {
-    return targets_[signal];
+  /// The places of other outputs whose check depends on this one, because it is the controlword,
+  /// the mode of operation or the offset that belongs to them.
+  std::span<const std::uint16_t> dependents(SignalIndex signal) const noexcept {
+    return dependents_[signal];
   }
-  /// The controlword and the position offset that belong to a limited position target.
-  const AxisOutputs& axis(std::size_t place) const noexcept { return axes_[place]; }
+  /// The output at `place` is an offset, and the drive certainly adds it to its target in this
+  /// commanded mode, so that the check of the target covers it.
+  bool covered_by_target(std::size_t place, std::int64_t mode) const noexcept;
 
   /// The node exchanges PDOs from now on, and nothing was sent to it so far.
   void open(std::size_t node_index) noexcept;
@@ -116,10 +118,12 @@ class OutputLimits {
     double high = OutputLimit::none;
     double rate = OutputLimit::none;
     double bend = OutputLimit::none;
-    bool bounded = false;  ///< there is a limit in the file or from the device
-    double value = 0;      ///< the value that was sent last
-    double speed = 0;      ///< speed of the last step, per cycle
-    double gap = 1;        ///< duration of the last step in cycles
+    bool bounded = false;               ///< there is a limit in the file or from the device
+    double value = 0;                   ///< the value that was sent last
+    double offset = 0;                  ///< the offset that was sent last, in counts of the value
+    std::optional<double> set_point{};  ///< the limited value in the mode of that time, if any
+    double speed = 0;                   ///< speed of the last step, per cycle
+    double gap = 1;                     ///< duration of the last step in cycles
     std::uint64_t cycle = 0;
     std::uint64_t refused_at = 0;
     bool known = false;      ///< a value was sent since open()
@@ -132,8 +136,8 @@ class OutputLimits {
 
     template <class Archive>
     void keep(Archive& state) noexcept {
-      state(low, high, rate, bend, bounded, value, speed, gap, cycle, refused_at, known, news,
-            refused, idle, order, positions, remembered);
+      state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, cycle, refused_at,
+            known, news, refused, idle, order, positions, remembered);
     }
   };
   enum class Start : std::uint8_t { moving, standing };
@@ -151,7 +155,9 @@ class OutputLimits {
   double number(const Signal& signal, std::int64_t raw) const noexcept;
   double distance(std::size_t place, double from, double to) const noexcept;
   std::optional<double> actual(std::size_t place) const noexcept;
+  double offset(std::size_t place, std::int64_t raw) const noexcept;
   double set_point(std::size_t place, const AxisCommand& command) const noexcept;
+  double last_set_point(std::size_t place, std::int64_t mode) const noexcept;
   AxisCommand image_command(std::size_t place) const noexcept;
   double distance_from_actual(std::size_t place, double value, bool from_earlier) const noexcept;
   void note_sent(std::size_t place, std::uint64_t cycle) noexcept;
@@ -159,11 +165,20 @@ class OutputLimits {
   // These functions are in output_limits_axis.cpp.
   bool enabled(std::size_t place) const noexcept;
   bool starts_from_actual(std::size_t place, std::int64_t order) const noexcept;
+  /// Whether the axis follows the set-point, of which the output is a part, in the commanded mode
+  /// and in the mode that the drive shows.
+  struct Leads {
+    bool commanded = false;
+    bool shown = false;
+  };
+  Leads leads(std::size_t place, std::int64_t mode) const noexcept;
+  bool in_force(std::size_t place, std::int64_t mode) const noexcept;
   bool follows_each(std::size_t place, std::int64_t mode) const noexcept;
   double cycles_since(const Slot& slot, std::uint64_t cycle) const noexcept;
   /// The largest permitted difference, rounded to counts that the frame can carry.
   double most(std::size_t place, double counts, double at) const noexcept;
-  std::optional<LimitBreach> outside(std::size_t place, double value, bool from_actual) const;
+  std::optional<LimitBreach> outside(std::size_t place, double value,
+                                     bool from_actual) const noexcept;
   std::optional<LimitBreach> too_far(std::size_t place, const Way& way) const noexcept;
   std::optional<LimitBreach> too_sharp(std::size_t place, const Way& way) const noexcept;
   Slot fresh_slot(std::size_t place) const noexcept;
@@ -173,10 +188,9 @@ class OutputLimits {
   const WorkingImage& image_;
   const PdoInputs& inputs_;
   std::vector<OutputLimit> limits_;
-  std::vector<AxisOutputs> axes_;                      ///< parallel to limits_
-  std::vector<std::uint16_t> places_;                  ///< place of the limits, by signal
-  std::vector<std::array<std::uint16_t, 2>> targets_;  ///< see targets_of(); by signal
-  std::vector<Slot> slots_;                            ///< parallel to limits_
+  std::vector<std::uint16_t> places_;                   ///< place of the limits, by signal
+  std::vector<std::vector<std::uint16_t>> dependents_;  ///< by signal, see dependents()
+  std::vector<Slot> slots_;                             ///< parallel to limits_
   std::vector<std::uint16_t> held_;  ///< by node: number of outputs whose commands are refused
   std::uint32_t held_nodes_ = 0;
   double longest_gap_;  ///< longest time between two commands that counts for a step, in cycles

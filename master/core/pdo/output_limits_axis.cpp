@@ -1,3 +1,4 @@
+#include "eds_parser/table/axis_modes.hpp"
 #include "master/core/pdo/output_limits.hpp"
 
 namespace takt {
@@ -21,14 +22,6 @@ bool ignores_enabling(std::int64_t statusword) noexcept {
   return state == fault_reaction_active || state == fault || state == switch_on_disabled;
 }
 
-/// The modes that move an axis without its position set-points, or that need a handshake for each
-/// of them: profile position, velocity, profile velocity, profile torque, homing, cyclic
-/// synchronous velocity and torque. CiA 402-2, object 0x6060.
-bool ignores_set_points(std::int64_t raw) noexcept {
-  const auto mode = static_cast<std::int8_t>(raw);
-  return (mode >= 1 && mode <= 4) || mode == 6 || mode == 9 || mode == 10;
-}
-
 }  // namespace
 
 /// Without a statusword, the axis is taken as enabled when the last controlword enables it.
@@ -37,7 +30,7 @@ bool OutputLimits::enabled(std::size_t place) const noexcept {
   if (statusword && inputs_.fresh(*statusword)) {
     return (image_.values[*statusword] & state_bits) == operation_enabled;
   }
-  return !axes_[place].controlword || enables(slots_[place].order);
+  return !limits_[place].controlword || enables(slots_[place].order);
 }
 
 /// The axis is not enabled, so that it would start from its actual position, and this position is
@@ -52,17 +45,32 @@ bool OutputLimits::starts_from_actual(std::size_t place, std::int64_t order) con
 }
 
 bool OutputLimits::begins(std::size_t place, std::int64_t order) const noexcept {
-  return axes_[place].controlword && enables(order) && !enabled(place);
+  return limits_[place].controlword && enables(order) && !enabled(place);
 }
 
-/// Returns false if neither the commanded mode nor the mode that the drive shows moves the axis to
-/// each set-point. While the drive changes the mode, it may still follow.
-bool OutputLimits::follows_each(std::size_t place, std::int64_t mode) const noexcept {
+OutputLimits::Leads OutputLimits::leads(std::size_t place, std::int64_t mode) const noexcept {
   const OutputLimit& limit = limits_[place];
-  const bool commanded = limit.mode ? !ignores_set_points(mode) : !limit.profile;
-  if (!limit.mode_display) return commanded;
-  const bool shown = !ignores_set_points(image_.values[*limit.mode_display]);
-  return limit.mode ? commanded || shown : shown;
+  const bool commanded = limit.mode ? follows(limit.quantity, mode) : !limit.idle;
+  if (!limit.mode_display) return {.commanded = commanded, .shown = commanded};
+  const bool shown = follows(limit.quantity, image_.values[*limit.mode_display]);
+  return {.commanded = limit.mode ? commanded : shown, .shown = shown};
+}
+
+/// While the drive changes the mode, it may still follow the output.
+bool OutputLimits::in_force(std::size_t place, std::int64_t mode) const noexcept {
+  const Leads found = leads(place, mode);
+  return found.commanded || found.shown;
+}
+
+/// The steps of target velocities and torques count in every mode, because the next mode may follow
+/// them.
+bool OutputLimits::follows_each(std::size_t place, std::int64_t mode) const noexcept {
+  return limits_[place].quantity != AxisQuantity::position || in_force(place, mode);
+}
+
+bool OutputLimits::covered_by_target(std::size_t place, std::int64_t mode) const noexcept {
+  const Leads found = leads(place, mode);
+  return limits_[place].target && found.commanded && found.shown;
 }
 
 }  // namespace takt

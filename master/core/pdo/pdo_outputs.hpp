@@ -218,6 +218,7 @@ class PdoOutputs {
   void take_back(SignalIndex signal, std::int64_t before) noexcept;
   AxisCommand command_with(std::size_t place, SignalIndex signal,
                            std::int64_t value) const noexcept;
+  bool covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept;
   bool suits_targets(SignalIndex signal, std::int64_t value, OutputMoment moment) noexcept;
   /// The output that a refusal is reported for, and its raw value.
   struct Cause {

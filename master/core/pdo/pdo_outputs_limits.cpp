@@ -117,17 +117,20 @@ bool PdoOutputs::awaits_sending(SignalIndex signal) const noexcept {
 void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_points,
                             OutputMoment moment) noexcept {
   const OutputLimit& limit = limits_.limit(place);
-  const AxisOutputs& axis = limits_.axis(place);
   const Newest target = newest(limit.signal, set_points, moment);
-  const Newest offset = newest(axis.offset, set_points, moment);
+  const Newest offset = newest(limit.offset, set_points, moment);
   const Newest mode = newest(limit.mode, set_points, moment);
-  const Newest order = newest(axis.controlword, set_points, moment);
+  const Newest order = newest(limit.controlword, set_points, moment);
   const bool begins = limits_.begins(place, order.value) &&
                       (order.news || (!limits_.begins(place, limits_.order(place)) &&
-                                      awaits_sending(*axis.controlword)));
+                                      awaits_sending(*limit.controlword)));
   if (!target.news && !offset.news && !mode.news && !begins) return;
   Output& output = outputs_[output_of(limit.signal)];
   if (!target.news && !output.known) return;
+  if (covered(place, mode.value, newest(limit.target, set_points, moment).news)) {
+    if (target.news) forgive(place, moment);
+    return;
+  }
   if (target.news && limits_.lacks_start(place, mode.value)) {
     output.generation = set_points[output_of(limit.signal)].generation;
     return;
@@ -138,12 +141,12 @@ void PdoOutputs::judge_news(std::size_t place, std::span<const SetPoint> set_poi
                             .mode = mode.value,
                             .order = order.value,
                             .age = held ? SetPointAge::held : SetPointAge::commanded};
-  const Cause cause = offset.news && !target.news ? Cause{*axis.offset, offset.value}
+  const Cause cause = offset.news && !target.news ? Cause{*limit.offset, offset.value}
                                                   : Cause{limit.signal, target.value};
   if (judge(place, command, cause, moment)) {
     if (target.news || offset.news) forgive(place, moment);
   } else if (begins && !order.news) {
-    take_back(*axis.controlword, limits_.order(place));
+    take_back(*limit.controlword, limits_.order(place));
   }
 }
 
@@ -157,7 +160,7 @@ void PdoOutputs::admit_news(std::size_t place, std::span<const SetPoint> set_poi
                             OutputMoment moment) noexcept {
   const SignalIndex signal = limits_.limit(place).signal;
   const Newest target = newest(signal, set_points, moment);
-  const Newest offset = newest(limits_.axis(place).offset, set_points, moment);
+  const Newest offset = newest(limits_.limit(place).offset, set_points, moment);
   if (!target.news && !offset.news) return;
   if (limits_.holds(plan_.layout.signals[signal].node_index)) return;
   const Newest mode = newest(limits_.limit(place).mode, set_points, moment);
@@ -183,32 +186,39 @@ void PdoOutputs::check_limits(std::span<const SetPoint> set_points, OutputMoment
 AxisCommand PdoOutputs::command_with(std::size_t place, SignalIndex signal,
                                      std::int64_t value) const noexcept {
   const OutputLimit& limit = limits_.limit(place);
-  const AxisOutputs& axis = limits_.axis(place);
   const auto of = [&](std::optional<SignalIndex> other) {
     if (!other) return std::int64_t{0};
     return *other == signal ? value : image_.values[*other];
   };
   return {.value = of(limit.signal),
-          .offset = of(axis.offset),
+          .offset = of(limit.offset),
           .mode = of(limit.mode),
-          .order = of(axis.controlword),
-          .age = limit.mode == signal || axis.controlword == signal ? SetPointAge::held
-                                                                    : SetPointAge::commanded};
+          .order = of(limit.controlword),
+          .age = limit.mode == signal || limit.controlword == signal ? SetPointAge::held
+                                                                     : SetPointAge::commanded};
 }
 
-/// Checks a mode of operation or a position offset from within the bus thread. A controlword is
+/// The check of the target covers this offset. `target_news`: its target is commanded in this pack.
+bool PdoOutputs::covered(std::size_t place, std::int64_t mode, bool target_news) const noexcept {
+  if (!limits_.covered_by_target(place, mode)) return false;
+  const SignalIndex target = *limits_.limit(place).target;
+  return limited_row_open(limits_.place_of(target)) &&
+         (target_news || outputs_[output_of(target)].known);
+}
+
+/// Checks a mode of operation or an offset from within the bus thread. A controlword is
 /// checked when the outputs are packed, because the target may be commanded after it. It is checked
 /// here only if commands to the node are refused already, so that the refusal lasts.
 bool PdoOutputs::suits_targets(SignalIndex signal, std::int64_t value,
                                OutputMoment moment) noexcept {
-  for (const std::uint16_t place : limits_.targets_of(signal)) {
-    if (place == OutputLimits::no_place) continue;
+  for (const std::uint16_t place : limits_.dependents(signal)) {
     const SignalIndex target = limits_.limit(place).signal;
     const bool repeats =
         limits_.holds(plan_.layout.signals[signal].node_index) && limits_.begins(place, value);
-    if (limits_.axis(place).controlword == signal && !repeats) continue;
+    if (limits_.limit(place).controlword == signal && !repeats) continue;
     if (!limited_row_open(place) || !outputs_[output_of(target)].known) continue;
     const AxisCommand command = command_with(place, signal, value);
+    if (covered(place, command.mode, false)) continue;
     const bool held = command.age == SetPointAge::held;
     const Cause cause = held ? Cause{target, command.value} : Cause{signal, value};
     if (!judge(place, command, cause, moment)) return false;
@@ -226,15 +236,16 @@ bool PdoOutputs::within_limits(SignalIndex signal, std::int64_t value,
   if (place != OutputLimits::no_place && limited_row_open(place)) {
     const AxisCommand command = command_with(place, signal, value);
     if (limits_.lacks_start(place, command.mode)) return false;
-    if (!judge(place, command, {signal, value}, moment)) return false;
+    const bool covers = covered(place, command.mode, false);
+    if (!covers && !judge(place, command, {signal, value}, moment)) return false;
     forgive(place, moment);
   }
   if (limits_.holds(node_index)) return false;
   if (place != OutputLimits::no_place) {
     limits_.admit(place, command_with(place, signal, value), moment.cycle);
   }
-  for (const std::uint16_t target : limits_.targets_of(signal)) {
-    if (target == OutputLimits::no_place || limits_.axis(target).offset != signal) continue;
+  for (const std::uint16_t target : limits_.dependents(signal)) {
+    if (limits_.limit(target).offset != signal) continue;
     limits_.admit(target, command_with(target, signal, value), moment.cycle);
   }
   return true;

@@ -17,8 +17,9 @@ constexpr std::int64_t downwards = 8;         // the low bit that marks a fallin
 constexpr std::int64_t most_push = 100;       // per mille of the rated torque
 constexpr std::int64_t push_velocity = 4;     // counts per second for each unit of push
 constexpr std::uint64_t images_a_reset = 60;  // between fault resets, which take several images
-constexpr double turn_before = 2000;          // distance from a limit, in counts
-constexpr Time longest_deafness = 3s;         // the layout is published once a second
+constexpr std::uint16_t from_target_to_offset = 0x60B0 - 0x607A;
+constexpr double turn_before = 2000;   // distance from a limit, in counts
+constexpr Time longest_deafness = 3s;  // the layout is published once a second
 
 }  // namespace
 
@@ -161,13 +162,48 @@ std::int64_t VirtualApplication::next_position(AxisControl::Index axis, std::int
   }
   const std::int64_t step = (from & -stride) / stride + (course.down ? -1 : 1);
   const std::int64_t jump = has_push(axis) ? 0 : jump_;
-  course.position = step * stride + options_.number + (course.down ? downwards : 0) + jump;
+  course.position = step * stride + options_.number + (course.down ? downwards : 0);
+  (position_offset(axis) ? course.shift : *course.position) += jump;
   return *course.position;
+}
+
+/// Returns the output 60B0 of an axis.
+std::optional<SignalIndex> VirtualApplication::position_offset(AxisControl::Index axis) const {
+  const auto& signals = plan_.layout.signals;
+  const Signal& target = signals[*axes_.signals(axis).target_position];
+  const auto index = static_cast<std::uint16_t>(target.object.index + from_target_to_offset);
+  const auto found = std::ranges::find_if(signals, [&](const Signal& signal) {
+    return signal.output && signal.node_index == target.node_index && signal.object.index == index;
+  });
+  if (found == signals.end()) return std::nullopt;
+  return static_cast<SignalIndex>(found - signals.begin());
+}
+
+/// Adds the position offset, which the axis library does not command.
+void VirtualApplication::shift(AxisControl::Index axis, command_t& command) const {
+  const auto offset = position_offset(axis);
+  if (!offset) return;
+  command.signals.push_back(static_cast<std::int32_t>(*offset));
+  command.values.push_back(courses_[static_cast<std::size_t>(axis)].shift);
+  ++command.num_values;
 }
 
 bool VirtualApplication::has_push(AxisControl::Index axis) const {
   const AxisSignals& signals = axes_.signals(axis);
   return signals.target_velocity || signals.target_torque;
+}
+
+/// Shares the set-point between a target and its offset if the drive has both.
+void VirtualApplication::put_shared(AxisSignals::Position target, AxisSignals::Position offset,
+                                    std::int64_t value, command_t& command) {
+  const auto put = [&](AxisSignals::Position signal, std::int64_t share) {
+    if (!signal) return;
+    const auto at = std::ranges::find(command.signals, static_cast<std::int32_t>(*signal));
+    if (at == command.signals.end()) return;
+    command.values[static_cast<std::size_t>(at - command.signals.begin())] = share;
+  };
+  put(target, offset ? value - value / 2 : value);
+  put(offset, value / 2);
 }
 
 /// Sets target velocity and target torque if the drive has them.
@@ -177,14 +213,10 @@ void VirtualApplication::push(AxisControl::Index axis, command_t& command) {
   if (course.push <= -most_push) course.weaker = false;
   course.push += course.weaker ? -1 : 1;
   course.apart += jump_;
-  const auto put = [&](AxisSignals::Position signal, std::int64_t value) {
-    if (!signal) return;
-    const auto at = std::ranges::find(command.signals, static_cast<std::int32_t>(*signal));
-    if (at == command.signals.end()) return;
-    command.values[static_cast<std::size_t>(at - command.signals.begin())] = value;
-  };
-  put(axes_.signals(axis).target_velocity, course.push * push_velocity + course.apart);
-  put(axes_.signals(axis).target_torque, course.push + course.apart);
+  const AxisSignals& signals = axes_.signals(axis);
+  put_shared(signals.target_velocity, signals.velocity_offset,
+             course.push * push_velocity + course.apart, command);
+  put_shared(signals.target_torque, signals.torque_offset, course.push + course.apart, command);
 }
 
 void VirtualApplication::count_on(command_t& command) {
@@ -194,13 +226,14 @@ void VirtualApplication::count_on(command_t& command) {
     const auto at = std::ranges::find(command.signals, *target);
     if (at == command.signals.end()) continue;
     Course& course = courses_[static_cast<std::size_t>(i)];
-    if (!axes_.drive(i).enabled()) {
+    if (axes_.drive(i).enabled()) {
+      std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
+      value = next_position(i, course.position.value_or(value));
+      push(i, command);
+    } else {
       course = {.position = {}, .down = course.down};
-      continue;
     }
-    std::int64_t& value = command.values[static_cast<std::size_t>(at - command.signals.begin())];
-    value = next_position(i, course.position.value_or(value));
-    push(i, command);
+    shift(i, command);
   }
   jump_ = 0;
 }

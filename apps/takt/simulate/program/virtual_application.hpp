@@ -34,7 +34,8 @@ struct ApplicationOptions {
 /// A program that moves axes with the axis library: it takes the newest image and sends one
 /// command. It counts its positions up, and down again near a limit, so that each value on the wire
 /// shows which program sent it and when. If a drive also has target velocities and torques, they
-/// rise and fall slowly.
+/// rise and fall slowly. If a drive has offsets, they take a half of each target velocity and
+/// torque, and each jump of a position.
 class VirtualApplication final : public Actor {
  public:
   VirtualApplication(const BusPlan& plan, VirtualLcm& lcm, ApplicationOptions options,
@@ -75,7 +76,11 @@ class VirtualApplication final : public Actor {
   void keep_own_outputs(command_t& command) const;
   void count_on(command_t& command);
   std::int64_t next_position(AxisControl::Index axis, std::int64_t from);
+  std::optional<SignalIndex> position_offset(AxisControl::Index axis) const;
+  void shift(AxisControl::Index axis, command_t& command) const;
   void push(AxisControl::Index axis, command_t& command);
+  static void put_shared(AxisSignals::Position target, AxisSignals::Position offset,
+                         std::int64_t value, command_t& command);
   bool has_push(AxisControl::Index axis) const;
   void judge_hearing(Time now);
 
@@ -101,6 +106,7 @@ class VirtualApplication final : public Actor {
     std::int64_t push = 0;   // target torque; the target velocity is a multiple of it
     bool weaker = false;     // `push` falls
     std::int64_t apart = 0;  // counts by which target velocity and torque have jumped
+    std::int64_t shift = 0;  // position offset
   };
   std::vector<Course> courses_;  // one for each axis
   std::int64_t jump_ = 0;        // jump of the next command, in counts

@@ -8,6 +8,7 @@
 
 #include "apps/takt/soak/judge/image_judge.hpp"
 #include "apps/takt/soak/judge/true_axes.hpp"
+#include "eds_parser/table/axis_modes.hpp"
 #include "eds_parser/table/limit_names.hpp"
 
 namespace takt::soak {
@@ -23,7 +24,6 @@ constexpr double clear_part = 0.2;            // part of a cycle that a wake-up 
 constexpr double cycles_behind = 4;           // age of the actual position that the master knows
 constexpr unsigned cycles_of_doubt = 8;       // age of the axis state that the master knows
 constexpr std::size_t fewest_remembered = 8;  // positions kept even if they are old
-constexpr std::int64_t profile_position = 1;  // value of 6060 and 6061
 constexpr double real_rounding = 0x1p-20;     // relative rounding of a value of type REAL
 
 double number(const Signal& signal, std::uint64_t bits) noexcept {
@@ -54,7 +54,8 @@ LimitJudge::LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict)
       world_{world},
       verdict_{verdict},
       most_cycles_{std::max(fewest_cycles, static_cast<double>(longest_gap / plan.cycle.period))},
-      places_(plan.layout.outputs()) {
+      places_(plan.layout.outputs()),
+      sent_(plan.layout.outputs()) {
   for (const OutputLimit& limit : plan.limits.outputs) {
     Place& place = places_[limit.signal - plan.layout.inputs];
     place.limit = &limit;
@@ -75,6 +76,7 @@ void LimitJudge::begin_anew() {
   for (Place& place : places_) {
     place.value.reset();
     place.last_way.reset();
+    place.news = News::none;
     place.enables = false;
     place.doubt = cycles_of_doubt;
   }
@@ -85,6 +87,7 @@ void LimitJudge::begin_cycle(Time now) {
   cycles_.back() = now;
   for (Place& place : places_) {
     if (place.doubt != 0) --place.doubt;
+    if (place.mode_doubt != 0) --place.mode_doubt;
     // A babbling node may have sent a hundred positions in a cycle. All of them may have waited in
     // the queue while the master was stopped.
     while (place.actual.size() > fewest_remembered && place.actual.front().when < cycles_.front()) {
@@ -108,9 +111,7 @@ void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
   for (Place& place : places_) {
     if (place.limit == nullptr) continue;
     if (place.limit->feedback == signal) place.actual.push_back({world_.now(), value});
-    if (place.limit->mode_display == signal && !place.limit->mode) {
-      place.mode = static_cast<std::int8_t>(bits);
-    }
+    if (place.limit->mode_display == signal && !place.limit->mode) note_mode(place, bits);
     if (place.limit->statusword != signal) continue;
     place.enabled = (bits & 0x6F) == 0x27;
     if (!place.enabled) place.doubt = cycles_of_doubt;
@@ -121,7 +122,7 @@ void LimitJudge::note_input(SignalIndex signal, std::uint64_t bits) {
 void LimitJudge::note_order(SignalIndex signal, std::uint64_t bits) {
   for (Place& place : places_) {
     if (place.limit == nullptr) continue;
-    if (place.limit->mode == signal) place.mode = static_cast<std::int8_t>(bits);
+    if (place.limit->mode == signal) note_mode(place, bits);
     if (place.controlword != signal) continue;
     place.enables = (bits & 0x0F) == 0x0F;
     if (!place.enables) place.doubt = cycles_of_doubt;
@@ -139,9 +140,21 @@ bool LimitJudge::follows(const Place& place) const noexcept {
   return place.doubt == 0 && place.enabled && (place.enables || !place.controlword);
 }
 
-bool LimitJudge::in_profile(const Place& place) const noexcept {
+void LimitJudge::note_mode(Place& place, std::uint64_t bits) noexcept {
+  const auto mode = static_cast<std::int8_t>(bits);
+  if (mode != place.mode) place.mode_doubt = cycles_of_doubt;
+  place.mode = mode;
+}
+
+/// Returns true if the axis follows this set-point. `mode_doubt` tells whether this is certain.
+bool LimitJudge::in_force(const Place& place) const noexcept {
   const bool known = place.limit->mode || place.limit->mode_display;
-  return known ? place.mode == profile_position : place.limit->profile;
+  return known ? takt::follows(place.limit->quantity, place.mode) : !place.limit->idle;
+}
+
+/// Returns true if only the range counts, because positions do not lead the axis.
+bool LimitJudge::in_profile(const Place& place) const noexcept {
+  return place.limit->quantity == AxisQuantity::position && !in_force(place);
 }
 
 /// Returns the distance between two positions, for a rotary axis the shorter one. A distance of a
@@ -242,18 +255,70 @@ void LimitJudge::judge_bend(const Place& place, double value, const Way& way) {
             std::to_string(place.last_way->cycles));
 }
 
-void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time now) {
+void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins) {
   note_order(index, bits);
-  Place& place = places_[index - plan_.layout.inputs];
-  if (place.limit == nullptr) return;
-  const double value = number(plan_.layout.signals[index], bits);
-  if (begins) {
-    place.enables = false;
-    place.doubt = cycles_of_doubt;
+  sent_[index - plan_.layout.inputs] = number(plan_.layout.signals[index], bits);
+  for (Place& place : places_) {
+    if (place.limit == nullptr) continue;
+    if (place.limit->signal == index) {
+      if (begins) {
+        place.enables = false;
+        place.doubt = cycles_of_doubt;
+      }
+      place.news = std::max(place.news, begins ? News::begins : News::value);
+    } else if (place.limit->offset == index && place.news == News::none && place.value) {
+      place.news = News::value;
+    }
   }
-  if (!begins && value == place.value) return;
+}
+
+void LimitJudge::judge(Time now) {
+  for (Place& place : places_) {
+    const News news = std::exchange(place.news, News::none);
+    if (news != News::none) judge_place(place, news, now);
+  }
+}
+
+/// Returns the value that the limits of an output hold for: the sum with its offset if the drive
+/// adds both. The result is empty if they hold for a sum to which the output belongs, or if the
+/// mode has changed so recently that one cannot say.
+std::optional<double> LimitJudge::limited_value(const Place& place) const noexcept {
+  const OutputLimit& limit = *place.limit;
+  const double value = sent_[limit.signal - plan_.layout.inputs];
+  if (!limit.offset && !limit.target) return value;
+  if (place.mode_doubt != 0) return std::nullopt;
+  if (!in_force(place)) return value;
+  if (limit.target) return std::nullopt;
+  const Signal& offset = plan_.layout.signals[*limit.offset];
+  const double added = sent_[*limit.offset - plan_.layout.inputs];
+  return value + added * (offset.scale / signal_of(place).scale);
+}
+
+/// Returns true if the master may have sent the value without a command. Of a sum, this must be
+/// true of each part that is new.
+bool LimitJudge::is_own(const Place& place) const noexcept {
+  const auto own = [&](SignalIndex signal) {
+    return is_own_value(plan_.layout.signals[signal], sent_[signal - plan_.layout.inputs]);
+  };
+  const auto& offset = place.limit->offset;
+  if (!offset) return own(place.limit->signal);
+  const double target_now = sent_[place.limit->signal - plan_.layout.inputs];
+  const double offset_now = sent_[*offset - plan_.layout.inputs];
+  return (target_now == place.target || own(place.limit->signal)) &&
+         (offset_now == place.offset || own(*offset));
+}
+
+void LimitJudge::judge_place(Place& place, News news, Time now) {
+  const auto limited = limited_value(place);
+  if (!limited) {
+    place.value.reset();
+    place.last_way.reset();
+    return;
+  }
+  const double value = *limited;
+  if (news == News::value && value == place.value) return;
   ++judged_;
-  const bool own = is_own_value(signal_of(place), value);
+  const bool own = is_own(place);
   if (own) place.doubt = cycles_of_doubt;
   if (!own) judge_range(place, value);
   const bool free = own || in_profile(place) ||
@@ -267,6 +332,8 @@ void LimitJudge::sent(SignalIndex index, std::uint64_t bits, bool begins, Time n
   }
   place.last_way = follows(place) && !in_profile(place) ? way : std::nullopt;
   place.value = value;
+  place.target = sent_[place.limit->signal - plan_.layout.inputs];
+  if (place.limit->offset) place.offset = sent_[*place.limit->offset - plan_.layout.inputs];
   place.when = now;
 }
 

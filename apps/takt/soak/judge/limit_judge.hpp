@@ -14,12 +14,13 @@
 namespace takt::soak {
 
 /// Checks every limited output against `limits:` of the network file: range, step, velocity,
-/// acceleration and torque. The judge reads the frames that the devices receive and the TPDOs on
-/// the wire, and uses nothing that the master has computed. A distance ("way") is measured from the
-/// value sent before, over the cycles since that value was new, and modulo the turn of the axis.
-/// While the drive does not follow set-points, a position may also continue from the actual
-/// position of the axis. If a frame can mean two things (a command may be repeated without a
-/// change), the judge assumes the permitted one.
+/// acceleration and torque. If a drive adds an offset to a target, the limits hold for the sum. The
+/// judge reads the frames that the devices receive and the TPDOs on the wire, and uses nothing that
+/// the master has computed. A distance ("way") is measured from the value sent before, over the
+/// cycles since that value was new, and modulo the turn of the axis. While the drive does not
+/// follow set-points, a position may also continue from the actual position of the axis. If a frame
+/// can mean two things (a command may be repeated without a change), the judge assumes the
+/// permitted one.
 class LimitJudge {
  public:
   LimitJudge(const BusPlan& plan, sim::World& world, Verdict& verdict);
@@ -28,7 +29,9 @@ class LimitJudge {
   void begin_cycle(Time now);
   /// To be called when the master passes a value of an output to the interface. `begins` is true if
   /// the output was not sent in the last cycles.
-  void sent(SignalIndex signal, std::uint64_t bits, bool begins, Time now);
+  void sent(SignalIndex signal, std::uint64_t bits, bool begins);
+  /// Judges the values that were sent. To be called when the master has passed all its frames.
+  void judge(Time now);
   /// To be called with each frame on the wire. The sender does not matter, because the master
   /// cannot know it.
   void heard(const Frame& frame);
@@ -50,22 +53,33 @@ class LimitJudge {
     double length = 0;
     unsigned cycles = 1;
   };
+  /// What was sent of an output, or of its offset, since the newest judge().
+  enum class News : std::uint8_t { none, value, begins };
   struct Place {
     const OutputLimit* limit = nullptr;
     std::optional<SignalIndex> controlword{};  ///< of the same axis, if it is an output
     std::optional<double> value{};             ///< value sent last
+    double target = 0;                         ///< the part of `value` that is no offset
+    double offset = 0;                         ///< the offset in `value`, in its own counts
     Time when{};                               ///< when `value` was first sent
     std::optional<Way> last_way{};  ///< distance to `value`; empty if the drive did not follow
     std::int64_t mode = 0;          ///< 6060 as sent, otherwise 6061 as received
     bool enables = false;           ///< the last controlword sent enables operation
     bool enabled = true;            ///< the last statusword received is enabled
     unsigned doubt = 0;             ///< cycles in which the master may not know the state
-    std::deque<Seen> actual{};      ///< actual positions since cycles_[0], newest last
+    unsigned mode_doubt = 0;        ///< as `doubt`, for the mode
+    News news = News::none;
+    std::deque<Seen> actual{};  ///< actual positions since cycles_[0], newest last
   };
 
   void note_order(SignalIndex signal, std::uint64_t bits);
   void note_input(SignalIndex signal, std::uint64_t bits);
   bool follows(const Place& place) const noexcept;
+  static void note_mode(Place& place, std::uint64_t bits) noexcept;
+  bool in_force(const Place& place) const noexcept;
+  std::optional<double> limited_value(const Place& place) const noexcept;
+  bool is_own(const Place& place) const noexcept;
+  void judge_place(Place& place, News news, Time now);
   bool in_profile(const Place& place) const noexcept;
   double length(const Place& place, double from, double to) const noexcept;
   Way way_to(const Place& place, double value, Time now) const noexcept;
@@ -85,6 +99,7 @@ class LimitJudge {
   Verdict& verdict_;
   double most_cycles_;            // greatest number of cycles that counts for one distance
   std::vector<Place> places_;     // one for each output
+  std::vector<double> sent_;      // newest value of each output
   std::array<Time, 6> cycles_{};  // start times of the newest cycles, oldest first
   std::uint64_t judged_ = 0;
 };

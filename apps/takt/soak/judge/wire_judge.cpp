@@ -77,6 +77,7 @@ void WireJudge::sent(std::span<const Frame> frames, Time now) {
       }
     }
   }
+  limits_.judge(now);
 }
 
 /// Returns true for values that may be sent without a fresh command; see OutputJudge.
@@ -96,7 +97,7 @@ void WireJudge::judge(SignalIndex index, std::uint64_t value, Time now) {
   // The first value of an output is the one that the device has (607A from 6064).
   const bool begins = now > output.when + 5 * plan_.cycle.period;
   const bool changed = !begins && value != output.last;
-  limits_.sent(index, value, begins, now);
+  limits_.sent(index, value, begins);
   output.last = value;
   output.when = now;
   const auto found = output.known.find(value);

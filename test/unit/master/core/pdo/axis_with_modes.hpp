@@ -20,11 +20,21 @@ inline constexpr SignalIndex target_output = 4;
 inline constexpr SignalIndex mode_output = 5;
 inline constexpr SignalIndex offset_output = 6;
 
+/// The objects of a target and of the offset that a drive adds to it.
+struct AxisPair {
+  AxisQuantity quantity = AxisQuantity::position;
+  std::uint16_t target = 0x607A;
+  std::uint16_t offset = 0x60B0;
+  LimitKind kind = LimitKind::position;
+};
+
 /// One axis with 6041, 6064 and 6061 in TPDO1, with 6040, 607A and 6060 in RPDO1, and with 60B0 in
-/// RPDO2. Positions are 1 mrad per count.
+/// RPDO2. Positions are 1 mrad per count. Another pair may take the place of 607A and 60B0; each of
+/// its outputs then has the limit.
 class AxisWithModes {
  public:
-  explicit AxisWithModes(OutputLimit limit) : plan_{make_plan(limit)}, pdos_{plan_, events_} {
+  explicit AxisWithModes(OutputLimit limit, AxisPair pair = {})
+      : plan_{make_plan(limit, pair)}, pdos_{plan_, events_} {
     pdos_.inputs().set_reception(0, Reception::full);
     pdos_.outputs().open(0, points_);
   }
@@ -69,7 +79,7 @@ class AxisWithModes {
   }
 
  private:
-  static BusPlan make_plan(OutputLimit limit) {
+  static BusPlan make_plan(OutputLimit limit, AxisPair pair) {
     BusPlan plan = test::axes({.nodes = 1, .fallback_cycles = 50});
     const NodeId node = NodeId::from(1).value();
     const auto signal = [&](std::uint16_t index, DataType type, std::uint8_t bits) {
@@ -83,7 +93,8 @@ class AxisWithModes {
     auto& signals = plan.layout.signals;
     signals.insert(signals.begin() + 2, signal(0x6061, DataType::integer8, 8));
     signals.push_back(signal(0x6060, DataType::integer8, 8));
-    signals.push_back(signal(0x60B0, DataType::integer32, 32));
+    signals.push_back(signal(pair.offset, DataType::integer32, 32));
+    signals[4].object = {pair.target, 0};
     for (const std::size_t position : {1U, 4U, 6U}) {
       signals[position].scale = 0.001;
       signals[position].unit = "rad";
@@ -103,13 +114,24 @@ class AxisWithModes {
     add_pdo(plan, false, {.cob_id = CobId::base(0x301), .node = node, .transmission = 1},
             {{.signal = 6, .bit_offset = 0, .bits = 32, .sign_extend = true}});
     signals[6].row = 1;
-    limit.signal = 4;
-    limit.range = LimitKind::position;
-    limit.feedback = SignalIndex{1};
-    limit.statusword = SignalIndex{0};
+    limit.quantity = pair.quantity;
+    limit.range = pair.kind;
     limit.mode = SignalIndex{5};
     limit.mode_display = SignalIndex{2};
-    plan.limits.outputs.push_back(limit);
+    OutputLimit own = limit;
+    limit.signal = 4;
+    limit.offset = SignalIndex{6};
+    own.signal = 6;
+    own.target = SignalIndex{4};
+    if (pair.quantity == AxisQuantity::position) {
+      limit.controlword = SignalIndex{3};
+      limit.feedback = SignalIndex{1};
+      limit.statusword = SignalIndex{0};
+      own.low = -OutputLimit::none;
+      own.high = OutputLimit::none;
+      own.bend = OutputLimit::none;
+    }
+    plan.limits.outputs = {limit, own};
     return plan;
   }
 

@@ -104,6 +104,8 @@ class LimitedAxes {
     BusPlan plan = test::axes({.nodes = axes, .fallback_cycles = 50});
     for (unsigned i = 0; i < axes; ++i) {
       limit.signal = static_cast<SignalIndex>(3 * axes + i);
+      limit.quantity = AxisQuantity::position;
+      limit.controlword = static_cast<SignalIndex>(2 * axes + i);
       limit.statusword = static_cast<SignalIndex>(i);
       limit.feedback = static_cast<SignalIndex>(axes + i);
       plan.layout.signals[limit.signal].scale = 0.001;

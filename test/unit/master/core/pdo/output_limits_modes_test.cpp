@@ -37,6 +37,8 @@ void add_modes(BusPlan& plan) {
            {.signal = last, .bit_offset = 48, .bits = 8, .sign_extend = true}});
   OutputLimit& limit = plan.limits.outputs[0];
   limit.signal = 4;
+  limit.controlword = SignalIndex{3};
+  limit.statusword = SignalIndex{0};
   limit.mode = last;
   limit.mode_display = SignalIndex{2};
 }
@@ -44,7 +46,7 @@ void add_modes(BusPlan& plan) {
 TEST(OutputLimits, LetAProfiledMoveGoFarAndNoModeMakeAJumpOfIt) {
   BusPlan plan = axes({.nodes = 1, .fallback_cycles = 50});
   plan.limits.outputs.push_back(
-      {.signal = 3, .high = 1000, .step = 10, .feedback = 1, .statusword = 0});
+      {.signal = 3, .high = 1000, .step = 10, .quantity = AxisQuantity::position, .feedback = 1});
   add_modes(plan);
   plan.layout.signals[4].seeded_from = SignalIndex{1};
   EventQueue events;

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "eds_parser/plan/device/node_objects.hpp"
+#include "eds_parser/plan/limits/axis_limits.hpp"
+#include "eds_parser/table/axis_modes.hpp"
+#include "eds_parser/table/tpdo_of.hpp"
+
+// What the bus thread needs of an axis to check its set-points, besides the limits themselves.
+
+namespace takt {
+namespace {
+
+/// Largest relative error of a `modulo` that a person has rounded, for example to 6.2832.
+constexpr double rounded_digits = 1e-4;
+
+}  // namespace
+
+/// Returns the length of the position range limit (CiA 402-2), or 0 if there is none.
+double AxisLimits::turn(ObjectReader read) const {
+  const auto low = read(node_, object(0x607B, 1));
+  const auto high = read(node_, object(0x607B, 2));
+  if (!low || !high || *low >= *high) return 0.0;
+  return static_cast<double>(*high) - static_cast<double>(*low) + 1.0;
+}
+
+/// Returns the length of the range after which a position starts again: `modulo` of the network
+/// file, else 607B as `sdo:` writes it. If `modulo` is a rounded form of the drive's own length,
+/// the exact length is used. With a length that is too short, each turn-over would look like a
+/// movement over the whole range.
+double AxisLimits::modulus(const Sourced<double>& modulo, SignalIndex signal) const {
+  if (!modulo.given) return turn(written_object);
+  const double length = table_.raw_size(signal, *modulo);
+  const double of_drive = turn(configured_object);
+  return std::abs(of_drive - length) <= 1.0 + length * rounded_digits ? of_drive : length;
+}
+
+/// Warns if the drive turns over at another position than its limits assume. Its position would
+/// then jump back by a whole turn in one cycle.
+void AxisLimits::ask_for_turn(const Sourced<double>& modulo) {
+  if (!modulo.given || positions_.empty()) return;
+  const double length = modulus(modulo, positions_[0]);
+  const double of_drive = turn(configured_object);
+  if (of_drive == length) return;
+  const ObjectKey key = object(0x607B);
+  std::string text = "`modulo` of " + owner() + " is " + std::to_string(std::llround(length)) +
+                     " counts of " + table_.signal(positions_[0]).name + ", ";
+  text += of_drive > 0 ? "but " + to_string(key) + " (position range limit) wraps after " +
+                             std::to_string(std::llround(of_drive))
+                       : "but nothing sets " + to_string(key) + " (position range limit)";
+  text += ": a drive that doesn't wrap at `modulo` moves back a whole turn at once";
+  if (node_.dictionary->find({key.index, 2}) == nullptr) {
+    return report_.note(modulo.pos, "limits", text + "; the device file does not have this object");
+  }
+  report_.warning(modulo.pos, "limits",
+                  text + ". Write " + to_string(ObjectKey{key.index, 1}) + " and " +
+                      to_string(ObjectKey{key.index, 2}) + " under `sdo:`");
+}
+
+OutputLimit* AxisLimits::row_of(std::optional<SignalIndex> signal) {
+  auto& rows = plan_.limits.outputs;
+  const auto found = std::ranges::find_if(
+      rows, [&](const OutputLimit& row) { return signal && row.signal == *signal; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+/// Connects the rows of targets and offsets, and sets the modes that decide whether an axis follows
+/// them.
+void AxisLimits::describe_rows() {
+  const auto describe = [&](AxisQuantity quantity, std::initializer_list<ObjectKey> targets,
+                            std::uint16_t offset) {
+    const auto added = output(offset);
+    if (OutputLimit* const row = row_of(added)) describe_row(*row, quantity);
+    for (const SignalIndex target : outputs(targets)) {
+      OutputLimit* const row = row_of(target);
+      if (row == nullptr) continue;
+      describe_row(*row, quantity);
+      if (!added || !can_be_added(target, *added)) continue;
+      row->offset = added;
+      if (OutputLimit* const own = row_of(added)) own->target = target;
+    }
+  };
+  describe(AxisQuantity::position, {{0x607A, 0}, {0x60C1, 1}}, 0x60B0);
+  describe(AxisQuantity::velocity, {{0x60FF, 0}}, 0x60B1);
+  describe(AxisQuantity::torque, {{0x6071, 0}}, 0x60B2);
+}
+
+void AxisLimits::describe_row(OutputLimit& row, AxisQuantity quantity) const {
+  row.quantity = quantity;
+  row.mode = output(0x6060);
+  row.mode_display = input(0x6061);
+  const auto mode = configured_object(node_, object(0x6060));
+  row.idle = !row.mode && mode && !follows(quantity, *mode);
+}
+
+/// Returns false and warns if target and offset have different units.
+bool AxisLimits::can_be_added(SignalIndex target, SignalIndex offset) const {
+  const Signal& first = table_.signal(target);
+  const Signal& second = table_.signal(offset);
+  if (first.unit == second.unit) return true;
+  report_.warning(node_.spec->pos, "limits",
+                  first.name + " and " + second.name + " of " + owner() + " are in " + first.unit +
+                      " and " + second.unit +
+                      ": takt can't add them, so the limits hold for each " +
+                      "of them alone. Give them the same unit under `units:`");
+  return false;
+}
+
+/// Sets the data that a position set-point is compared with.
+void AxisLimits::describe_position_rows(const AxisLimitsSpec& limits) {
+  for (const SignalIndex signal : positions_) {
+    OutputLimit* const row = row_of(signal);
+    if (row == nullptr) continue;
+    row->wraps = !is_real(table_.signal(signal).type);
+    row->modulus = modulus(limits.modulo, signal);
+    row->controlword = output(0x6040);
+    row->feedback = input(0x6064);
+    row->statusword = input(0x6041);
+  }
+}
+
+/// Warns that the first limited set-point waits until the device has sent its actual position.
+void AxisLimits::warn_of_late_start(const AxisLimitsSpec& limits) {
+  const std::optional<SignalIndex> feedback = input(0x6064);
+  if (positions_.empty() || !feedback) return;
+  const PdoRow* const tpdo = tpdo_of(plan_.pdos, *feedback);
+  if (tpdo == nullptr || !comes_by_event_alone(*tpdo)) return;
+  for (const auto* limit : {&limits.step, &limits.velocity, &limits.acceleration}) {
+    if (!limit->given) continue;
+    const std::string name = "TPDO" + std::to_string(tpdo->number);
+    return report_.warning(
+        limit->pos, "limits",
+        "limits of " + owner() + " hold its set-points back until " + to_string(object(0x6064)) +
+            " has arrived once, but " + name + " sends it only by event (transmission " +
+            std::to_string(tpdo->transmission) + " without `event_timer`): an axis at standstill " +
+            "may never send it. Give " + name +
+            " an `event_timer`, or make it synchronous (`transmission: 1`)");
+  }
+}
+
+}  // namespace takt
