@@ -17,6 +17,9 @@ enum class Fallback : std::uint8_t {
   value,  ///< send Signal::fallback_value (zero, a safe value, the quick stop controlword)
 };
 
+/// The key of `on_timeout` that sets the time to live of commands. The default counts as `after`.
+enum class TimeToLiveKey : std::uint8_t { after, after_cycles };
+
 /// One value of the process image: its place, its meaning and its unit.
 struct Signal {
   std::string name;  ///< EDS name in snake_case, unique in its node: "position_actual_value"
@@ -36,6 +39,7 @@ struct Signal {
   Fallback fallback = Fallback::hold;
   std::int64_t fallback_value = 0;
   std::uint32_t fallback_cycles = 0;       ///< time to live of a command in cycles; 0 = no limit
+  TimeToLiveKey fallback_key = TimeToLiveKey::after;
   std::optional<std::int64_t> safe_value;  ///< value to send before the first command
   std::optional<SignalIndex> seeded_from;  ///< input that provides the first value (6064 -> 607A)
 };

@@ -206,14 +206,19 @@ std::string node_line(const BusPlan& plan, const Event& event) {
   }
 }
 
+/// The time without a command after which an output takes its fallback, and the key that sets it.
 std::string within(const BusPlan& plan, const Event& event) {
   const auto signal = static_cast<std::size_t>(event.value);
   if (signal >= plan.layout.signals.size()) return {};
-  const CommandLimit configured{.cycles = plan.layout.signals[signal].fallback_cycles};
+  const Signal& output = plan.layout.signals[signal];
+  const CommandLimit configured{.cycles = output.fallback_cycles};
   const CommandLimit limit = unpack_limit(event.bytes).value_or(configured);
   if (limit.cycles == 0) return {};
-  const auto time = limit.cycles * plan.cycle.period / std::chrono::milliseconds{1};
   const bool own = limit.origin == LimitOrigin::command;
+  if (!own && output.fallback_key == TimeToLiveKey::after_cycles) {
+    return " within " + std::to_string(limit.cycles) + " cycles (on_timeout: after_cycles)";
+  }
+  const auto time = limit.cycles * plan.cycle.period / std::chrono::milliseconds{1};
   return " within " + std::to_string(time) + " ms (" +
          (own ? "time_to_live of the command" : "on_timeout: after") + ")";
 }

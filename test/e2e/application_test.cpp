@@ -105,7 +105,7 @@ TEST(StoppedApplication, ItsAxesQuickStopAfterTheTimeToLive) {
   EXPECT_TRUE(axis.watch([&] { return axis.syncs_at_rest() >= 100; })) << "nothing moves it again";
   EXPECT_TRUE(axis.quick_stop());
   EXPECT_TRUE(daemon.hear([&] {
-    return daemon.events("fallback_begun", "200 ms (on_timeout: after)") > 0;
+    return daemon.events("fallback_begun", "20 cycles (on_timeout: after_cycles)") > 0;
   })) << daemon.log();
   // The limit allows for two effects: a cycle that a busy machine has skipped has no image, and the
   // newest command is one cycle old.

@@ -120,6 +120,7 @@ void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& si
   const auto policy =
       timeout.fallback.value_or(cia402 ? FallbackPolicy::quick_stop : FallbackPolicy::hold);
   signal.fallback_cycles = fallback_cycles(timeout, period);
+  if (timeout.after_cycles.given) signal.fallback_key = TimeToLiveKey::after_cycles;
   signal.safe_value = safe_value(node, cia402, signal);
   switch (policy) {
     case FallbackPolicy::hold:

@@ -10,8 +10,8 @@ namespace takt {
 void apply_units(const NodeSource& node, Signal& signal);
 
 /// Sets the fallback of an output, for the time when its command is too old, and its safe value.
-/// `cia402` means that the node is a drive; the default of a drive is a quick stop after 3 cycles.
-/// Other nodes hold their outputs, and their commands expire after 100 ms, so that another sender
+/// `cia402` means that the node is a drive; the default of a drive is a quick stop after 50 ms.
+/// Other nodes hold their outputs, and their commands expire after 50 ms, so that another sender
 /// can take over.
 void apply_fallback(const NodeSource& node, bool cia402, Time period, Signal& signal);
 

@@ -218,6 +218,15 @@ TEST(Fallback, BeginsAfterMillisecondsOrCyclesButNotBothAndNotBeforeThreeCycles)
               testing::Contains(HasSubstr("error [duplicate-key]")));
 }
 
+TEST(Fallback, KnowsTheKeyThatSetsItsTime) {
+  const auto key = [](const std::string& timeout) {
+    return find(two_axes("  on_timeout: {" + timeout + "}\n").plan, 0x6040).fallback_key;
+  };
+  EXPECT_EQ(key("after: 80"), TimeToLiveKey::after);
+  EXPECT_EQ(key("after_cycles: 4"), TimeToLiveKey::after_cycles);
+  EXPECT_EQ(key("fallback: hold"), TimeToLiveKey::after);
+}
+
 TEST(Fallback, ANodeThatIsNoDriveHoldsAfterTheSameTime) {
   const auto net = two_axes("  profile: none\n");
 
