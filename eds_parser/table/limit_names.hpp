@@ -11,12 +11,16 @@ std::string_view name(LimitKind kind) noexcept;
 /// Returns `file`, `device` or `none`.
 std::string_view name(LimitSource source) noexcept;
 
-/// Whether the range that a device reports is a real limit. It is none if it is empty, covers the
-/// whole of an INTEGER16, or reaches either end of an INTEGER32.
+/// Whether this end of a range of INTEGER32 bounds nothing, because it is the end of the type.
+constexpr bool open_end(std::int64_t end) noexcept {
+  return end <= -0x7FFF'FFFFLL || end >= 0x7FFF'FFFFLL;
+}
+
+/// Whether the range that a device reports is a real limit. It is none if it is empty, or covers
+/// the whole of an INTEGER16 or INTEGER32. One end may be open.
 constexpr bool plausible_range(std::int64_t low, std::int64_t high) noexcept {
   const bool whole16 = low <= -0x7FFF && high == 0x7FFF;
-  const bool whole32 = low <= -0x7FFF'FFFFLL || high >= 0x7FFF'FFFFLL;
-  return low < high && !whole16 && !whole32;
+  return low < high && !whole16 && !(open_end(low) && open_end(high));
 }
 
 /// Whether a reported magnitude is a real limit. It is none if it is 0 or the highest value of a

@@ -35,15 +35,24 @@ double raw_number(const Signal& signal, std::int64_t raw) {
   return signal.type == DataType::real64 ? std::bit_cast<double>(raw) : static_cast<double>(raw);
 }
 
-/// A limit as text: `-1.5 .. 1.5 rad`, `2 rad/s`.
+/// A limit as text: `-1.5 .. 1.5 rad`, `from 0 rad`, `2 rad/s`.
 std::string read_value(const LimitLine& line, std::int64_t value) {
   const auto in_unit = [&](double raw) { return raw * line.scale + line.offset; };
   if (line.kind != LimitKind::position) {
     return number(in_unit(static_cast<double>(value)), line.unit);
   }
-  const double low = in_unit(static_cast<double>(value >> 32));
-  const double high = in_unit(static_cast<double>(static_cast<std::int32_t>(value)));
-  const auto [first, last] = std::minmax(low, high);
+  const std::int64_t low = value >> 32;
+  const auto high = std::int64_t{static_cast<std::int32_t>(value)};
+  const double low_end = in_unit(static_cast<double>(low));
+  const double high_end = in_unit(static_cast<double>(high));
+  const bool turned = line.scale < 0;
+  if (plausible_range(low, high) && open_end(low)) {
+    return (turned ? "from " : "up to ") + number(high_end, line.unit);
+  }
+  if (plausible_range(low, high) && open_end(high)) {
+    return (turned ? "up to " : "from ") + number(low_end, line.unit);
+  }
+  const auto [first, last] = std::minmax(low_end, high_end);
   return number(first, "") + " .. " + number(last, line.unit);
 }
 

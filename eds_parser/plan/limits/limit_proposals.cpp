@@ -62,10 +62,13 @@ class Proposal {
     if (!low || !high || !plausible_range(*low, *high))
       return words("enter the travel of the machine");
     const Signal& what = table_.signal(*signal);
-    double first = static_cast<double>(*low) * what.scale + what.offset;
-    double last = static_cast<double>(*high) * what.scale + what.offset;
-    if (first > last) std::swap(first, last);
-    line_.proposal = "position: [" + number(first) + ", " + number(last) + "]";
+    const auto end = [&](std::int64_t raw) {
+      return open_end(raw) ? "..." : number(static_cast<double>(raw) * what.scale + what.offset);
+    };
+    std::string first = end(*low);
+    std::string last = end(*high);
+    if (what.scale < 0) std::swap(first, last);
+    line_.proposal = "position: [" + first + ", " + last + "]";
     line_.because = "607D";
   }
 

@@ -75,8 +75,7 @@ TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsTold) {
       {{lowest, 5}, {highest, 5}},
       {{lowest, 5}, {highest, 4}},
       {{lowest, 0x8000'0000}, {highest, 0x7FFF'FFFF}},
-      {{lowest, 0}, {highest, 0x7FFF'FFFF}},
-      {{lowest, 0x8000'0000}, {highest, 0}},
+      {{lowest, 0x8000'0001}, {highest, 0x7FFF'FFFF}},
       {{fastest, 0}},
       {{fastest, 0x7FFF'FFFF}},
       {{fastest, 0x8000'0000}},  // negative
@@ -91,6 +90,24 @@ TEST(DeviceLimits, ThatAreImplausibleAreIgnoredAndThatIsTold) {
     EXPECT_EQ(axes.position(), 500'000) << readings[0].value;
     EXPECT_EQ(axes.refusals(), 0U);
   }
+}
+
+TEST(DeviceLimits, MayLeaveOneEndOpen) {
+  LimitedAxes above = axis();
+  EXPECT_EQ(told(above, {{lowest, 0}, {highest, 0x7FFF'FFFF}}),
+            "node 1 'axis1': limit: position from 0 rad, read from the device (607D:01)\n");
+  above.cycle_with(0, 500'000);
+  above.cycle_with(0, -1);
+  EXPECT_EQ(above.position(), 500'000);
+  EXPECT_EQ(above.refusals(), 1U);
+
+  LimitedAxes below = axis();
+  EXPECT_EQ(told(below, {{lowest, 0x8000'0000}, {highest, 1000}}),
+            "node 1 'axis1': limit: position up to 1 rad, read from the device (607D:01)\n");
+  below.cycle_with(0, -500'000);
+  below.cycle_with(0, 1001);
+  EXPECT_EQ(below.position(), -500'000);
+  EXPECT_EQ(below.refusals(), 1U);
 }
 
 TEST(DeviceLimits, OfHalfARangeAreNone) {
