@@ -186,8 +186,10 @@ std::optional<LimitBreach> OutputLimits::outside(std::size_t place, double value
   if (value >= low && value <= high) return std::nullopt;
   const Signal& signal = signal_of(place);
   const double bound = value < low ? slot.low : slot.high;
-  return breach(limit.range, value * signal.scale + signal.offset,
-                bound * signal.scale + signal.offset);
+  // A velocity or a torque is limited as a magnitude, to which no offset of the unit applies.
+  const bool absolute = limit.range == LimitKind::position || limit.range == LimitKind::range;
+  const double zero = absolute ? signal.offset : 0;
+  return breach(limit.range, value * signal.scale + zero, bound * signal.scale + zero);
 }
 
 std::optional<LimitBreach> OutputLimits::too_far(std::size_t place, const Way& way) const noexcept {

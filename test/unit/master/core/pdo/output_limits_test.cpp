@@ -355,5 +355,18 @@ TEST(OutputLimits, ForgetWhatWasSentBeforeTheNodeCameBack) {
   EXPECT_EQ(axes.position(), 700);
 }
 
+TEST(OutputLimits, TellAMagnitudeWithoutTheOffsetOfItsUnit) {
+  const auto told = [](LimitKind kind) {
+    LimitedAxes axes{1, {.low = -100, .high = 100, .range = kind}, [](BusPlan& plan) {
+                       plan.layout.signals[3].offset = 5;
+                     }};
+    axes.cycle_with(0, 101);
+    const auto events = axes.told();
+    return events.empty() ? std::string{} : describe(axes.plan(), events[0]);
+  };
+  EXPECT_THAT(told(LimitKind::velocity), testing::HasSubstr("velocity 0.101, limit 0.1;"));
+  EXPECT_THAT(told(LimitKind::position), testing::HasSubstr("position 5.101, limit 5.1;"));
+}
+
 }  // namespace
 }  // namespace takt::test
