@@ -1,6 +1,8 @@
 #include "eds_parser/print/plan/plan_names.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
 
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/lcm/typed_message.hpp"
@@ -107,8 +109,11 @@ std::string us_text(Time time) {
 }
 
 std::string span_text(Time time) {
-  if (time % std::chrono::milliseconds{1} != Time{}) return us_text(time);
-  return std::to_string(time / std::chrono::milliseconds{1}) + " ms";
+  constexpr Time ms = std::chrono::milliseconds{1};
+  constexpr Time long_span = std::chrono::milliseconds{10};
+  if (time % ms == Time{}) return std::to_string(time / ms) + " ms";
+  if (time < long_span) return us_text(time);
+  return fmt::format("{:.1f} ms", std::chrono::duration<double, std::milli>(time).count());
 }
 
 std::vector<LcmChannel> lcm_channels(const BusPlan& plan, const LcmOptions& options) {

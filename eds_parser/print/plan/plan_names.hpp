@@ -17,7 +17,7 @@ std::string_view command_name(NmtCommand command) noexcept;
 std::string value_text(const BootStep& step);
 /// Formats a time in microseconds without fraction, for example `2000 us`.
 std::string us_text(Time time);
-/// Formats a time in milliseconds if that is exact, else in microseconds.
+/// Formats a time in milliseconds; below 10 ms in microseconds if it has a fraction.
 std::string span_text(Time time);
 
 /// An LCM channel of the daemon and the type that it carries.

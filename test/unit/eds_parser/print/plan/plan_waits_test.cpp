@@ -114,5 +114,16 @@ TEST(PlanWaits, StandInTheJsonAsInTheText) {
   }
 }
 
+TEST(PlanWaits, PrintTheStagesOfTheStopInMilliseconds) {
+  auto net = compile("master: {sync_period: 10000}\nnodes: {arm: {node_id: 5, dcf: x}}\n");
+  net.plan.stop_timeout = 7421875us;
+  std::ostringstream out;
+  print_plan_text(out, net.plan, {});
+  const std::string text = out.str();
+  EXPECT_NE(text.find("742.2 ms  ordered stop: outputs take their fallback"), std::string::npos);
+  EXPECT_NE(text.find("5937.5 ms  ordered stop: axes stop by quick stop"), std::string::npos);
+  EXPECT_NE(text.find("ordered stop within 7421.9 ms"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace takt
