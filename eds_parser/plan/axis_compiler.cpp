@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "eds_parser/plan/image/signal_rules.hpp"
 #include "eds_parser/table/waits.hpp"
 
 namespace takt {
@@ -193,6 +194,18 @@ class AxisCompiler {
   std::uint8_t number_;
 };
 
+/// Returns the unit of `units:` for an object of an axis.
+RawUnit unit_of(const NodeSource& source, std::uint8_t number, unsigned index) {
+  Signal signal{.name = {},
+                .node = source.id,
+                .object = {static_cast<std::uint16_t>(index + number * axis_step), 0},
+                .unit = {},
+                .safe_value = {},
+                .seeded_from = {}};
+  apply_units(source, signal);
+  return {.scale = signal.scale, .unit = signal.unit};
+}
+
 std::string seconds_text(Time time) {
   const auto tenths = (time + std::chrono::milliseconds{99}) / std::chrono::milliseconds{100};
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
@@ -217,7 +230,8 @@ void tell_guess(const NodePlan& node, const AxisPlan& axis, const NodeSpec& spec
 }  // namespace
 
 std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& device,
-                                   const NodeSpec& spec, NetworkReport& report) {
+                                   const NodeSource& source, NetworkReport& report) {
+  const NodeSpec& spec = *source.spec;
   std::vector<AxisPlan> axes;
   if (!node.cia402) return axes;
   const BootedValues values{node, device};
@@ -226,6 +240,8 @@ std::vector<AxisPlan> compile_axes(const NodePlan& node, const DeviceTable& devi
     if (!values.has({controlword, 0})) continue;
     const AxisCompiler axis{values, spec, number};
     axes.push_back(axis.run());
+    axes.back().velocity_unit = unit_of(source, number, 0x606C);
+    axes.back().position_unit = unit_of(source, number, 0x6064);
     if (axis.windows_are_guessed()) tell_guess(node, axes.back(), spec, report);
   }
   return axes;

@@ -134,8 +134,7 @@ class NetworkCompiler {
   void stop() {
     BusPlan& bus = plan();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      bus.nodes[i].axes =
-          compile_axes(bus.nodes[i], out_.devices[i], *nodes_[i].node.spec, report_);
+      bus.nodes[i].axes = compile_axes(bus.nodes[i], out_.devices[i], nodes_[i].node, report_);
     }
     const auto& written = spec_.master.stop_timeout_ms;
     const Time derived = std::max(waits::stop_timeout_for(longest_stopping_time(bus)),

@@ -77,6 +77,13 @@ struct FirmwarePlan {
   bool of_revision() const noexcept { return object.index == 0x1018; }
 };
 
+/// The unit of a raw value. The value in this unit is raw x scale; `unit` is empty if the network
+/// file gives none.
+struct RawUnit {
+  double scale = 1.0;
+  std::string unit{};
+};
+
 /// One CiA 402 axis of a device, as the ordered stop sees it. Values are raw units of the device.
 struct AxisPlan {
   std::uint8_t number = 0;  ///< counts from 0; the axis's objects are 0x800 x number higher
@@ -85,6 +92,8 @@ struct AxisPlan {
   Time stopping_time{};                ///< of a quick stop from its velocity limit; 0 = not known
   std::int16_t quick_stop_option = 2;  ///< 0x605A
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
+  RawUnit velocity_unit{};             ///< of 0x606C
+  RawUnit position_unit{};             ///< of differences of 0x6064
 };
 
 /// One device as the master sees it.

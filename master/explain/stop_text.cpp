@@ -24,22 +24,26 @@ std::string number_text(double value) {
   return text.data();
 }
 
-/// The velocity in the unit of the network file, and in mm/s below 1 m/s. The value is raw if the
-/// file gives no unit.
+/// The units of this axis, or nullptr if the plan has no such axis.
+const AxisPlan* axis_of(const BusPlan& plan, const Event& event) {
+  const NodePlan* const node = plan.find(event.node);
+  if (node == nullptr) return nullptr;
+  const auto axis = std::ranges::find(node->axes, axis_number(event), &AxisPlan::number);
+  return axis == node->axes.end() ? nullptr : &*axis;
+}
+
+/// The speed in the unit of the network file, and in mm/s below 1 m/s. The value is raw if the file
+/// gives no unit.
 std::string velocity_text(const BusPlan& plan, const Event& event) {
   const bool differences = (event.detail & by_position) != 0;
-  const auto index =
-      static_cast<std::uint16_t>((differences ? 0x6064 : 0x606C) + axis_number(event) * axis_step);
-  const auto& signals = plan.layout.signals;
-  const auto signal = std::ranges::find_if(signals, [&](const Signal& s) {
-    return s.node.value() == event.node && s.object == ObjectKey{index, 0} && !s.unit.empty();
-  });
+  const AxisPlan* const axis = axis_of(plan, event);
   const auto raw = static_cast<double>(event.value);
-  if (signal == signals.end()) {
-    return number_text(raw) + (differences ? " counts/s" : " (606C)");
-  }
-  const double speed = std::abs(raw * signal->scale);
-  const std::string unit = signal->unit + (differences ? "/s" : "");
+  const RawUnit own = axis == nullptr ? RawUnit{}
+                      : differences   ? axis->position_unit
+                                      : axis->velocity_unit;
+  if (own.unit.empty()) return number_text(raw) + (differences ? " counts/s" : " (606C)");
+  const double speed = std::abs(raw * own.scale);
+  const std::string unit = own.unit + (differences ? "/s" : "");
   if (unit == "m/s" && speed < 1) return number_text(speed * 1000) + " mm/s";
   return number_text(speed) + " " + unit;
 }
