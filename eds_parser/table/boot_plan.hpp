@@ -18,6 +18,14 @@ enum class NmtCommand : std::uint8_t {
   reset_communication = 130,
 };
 
+/// The object with the quick stop option code (INTEGER16) of an axis, counted from 0. CiA 402-2.
+constexpr ObjectKey quick_stop_option(unsigned axis) noexcept {
+  return {static_cast<std::uint16_t>(0x605A + axis * 0x800), 0};
+}
+constexpr bool is_quick_stop_option(ObjectKey object) noexcept {
+  return object.index >= 0x605A && (object.index - 0x605A) % 0x800 == 0 && object.sub == 0;
+}
+
 /// The action of one step of a boot. It follows CiA 302-2, but as a flat program; see BootPlan.
 enum class BootAction : std::uint8_t {
   nmt,               ///< send `command` to the node
@@ -40,7 +48,8 @@ enum class BootAction : std::uint8_t {
   write_if_changed,  ///< same as write, but only if this boot has written anything
   read_serial,       ///< upload `object` to recognise the device later; it may be missing
   read_firmware,     ///< upload `object` to compare it with NodePlan::firmware; it may be missing
-  read_limit,        ///< upload `object`, a limit of a drive (see DeviceLimit); it may be missing
+  read_limit,        ///< upload `object`, a limit of a drive (see DeviceLimit) or its quick stop
+                     ///< option code; it may be missing
   await_operational,  ///< wait `timeout` for a heartbeat with OPERATIONAL; go on without it if the
                       ///< node has no heartbeat
   pause,              ///< wait for `timeout`

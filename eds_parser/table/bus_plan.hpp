@@ -90,7 +90,7 @@ struct AxisPlan {
   std::int64_t velocity_window = 10;   ///< of 0x606C; below this the axis counts as standing still
   std::int64_t position_window = 10;   ///< of 0x6064, within 50 ms; below this it stands still
   Time stopping_time{};                ///< of a quick stop from its velocity limit; 0 = not known
-  std::int16_t quick_stop_option = 2;  ///< 0x605A
+  std::int16_t quick_stop_option = 2;  ///< 0x605A; the boot reads what the device has
   std::uint16_t ramp_object = 0;       ///< 0x6085 or 0x6084; 0 = not known
   RawUnit velocity_unit{};             ///< of 0x606C
   RawUnit position_unit{};             ///< of differences of 0x6064

@@ -100,10 +100,10 @@ constexpr ObjectKey upper_object(const DeviceLimit& limit) noexcept {
   return {limit.object.index, static_cast<std::uint8_t>(limit.object.sub + 1)};
 }
 
-/// The value of a limit that a boot has read.
+/// The value of a limit, or of a quick stop option code, that a boot has read.
 struct LimitReading {
   ObjectKey object{};
-  std::uint32_t value = 0;
+  std::uint32_t value = 0;  ///< of an object of 16 bits in the lower half
 };
 
 /// All limits of a bus.

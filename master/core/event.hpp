@@ -152,6 +152,8 @@ enum class EventKind : std::uint8_t {
                      ///< (silent, lost), else the raw velocity
   still_armed,  ///< The device did not accept its disarming. detail: index << 8 | sub-index; value:
                 ///< abort code, 0 if not confirmed, negative: ns without an answer
+  drive_coasts,  ///< The boot of a drive has found that its quick stop disables it at once. value:
+                 ///< axis, counted from 0
   // the master
   stopping,
   stopped,

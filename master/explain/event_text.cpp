@@ -148,6 +148,8 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return axis_stop_text(plan, event);
     case EventKind::still_armed:
       return still_armed_text(event);
+    case EventKind::drive_coasts:
+      return coasting_text(event);
     case EventKind::boot_started:
       return "boot begins";
     case EventKind::boot_done:
@@ -240,7 +242,8 @@ std::string signal_line(const BusPlan& plan, const Event& event) {
 bool is_of_node(EventKind kind) noexcept {
   if (is_of_network(kind)) return false;
   return kind <= EventKind::pdo_length || kind == EventKind::outputs_held ||
-         kind == EventKind::axis_not_stopped || kind == EventKind::still_armed;
+         kind == EventKind::axis_not_stopped || kind == EventKind::still_armed ||
+         kind == EventKind::drive_coasts;
 }
 
 std::string line(const BusPlan& plan, const Event& event) {

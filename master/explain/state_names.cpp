@@ -106,6 +106,8 @@ std::string_view name(EventKind kind) noexcept {
       return "axis_not_stopped";
     case EventKind::still_armed:
       return "still_armed";
+    case EventKind::drive_coasts:
+      return "drive_coasts";
     case EventKind::stopping:
       return "stopping";
     case EventKind::stopped:

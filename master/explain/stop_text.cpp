@@ -106,6 +106,14 @@ std::string named_axis_stop_text(const BusPlan& plan, const Event& event) {
   return text + (sentence ? " " : ": ") + axis_stop_text(plan, event);
 }
 
+std::string coasting_text(const Event& event) {
+  const std::string object = to_string(quick_stop_option(static_cast<unsigned>(event.value)));
+  return "a quick stop disables the drive at once, and the axis coasts, because " + object +
+         " is 0 in the device: an ordered stop confirms the axis only if it stood still before; "
+         "write `sdo: [{index: 0x" +
+         object.substr(0, 4) + ", value: 2}]` for a ramp";
+}
+
 std::string still_armed_text(const Event& event) {
   const ObjectKey object{static_cast<std::uint16_t>(event.detail >> 8U),
                          static_cast<std::uint8_t>(event.detail)};

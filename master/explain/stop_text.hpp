@@ -13,6 +13,8 @@ std::string axis_stop_text(const BusPlan& plan, const Event& event);
 std::string named_axis_stop_text(const BusPlan& plan, const Event& event);
 /// Text of EventKind::loss_reaction without the node.
 std::string reaction_text(const Event& event);
+/// Text of EventKind::drive_coasts without the node.
+std::string coasting_text(const Event& event);
 /// Text of EventKind::still_armed without the node.
 std::string still_armed_text(const Event& event);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -42,6 +43,23 @@ class AxisMemories {
     }
   }
 
+  /// Takes the quick stop option codes that the boot of a node has read, and reports drives that
+  /// coast.
+  void learn(std::size_t node_index, std::span<const LimitReading> readings,
+             OutputMoment moment) noexcept {
+    for (std::size_t i = 0; i < memories_.size(); ++i) {
+      const StopAxis& axis = axes_[i];
+      if (axis.node_index != node_index) continue;
+      memories_[i].note_quick_stop(quick_stop_of(axis, readings));
+      if (memories_[i].quick_stop() != QuickStop::coasts) continue;
+      bus_.events.push({.when = moment.now,
+                        .cycle = moment.cycle,
+                        .kind = EventKind::drive_coasts,
+                        .node = node_of(axis),
+                        .value = axis.number});
+    }
+  }
+
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(memories_);
@@ -52,6 +70,13 @@ class AxisMemories {
 
   static ObjectKey controlword_of(const StopAxis& axis) noexcept {
     return {StopRequests::controlword_of(axis), 0};
+  }
+  static QuickStop quick_stop_of(const StopAxis& axis,
+                                 std::span<const LimitReading> readings) noexcept {
+    const ObjectKey object = quick_stop_option(axis.number);
+    const auto found = std::ranges::find(readings, object, &LimitReading::object);
+    if (found == readings.end()) return QuickStop::unread;
+    return found->value == 0 ? QuickStop::coasts : QuickStop::brakes;
   }
   std::uint8_t node_of(const StopAxis& axis) const noexcept {
     return bus_.plan.nodes[axis.node_index].id.value();
@@ -64,8 +89,9 @@ class AxisMemories {
   void update(const StopAxis& axis, AxisMemory& memory) noexcept {
     const WorkingImage& image = bus_.pdos.image();
     std::optional<std::int64_t> statusword;
-    const bool heard = axis.statusword && bus_.exchanging[axis.node_index];
-    if (heard && memory.news(bus_.pdos.inputs().marks()[axis.word_row].received)) {
+    const bool exchanging = bus_.exchanging[axis.node_index];
+    if (axis.statusword && exchanging &&
+        memory.news(bus_.pdos.inputs().marks()[axis.word_row].received)) {
       statusword = image.values[*axis.statusword];
     }
     std::optional<std::int64_t> controlword;

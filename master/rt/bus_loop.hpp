@@ -72,10 +72,10 @@ class BusLoop {
   BusMachines<S> bus_;
   Beat beat_;
   FrameSender<P> sender_;
+  StopControl<S> stop_;
   NodeExchange<P, L, S> nodes_;
   Intake<P, S> intake_;
   ImagePublisher<S> images_;
-  StopControl<S> stop_;
   RequestRouter<P, L, S> requests_;
   Slack<P, S> slack_;
   OutputStage<P, L, S> outputs_;
@@ -91,10 +91,10 @@ BusLoop<P, L, S>::BusLoop(const BusPlan& plan, P& port, L front, BusLoopOptions 
       bus_{plan, options.observe},
       beat_{plan, bus_.events, bus_.status, front_.exchange().timing},
       sender_{port, beat_, bus_.events, bus_.status},
-      nodes_{port, front_, beat_, bus_},
+      stop_{bus_},
+      nodes_{port, front_, beat_, bus_, stop_.memories()},
       intake_{port, beat_, bus_, front_.exchange().timing},
       images_{beat_, bus_, front_.exchange(), options.controller},
-      stop_{bus_},
       requests_{port, front_, bus_, stop_.memories(), stop_.stops()},
       slack_{port, beat_, sender_, intake_, bus_},
       outputs_{port, front_, beat_, sender_, bus_},

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
+#include <span>
 
+#include "master/rt/axis_memories.hpp"
 #include "master/rt/beat.hpp"
 #include "master/rt/bus_machines.hpp"
 #include "master/rt/exchange/front_link.hpp"
@@ -14,8 +16,9 @@ template <Port P, FrontLink L, Services S>
 class NodeExchange {
  public:
   /// Keeps references to all arguments.
-  NodeExchange(P& port, L& front, const Beat& beat, BusMachines<S>& bus) noexcept
-      : port_{port}, front_{front}, beat_{beat}, bus_{bus} {}
+  NodeExchange(P& port, L& front, const Beat& beat, BusMachines<S>& bus,
+               AxisMemories<S>& memories) noexcept
+      : port_{port}, front_{front}, beat_{beat}, bus_{bus}, memories_{memories} {}
 
   /// Call this at the begin of each cycle. `axes_stopped` means that an ordered stop has ended for
   /// all axes.
@@ -50,13 +53,17 @@ class NodeExchange {
     PdoOutputs& outputs = bus_.pdos.outputs();
     if (!exchanging) return outputs.shut(node_index);
     outputs.open(node_index, front_.set_points().points);
-    outputs.learn(node_index, bus_.services.limits_read(node_index), {beat_.cycle(), port_.now()});
+    const OutputMoment now{beat_.cycle(), port_.now()};
+    const std::span<const LimitReading> readings = bus_.services.limits_read(node_index);
+    outputs.learn(node_index, readings, now);
+    memories_.learn(node_index, readings, now);
   }
 
   P& port_;
   L& front_;
   const Beat& beat_;
   BusMachines<S>& bus_;
+  AxisMemories<S>& memories_;
 };
 
 }  // namespace takt

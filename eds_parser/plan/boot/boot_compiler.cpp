@@ -21,6 +21,7 @@ namespace {
 constexpr std::int64_t load_signature = 0x6461'6F6C;  // "load"
 constexpr std::int64_t save_signature = 0x6576'6173;  // "save"
 constexpr Time restore_timeout = std::chrono::seconds{5};
+constexpr unsigned most_axes = 8;  // of a device, CiA 402-1
 constexpr Time longest_bootup_wait = std::chrono::seconds{2};
 
 class BootCompiler {
@@ -54,6 +55,7 @@ class BootCompiler {
     date.land();
     if (date.used()) arm();
     limits();
+    quick_stop_options();
     start();
     BootPlan plan = steps_.take();
     judge_limits(node_, plan, report_);
@@ -200,6 +202,21 @@ class BootCompiler {
       if (limit.node_index != context_.node_index) continue;
       once(limit.object);
       if (limit.bound == DeviceBound::range) once(upper_object(limit));
+    }
+  }
+
+  /// Reads the quick stop option code of each axis. The ordered stop judges a drive that coasts in
+  /// another way, and only the device knows the value that is in force.
+  void quick_stop_options() {
+    if (!context_.cia402) return;
+    for (unsigned axis = 0; axis < most_axes; ++axis) {
+      const ObjectKey object = quick_stop_option(axis);
+      const SubObject* const sub = dictionary_.find(object);
+      if (sub == nullptr || sub->access == Access::wo || bit_width(sub->type) != 16) continue;
+      steps_
+          .integer(BootAction::read_limit, object, 0,
+                   "quick stop option code, for the ordered stop")
+          .value.clear();
     }
   }
 

@@ -5,6 +5,13 @@
 
 namespace takt {
 
+/// What a drive does at a quick stop, as far as a boot has read it.
+enum class QuickStop : std::uint8_t {
+  unread,
+  brakes,
+  coasts,  ///< 0x605A is 0: the quick stop disables the drive at once.
+};
+
 /// Remembers between ordered stops whether an axis is disabled: its newest statusword has shown
 /// that, and no command since then could enable it. In doubt, an axis counts as not disabled. Bus
 /// thread only.
@@ -38,6 +45,10 @@ class AxisMemory {
   /// Notes that the node reports OPERATIONAL although this master has not booted it.
   void note_operational() noexcept { operational_ = true; }
 
+  /// Notes what the newest boot has read.
+  void note_quick_stop(QuickStop what) noexcept { quick_stop_ = what; }
+
+  QuickStop quick_stop() const noexcept { return quick_stop_; }
   /// No enabling controlword can be on its way, or in force without an answer to it.
   bool quiet() const noexcept {
     return word_ == ServiceWord::harmless && quiet_ >= settling_cycles;
@@ -49,7 +60,7 @@ class AxisMemory {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(disabled_, word_, operational_, quiet_, frames_);
+    state(disabled_, word_, operational_, quiet_, frames_, quick_stop_);
   }
 
  private:
@@ -65,6 +76,7 @@ class AxisMemory {
   bool operational_ = false;
   std::uint8_t quiet_ = 0;    ///< Cycles without an enabling word, at most standing_cycles.
   std::uint32_t frames_ = 0;  ///< see news()
+  QuickStop quick_stop_ = QuickStop::unread;
 };
 
 }  // namespace takt

@@ -144,6 +144,9 @@ class AxisStop {
   /// Notes that a controlword that may change the state of the axis may have reached it. If the
   /// next statusword shows that the axis is disabled, it may have been enabled before.
   void note_command() noexcept { commanded_ = true; }
+  /// Notes what the drive does at a quick stop: it disables itself at once (0x605A is 0), or
+  /// brakes.
+  void note_quick_stop(bool coasts) noexcept { coasts_ = coasts; }
   /// Takes the newest values from before the stop. They only tell whether an axis moved before the
   /// stop has disabled it.
   void recall(std::optional<std::int64_t> statusword,

@@ -99,10 +99,13 @@ void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes, std::uint8_
     sources_[i].word.begin();
     sources_[i].velocity.begin();
     sources_[i].position.begin();
-    const AxisPrior prior =
-        prior_of(nodes[axes_[i].node_index], i < memory.size() ? memory[i] : AxisMemory{});
+    const AxisMemory known = i < memory.size() ? memory[i] : AxisMemory{};
+    const AxisPrior prior = prior_of(nodes[axes_[i].node_index], known);
     stops_[i].begin(now, reaches(i) ? prior : AxisPrior::untouched);
-    if (i < memory.size() && !memory[i].quiet()) stops_[i].note_command();
+    if (i < memory.size() && !known.quiet()) stops_[i].note_command();
+    if (known.quick_stop() != QuickStop::unread) {
+      stops_[i].note_quick_stop(known.quick_stop() == QuickStop::coasts);
+    }
   }
 }
 

@@ -144,8 +144,11 @@ void BootRunner::on_differs(const SdoResult& result, Time now, const SdoClient& 
 /// Takes a limit; these objects have 32 bits. If the node restarts during its boot, the limit is
 /// read again and replaces the earlier reading.
 void BootRunner::take_limit() noexcept {
-  if (received_ != 4) return;
-  const LimitReading reading{current().object, load_le<std::uint32_t>(received())};
+  const bool option = is_quick_stop_option(current().object);
+  if (received_ != (option ? 2 : 4)) return;
+  const std::uint32_t value =
+      option ? load_le<std::uint16_t>(received()) : load_le<std::uint32_t>(received());
+  const LimitReading reading{current().object, value};
   const auto place = std::ranges::find(limits(), reading.object, &LimitReading::object);
   const auto index = static_cast<std::size_t>(place - limits().begin());
   if (index == limits_.size()) return;

@@ -45,6 +45,7 @@ Weight weight_of(EventKind kind) noexcept {
     case EventKind::bus_error_passive:
     case EventKind::send_buffer_full:
     case EventKind::still_armed:
+    case EventKind::drive_coasts:
       return Weight::warning;
     case EventKind::boot_failed:
     case EventKind::heartbeat_lost:

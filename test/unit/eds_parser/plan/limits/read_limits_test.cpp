@@ -91,5 +91,15 @@ TEST(Limits, AreNotReadWhereTheDeviceFileHasNoneOf32BitsOrNothingShowsThem) {
   EXPECT_THAT(reads(telling_drive("", "{index: 0x2003}")), IsEmpty());
 }
 
+TEST(QuickStopOption, IsReadInTheBootOfADriveThatHasIt) {
+  const std::string option = entry("605A", "Quick stop option code", 3, "rw", "2");
+  EXPECT_THAT(reads(telling_drive("", "{index: 0x2003}", option)), ElementsAre("605A:00"));
+  EXPECT_THAT(
+      reads(telling_drive("    sdo: [{index: 0x605A, value: 2}]\n", "{index: 0x2003}", option)),
+      ElementsAre("605A:00"))
+      << "a device may keep another value, and a configuration date may spare the write";
+  EXPECT_THAT(reads(telling_drive("    profile: none\n", "{index: 0x2003}", option)), IsEmpty());
+}
+
 }  // namespace
 }  // namespace takt::test

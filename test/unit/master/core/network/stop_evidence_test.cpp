@@ -159,5 +159,24 @@ TEST(OrderedStop, TakesWhatAnSdoHasReadWhereNoPdoBringsIt) {
   EXPECT_EQ(stop.machine.result(), StopResult::confirmed);
 }
 
+/// The boot has read 0x605A; the plan assumes that the drive brakes.
+TEST(OrderedStop, BelievesTheDeviceThatItCoasts) {
+  for (const auto& [what, verdict] : {std::pair{QuickStop::unread, AxisVerdict::stopped},
+                                      {QuickStop::brakes, AxisVerdict::stopped},
+                                      {QuickStop::coasts, AxisVerdict::moving}}) {
+    Stop stop;
+    std::array<AxisMemory, 2> memory;
+    for (AxisMemory& axis : memory) axis.note_quick_stop(what);
+    stop.machine.call_off();
+    stop.machine.begin(stop.now, stop.nodes, OrderedStop::every_node, memory);
+    stop.speed = {100, 0};
+    stop.step(10);
+    stop.speed[0] = 0;
+    stop.words = {switch_on_disabled, switch_on_disabled};
+    stop.step(100);
+    EXPECT_EQ(stop.verdict(0), verdict);
+  }
+}
+
 }  // namespace
 }  // namespace takt::test

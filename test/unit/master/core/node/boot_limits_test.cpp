@@ -56,6 +56,22 @@ TEST_F(Boot, DoesNotComplainOfADriveWithoutLimits) {
   EXPECT_THAT(read_by(*network), IsEmpty());
 }
 
+TEST_F(Boot, ReadsAQuickStopOptionCodeOf16Bits) {
+  const ObjectKey second_axis{0x685A, 0};
+  Steps steps;
+  steps.object(BootAction::read_limit, 'J', {0x605A, 0})
+      .object(BootAction::read_limit, 'J', second_axis)
+      .nmt(NmtCommand::start);
+  prepare = [&](FakeNode& device) {
+    device.objects[{0x605A, 0}] = bytes({0x00, 0x00});
+    device.objects[second_axis] = bytes({0x02, 0x00, 0x00, 0x00});  // not 16 bits
+  };
+  boot(std::move(steps));
+
+  EXPECT_EQ(status().boot, BootState::ready);
+  EXPECT_THAT(read_by(*network), ElementsAre(Pair(ObjectKey{0x605A, 0}, 0U)));
+}
+
 TEST_F(Boot, ReadsLimitsAnewWhenTheDriveComesBack) {
   prepare = [](FakeNode& device) {
     device.objects[lowest] = bytes({0x18, 0xFC, 0xFF, 0xFF});
