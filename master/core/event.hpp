@@ -85,7 +85,8 @@ enum class EventKind : std::uint8_t {
                      ///< again instead.
   guarding_lost,     ///< value: ns without a valid answer
   guarding_toggle,   ///< The toggle bit of a guarding answer repeats; reported when that begins.
-  bootup_again,      ///< A node that was ready has sent a boot-up message.
+  bootup_again,      ///< A node that was ready has sent a boot-up message. value: 1 if the master
+                     ///< does not boot it now, because of an ordered stop or an NMT stop
   node_replaced,     ///< The node has another serial number than before; value: new, detail: old.
   firmware_differs,  ///< The firmware differs from the one for which the device data were made;
                      ///< value: Firmware::packed.

@@ -31,6 +31,7 @@ struct NodeStatus {
   std::uint32_t emcy_count = 0;
   std::uint32_t boot_count = 0;      ///< number of successful boots
   std::uint32_t heartbeat_lost = 0;  ///< number of losses
+  std::uint32_t bootups = 0;         ///< number of boot-up messages
   /// Number of requests and boots that the device has ended with an SDO abort.
   std::uint32_t sdo_aborts = 0;
   Time last_heartbeat{};  ///< monotonic clock; 0 means never
@@ -38,7 +39,7 @@ struct NodeStatus {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(nmt, boot, boot_tried, boot_letter, boot_step, error_register, last_emcy, emcy_count,
-          boot_count, heartbeat_lost, sdo_aborts, last_heartbeat);
+          boot_count, heartbeat_lost, bootups, sdo_aborts, last_heartbeat);
   }
 };
 static_assert(std::is_trivially_copyable_v<NodeStatus>);

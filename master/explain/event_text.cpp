@@ -167,8 +167,10 @@ std::string node_line(const BusPlan& plan, const Event& event) {
       return "a guarding answer has the same toggle bit as the previous answer: the master treats "
              "it as not received (an answer was lost, or another master guards the node too)";
     case EventKind::bootup_again:
-      return "a boot-up message came from a node that was ready: the node has restarted, and the "
-             "master boots it again";
+      return std::string{
+                 "a boot-up message came from a node that was ready: the node has "
+                 "restarted, and the master "} +
+             (event.value == 0 ? "boots it again" : "does not boot it until it is commanded to");
     case EventKind::lss_assigned:
       return "a device without node id, serial number " + std::to_string(event.value) +
              ", has got this id by LSS";

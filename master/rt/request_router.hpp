@@ -47,6 +47,8 @@ class RequestRouter {
   bool submit() noexcept {
     const Time now = port_.now();
     memories_.note(request_);
+    // An ordered stop commands the nodes itself.
+    if (stops_.stopping() && request_.kind == RequestKind::nmt) return false;
     if (!PdoRequests::takes(request_.kind)) return bus_.services.submit(request_, now);
     return !stops_.stopping() && bus_.pdo_requests.submit(request_, now);
   }

@@ -27,7 +27,7 @@ NOT_KEPT = {
     "LssService": {PLAN: "plan_", SHARED: "requests_ events_", IDLE: "searched_ request_ stopping_"},
     "MissedCycles": {SHARED: "events_ status_"},
     "Network": {PLAN: "plan_ observe_ nmt_stop_ stops_drives_ index_ emcy_ids_ answers_ dictionary_", SHARED: "events_",
-                IDLE: "stopping_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
+                IDLE: "stopping_ boots_given_up_ broadcasts_ streams_ streaming_ awaits_ awaited_ server_ command_ awaits_axes_ axes_at_rest_ "
                       "rest_"},
     "NetworkStart": {PLAN: "plan_"},
     "NmtGate": {PLAN: "inhibit_"},

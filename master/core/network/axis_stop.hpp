@@ -147,6 +147,13 @@ class AxisStop {
   /// Notes what the drive does at a quick stop: it disables itself at once (0x605A is 0), or
   /// brakes.
   void note_quick_stop(bool coasts) noexcept { coasts_ = coasts; }
+  /// Notes that the node has restarted during the stop. Nobody has braked the axis since, and a
+  /// drive that starts may report the velocity 0: only the values count that came while it was
+  /// enabled.
+  void note_restart() noexcept {
+    coasts_ = true;
+    if (prior_ == AxisPrior::exposed || prior_ == AxisPrior::foreign) commanded_ = true;
+  }
   /// Takes the newest values from before the stop. They only tell whether an axis moved before the
   /// stop has disabled it.
   void recall(std::optional<std::int64_t> statusword,

@@ -163,7 +163,8 @@ void Network::send_heartbeat(Time now, Outbox& out) noexcept {
 /// for them, because a confirmed command must not be lost.
 void Network::ask_own_dictionary(const Frame& frame, Time now) noexcept {
   using enum SdoServer::Orders;
-  server_.on_frame(frame, now, stopping_ || requests_.full() ? refused : taken);
+  const bool refuses = stopping_ || boots_given_up_ || requests_.full();
+  server_.on_frame(frame, now, refuses ? refused : taken);
   if (const auto order = server_.take_order()) {
     requests_.accept({.kind = RequestKind::nmt, .node = order->node, .command = order->command});
   }

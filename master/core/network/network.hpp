@@ -143,10 +143,10 @@ class Network {
     axes_at_rest_ = 0;
     rest_ = how;
   }
-  /// Answers and drops the NMT commands that wait until their axes stand still, because an ordered
-  /// stop begins.
+  /// Answers and drops the NMT commands that are not sent yet, because an ordered stop begins.
   void drop_awaiting() noexcept;
-  /// Gives up the boots of nodes that were never ready, because an ordered stop begins.
+  /// Gives up all boots, because an ordered stop begins. From now on, the master resets, boots and
+  /// starts no node by itself, and takes no NMT command by its dictionary.
   void give_up_boots(Time now) noexcept;
   /// The NMT state of the master itself.
   NmtState own_state() const noexcept { return own_state_; }
@@ -197,6 +197,7 @@ class Network {
   std::optional<std::uint8_t> axes_at_rest_;  // node of the command that may be sent
   AxesAtRest rest_ = AxesAtRest::confirmed;   // belongs to axes_at_rest_
   bool stopping_ = false;
+  bool boots_given_up_ = false;
   bool stops_drives_ = false;  // the loss of some node stops drives
   EventQueue events_;
   RequestTable requests_;

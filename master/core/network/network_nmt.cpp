@@ -15,7 +15,7 @@ bool ends_exchange(NmtCommand command) noexcept {
 }  // namespace
 
 void Network::follow_start(Time now) noexcept {
-  if (observe_ || stopping_) return;
+  if (observe_ || stopping_ || boots_given_up_) return;
   if (start_.late(now)) {
     tell(EventKind::network_late, now, 0, static_cast<std::uint32_t>(start_.missing(statuses_)));
   }
@@ -29,6 +29,7 @@ void Network::follow_start(Time now) noexcept {
 
 /// Reacts to the loss of a node. CiA 302-2, error handling of a running node.
 void Network::on_loss(std::size_t index, Time now) noexcept {
+  if (boots_given_up_) return;  // The ordered stop is the reaction.
   const NodePlan& node = plan_.nodes[index];
   if (node.mandatory && plan_.start_up.on_loss != MandatoryLoss::only_it) {
     return on_mandatory_loss(now);
@@ -134,9 +135,10 @@ bool Network::waits_for_axes(const NmtMessage& message) const noexcept {
 }
 
 void Network::drop_awaiting() noexcept {
-  if (!awaits_axes_) return;
-  if (command_ != nullptr) requests_.answer(*command_, SdoFault::cancelled);
-  command_ = nullptr;
+  while (command_ != nullptr || (command_ = requests_.next(0)) != nullptr) {
+    requests_.answer(*command_, SdoFault::cancelled);
+    command_ = nullptr;
+  }
   NmtMessage dropped;
   while (broadcasts_.pop(dropped)) {
   }
@@ -145,6 +147,7 @@ void Network::drop_awaiting() noexcept {
 }
 
 void Network::give_up_boots(Time now) noexcept {
+  boots_given_up_ = true;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     sessions_[i].give_up_boot();
     touched(i, now);

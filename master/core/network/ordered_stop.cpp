@@ -78,6 +78,7 @@ std::vector<StopAxis> OrderedStop::axes_of(const BusPlan& plan) {
 OrderedStop::OrderedStop(const BusPlan& plan)
     : limits_{waits::stop_limits(plan.stop_timeout, plan.cycle.period)},
       axes_{axes_of(plan)},
+      bootups_(axes_.size()),
       answers_(axes_.size()) {
   for (const StopAxis& axis : axes_) {
     plans_.push_back(plan_of(plan.nodes[axis.node_index], axis.number));
@@ -96,6 +97,7 @@ void OrderedStop::begin(Time now, std::span<const NodeStatus> nodes, std::uint8_
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     stops_[i] = AxisStop{plans_[i]};
     answers_[i] = {};
+    bootups_[i] = nodes[axes_[i].node_index].bootups;
     sources_[i].word.begin();
     sources_[i].velocity.begin();
     sources_[i].position.begin();
@@ -131,6 +133,8 @@ void OrderedStop::take(std::size_t axis, const AxisSample& sample) noexcept {
 /// that were read by SDO.
 void OrderedStop::look(Time now, const StopView& view) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const std::uint32_t bootups = view.nodes[axes_[i].node_index].bootups;
+    if (std::exchange(bootups_[i], bootups) != bootups) stops_[i].note_restart();
     AxisSample sample = std::exchange(answers_[i], AxisSample{});
     const bool exchanging = view.exchanging[axes_[i].node_index];
     if (stage_ == StopStage::fallback && steps_ == 1 && exchanging) {

@@ -134,7 +134,8 @@ class OrderedStop {
   std::vector<AxisPlan> plans_;
   std::vector<AxisStop> stops_;
   std::vector<Sources> sources_;
-  std::vector<AxisSample> answers_;  // values that were read by SDO since the last step
+  std::vector<std::uint32_t> bootups_;  // boot-up messages of the node of each axis until now
+  std::vector<AxisSample> answers_;     // values that were read by SDO since the last step
   StopStage stage_ = StopStage::running;
   Time begun_{};
   std::uint32_t steps_ = 0;               ///< steps in this stage

@@ -169,7 +169,7 @@ void NodeSession::look_for_fall(NmtState state, Time now) noexcept {
 void NodeSession::on_bootup(Time now) noexcept {
   if (stopping_) return;
   const bool again = managed_ == Managed::yes && status_.boot == BootState::ready;
-  tell(again ? EventKind::bootup_again : EventKind::node_state, now);
+  tell(again ? EventKind::bootup_again : EventKind::node_state, now, again && halted_ ? 1 : 0);
   if (managed_ == Managed::no) return;
   if (booting()) {
     guard_.node_was_reset();
@@ -177,7 +177,10 @@ void NodeSession::on_bootup(Time now) noexcept {
     return advance(now);
   }
   node_was_reset();
-  if (halted_) return;
+  if (halted_) {
+    if (again) status_.boot = BootState::lost;
+    return;
+  }
   if (restless(now)) {
     if (status_.boot == BootState::ready)
       retry_later(BootState::lost, BootRunner::From::beginning, now);
@@ -201,10 +204,10 @@ void NodeSession::await_command() noexcept {
 }
 
 void NodeSession::give_up_boot() noexcept {
-  if (status_.boot_count != 0 || managed_ == Managed::no) return;
-  const bool booted = booting();
+  if (managed_ == Managed::no) return;
+  const bool first = booting() && status_.boot_count == 0;
   await_command();
-  if (booted) status_.boot = BootState::failed;
+  if (first) status_.boot = BootState::failed;
 }
 
 void NodeSession::halt() noexcept {

@@ -93,8 +93,8 @@ class NodeSession {
   /// As halt(), but without the command, because a broadcast has stopped the node.
   void await_command() noexcept;
 
-  /// An ordered stop has begun: a node that was never ready is no longer booted, so that the stop
-  /// can read the state of its axes.
+  /// An ordered stop has begun: the node is not booted any more, not even when it comes back. The
+  /// stop can read the state of its axes.
   void give_up_boot() noexcept;
 
   /// Sends NMT stop to an OPERATIONAL node, until resume() starts it again.

@@ -8,6 +8,7 @@ NodeWatch::Sign NodeWatch::on_heartbeat(NmtState state, Time now, NodeStatus& st
   const NmtState before = std::exchange(status.nmt, state);
   if (state == NmtState::bootup) {
     deadline_ = never;
+    ++status.bootups;
     return Sign::bootup;
   }
   status.last_heartbeat = now;

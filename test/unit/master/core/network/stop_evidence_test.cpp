@@ -159,6 +159,42 @@ TEST(OrderedStop, TakesWhatAnSdoHasReadWhereNoPdoBringsIt) {
   EXPECT_EQ(stop.machine.result(), StopResult::confirmed);
 }
 
+/// The node restarts while its axis brakes, and reports the velocity 0 when it is back.
+TEST(OrderedStop, DoesNotConfirmADriveThatRestartsWhileItMoves) {
+  Stop stop;
+  stop.speed = {100, 0};
+  stop.step(50);
+  stop.nodes[0].bootups = 1;
+  stop.speed[0] = 0;
+  stop.words = {switch_on_disabled, switch_on_disabled};
+  stop.step(100);
+  EXPECT_EQ(stop.verdict(0), AxisVerdict::moving);
+  EXPECT_EQ(stop.machine.axis(0).velocity(), 50'000);
+  EXPECT_EQ(stop.verdict(1), AxisVerdict::stopped);
+  EXPECT_EQ(stop.machine.result(), StopResult::unconfirmed);
+}
+
+TEST(OrderedStop, DoesNotConfirmADriveThatRestartsBeforeItsFirstStatusword) {
+  Stop stop;
+  stop.every[0] = 0;
+  stop.step(2);
+  stop.nodes[0].bootups = 1;
+  stop.words[0] = switch_on_disabled;
+  stop.every[0] = 1;
+  stop.step(100);
+  EXPECT_EQ(stop.verdict(0), AxisVerdict::unproven);
+}
+
+TEST(OrderedStop, ConfirmsADriveThatRestartsAfterItWasSeenAtStandstill) {
+  Stop stop;
+  stop.words[0] = quick_stop_active;
+  stop.step(100);
+  stop.nodes[0].bootups = 1;
+  stop.words = {switch_on_disabled, switch_on_disabled};
+  stop.step(100);
+  EXPECT_EQ(stop.machine.result(), StopResult::confirmed);
+}
+
 /// The boot has read 0x605A; the plan assumes that the drive brakes.
 TEST(OrderedStop, BelievesTheDeviceThatItCoasts) {
   for (const auto& [what, verdict] : {std::pair{QuickStop::unread, AxisVerdict::stopped},
