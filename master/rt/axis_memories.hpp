@@ -95,7 +95,7 @@ class AxisMemories {
       statusword = image.values[*axis.statusword];
     }
     std::optional<std::int64_t> controlword;
-    if (axis.controlword && bus_.pdos.outputs().known(*axis.controlword)) {
+    if (axis.controlword && exchanging && bus_.pdos.outputs().known(*axis.controlword)) {
       controlword = image.values[*axis.controlword];
     }
     if (memory.awaits_answer() && !word_under_way(axis)) memory.note_answer();

@@ -240,10 +240,7 @@ bool Network::take(Event& event) noexcept { return events_.pop(event); }
 std::span<const NodeStatus> Network::nodes() const noexcept { return statuses_; }
 
 bool Network::exchanges_pdos(std::size_t node_index) const noexcept {
-  if (node_index >= statuses_.size()) return false;
-  const NodeStatus& node = statuses_[node_index];
-  return (node.boot == BootState::ready || node.boot == BootState::idle) &&
-         node.nmt == NmtState::operational;
+  return node_index < sessions_.size() && sessions_[node_index].exchanges_pdos();
 }
 
 std::span<const LimitReading> Network::limits_read(std::size_t node_index) const noexcept {

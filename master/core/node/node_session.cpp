@@ -141,6 +141,8 @@ void NodeSession::on_heartbeat(const Heartbeat& sign, Time now) noexcept {
   const NmtState state = sign.state;
   const auto news = watch_.on_heartbeat(state, now, status_);
   if (news == NodeWatch::Sign::bootup) return on_bootup(now);
+  const bool against = ends_exchange() && state == NmtState::operational;
+  heartbeats_against_ = against ? heartbeats_against_ + 1 : 0;
   if (news == NodeWatch::Sign::new_state) {
     tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
   }
@@ -267,8 +269,15 @@ void NodeSession::assume(NmtState state, Time now) noexcept {
   tell(EventKind::node_state, now, static_cast<std::int64_t>(state));
 }
 
+bool NodeSession::exchanges_pdos() const noexcept {
+  const bool booted = status_.boot == BootState::ready || status_.boot == BootState::idle;
+  if (!booted || status_.nmt != NmtState::operational) return false;
+  return !ends_exchange() || heartbeats_against_ >= 2;
+}
+
 void NodeSession::want(NmtState state, Time now) noexcept {
   wanted_ = state;
+  heartbeats_against_ = 0;
   assume(state, now);
 }
 

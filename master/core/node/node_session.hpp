@@ -124,6 +124,9 @@ class NodeSession {
            last_failure_.step == status_.boot_step;
   }
   const NodeStatus& status() const noexcept { return status_; }
+  /// The node is booted, or is only watched, and is OPERATIONAL. One heartbeat with OPERATIONAL is
+  /// not enough after an NMT command that ends the exchange of PDOs: it may have been under way.
+  bool exchanges_pdos() const noexcept;
   /// No boot, no transfer and no command is under way.
   bool idle() const noexcept {
     return !booting() && active_ == nullptr && !own_command_ && client_.idle() && !stopping_ &&
@@ -133,7 +136,8 @@ class NodeSession {
   template <class Archive>
   void keep(Archive& state) noexcept {
     state(status_, client_, watch_, guard_, twins_);
-    state(retry_at_, retry_from_, wanted_, heartbeats_out_, state_at_boot_, emcys_at_boot_);
+    state(retry_at_, retry_from_, wanted_, heartbeats_out_, heartbeats_against_);
+    state(state_at_boot_, emcys_at_boot_);
     state(same_failures_, failed_boots_, counter_excused_, serial_number_, progress_told_,
           bootups_);
     state(bootups_since_, silent_, halted_, paused_, network_started_);
@@ -161,6 +165,9 @@ class NodeSession {
   bool take_guarding_answer(const Heartbeat& sign, Time now) noexcept;
   void look_for_silence(Time now) noexcept;
   void on_silence(EventKind kind, Time silence, Time now) noexcept;
+  bool ends_exchange() const noexcept {
+    return wanted_ == NmtState::stopped || wanted_ == NmtState::preoperational;
+  }
   void look_for_fall(NmtState state, Time now) noexcept;
   void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
   Time pause_before_retry() const noexcept;
@@ -193,6 +200,8 @@ class NodeSession {
   NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands
   // Heartbeats in a row in which a ready node is not OPERATIONAL although it should be.
   int heartbeats_out_ = 0;
+  // Heartbeats in a row with OPERATIONAL although the newest NMT command demands another state.
+  int heartbeats_against_ = 0;
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
   std::uint32_t same_failures_ = 0;  // failures in a row by the same cause
