@@ -43,11 +43,10 @@ NOT_KEPT = {
     "PdoOutputs::Row": {ANEW: "first_fallen first_risen fallen risen"},
     "PdoRequests": {PLAN: "plan_", IDLE: "slots_ used_ waiting_ owed_until_ owed_"},
     "PortWatch": {SHARED: "events_"},
+    "PreviousTransfer": {ANEW: "last_answer"},
     "RequestTable": {IDLE: "slots_ waiting_ answered_"},
-    "SdoClient": {PLAN: "channel_ block_use_ segments_", IDLE: "state_ to_send_ result_ no_block_",
-                  ANEW: "toggle_ left_stream_ last_segment_sent_ timeout_ deadline_ buffer_ value_ done_ announced_ block_upload_ "
-                        "block_download_ settled_ last_sent_ last_received_ uploads_ block_unheard_ late_now_ unfit_ asked_at_ heard_at_ "
-                        "empty_answer_ previous_answer_"},
+    "SdoClient": {PLAN: "channel_ block_use_ segments_", IDLE: "state_ closing_ result_ no_block_",
+                  ANEW: "transfer_ timeout_ deadline_ asked_ settled_ heard_at_ trace_"},
     "Slack": {SHARED: "port_ beat_ sender_ intake_ bus_", IDLE: "stream_end_"},
     "StopControl": {SHARED: "bus_", IDLE: "stops_ halt_ sequence_"},
     "SyncCounter": {PLAN: "overflow_"},

@@ -197,9 +197,7 @@ class BootRunner {
   std::span<const std::byte> to_write_;
   std::array<std::byte, 4> cob_id_bytes_{};
   SdoResult refused_;  // result of the write that is being read back
-  Frame refused_sent_;
-  Frame refused_received_;
-  bool refused_empty_ = false;
+  SdoTrace refused_trace_;
   std::size_t received_ = 0;
   std::array<std::byte, request_bytes> buffer_{};
   BootFailure failure_;

@@ -211,9 +211,7 @@ void BootRunner::on_downloaded(const SdoResult& result, Time now,
   if (step.action == BootAction::download_program) return fail(result, now, client);
   if (refused && !may_be_redundant(step, result.abort_code)) return fail(result, now, client);
   refused_ = result;
-  refused_sent_ = client.last_sent();
-  refused_received_ = client.last_received();
-  refused_empty_ = client.empty_answer();
+  refused_trace_ = client.trace();
   phase_ = Phase::confirm_next;
 }
 
@@ -233,8 +231,7 @@ std::size_t BootRunner::program_size() const noexcept {
 void BootRunner::fail(const SdoResult& result, char letter, Time now,
                       const SdoClient& client) noexcept {
   const bool confirming = phase_ == Phase::confirm;
-  const Frame& sent = confirming ? refused_sent_ : client.last_sent();
-  const Frame& got = confirming ? refused_received_ : client.last_received();
+  const SdoTrace& trace = confirming ? refused_trace_ : client.trace();
   const bool transfer = phase_ != Phase::wait && result.fault != SdoFault::cancelled;
   const std::span value = received();
   state_ = State::failed;
@@ -245,10 +242,10 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .downloading = phase_ == Phase::download || confirming,
               .abort_code = result.abort_code,
               .object = current().object,
-              .received_size = transfer ? got.length : std::uint8_t{0},
-              .received = got.data,
-              .sent_size = transfer ? sent.length : std::uint8_t{0},
-              .sent = sent.data,
+              .received_size = transfer ? trace.received.length : std::uint8_t{0},
+              .received = trace.received.data,
+              .sent_size = transfer ? trace.sent.length : std::uint8_t{0},
+              .sent = trace.sent.data,
               .moved = static_cast<std::uint32_t>(transfer ? result.size : 0),
               .value_size = static_cast<std::uint16_t>(transfer ? value.size() : 0),
               .node_state = heard_,
@@ -259,7 +256,7 @@ void BootRunner::fail(const SdoResult& result, char letter, Time now,
               .elapsed = now - began_,
               .late = client.lateness(),
               .quiet = now - std::max(entered_, client.heard_at()),
-              .empty_answer = transfer && (confirming ? refused_empty_ : client.empty_answer()),
+              .empty_answer = transfer && trace.empty_answer,
               .answered = transfer ? client.answered() : std::nullopt,
               .preop_again = preop_again_ && result.abort_code == abort_code::device_state};
   for (std::size_t i = 0; i < failure_.value.size() && i < failure_.value_size; ++i) {

@@ -3,33 +3,11 @@
 #include <array>
 #include <cstdint>
 
-#include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
-#include "master/wire/sdo_codec.hpp"
+#include "master/core/sdo/sdo_question.hpp"
+#include "master/wire/frame.hpp"
 
 namespace takt {
-
-/// A request of the client, as the answer to it shows it.
-struct SdoQuestion {
-  SdoAnswer answer = SdoAnswer::upload_initiate;  ///< command specifier of the answer
-  bool toggle = false;                            ///< toggle bit of the answer; segments only
-  ObjectKey object;
-
-  /// The frame is an answer to this request. Segments carry no object. An abort for the object
-  /// answers every request.
-  bool is_answered_by(const Frame& frame) const noexcept {
-    const SdoAnswer kind = sdo_answer(frame);
-    if (kind == SdoAnswer::abort) return sdo_object(frame) == object;
-    if (kind != answer) return false;
-    const bool segment = kind == SdoAnswer::upload_segment || kind == SdoAnswer::download_segment;
-    return segment ? sdo_toggle(frame) == toggle : sdo_object(frame) == object;
-  }
-
-  template <class Archive>
-  void keep(Archive& state) noexcept {
-    state(answer, toggle, object);
-  }
-};
 
 /// Measures how late an SDO server answers requests that have timed out. This distinguishes a slow
 /// server from one that does not answer. If a request is repeated, the first answer may belong to

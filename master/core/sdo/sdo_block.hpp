@@ -3,28 +3,9 @@
 #include <cstdint>
 
 #include "eds_parser/table/waits.hpp"
-#include "master/core/event.hpp"
 #include "master/wire/sdo_block_codec.hpp"
 
 namespace takt {
-
-/// The consequence of a server's frame for a block transfer.
-struct SdoBlockStep {
-  enum class Kind : std::uint8_t {
-    stranger,  ///< The frame belongs to an earlier transfer and is ignored.
-    goes_on,
-    done,
-    plain,  ///< The server has switched to a segmented or expedited upload.
-    abort,  ///< The server has broken the protocol; `abort_code` is to be sent.
-  };
-  Kind kind = Kind::stranger;
-  SdoFault fault = SdoFault::aborted_by_master;
-  std::uint32_t abort_code = 0;
-};
-
-constexpr SdoBlockStep block_abort(std::uint32_t code) noexcept {
-  return {.kind = SdoBlockStep::Kind::abort, .abort_code = code};
-}
 
 /// The number of sub-blocks in a row without progress after which a transfer is given up. The limit
 /// lets transfers pass a noisy line, and prevents that a server without progress holds the channel

@@ -49,8 +49,8 @@ void SdoBlockDownload::sent() noexcept {
   ++sent_in_block_;
 }
 
-SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
-  using Kind = SdoBlockStep::Kind;
+SdoStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
+  using Kind = SdoStep::Kind;
   if (state_ != State::initiate && accepts(frame)) return {};  // a repeated frame
   switch (state_) {
     case State::initiate:
@@ -63,42 +63,42 @@ SdoBlockStep SdoBlockDownload::on_frame(const Frame& frame) noexcept {
       if (is_block_confirm(frame)) return {};  // a repeated frame
       break;
   }
-  return block_abort(abort_code::command_unknown);
+  return violation(abort_code::command_unknown);
 }
 
 bool SdoBlockDownload::accepts(const Frame& frame) const noexcept {
   return is_block_accept(frame) && sdo_object(frame) == object_;
 }
 
-SdoBlockStep SdoBlockDownload::on_accept(const Frame& frame) noexcept {
+SdoStep SdoBlockDownload::on_accept(const Frame& frame) noexcept {
   if (!accepts(frame)) return {};
   const SdoBlockAccept accept = decode_block_accept(frame);
-  if (!valid_block_size(accept.segments)) return block_abort(abort_code::block_size);
+  if (!valid_block_size(accept.segments)) return violation(abort_code::block_size);
   crc_used_ = accept.crc;
   block_segments_ = accept.segments;
   state_ = State::segments;
   waits_ = false;
-  return {.kind = SdoBlockStep::Kind::goes_on};
+  return {.kind = SdoStep::Kind::goes_on};
 }
 
 /// Handles a confirmation. It may come in the middle of a sub-block, because some servers confirm
 /// as soon as a segment is missing.
-SdoBlockStep SdoBlockDownload::on_confirm(const Frame& frame) noexcept {
+SdoStep SdoBlockDownload::on_confirm(const Frame& frame) noexcept {
   const SdoBlockConfirm confirm = decode_block_confirm(frame);
   if (confirm.received > sent_in_block_) {
     if (confirm == newest_) return {};  // the repeated confirmation of the previous sub-block
-    return block_abort(abort_code::sequence);
+    return violation(abort_code::sequence);
   }
-  if (!valid_block_size(confirm.segments)) return block_abort(abort_code::block_size);
+  if (!valid_block_size(confirm.segments)) return violation(abort_code::block_size);
   confirmed_ = std::min(confirmed_ + confirm.received * segment_bytes, value_.size());
   fruitless_ = confirm.received == 0 ? static_cast<std::uint8_t>(fruitless_ + 1) : std::uint8_t{0};
-  if (fruitless_ == most_fruitless_blocks) return block_abort(abort_code::sequence);
+  if (fruitless_ == most_fruitless_blocks) return violation(abort_code::sequence);
   newest_ = confirm;
   block_segments_ = confirm.segments;
   sent_in_block_ = 0;
   waits_ = false;
   if (confirm.received != 0 && confirmed_ == value_.size()) state_ = State::end;
-  return {.kind = SdoBlockStep::Kind::goes_on};
+  return {.kind = SdoStep::Kind::goes_on};
 }
 
 }  // namespace takt

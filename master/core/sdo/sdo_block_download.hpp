@@ -6,6 +6,7 @@
 
 #include "eds_parser/table/sdo_access.hpp"
 #include "master/core/sdo/sdo_block.hpp"
+#include "master/core/sdo/sdo_step.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt {
@@ -13,10 +14,19 @@ namespace takt {
 /// The client side of one block download. It sends the segments of a sub-block without waiting in
 /// between, goes back to the first segment that the server has missed, and ends with the CRC. CiA
 /// 301, 7.2.4.3.9.
+///
+/// | state    | event                            | next state | sent                    |
+/// | -------- | -------------------------------- | ---------- | ----------------------- |
+/// | initiate | server accepts                   | segments   | segments of a sub-block |
+/// | segments | confirmation, segments are left  | segments   | segments of a sub-block |
+/// | segments | confirmation of the last segment | end        | end, with the CRC       |
+/// | end      | confirmation of the end          | (done)     |                         |
 class SdoBlockDownload {
  public:
   /// Begins a download. `value` must live until its end.
   void begin(SdoChannel channel, ObjectKey object, std::span<const std::byte> value) noexcept;
+  /// The value of begin().
+  std::span<const std::byte> value() const noexcept { return value_; }
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
@@ -26,19 +36,19 @@ class SdoBlockDownload {
   bool answered() const noexcept;
 
   /// Takes a frame of the server, except for aborts.
-  SdoBlockStep on_frame(const Frame& frame) noexcept;
+  SdoStep on_frame(const Frame& frame) noexcept;
 
   /// The server has accepted the transfer.
   bool accepted() const noexcept { return state_ > State::initiate; }
   /// Bytes that the server has confirmed.
-  std::size_t confirmed() const noexcept { return confirmed_; }
+  std::size_t moved() const noexcept { return confirmed_; }
 
  private:
   enum class State : std::uint8_t { initiate, segments, end };
 
   bool accepts(const Frame& frame) const noexcept;
-  SdoBlockStep on_accept(const Frame& frame) noexcept;
-  SdoBlockStep on_confirm(const Frame& frame) noexcept;
+  SdoStep on_accept(const Frame& frame) noexcept;
+  SdoStep on_confirm(const Frame& frame) noexcept;
   std::size_t offset() const noexcept { return confirmed_ + sent_in_block_ * segment_bytes; }
 
   SdoChannel channel_;

@@ -5,7 +5,7 @@
 
 namespace takt {
 
-using Kind = SdoBlockStep::Kind;
+using Kind = SdoStep::Kind;
 
 void SdoBlockUpload::begin(const Begin& begin, std::span<std::byte> buffer) noexcept {
   *this = {};
@@ -34,7 +34,7 @@ std::optional<Frame> SdoBlockUpload::to_send() const noexcept {
   return block_end_confirm(channel);
 }
 
-SdoBlockStep SdoBlockUpload::on_frame(const Frame& frame) noexcept {
+SdoStep SdoBlockUpload::on_frame(const Frame& frame) noexcept {
   switch (state_) {
     case State::initiate:
       return on_accept(frame);
@@ -48,15 +48,12 @@ SdoBlockStep SdoBlockUpload::on_frame(const Frame& frame) noexcept {
   return {};
 }
 
-SdoBlockStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
+SdoStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
   if (sdo_object(frame) != setup_.object) return {};
   if (sdo_answer(frame) == SdoAnswer::upload_initiate) return {.kind = Kind::plain};
   if (!is_block_initiate(frame)) return {};
   const SdoBlockInitiate begin = decode_block_initiate(frame);
-  if (begin.size.value_or(0) > buffer_.size()) {
-    return {
-        .kind = Kind::abort, .fault = SdoFault::too_long, .abort_code = abort_code::out_of_memory};
-  }
+  if (begin.size.value_or(0) > buffer_.size()) return exceeds_buffer();
   if (begin.size.value_or(0) != 0) announced_ = begin.size;  // some use 0 for "unknown"
   crc_used_ = begin.crc;
   state_ = State::segments;
@@ -64,27 +61,22 @@ SdoBlockStep SdoBlockUpload::on_accept(const Frame& frame) noexcept {
   return {.kind = Kind::goes_on};
 }
 
-SdoBlockStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
+SdoStep SdoBlockUpload::on_segment(const Frame& frame) noexcept {
   if (to_send_ != Next::nothing) return {};  // the segment comes too early, or is a repetition
   const SdoBlockSegment part = decode_block_segment(frame);
-  if (part.number == 0 || part.number > setup_.segments) return block_abort(abort_code::sequence);
+  if (part.number == 0 || part.number > setup_.segments) return violation(abort_code::sequence);
   if (part.number == in_sequence_ + 1) {
-    if (holds_ && !commit(segment_bytes)) {
-      return {.kind = Kind::abort,
-              .fault = SdoFault::too_long,
-              .abort_code = abort_code::out_of_memory};
-    }
-    if (announced_ && done_ >= *announced_) return block_abort(abort_code::length_too_high);
+    if (held_back_ != Held::nothing && !commit(segment_bytes)) return exceeds_buffer();
+    if (announced_ && done_ >= *announced_) return violation(abort_code::length_too_high);
     held_ = part.data;
-    holds_ = true;
-    last_held_ = part.last;
+    held_back_ = part.last ? Held::last_segment : Held::segment;
     in_sequence_ = part.number;
     asked_again_ = false;
   }
   // Even if segments were missed, the server stops here and waits.
   if (part.last || part.number == setup_.segments) {
     if (in_sequence_ == 0 && ++fruitless_ == most_fruitless_blocks) {
-      return block_abort(abort_code::sequence);
+      return violation(abort_code::sequence);
     }
     if (in_sequence_ != 0) fruitless_ = 0;
     confirm();
@@ -96,7 +88,7 @@ void SdoBlockUpload::confirm() noexcept {
   confirmed_ = in_sequence_;
   in_sequence_ = 0;
   to_send_ = Next::confirm;
-  if (last_held_) state_ = State::end;
+  if (held_back_ == Held::last_segment) state_ = State::end;
 }
 
 bool SdoBlockUpload::confirm_after_silence() noexcept {
@@ -106,17 +98,14 @@ bool SdoBlockUpload::confirm_after_silence() noexcept {
   return true;
 }
 
-SdoBlockStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
+SdoStep SdoBlockUpload::on_end(const Frame& frame) noexcept {
   const bool confirmed = to_send_ == Next::nothing;
   if (!confirmed || !is_block_end(frame)) return {};  // a segment that was already under way
   const SdoBlockEnd end = decode_block_end(frame);
   if (repeats_last(frame) && end.crc != crc_with_held(end)) return {};
-  if (!commit(segment_bytes - end.unused)) {
-    return {
-        .kind = Kind::abort, .fault = SdoFault::too_long, .abort_code = abort_code::out_of_memory};
-  }
-  if (crc_used_ && end.crc != crc_) return block_abort(abort_code::crc);
-  if (announced_ && done_ > *announced_) return block_abort(abort_code::length_too_high);
+  if (!commit(segment_bytes - end.unused)) return exceeds_buffer();
+  if (crc_used_ && end.crc != crc_) return violation(abort_code::crc);
+  if (announced_ && done_ > *announced_) return violation(abort_code::length_too_high);
   state_ = State::done;
   to_send_ = Next::end;
   return {.kind = Kind::done};
@@ -139,7 +128,7 @@ bool SdoBlockUpload::commit(std::size_t bytes) noexcept {
   const auto data = std::span{held_}.first(bytes);
   for (const std::uint8_t byte : data) buffer_[done_++] = std::byte{byte};
   if (crc_used_) crc_ = sdo_crc(data, crc_);
-  holds_ = false;
+  held_back_ = Held::nothing;
   return true;
 }
 

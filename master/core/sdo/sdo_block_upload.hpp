@@ -7,6 +7,7 @@
 
 #include "eds_parser/table/sdo_access.hpp"
 #include "master/core/sdo/sdo_block.hpp"
+#include "master/core/sdo/sdo_step.hpp"
 #include "master/wire/frame.hpp"
 #include "master/wire/sdo_block_codec.hpp"
 
@@ -15,6 +16,15 @@ namespace takt {
 /// The client side of one block upload. It accepts the segments that come in sequence, confirms
 /// each sub-block with the number of these segments, and checks the CRC at the end. CiA
 /// 301, 7.2.4.3.13.
+///
+/// | state    | event                                   | next state    | sent                    |
+/// | -------- | --------------------------------------- | ------------- | ----------------------- |
+/// | initiate | server accepts                          | segments      | start                   |
+/// | initiate | answer without blocks                   | (SdoUpload)   |                         |
+/// | segments | segment                                 | segments      |                         |
+/// | segments | end of a sub-block, or silence for once | segments      | confirmation            |
+/// | segments | the same, after the last segment        | end           | confirmation            |
+/// | end      | end with the right CRC                  | done          | confirmation of the end |
 class SdoBlockUpload {
  public:
   /// Parameters of an upload.
@@ -28,6 +38,8 @@ class SdoBlockUpload {
   };
   /// Begins an upload. `buffer` must live until its end.
   void begin(const Begin& begin, std::span<std::byte> buffer) noexcept;
+  /// The buffer of begin().
+  std::span<std::byte> buffer() const noexcept { return buffer_; }
 
   /// The frame to send now, or std::nullopt if the client waits for the server.
   std::optional<Frame> to_send() const noexcept;
@@ -44,7 +56,7 @@ class SdoBlockUpload {
 
   /// Takes a frame of the server, except for aborts. After `done`, to_send() still gives the
   /// confirmation of the end.
-  SdoBlockStep on_frame(const Frame& frame) noexcept;
+  SdoStep on_frame(const Frame& frame) noexcept;
 
   /// Handles silence of the server in a sub-block: the segments that came are confirmed, so that
   /// the server may repeat the rest. Returns false if there is nothing to confirm, or if this was
@@ -52,24 +64,27 @@ class SdoBlockUpload {
   bool confirm_after_silence() noexcept;
   /// Silence now calls for confirm_after_silence().
   bool in_sub_block() const noexcept {
-    return state_ == State::segments && holds_ && !asked_again_;
+    return state_ == State::segments && held_back_ != Held::nothing && !asked_again_;
   }
 
   /// The server has accepted the transfer.
   bool accepted() const noexcept { return state_ != State::initiate; }
   /// Number of bytes that were received in sequence. At the end, the number is exact; before, it
   /// does not include the newest segment.
-  std::size_t received() const noexcept { return done_; }
+  std::size_t moved() const noexcept { return done_; }
   /// Size that the server has announced, or std::nullopt.
   std::optional<std::uint32_t> announced() const noexcept { return announced_; }
 
  private:
   enum class State : std::uint8_t { initiate, segments, end, done };
   enum class Next : std::uint8_t { nothing, initiate, start, confirm, end };
+  /// The newest segment is held back, because only the end of the transfer says how many bytes of
+  /// the last segment are used.
+  enum class Held : std::uint8_t { nothing, segment, last_segment };
 
-  SdoBlockStep on_accept(const Frame& frame) noexcept;
-  SdoBlockStep on_segment(const Frame& frame) noexcept;
-  SdoBlockStep on_end(const Frame& frame) noexcept;
+  SdoStep on_accept(const Frame& frame) noexcept;
+  SdoStep on_segment(const Frame& frame) noexcept;
+  SdoStep on_end(const Frame& frame) noexcept;
   bool repeats_last(const Frame& frame) const noexcept;
   std::uint16_t crc_with_held(const SdoBlockEnd& end) const noexcept;
   void confirm() noexcept;
@@ -81,9 +96,8 @@ class SdoBlockUpload {
   State state_ = State::initiate;
   Next to_send_ = Next::nothing;
   bool crc_used_ = false;
-  bool holds_ = false;  ///< a segment is held back, because it may be the last
-  bool last_held_ = false;
-  bool asked_again_ = false;
+  Held held_back_ = Held::nothing;
+  bool asked_again_ = false;      ///< the missing segments were asked for, and none has come since
   std::uint8_t in_sequence_ = 0;  ///< segments of this sub-block that came in sequence
   std::uint8_t confirmed_ = 0;    ///< number of segments that the confirmation reports
   std::uint8_t fruitless_ = 0;

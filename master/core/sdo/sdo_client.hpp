@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/sdo_access.hpp"
@@ -10,8 +11,11 @@
 #include "master/core/event.hpp"
 #include "master/core/machine.hpp"
 #include "master/core/sdo/late_answers.hpp"
+#include "master/core/sdo/previous_transfer.hpp"
 #include "master/core/sdo/sdo_block_download.hpp"
 #include "master/core/sdo/sdo_block_upload.hpp"
+#include "master/core/sdo/sdo_download.hpp"
+#include "master/core/sdo/sdo_upload.hpp"
 #include "master/wire/sdo_codec.hpp"
 
 namespace takt {
@@ -28,10 +32,35 @@ struct SdoResult {
 /// does not answer.
 enum class SdoMode : std::uint8_t { plain, block };
 
+/// The newest frames of a transfer, for reports. A length of 0 means that there is no such frame.
+struct SdoTrace {
+  Frame sent;                 ///< last frame of the client
+  Frame received;             ///< last frame of the server
+  bool empty_answer = false;  ///< the server has sent a frame without any byte
+};
+
 /// SDO client of one node on one channel. It runs one transfer at a time: expedited, segmented or
 /// block. It works on the buffer of the caller, which must live until the result is taken. A
 /// transfer in which the server becomes silent is aborted on the bus, so that the server does not
 /// stay in the middle of it. Bus thread only. CiA 301, 7.2.4.
+///
+/// | state         | event                               | next state    | sent                |
+/// | ------------- | ----------------------------------- | ------------- | ------------------- |
+/// | idle          | upload(), download()                | running       | first request       |
+/// | running       | answer                              | running       | next request        |
+/// | running       | last answer                         | idle          | end of block upload |
+/// | running       | abort: no block transfer            | running       | plain request       |
+/// | running       | abort in a block download with data | settling      |                     |
+/// | running       | any other abort                     | idle          |                     |
+/// | running       | silence in a sub-block, once        | running       | confirmation        |
+/// | running       | no answer to a block request        | withdrawing   | abort               |
+/// | running       | silence, wrong answer, cancel()     | idle          | abort               |
+/// | withdrawing   | the abort was sent                  | without_block | plain request       |
+/// | withdrawing   | cancel()                            | idle          | abort               |
+/// | without_block | first answer, or refusal of blocks  | running       | next request        |
+/// | without_block | silence, wrong answer, cancel()     | idle          | abort               |
+/// | settling      | 20 ms                               | idle          |                     |
+/// | any           | drop()                              | idle          |                     |
 class SdoClient {
  public:
   /// Downloads of at least this number of bytes are block transfers if the settings of the node
@@ -46,7 +75,7 @@ class SdoClient {
       : channel_{channel}, block_use_{block}, segments_{segments} {}
 
   /// No transfer is running, no result waits to be taken and no abort waits to be sent.
-  bool idle() const noexcept { return state_ == State::idle && !result_ && !to_send_; }
+  bool idle() const noexcept { return state_ == State::idle && !result_ && !closing_; }
 
   /// Begins an upload; the client must be idle. `timeout` is the longest permitted silence of the
   /// server; each frame restarts it.
@@ -87,25 +116,19 @@ class SdoClient {
 
   /// A block transfer is under way, so the next frame of the server comes soon.
   bool streams() const noexcept {
-    return state_ == State::block_upload || state_ == State::block_download;
+    return state_ == State::running && (block_upload() || block_download());
   }
   /// The server sends a sub-block, one segment after another, as fast as the wire permits.
   bool awaits_sub_block() const noexcept {
-    return state_ == State::block_upload && !to_send_ && block_upload_.awaits_sub_block();
+    return state_ == State::running && block_upload() && block_upload()->awaits_sub_block();
   }
   /// A frame was sent, and the server has not answered it.
   bool awaits_answer() const noexcept { return deadline_ != never && !next_frame(); }
   const SdoChannel& channel() const noexcept { return channel_; }
-  /// The last frame of the client in the newest transfer, for reports. A length of 0 means that
-  /// there is none.
-  const Frame& last_sent() const noexcept { return last_sent_; }
+  /// The newest frames of the newest transfer.
+  const SdoTrace& trace() const noexcept { return trace_; }
   /// A frame of the newest transfer was sent.
-  bool begun() const noexcept { return last_sent_.length != 0; }
-  /// The last frame of the server in the newest transfer, for reports. A length of 0 means that
-  /// there is none.
-  const Frame& last_received() const noexcept { return last_received_; }
-  /// The server has sent a frame without any byte in the newest transfer.
-  bool empty_answer() const noexcept { return empty_answer_; }
+  bool begun() const noexcept { return trace_.sent.length != 0; }
   /// When the newest frame of the server came, whatever it was.
   Time heard_at() const noexcept { return heard_at_; }
   /// The object of an answer that did not fit the request; std::nullopt if there was none.
@@ -117,101 +140,91 @@ class SdoClient {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(block_refused_, block_ended_, late_segments_, object_, given_up_, late_, answered_);
-    state(late_possible_);
+    state(lacks_block_, object_, previous_, late_, answered_);
   }
 
  private:
   enum class State : std::uint8_t {
     idle,
-    upload_initiate,
-    upload_segments,
-    download_initiate,
-    download_segments,
-    block_upload,
-    block_download,
-    falling_back,  // The first frame of a block transfer found no answer, and its abort waits to be
-                   // sent.
-    settling,  // The transfer was aborted while segments were under way, and the server may refuse
-               // each of them.
+    running,
+    withdrawing,    ///< The first request of a block transfer found no answer, and its abort waits
+                    ///< to be sent.
+    without_block,  ///< As `running`, after `withdrawing` and before the first answer, which shows
+                    ///< that the server is silent only for block transfers.
+    settling,       ///< The server has aborted the transfer while segments were under way, and may
+                    ///< refuse each of them.
+  };
+  /// The last frame of a transfer that has ended: an abort, or the end of a block upload.
+  struct Closing {
+    Frame frame;
+    Answer answer = Answer::none;
+  };
+  /// The request that was sent last.
+  struct Asked {
+    Time at{};
+    bool misanswered = false;  ///< an answer to it was ignored because it does not fit
   };
 
-  bool blocks() const noexcept { return block_use_ != SdoBlockUse::off && !block_refused_; }
-  bool in_initiate() const noexcept {
-    return state_ == State::upload_initiate || state_ == State::download_initiate;
+  const SdoUpload* plain_upload() const noexcept { return std::get_if<SdoUpload>(&transfer_); }
+  const SdoDownload* plain_download() const noexcept {
+    return std::get_if<SdoDownload>(&transfer_);
   }
-  void begin(State state, ObjectKey object, Time timeout) noexcept;
-  void begin_plain(State state) noexcept;
+  const SdoBlockUpload* block_upload() const noexcept {
+    return std::get_if<SdoBlockUpload>(&transfer_);
+  }
+  const SdoBlockDownload* block_download() const noexcept {
+    return std::get_if<SdoBlockDownload>(&transfer_);
+  }
+  bool runs() const noexcept { return state_ == State::running || state_ == State::without_block; }
+  bool initiates_plain() const noexcept;
+  bool unanswered_block() const noexcept;
+  bool may_use_block() const noexcept { return block_use_ != SdoBlockUse::off && !lacks_block_; }
+  std::optional<SdoQuestion> question() const noexcept;
   std::optional<Frame> next_frame() const noexcept;
   Answer answer_to_next() const noexcept;
+
+  void begin(ObjectKey object, Time timeout) noexcept;
+  void begin_without_block(State state) noexcept;
   void frame_sent(const Frame& frame, Time now) noexcept;
   Time patience() const noexcept;
   void on_silence() noexcept;
-  SdoQuestion question() const noexcept;
-  bool asks_plainly() const noexcept {
-    return in_initiate() || state_ == State::upload_segments || state_ == State::download_segments;
-  }
   void give_up_late() noexcept;
-  void note_late(const Frame& frame, Time now) noexcept;
-  void finish(SdoResult result) noexcept;
+  void finish(const SdoResult& result, PreviousTransfer::End end) noexcept;
   void abort(SdoFault fault, std::uint32_t code) noexcept;
-  void on_abort(const Frame& frame, Time now) noexcept;
+
+  bool note_late(const Frame& frame, Time now) noexcept;
+  bool is_whole(const Frame& frame) const noexcept;
+  void on_plain_answer(const Frame& frame, Time now, bool late) noexcept;
+  void on_other_object(const Frame& frame, bool late) noexcept;
+  void on_wrong_answer(const Frame& frame, bool late) noexcept;
   void on_block(const Frame& frame, Time now) noexcept;
-  bool unanswered_block() const noexcept;
+  void on_step(const SdoStep& step, const Frame& frame, Time now) noexcept;
+  void on_done() noexcept;
+  void on_abort(const Frame& frame, Time now) noexcept;
+  bool is_abort_of_previous(const Frame& frame) noexcept;
   bool fall_back(std::uint32_t code) noexcept;
   void heard(const Frame& frame) noexcept;
   void learn_no_block(std::uint32_t code) noexcept;
-  bool is_whole(const Frame& frame) const noexcept;
-  bool is_of_earlier_block(const Frame& frame) const noexcept;
-  void on_wrong_answer(const Frame& frame) noexcept;
-  void on_other_object(const Frame& frame) noexcept;
-  void on_wrong_toggle() noexcept;
-  void on_upload_initiate(const Frame& frame) noexcept;
-  void on_upload_segment(const Frame& frame) noexcept;
-  void on_download_confirmed(const Frame& frame) noexcept;
-  void on_download_segment_confirmed(const Frame& frame) noexcept;
-  bool take_bytes(std::span<const std::uint8_t> bytes) noexcept;
-  void send_segment() noexcept;
 
   SdoChannel channel_;
   SdoBlockUse block_use_;
   std::uint8_t segments_;
   State state_ = State::idle;
-  bool uploads_ = false;
-  bool toggle_ = false;
-  bool last_segment_sent_ = false;
-  bool block_refused_ = false;  ///< the device does not support block transfer
-  bool block_unheard_ = false;  ///< this transfer began as a block transfer and found no answer
-  bool block_ended_ = false;    ///< the previous transfer was a block transfer and succeeded
-  bool left_stream_ = false;    ///< the transfer was given up in the middle of a sub-block
-  bool late_segments_ = false;  ///< segments of a block upload that was given up may still come
+  std::variant<SdoBlockUpload, SdoBlockDownload, SdoUpload, SdoDownload> transfer_;
+  bool lacks_block_ = false;  ///< what was learned: the device does not support block transfer
   ObjectKey object_;
-  /// Object of a transfer that was given up, whose answer may still come.
-  std::optional<ObjectKey> given_up_;
   Time timeout_{};
   Time deadline_ = never;
-  std::span<std::byte> buffer_;             ///< destination of an upload
-  std::span<const std::byte> value_;        ///< source of a download
-  std::size_t done_ = 0;                    ///< transferred bytes
-  std::optional<std::uint32_t> announced_;  ///< size that the server indicated
-  SdoBlockUpload block_upload_;
-  SdoBlockDownload block_download_;
-  std::optional<Frame> to_send_;
+  Asked asked_;
+  std::optional<Closing> closing_;
   std::optional<SdoResult> result_;
   std::optional<NoBlock> no_block_;
   SdoResult settled_;  ///< the result after State::settling
+  PreviousTransfer previous_;
   LateAnswers late_;
-  /// The previous transfer was given up, but not because of a protocol error.
-  bool late_possible_ = false;
-  bool late_now_ = false;  ///< the newest frame answers a request that has timed out
-  bool unfit_ = false;     ///< an answer to the newest request was ignored because it does not fit
-  bool empty_answer_ = false;          ///< a frame without any byte came in the newest transfer
-  Time asked_at_{};                    ///< when the newest frame was sent
   Time heard_at_{};                    ///< when the newest frame of the server came
   std::optional<ObjectKey> answered_;  ///< object of an answer that did not fit the request
-  Frame previous_answer_;              ///< the last answer of the previous transfer
-  Frame last_sent_;
-  Frame last_received_;
+  SdoTrace trace_;
 };
 
 }  // namespace takt

@@ -17,6 +17,27 @@ namespace takt {
 /// SDO server of the object dictionary of the master: expedited, segmented and block transfers, one
 /// at a time. All values are short. After one second of silence of the client, the server aborts
 /// its transfer. Bus thread only. CiA 301, 7.2.4.
+///
+/// | state              | event                    | next state          | sent                |
+/// | ------------------ | ------------------------ | ------------------- | ------------------- |
+/// | idle               | upload of up to 4 bytes  | idle                | value               |
+/// | idle               | upload of a longer value | upload              | size                |
+/// | upload             | request of a segment     | upload, then idle   | segment             |
+/// | idle               | expedited download       | idle                | confirmation        |
+/// | idle               | segmented download       | download            | confirmation        |
+/// | download           | segment                  | download, then idle | confirmation        |
+/// | idle               | block download           | block_download      | size of a sub-block |
+/// | block_download     | end of a sub-block       | block_download      | confirmation        |
+/// | block_download     | last segment             | block_download_end  | confirmation        |
+/// | block_download_end | end                      | idle                | confirmation        |
+/// | idle               | block upload             | block_offered       | size                |
+/// | block_offered      | start                    | block_upload        | segments            |
+/// | block_upload       | all segments were sent   | block_upload_wait   |                     |
+/// | block_upload_wait  | confirmation             | block_upload        | segments            |
+/// | block_upload_wait  | confirmation of the last | block_upload_end    | end, with the CRC   |
+/// | block_upload_end   | confirmation of the end  | idle                |                     |
+/// | any                | abort of the client      | idle                |                     |
+/// | any                | wrong request, silence   | idle                | abort               |
 class SdoServer {
  public:
   SdoServer(SdoChannel channel, const OwnDictionary& dictionary) noexcept

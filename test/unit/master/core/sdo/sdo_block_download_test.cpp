@@ -10,7 +10,7 @@
 namespace takt {
 namespace {
 
-using Kind = SdoBlockStep::Kind;
+using Kind = SdoStep::Kind;
 constexpr std::string_view hello = "Hello CANopen block transfer!";
 
 /// Tests the state machine of a block download to 1F50:01 of node 5 with literal frames.
@@ -64,7 +64,7 @@ TEST_F(BlockDownload, ConfirmsBlocksOfThreeSegments) {
   sends_segment(0x03, "block t");
   waits();
   hears(rx({0xA2, 0x03, 0x03}));
-  EXPECT_EQ(machine.confirmed(), 21U);
+  EXPECT_EQ(machine.moved(), 21U);
   sends(tx({0x01, 0x72, 0x61, 0x6E, 0x73, 0x66, 0x65, 0x72}));
   sends(tx({0x82, 0x21}));
   hears(rx({0xA2, 0x02, 0x03}));
@@ -136,7 +136,7 @@ TEST_F(BlockDownload, RepeatsAllWhenNothingWasReceivedButNotForEver) {
   begin(hello);
   sends(tx({0xC6, 0x50, 0x1F, 0x01, 0x1D}));
   hears(rx({0xA4, 0x50, 0x1F, 0x01, 0x7F}));
-  SdoBlockStep step{.kind = Kind::goes_on};
+  SdoStep step{.kind = Kind::goes_on};
   int rounds = 0;
   while (step.kind == Kind::goes_on && rounds < 100) {
     sends_segment(0x01, "Hello C");
@@ -161,7 +161,7 @@ TEST_F(BlockDownload, AbortsABlockSizeOfZeroOr128) {
   for (const std::uint8_t size : {std::uint8_t{0}, std::uint8_t{128}, std::uint8_t{255}}) {
     begin(hello);
     machine.sent();
-    const SdoBlockStep begun = machine.on_frame(rx({0xA4, 0x50, 0x1F, 0x01, size}));
+    const SdoStep begun = machine.on_frame(rx({0xA4, 0x50, 0x1F, 0x01, size}));
     EXPECT_EQ(begun.kind, Kind::abort);
     EXPECT_EQ(begun.abort_code, 0x05040002U);
 

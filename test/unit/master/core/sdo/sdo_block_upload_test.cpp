@@ -11,7 +11,7 @@
 namespace takt {
 namespace {
 
-using Kind = SdoBlockStep::Kind;
+using Kind = SdoStep::Kind;
 constexpr std::string_view hello = "Hello CANopen block transfer!";
 
 Frame segment(std::uint8_t first, std::initializer_list<std::uint8_t> data) {
@@ -44,7 +44,7 @@ class BlockUpload : public testing::Test {
   }
   void waits() { EXPECT_FALSE(machine.to_send()); }
   Kind hears(const Frame& frame) { return machine.on_frame(frame).kind; }
-  std::string text() { return {reinterpret_cast<const char*>(buffer.data()), machine.received()}; }
+  std::string text() { return {reinterpret_cast<const char*>(buffer.data()), machine.moved()}; }
 
   const Frame hello1 = segment(0x01, {0x48, 0x65, 0x6C, 0x6C, 0x6F, 0x20, 0x43});
   const Frame hello2 = segment(0x02, {0x41, 0x4E, 0x6F, 0x70, 0x65, 0x6E, 0x20});
@@ -129,7 +129,7 @@ TEST_F(BlockUpload, TakesARepeatedLastSegmentForNoEnd) {
   sends(tx({0xA2, 0x41, 0x7F}));
   EXPECT_EQ(hears(last), Kind::stranger);
   EXPECT_EQ(hears(rx({0xC1, 0x57, 0x73})), Kind::done);
-  EXPECT_EQ(machine.received(), 455U);
+  EXPECT_EQ(machine.moved(), 455U);
 }
 
 TEST_F(BlockUpload, TakesTheEndOfManyZerosThoughItIsLikeTheLastSegment) {
@@ -151,7 +151,7 @@ TEST_F(BlockUpload, AbortsWhenTheCrcIsWrong) {
   machine.sent();
   hears(hello5);
   machine.sent();
-  const SdoBlockStep step = machine.on_frame(rx({0xD9, 0xC4, 0xBA}));
+  const SdoStep step = machine.on_frame(rx({0xD9, 0xC4, 0xBA}));
   EXPECT_EQ(step.kind, Kind::abort);
   EXPECT_EQ(step.abort_code, 0x05040004U);
 }
@@ -187,7 +187,7 @@ TEST_F(BlockUpload, AbortsMoreThanWasAnnounced) {
 TEST_F(BlockUpload, RefusesWhatDoesNotFitTheBuffer) {
   begin();
   machine.sent();
-  const SdoBlockStep step = machine.on_frame(rx({0xC6, 0x21, 0x10, 0x00, 0x41}));
+  const SdoStep step = machine.on_frame(rx({0xC6, 0x21, 0x10, 0x00, 0x41}));
   EXPECT_EQ(step.kind, Kind::abort);
   EXPECT_EQ(step.fault, SdoFault::too_long);
 

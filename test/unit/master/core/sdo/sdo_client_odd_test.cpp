@@ -1,9 +1,6 @@
-#include <array>
 #include <gtest/gtest.h>
-#include <vector>
 
-#include "master/core/sdo/sdo_client.hpp"
-#include "test/unit/master/core/script.hpp"
+#include "test/unit/master/core/sdo/sdo_client_rig.hpp"
 
 // Servers that answer late, with too few bytes, or with something else than the client has asked
 // for. The time-out is 500 ms.
@@ -11,20 +8,8 @@
 namespace takt {
 namespace {
 
-class SdoClientOdd : public testing::Test {
+class SdoClientOdd : public SdoClientTest {
  protected:
-  void upload(ObjectKey object) { client.upload(object, buffer, 500ms); }
-  void download(ObjectKey object, std::vector<std::byte> value) {
-    value_ = std::move(value);
-    client.download(object, value_, 500ms);
-  }
-  void sends(const Frame& expected) {
-    Outbox out;
-    client.on_time(now, out);
-    ASSERT_EQ(out.frames().size(), 1U);
-    EXPECT_EQ(out.frames()[0], expected);
-  }
-  void hears(const Frame& frame) { client.on_frame(frame, now); }
   /// Lets the time-out pass, and expects the abort for `object`.
   void times_out(ObjectKey object) {
     now = client.deadline();
@@ -56,10 +41,6 @@ class SdoClientOdd : public testing::Test {
   }
 
   const Frame vendor = rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00});
-  Time now = 1s;
-  std::array<std::byte, 64> buffer{};
-  std::vector<std::byte> value_;
-  SdoClient client{5_node};
 };
 
 TEST_F(SdoClientOdd, TheAnswerToARepetitionIsNotLate) {
@@ -151,7 +132,7 @@ TEST_F(SdoClientOdd, AFrameWithTooFewBytesIsNoLateAnswer) {
   sends(tx({0x40, 0x18, 0x10, 0x01}));
   hears(cut);
   EXPECT_FALSE(client.take_result());
-  EXPECT_EQ(client.last_received().length, 4);
+  EXPECT_EQ(client.trace().received.length, 4);
 }
 
 TEST_F(SdoClientOdd, ARestartOfTheServerEndsTheWaitForLateAnswers) {

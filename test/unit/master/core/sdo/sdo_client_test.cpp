@@ -1,43 +1,10 @@
-#include "master/core/sdo/sdo_client.hpp"
-
-#include <array>
+// Values that come and go, expedited and by segments.
 #include <gtest/gtest.h>
-#include <string>
 
-#include "test/unit/master/core/script.hpp"
+#include "test/unit/master/core/sdo/sdo_client_rig.hpp"
 
 namespace takt {
 namespace {
-
-/// One client of node 5 and a conversation with literal frames.
-class SdoClientTest : public testing::Test {
- protected:
-  void upload(ObjectKey object) { client.upload(object, buffer, 500ms); }
-  void download(ObjectKey object, std::vector<std::byte> value) {
-    value_ = std::move(value);
-    client.download(object, value_, 500ms);
-  }
-  void sends(const Frame& expected) {
-    Outbox out;
-    client.on_time(now, out);
-    ASSERT_EQ(out.frames().size(), 1U);
-    EXPECT_EQ(out.frames()[0], expected);
-  }
-  void sends_nothing() {
-    Outbox out;
-    client.on_time(now, out);
-    EXPECT_TRUE(out.empty());
-  }
-  void hears(const Frame& frame) { client.on_frame(frame, now); }
-  std::string text(const SdoResult& result) {
-    return {reinterpret_cast<const char*>(buffer.data()), result.size};
-  }
-
-  Time now = 1s;
-  std::array<std::byte, 64> buffer{};
-  std::vector<std::byte> value_;
-  SdoClient client{5_node};
-};
 
 TEST_F(SdoClientTest, WritesTheHeartbeatTimeExpedited) {
   download({0x1017, 0}, bytes({0xE8, 0x03}));
@@ -49,21 +16,6 @@ TEST_F(SdoClientTest, WritesTheHeartbeatTimeExpedited) {
   EXPECT_EQ(result->fault, SdoFault::none);
   EXPECT_TRUE(client.idle());
   EXPECT_EQ(client.deadline(), never);
-}
-
-TEST_F(SdoClientTest, IsOwedAnAnswerFromItsRequestToTheAnswerOrTheTimeOut) {
-  upload({0x1008, 0});
-  EXPECT_FALSE(client.awaits_answer());
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  EXPECT_TRUE(client.awaits_answer());
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x0A}));
-  EXPECT_FALSE(client.awaits_answer());
-  sends(tx({0x60}));
-  EXPECT_TRUE(client.awaits_answer());
-
-  now += 501ms;
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
-  EXPECT_FALSE(client.awaits_answer());
 }
 
 TEST_F(SdoClientTest, ReadsTheVendorIdExpedited) {
@@ -153,66 +105,6 @@ TEST_F(SdoClientTest, MovesAnEmptyValueInOneEmptySegment) {
   EXPECT_EQ(client.take_result()->size, 0U);
 }
 
-TEST_F(SdoClientTest, ReportsTheAbortCodeOfTheDevice) {
-  upload({0x3000, 0});
-  sends(tx({0x40, 0x00, 0x30, 0x00}));
-  hears(rx({0x80, 0x00, 0x30, 0x00, 0x00, 0x00, 0x02, 0x06}));
-
-  const auto result = client.take_result();
-  EXPECT_EQ(result->fault, SdoFault::aborted_by_device);
-  EXPECT_EQ(result->abort_code, 0x06020000U);
-  sends_nothing();  // an abort is never answered
-}
-
-TEST_F(SdoClientTest, TakesAnAbortInTheMiddleOfSegmentsWhateverItsObject) {
-  download({0x2001, 0}, std::vector<std::byte>(20));
-  sends(tx({0x21, 0x01, 0x20, 0x00, 0x14}));
-  hears(rx({0x60, 0x01, 0x20, 0x00}));
-  sends(tx({0x00}));
-  hears(rx({0x80, 0x00, 0x00, 0x00, 0x22, 0x00, 0x00, 0x08}));
-  EXPECT_EQ(client.take_result()->abort_code, 0x08000022U);
-
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x10}));
-  sends(tx({0x60}));
-  hears(rx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x06, 0x06}));
-  EXPECT_EQ(client.take_result()->abort_code, 0x06060000U);
-}
-
-TEST_F(SdoClientTest, AbortsWhenTheToggleBitRepeatsInAnUpload) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x10}));
-  sends(tx({0x60}));
-  hears(rx({0x00, 1, 2, 3, 4, 5, 6, 7}));
-  sends(tx({0x70}));
-  hears(rx({0x00, 1, 2, 3, 4, 5, 6, 7}));
-
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::aborted_by_master);
-}
-
-TEST_F(SdoClientTest, AbortsWhenTheToggleBitRepeatsInADownload) {
-  download({0x2001, 0}, std::vector<std::byte>(20));
-  sends(tx({0x21, 0x01, 0x20, 0x00, 0x14}));
-  hears(rx({0x60, 0x01, 0x20, 0x00}));
-  sends(tx({0x00}));
-  hears(rx({0x30}));
-  sends(tx({0x80, 0x01, 0x20, 0x00, 0x00, 0x00, 0x03, 0x05}));
-  EXPECT_EQ(client.take_result()->abort_code, 0x05030000U);
-}
-
-TEST_F(SdoClientTest, AbortsWhenTheAnnouncedSizeIsOneTooSmall) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x06}));
-  sends(tx({0x60}));
-  hears(rx({0x01, 1, 2, 3, 4, 5, 6, 7}));
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x12, 0x00, 0x07, 0x06}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::aborted_by_master);
-}
-
 TEST_F(SdoClientTest, TakesLessThanWasAnnouncedAndSaysSo) {
   upload({0x1008, 0});
   sends(tx({0x40, 0x08, 0x10, 0x00}));
@@ -224,93 +116,6 @@ TEST_F(SdoClientTest, TakesLessThanWasAnnouncedAndSaysSo) {
   EXPECT_EQ(result->fault, SdoFault::none);
   EXPECT_EQ(result->size, 7U);
   EXPECT_TRUE(result->shortened);
-}
-
-TEST_F(SdoClientTest, RefusesWhatDoesNotFitTheBuffer) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x41}));  // 65 bytes announced, 64 fit
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x05, 0x00, 0x04, 0x05}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::too_long);
-
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x40, 0x08, 0x10, 0x00}));  // size not announced
-  for (int i = 0; i < 10; ++i) {
-    const bool odd = i % 2 == 1;
-    sends(odd ? tx({0x70}) : tx({0x60}));
-    hears(odd ? rx({0x10, 1, 2, 3, 4, 5, 6, 7}) : rx({0x00, 1, 2, 3, 4, 5, 6, 7}));
-  }
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x05, 0x00, 0x04, 0x05}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::too_long);
-}
-
-TEST_F(SdoClientTest, EndsADeviceThatSendsEmptySegmentsForEver) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x40, 0x08, 0x10, 0x00}));
-  sends(tx({0x60}));
-  hears(rx({0x0E}));
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x10, 0x00, 0x07, 0x06}));
-}
-
-TEST_F(SdoClientTest, AbortsOnTheBusWhenTheDeviceStaysSilent) {
-  download({0x1017, 0}, bytes({0xE8, 0x03}));
-  EXPECT_EQ(client.deadline(), at_once);
-  sends(tx({0x2B, 0x17, 0x10, 0x00, 0xE8, 0x03}));
-  EXPECT_EQ(client.deadline(), 1500ms);
-
-  now = 1500ms - 1ns;
-  sends_nothing();
-  now = 1500ms;
-  sends(tx({0x80, 0x17, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
-
-  const auto result = client.take_result();
-  EXPECT_EQ(result->fault, SdoFault::timeout);
-  EXPECT_EQ(result->abort_code, 0x05040000U);
-}
-
-TEST_F(SdoClientTest, GivesEachSegmentItsOwnTime) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  for (int i = 0; i < 4; ++i) {
-    now += 499ms;
-    hears(i == 0
-              ? rx({0x40, 0x08, 0x10, 0x00})
-              : (i % 2 == 1 ? rx({0x00, 1, 2, 3, 4, 5, 6, 7}) : rx({0x10, 1, 2, 3, 4, 5, 6, 7})));
-    sends(i % 2 == 0 ? tx({0x60}) : tx({0x70}));
-  }
-  now += 500ms;
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
-}
-
-TEST_F(SdoClientTest, IgnoresTheLateAnswerOfAnEarlierRequest) {
-  upload({0x1018, 1});
-  sends(tx({0x40, 0x18, 0x10, 0x01}));
-  now += 500ms;
-  sends(tx({0x80, 0x18, 0x10, 0x01, 0x00, 0x00, 0x04, 0x05}));
-  client.take_result();
-  upload({0x1018, 2});
-  sends(tx({0x40, 0x18, 0x10, 0x02}));
-
-  hears(rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00}));  // late answer
-  hears(rx({0x80, 0x18, 0x10, 0x01, 0x00, 0x00, 0x04, 0x05}));  // late abort
-  hears(rx({0x00, 1, 2, 3, 4, 5, 6, 7}));                       // late segment
-  hears(rx({0x20}));                                            // late confirmation
-  hears(rx({0x60, 0x18, 0x10, 0x02}));                          // confirmation of a download
-  EXPECT_FALSE(client.take_result());
-  EXPECT_EQ(client.deadline(), now + 500ms);  // unrelated frames do not extend the wait
-
-  hears(rx({0x43, 0x18, 0x10, 0x02, 0x07, 0x00, 0x00, 0x00}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::none);
-  EXPECT_EQ(buffer[0], std::byte{7});
-}
-
-TEST_F(SdoClientTest, IgnoresAnswersBeforeItsRequestIsSent) {
-  upload({0x1018, 1});
-  hears(rx({0x43, 0x18, 0x10, 0x01, 0x5A, 0x01, 0x00, 0x00}));
-  EXPECT_FALSE(client.take_result());
-  sends(tx({0x40, 0x18, 0x10, 0x01}));
 }
 
 Frame short_rx(std::initializer_list<std::uint8_t> bytes) {
@@ -361,50 +166,6 @@ TEST_F(SdoClientTest, IgnoresAnswersThatLackAPartOfTheirValue) {
   hears(short_rx({0x09, 1, 2}));  // announces three bytes
   EXPECT_FALSE(client.take_result());
   sends_nothing();
-}
-
-TEST_F(SdoClientTest, AbortsAnswersOfABlockTransferItNeverAskedFor) {
-  upload({0x1018, 1});
-  sends(tx({0x40, 0x18, 0x10, 0x01}));
-  hears(rx({0xC6, 0x18, 0x10, 0x01, 0x1D}));
-  sends(tx({0x80, 0x18, 0x10, 0x01, 0x01, 0x00, 0x04, 0x05}));
-  EXPECT_EQ(client.take_result()->fault, SdoFault::aborted_by_master);
-}
-
-TEST_F(SdoClientTest, AbortsSegmentsOfTheWrongDirection) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  hears(rx({0x41, 0x08, 0x10, 0x00, 0x10}));
-  sends(tx({0x60}));
-  hears(rx({0x20}));
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));
-}
-
-TEST_F(SdoClientTest, SaysOnTheBusWhenItIsCancelled) {
-  upload({0x1008, 0});
-  sends(tx({0x40, 0x08, 0x10, 0x00}));
-  client.cancel();
-  EXPECT_EQ(client.take_result()->fault, SdoFault::cancelled);
-  sends(tx({0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x00, 0x08}));
-  EXPECT_TRUE(client.idle());
-}
-
-TEST_F(SdoClientTest, SaysNothingWhenItIsCancelledBeforeItsRequestWasSent) {
-  upload({0x1008, 0});
-  client.cancel();
-  EXPECT_EQ(client.take_result()->fault, SdoFault::cancelled);
-  sends_nothing();
-}
-
-TEST_F(SdoClientTest, ComesBackWhenTheOutboxIsFull) {
-  upload({0x1018, 1});
-  Outbox full;
-  full.set_limit(0);
-  client.on_time(now, full);
-  EXPECT_EQ(client.deadline(), at_once);
-  now += 10s;
-  sends(tx({0x40, 0x18, 0x10, 0x01}));
-  EXPECT_EQ(client.deadline(), now + 500ms);
 }
 
 }  // namespace
