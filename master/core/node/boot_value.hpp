@@ -1,10 +1,13 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "eds_parser/table/boot_plan.hpp"
+#include "eds_parser/table/firmware.hpp"
 #include "master/wire/bytes.hpp"
 #include "master/wire/sdo_abort.hpp"
 
@@ -51,6 +54,17 @@ inline bool means_busy(std::uint32_t code) noexcept {
   return code >> 16 == 0x0503 || code >> 16 == 0x0504 || code == abort_code::resource_unavailable ||
          code == abort_code::cannot_store || code == abort_code::local_control ||
          code == abort_code::device_state;
+}
+
+/// The firmware version in the value of an object. The revision number in 0x1018 is a number; all
+/// other objects hold a text.
+inline std::optional<Firmware> firmware_in(ObjectKey object,
+                                           std::span<const std::byte> value) noexcept {
+  if (object.index == 0x1018) return Firmware::of_revision(load_le<std::uint32_t>(value));
+  std::array<char, 64> text{};
+  const std::size_t size = std::min(value.size(), text.size());
+  for (std::size_t i = 0; i < size; ++i) text[i] = std::to_integer<char>(value[i]);
+  return Firmware::find_in({text.data(), size});
 }
 
 }  // namespace takt

@@ -59,8 +59,8 @@ void NodeSession::follow_boot(Time now) noexcept {
   status_.boot_step = runner_.step();
   if (runner_.guards()) guard_.start(now);
   tell_progress(now);
-  if (runner_.state() == BootRunner::State::failed) return on_boot_failed(now);
-  if (runner_.state() != BootRunner::State::done) return;
+  if (runner_.failed()) return on_boot_failed(now);
+  if (!runner_.done()) return;
   on_boot_done(now);
 }
 
@@ -77,8 +77,8 @@ void NodeSession::on_boot_done(Time now) noexcept {
   counter_excused_ = false;
   tell_replaced(now);
   tell_firmware(now);
-  const bool untouched =
-      runner_.keeps_running() || (state_at_boot_ == NmtState::operational && !runner_.reset_sent());
+  const bool untouched = runner_.keeps_running() ||
+                         (state_at_boot_ == NmtState::operational && !runner_.nmt().reset_sent());
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(now - runner_.began());
   Event event{.when = now,
               .kind = EventKind::boot_done,
@@ -90,7 +90,7 @@ void NodeSession::on_boot_done(Time now) noexcept {
   event.bytes[4] = runner_.first_left_alone().sub;
   shared_.events.push(event);
   const bool with_network = plan_->start_later && network_started_ && !runner_.keeps_running();
-  if (plan_->boot && (with_network || (runner_.took_out() && !plan_->start_later))) {
+  if (plan_->boot && (with_network || (runner_.nmt().taken_out() && !plan_->start_later))) {
     own_command_ = NmtCommand::start;
   }
 }

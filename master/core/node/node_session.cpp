@@ -355,7 +355,7 @@ void NodeSession::send_nmt(Time now, Outbox& out) noexcept {
   }
   const auto command = runner_.nmt_to_send();
   if (!command || !send(*command)) return;
-  runner_.nmt_sent(now, client_);
+  runner_.nmt_sent(client_);
   if (is_reset(*command)) {
     disarm();
     status_.nmt = NmtState::unknown;

@@ -81,7 +81,7 @@ class NodeSession {
   /// The limits that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
   /// The boot has sent NMT start and waits for the confirmation.
-  bool starts() const noexcept { return booting() && runner_.started(); }
+  bool starts() const noexcept { return booting() && runner_.nmt().started(); }
   /// The network is started. Nodes that boot later are started as soon as they are ready.
   void on_network_start() noexcept { network_started_ = true; }
   /// The network starts up again. No node is started until the network is complete.

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "eds_parser/table/ids.hpp"
+
+namespace takt {
+
+/// The COB-ID object that a boot has read or written last, and its value. The COB-ID of a PDO may
+/// change only while its bit 31 is set, and its bit 30 belongs to the device. CiA 301, 7.5.2.35.
+class CobIdMemory {
+ public:
+  /// Notes the value of an object; objects that hold no such COB-ID are ignored.
+  void note(ObjectKey object, std::uint32_t value) noexcept {
+    if (!is_cob_id(object)) return;
+    object_ = object;
+    value_ = value;
+  }
+  void forget() noexcept { object_.reset(); }
+  bool knows(ObjectKey object) const noexcept { return object_ == object; }
+
+  std::uint32_t value() const noexcept { return value_; }
+  /// The known value, as it is while the PDO does not exist.
+  std::uint32_t disabled() const noexcept { return value_ | pdo_invalid; }
+  /// The `wanted` COB-ID with the bit 30 of the known value.
+  std::uint32_t enabled(std::uint32_t wanted) const noexcept {
+    return (wanted & ~no_rtr) | (value_ & no_rtr);
+  }
+
+ private:
+  static constexpr std::uint32_t pdo_invalid = 0x8000'0000;  // bit 31
+  static constexpr std::uint32_t no_rtr = 0x4000'0000;       // bit 30: no RTR allowed
+
+  static bool is_cob_id(ObjectKey object) noexcept {
+    if (object == ObjectKey{0x1014, 0}) return true;
+    return object.sub == 1 && ((object.index >= 0x1400 && object.index <= 0x15FF) ||
+                               (object.index >= 0x1800 && object.index <= 0x19FF));
+  }
+
+  std::optional<ObjectKey> object_;
+  std::uint32_t value_ = 0;
+};
+
+}  // namespace takt
