@@ -198,6 +198,7 @@ void NodeSession::tell_twin(std::optional<DuplicateSign> sign, Time now) noexcep
 
 void NodeSession::await_command() noexcept {
   halted_ = true;
+  paused_ = false;  // resume() must not start the node
   if (!booting()) return;
   runner_.stop();
   client_.cancel();
