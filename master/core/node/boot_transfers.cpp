@@ -134,8 +134,7 @@ void BootRunner::take_value() noexcept {
       return;
     case BootAction::read_limit:  // an option code has 16 bits, the limits have 32 bits
       if (received().size() != (is_quick_stop_option(object) ? 2 : 4)) return;
-      limits_.take(
-          {object, is_quick_stop_option(object) ? load_le<std::uint16_t>(received()) : number});
+      limits_.take({object, number});
       return;
     default:
       return;

@@ -8,8 +8,10 @@
 #include "master/core/event.hpp"
 #include "master/core/event_queue.hpp"
 #include "master/core/machine.hpp"
+#include "master/core/node/boot_retries.hpp"
 #include "master/core/node/boot_runner.hpp"
 #include "master/core/node/node_guard.hpp"
+#include "master/core/node/node_requests.hpp"
 #include "master/core/node/node_watch.hpp"
 #include "master/core/node/twin_watch.hpp"
 #include "master/core/node_status.hpp"
@@ -44,6 +46,31 @@ enum class Managed : std::uint8_t {
 
 /// All work of the master for one node: it boots the node, watches it, boots it again after a loss
 /// or a restart, and serves the requests of applications in between. Bus thread only.
+///
+/// NodeStatus::boot is the state of the boot:
+///
+/// | boot                | event                             | next boot | sent                 |
+/// | ------------------- | --------------------------------- | --------- | -------------------- |
+/// | idle                | start()                           | booting   | boot                 |
+/// | booting             | all steps have succeeded          | ready     | NMT start, if needed |
+/// | booting             | a step has failed                 | failed    |                      |
+/// | ready               | silent, not OPERATIONAL, restless | lost      |                      |
+/// | ready               | boot-up message                   | booting   | boot                 |
+/// | failed, lost        | end of the pause, sign of life    | booting   | boot                 |
+/// | ready, failed, lost | reset by an application           | lost      |                      |
+/// | booting             | halt(), await_command()           | lost      |                      |
+/// | any                 | begin_stop()                      | idle      |                      |
+///
+/// Command says who may start the node:
+///
+/// | command         | event                                | next command | sent                 |
+/// | --------------- | ------------------------------------ | ------------ | -------------------- |
+/// | network         | pause(), node OPERATIONAL            | paused       | NMT stop             |
+/// | paused          | resume()                             | network      | NMT start            |
+/// | network, paused | halt()                               | application  | NMT stop             |
+/// | network, paused | await_command()                      | application  |                      |
+/// | application     | NMT start or reset by an application | network      |                      |
+/// | any             | begin_stop()                         | stopping     | the last NMT command |
 class NodeSession {
  public:
   /// Objects that all sessions share; the network owns them.
@@ -87,7 +114,7 @@ class NodeSession {
   /// The network starts up again. No node is started until the network is complete.
   void on_network_reset() noexcept { network_started_ = status_.boot_tried = false; }
   /// Returns true once if the node was ready and has become silent.
-  bool take_loss() noexcept { return std::exchange(loss_, false); }
+  bool take_loss() noexcept { return std::exchange(loss_to_report_, false); }
   /// Sends NMT stop; the node is not booted until an application resets or starts it.
   void halt() noexcept;
   /// As halt(), but without the command, because a broadcast has stopped the node.
@@ -119,9 +146,9 @@ class NodeSession {
   /// No boot has succeeded so far, and the newest one has failed because the device refused the SDO
   /// transfer of NodeStatus::boot_step.
   bool boot_refused() const noexcept {
+    const BootFailure& failure = retries_.last_failure();
     return status_.boot == BootState::failed && status_.boot_count == 0 &&
-           last_failure_.fault == SdoFault::aborted_by_device &&
-           last_failure_.step == status_.boot_step;
+           failure.fault == SdoFault::aborted_by_device && failure.step == status_.boot_step;
   }
   const NodeStatus& status() const noexcept { return status_; }
   /// The node is booted, or is only watched, and is OPERATIONAL. One heartbeat with OPERATIONAL is
@@ -129,38 +156,47 @@ class NodeSession {
   bool exchanges_pdos() const noexcept;
   /// No boot, no transfer and no command is under way.
   bool idle() const noexcept {
-    return !booting() && active_ == nullptr && !own_command_ && client_.idle() && !stopping_ &&
-           !loss_;
+    return !booting() && !requests_.active() && !own_command_ && client_.idle() && !stopping() &&
+           !loss_to_report_;
   }
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(status_, client_, watch_, guard_, twins_);
-    state(retry_at_, retry_from_, wanted_, heartbeats_out_, heartbeats_against_);
-    state(state_at_boot_, emcys_at_boot_);
-    state(same_failures_, failed_boots_, counter_excused_, serial_number_, progress_told_,
-          bootups_);
-    state(bootups_since_, silent_, halted_, paused_, network_started_);
-    BootFailure& last = last_failure_;  // The next failure is compared with these values.
-    state(last.step, last.fault, last.abort_code, last.value, last.node_state, last.restarts);
+    state(status_, client_, watch_, guard_, twins_, retries_, command_, network_started_);
+    state(wanted_, heartbeats_out_, heartbeats_against_, state_at_boot_, emcys_at_boot_,
+          serial_number_, progress_told_);
   }
 
  private:
+  enum class Command : std::uint8_t {
+    network,      ///< The master boots and starts the node as the network file says.
+    paused,       ///< SYNC of another device is lost; the node is started when it is back.
+    application,  ///< The node was halted and waits for a command of an application.
+    stopping,     ///< begin_stop() was called.
+  };
+
+  // The boot, and its consequences (node_boot.cpp).
   void boot(BootRunner::From from, Time now) noexcept;
-  void advance(Time now) noexcept;
   void follow_boot(Time now) noexcept;
-  void follow_request(Time now) noexcept;
-  void follow_transfer(Time now) noexcept;
-  void answer_request(const SdoResult& result) noexcept;
-  bool next_request() noexcept;
-  void begin_request(Time now) noexcept;
   void on_boot_failed(Time now) noexcept;
   void on_boot_done(Time now) noexcept;
+  void boot_later(BootState state, BootRunner::From from, Time now) noexcept;
+  bool was_absent() const noexcept;
+  void tell_boot_done(Time now) noexcept;
   void tell_progress(Time now) noexcept;
   void tell_replaced(Time now) noexcept;
   void tell_firmware(Time now) noexcept;
-  bool restless(Time now) noexcept;
-  void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
+  // NMT commands and their consequences (node_nmt.cpp).
+  void follow_command(NmtCommand command, Time now) noexcept;
+  void assume(NmtState state, Time now) noexcept;
+  void want(NmtState state, Time now) noexcept;
+  void on_node_reset() noexcept;
+  void disarm() noexcept;
+  bool push_nmt(NmtCommand command, Time now, Outbox& out) noexcept;
+  void send_own_command(Time now, Outbox& out) noexcept;
+  void send_boot_command(Time now, Outbox& out) noexcept;
+  // What the node reports.
+  void advance(Time now) noexcept;
   void on_bootup(Time now) noexcept;
   bool take_guarding_answer(const Heartbeat& sign, Time now) noexcept;
   void look_for_silence(Time now) noexcept;
@@ -169,19 +205,13 @@ class NodeSession {
     return wanted_ == NmtState::stopped || wanted_ == NmtState::preoperational;
   }
   void look_for_fall(NmtState state, Time now) noexcept;
-  void retry_later(BootState state, BootRunner::From from, Time now) noexcept;
-  Time pause_before_retry() const noexcept;
-  bool was_absent() const noexcept;
-  void node_was_reset() noexcept;
-  void disarm() noexcept;
-  void assume(NmtState state, Time now) noexcept;
-  void want(NmtState state, Time now) noexcept;
-  void send_nmt(Time now, Outbox& out) noexcept;
-  void send_guarding(Time now, Outbox& out) noexcept;
+  void tell_twin(std::optional<DuplicateSign> sign, Time now) noexcept;
   void tell(EventKind kind, Time now, std::int64_t value = 0, std::uint32_t detail = 0) noexcept;
+
   bool booting() const noexcept { return status_.boot == BootState::booting; }
+  bool stopping() const noexcept { return command_ == Command::stopping; }
   bool waits_to_boot() const noexcept {
-    return managed_ == Managed::yes && !stopping_ && !halted_ &&
+    return managed_ == Managed::yes && !stopping() && command_ != Command::application &&
            (status_.boot == BootState::failed || status_.boot == BootState::lost);
   }
 
@@ -189,14 +219,16 @@ class NodeSession {
   Managed managed_;
   Shared shared_;
   NodeStatus status_;
+  Command command_ = Command::network;
   SdoClient client_;
   BootRunner runner_;
+  BootRetries retries_;
+  NodeRequests requests_;
   NodeWatch watch_;
   NodeGuard guard_;
-  RequestSlot* active_ = nullptr;
-  Time next_look_ = never;  // when to look next whether the sender still wants the transfer
-  Time retry_at_ = never;
-  BootRunner::From retry_from_ = BootRunner::From::beginning;
+  TwinWatch twins_;
+  // Command that is not in the boot plan and waits to be sent.
+  std::optional<NmtCommand> own_command_;
   NmtState wanted_ = NmtState::unknown;  // the state that the newest NMT command demands
   // Heartbeats in a row in which a ready node is not OPERATIONAL although it should be.
   int heartbeats_out_ = 0;
@@ -204,23 +236,9 @@ class NodeSession {
   int heartbeats_against_ = 0;
   NmtState state_at_boot_ = NmtState::unknown;
   std::uint32_t emcys_at_boot_ = 0;
-  std::uint32_t same_failures_ = 0;  // failures in a row by the same cause
-  std::uint8_t failed_boots_ = 0;    // failures in a row since a boot-up message or a command
-  // The node was booted again because a SYNC with counter came too early.
-  bool counter_excused_ = false;
-  BootFailure last_failure_;
-  TwinWatch twins_;
   std::optional<std::uint32_t> serial_number_;  // serial number of the device that was booted last
   std::uint32_t progress_told_ = 0;             // tenths of the program that were reported
-  std::uint32_t bootups_ = 0;                   // number of boot-up messages since bootups_since_
-  Time bootups_since_{};
-  // Command that is not in the boot plan and waits to be sent.
-  std::optional<NmtCommand> own_command_;
-  bool silent_ = false;  // the heartbeat is lost
-  bool stopping_ = false;
-  bool halted_ = false;
-  bool paused_ = false;
-  bool loss_ = false;
+  bool loss_to_report_ = false;                 // see take_loss()
   bool network_started_ = false;
 };
 

@@ -24,6 +24,7 @@ std::optional<Time> NodeWatch::on_time(Time now, NodeStatus& status) noexcept {
 
 void NodeWatch::note_loss(NodeStatus& status) noexcept {
   deadline_ = never;
+  silent_ = true;
   status.nmt = NmtState::unknown;
   ++status.heartbeat_lost;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "eds_parser/table/time.hpp"
 #include "master/core/node_status.hpp"
@@ -35,6 +36,9 @@ class NodeWatch {
   std::optional<Time> on_time(Time now, NodeStatus& status) noexcept;
   /// Notes that the node is silent, as another supervision (node guarding) has found out.
   void note_loss(NodeStatus& status) noexcept;
+  /// Ends the silence that was noted, because a heartbeat has come or the node is booted. Returns
+  /// false if the node was not silent.
+  bool end_silence() noexcept { return std::exchange(silent_, false); }
 
   /// Counts an EMCY. Returns true if it is to be reported; at most ten EMCYs of a node are reported
   /// in a second.
@@ -44,7 +48,7 @@ class NodeWatch {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(deadline_, emcy_window_, emcys_in_window_, untold_emcys_);
+    state(deadline_, silent_, emcy_window_, emcys_in_window_, untold_emcys_);
   }
 
  private:
@@ -52,7 +56,8 @@ class NodeWatch {
 
   Time timeout_;
   Time deadline_ = never;
-  Time emcy_window_{};  // begin of the second in which EMCYs are counted
+  bool silent_ = false;  // the node was lost, and no heartbeat has come since
+  Time emcy_window_{};   // begin of the second in which EMCYs are counted
   std::uint32_t emcys_in_window_ = 0;
   std::uint32_t untold_emcys_ = 0;
 };
