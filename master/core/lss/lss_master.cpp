@@ -12,25 +12,28 @@ void LssMaster::begin(const LssCommand& command, Time timeout, Time now) noexcep
   result_ = {.op = command.op};
   timeout_ = timeout > Time{} ? timeout : default_timeout(command.op);
   send_at_ = std::max(send_at_, now);
-  patient_ = false;
+  pace_ = Pace::quick;
   slowest_ = Time{};
   if (command.op == LssOp::fast_scan) {
     const auto& numbers = command.numbers;
     fast_ = LssFastScan{{numbers[0], numbers[1], numbers[2], numbers[3]},
                         {numbers[4], numbers[5], numbers[6], numbers[7]}};
   } else if (command.op == LssOp::slow_scan) {
-    std::array<std::uint32_t, 6> ranges{};
-    std::copy_n(command.numbers.begin(), ranges.size(), ranges.begin());
-    slow_ = LssSlowScan{ranges};
+    begin_slow_scan();
   }
   ask();
+}
+
+void LssMaster::begin_slow_scan() noexcept {
+  std::array<std::uint32_t, 6> ranges{};
+  std::copy_n(command_.numbers.begin(), ranges.size(), ranges.begin());
+  slow_ = LssSlowScan{ranges};
 }
 
 /// Prepares the frames of the next question.
 void LssMaster::ask() noexcept {
   using lss::Service;
   count_ = next_ = 0;
-  answered_ = false;
   phase_ = Phase::sending;
   wait_for_ = command_.several ? Wait::all_answers : Wait::first_answer;
   const auto& numbers = command_.numbers;
@@ -106,10 +109,10 @@ bool LssMaster::expects(const lss::Answer& answer) const noexcept {
 }
 
 void LssMaster::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept {
-  if (phase_ != Phase::waiting) return;
+  if (!awaits_answers()) return;
   const auto answer = lss::decode_answer(frame);
   if (!answer || !expects(*answer)) return;
-  answered_ = true;
+  phase_ = Phase::answered;
   slowest_ = std::max(slowest_, now - asked_at_);
   const bool configures = command_.op == LssOp::configure_node_id ||
                           command_.op == LssOp::configure_bit_timing || command_.op == LssOp::store;
@@ -120,11 +123,12 @@ void LssMaster::on_frame(const Frame& frame, Time now, Outbox& /*out*/) noexcept
     result_.numbers[0] = answer->number;
   }
   if (command_.op == LssOp::inquire_node_id) result_.numbers[0] &= 0xFF;
-  if (wait_for_ == Wait::first_answer) on_reaction(now);
+  if (wait_for_ == Wait::first_answer) on_reaction(true, now);
 }
 
 void LssMaster::on_time(Time now, Outbox& out) noexcept {
-  if (phase_ == Phase::waiting && now >= wait_until_) on_reaction(now);
+  if (phase_ == Phase::idle) return;  // in nearly every cycle
+  if (awaits_answers() && now >= wait_until_) on_reaction(phase_ == Phase::answered, now);
   if (phase_ != Phase::sending || now < send_at_ || !out.push(frames_[next_])) return;
   ++next_;
   ++result_.frames;
@@ -140,31 +144,29 @@ void LssMaster::sent_all(Time now) noexcept {
 }
 
 Time LssMaster::wait() const noexcept {
-  const bool doubtful = command_.op == LssOp::fast_scan ? fast_.doubtful() : patient_;
+  const bool doubtful = command_.op == LssOp::fast_scan ? fast_.doubtful() : pace_ == Pace::patient;
   if (!scans() || slowest_ == Time{} || doubtful) return timeout_;
   return std::min(timeout_, std::max(waits::lss_shortest, 3 * slowest_));
 }
 
 /// Evaluates the question: the time for answers is over, or the expected answer has come.
-void LssMaster::on_reaction(Time now) noexcept {
+void LssMaster::on_reaction(bool answered, Time now) noexcept {
   send_at_ = std::max(send_at_, now);
-  if (scans()) return on_scan_reaction();
-  if (answered_) return finish(result_.error == 0 ? LssOutcome::done : LssOutcome::refused);
+  if (scans()) return on_scan_reaction(answered);
+  if (answered) return finish(result_.error == 0 ? LssOutcome::done : LssOutcome::refused);
   const bool asks = command_.op == LssOp::identify || command_.op == LssOp::identify_unconfigured;
   finish(asks ? LssOutcome::nobody : LssOutcome::silent);
 }
 
-void LssMaster::on_scan_reaction() noexcept {
+void LssMaster::on_scan_reaction(bool answered) noexcept {
   if (command_.op == LssOp::fast_scan) {
-    fast_.on_reaction(answered_);
+    fast_.on_reaction(answered);
     return end_scan(fast_.state(), fast_.address());
   }
-  slow_.on_reaction(answered_);
-  if (slow_.state() == LssScanState::lost && !patient_) {
-    patient_ = true;
-    std::array<std::uint32_t, 6> ranges{};
-    std::copy_n(command_.numbers.begin(), ranges.size(), ranges.begin());
-    slow_ = LssSlowScan{ranges};
+  slow_.on_reaction(answered);
+  if (slow_.state() == LssScanState::lost && pace_ == Pace::quick) {
+    pace_ = Pace::patient;
+    begin_slow_scan();
   }
   end_scan(slow_.state(), slow_.address());
 }
@@ -203,6 +205,7 @@ Time LssMaster::deadline() const noexcept {
     case Phase::sending:
       return send_at_;
     case Phase::waiting:
+    case Phase::answered:
       return wait_until_;
     case Phase::over:
       return at_once;

@@ -12,6 +12,18 @@ namespace takt {
 /// The LSS master: runs one service at a time, each with a deadline. If several devices may answer,
 /// it waits for the full time-out. Within a scan it shortens the waits to what the devices need,
 /// and goes back to the full time-out after a doubtful reaction. Bus thread only. CiA 305.
+///
+/// | phase             | event                         | next phase    | sent       |
+/// | ----------------- | ----------------------------- | ------------- | ---------- |
+/// | idle              | begin()                       | sending       |            |
+/// | sending           | gap is over                   | sending       | next frame |
+/// | sending           | last frame was sent           | waiting, over |            |
+/// | waiting           | first answer, others may come | answered      |            |
+/// | waiting           | the only answer               | over          |            |
+/// | waiting, answered | time is over                  | over          |            |
+/// | waiting, answered | time is over, scan goes on    | sending       |            |
+/// | over              | take_result()                 | idle          |            |
+/// | any               | cancel()                      | idle          |            |
 class LssMaster {
  public:
   /// Minimum time between two frames of the master.
@@ -34,17 +46,29 @@ class LssMaster {
   bool scan_may_have_switched() const noexcept { return fast_.may_have_switched(); }
 
  private:
-  enum class Phase : std::uint8_t { idle, sending, waiting, over };
+  enum class Phase : std::uint8_t {
+    idle,
+    sending,
+    waiting,   ///< No device has answered.
+    answered,  ///< Some device has answered, and others may still do so.
+    over,
+  };
   enum class Wait : std::uint8_t { none, first_answer, all_answers };
+  /// How long a scan waits for answers: as long as the devices need, or for the full time-out.
+  enum class Pace : std::uint8_t { quick, patient };
 
   void ask() noexcept;
   void ask_scan() noexcept;
   void put(const Frame& frame) noexcept { frames_[count_++] = frame; }
   void sent_all(Time now) noexcept;
-  void on_reaction(Time now) noexcept;
-  void on_scan_reaction() noexcept;
+  void on_reaction(bool answered, Time now) noexcept;
+  void on_scan_reaction(bool answered) noexcept;
   void end_scan(LssScanState state, const LssAddress& address) noexcept;
   void finish(LssOutcome outcome) noexcept;
+  bool awaits_answers() const noexcept {
+    return phase_ == Phase::waiting || phase_ == Phase::answered;
+  }
+  void begin_slow_scan() noexcept;
   bool expects(const lss::Answer& answer) const noexcept;
   bool scans() const noexcept {
     return command_.op == LssOp::fast_scan || command_.op == LssOp::slow_scan;
@@ -60,8 +84,7 @@ class LssMaster {
   std::array<Frame, 6> frames_{};  // frames of the current question
   std::uint8_t count_ = 0;
   std::uint8_t next_ = 0;
-  bool answered_ = false;
-  bool patient_ = false;  // the waits of a scan last for the full time-out
+  Pace pace_ = Pace::quick;  // of a slow scan
   Time timeout_{};
   Time send_at_{};
   Time asked_at_{};

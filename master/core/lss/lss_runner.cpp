@@ -26,12 +26,12 @@ void LssRunner::begin(std::span<const LssCommand> commands, Time timeout) noexce
   std::copy_n(commands.begin(), count_, commands_.begin());
   results_count_ = 0;
   timeout_ = timeout;
-  configuring_ = false;
+  if (configured_by_ == ConfiguredBy::this_list) configured_by_ = ConfiguredBy::earlier_list;
   state_ = count_ == 0 ? State::done : State::running;
 }
 
 void LssRunner::leave(Time now) noexcept {
-  const bool needed = running() || left_there_;
+  const bool needed = running() || configured_by_ != ConfiguredBy::nobody;
   master_.cancel();
   state_ = needed ? State::leaving : State::idle;
   if (needed) master_.begin({.op = LssOp::switch_global}, timeout_, now);
@@ -59,20 +59,20 @@ void LssRunner::step(Time now) noexcept {
 void LssRunner::on_result(const LssResult& result, Time now) noexcept {
   if (state_ == State::leaving) {
     state_ = State::failed;
-    left_there_ = false;
+    configured_by_ = ConfiguredBy::nobody;
     return;
   }
   const LssCommand& command = commands_[results_count_];
   results_[results_count_++] = result;
-  configuring_ = configuring_ || may_configure(command, result.outcome);
-  if (command.op == LssOp::switch_global && command.a == 0) configuring_ = left_there_ = false;
-  left_there_ = left_there_ || configuring_;
+  if (may_configure(command, result.outcome)) configured_by_ = ConfiguredBy::this_list;
+  if (command.op == LssOp::switch_global && command.a == 0) configured_by_ = ConfiguredBy::nobody;
   if (result.outcome == LssOutcome::done) {
     if (results_count_ == count_) state_ = State::done;
     return;
   }
-  state_ = configuring_ ? State::leaving : State::failed;
-  if (configuring_) master_.begin({.op = LssOp::switch_global}, timeout_, now);
+  const bool leaves = configured_by_ == ConfiguredBy::this_list;
+  state_ = leaves ? State::leaving : State::failed;
+  if (leaves) master_.begin({.op = LssOp::switch_global}, timeout_, now);
 }
 
 Time LssRunner::deadline() const noexcept {

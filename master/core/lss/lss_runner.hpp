@@ -11,6 +11,17 @@ namespace takt {
 /// Runs a list of LSS services one after the other, until one of them fails. If a list has brought
 /// devices into configuration state and then fails, the runner sends all devices to waiting state.
 /// Bus thread only.
+///
+/// | state              | event                                   | next state | sent          |
+/// | ------------------ | --------------------------------------- | ---------- | ------------- |
+/// | idle, done, failed | begin()                                 | running    | first service |
+/// | running            | a service has succeeded                 | running    | next service  |
+/// | running            | the last service has succeeded          | done       |               |
+/// | running            | a service has failed                    | failed     |               |
+/// | running            | the same, after a device was configured | leaving    | waiting state |
+/// | leaving            | the frame was sent                      | failed     |               |
+/// | any                | leave(), a device may be configured     | leaving    | waiting state |
+/// | any                | leave() otherwise                       | idle       |               |
 class LssRunner {
  public:
   /// The largest number of commands in a list, limited by the size of a request.
@@ -36,11 +47,13 @@ class LssRunner {
 
   template <class Archive>
   void keep(Archive& state) noexcept {
-    state(configuring_, left_there_);
+    state(configured_by_);
   }
 
  private:
   enum class State : std::uint8_t { idle, running, leaving, done, failed };
+  /// Which list may have brought a device into configuration state that is still there.
+  enum class ConfiguredBy : std::uint8_t { nobody, earlier_list, this_list };
 
   void step(Time now) noexcept;
   bool may_configure(const LssCommand& command, LssOutcome outcome) const noexcept;
@@ -53,8 +66,7 @@ class LssRunner {
   std::size_t results_count_ = 0;
   Time timeout_{};
   State state_ = State::idle;
-  bool configuring_ = false;  // this list has brought some device into configuration state
-  bool left_there_ = false;   // an earlier list has left a device in configuration state
+  ConfiguredBy configured_by_ = ConfiguredBy::nobody;
 };
 static_assert(Machine<LssRunner>);
 

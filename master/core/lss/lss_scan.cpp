@@ -13,7 +13,6 @@ constexpr std::uint8_t most_restarts = 4;
 void LssFastScan::begin_part(std::uint8_t part) noexcept {
   const std::uint32_t number = part < confirmed_ ? address_[part] : known_[part] & mask_[part];
   question_ = {.number = number, .part = part, .next = part};
-  confirming_ = false;
   ask_below(32);
 }
 
@@ -24,17 +23,21 @@ void LssFastScan::ask_below(int bit) noexcept {
   do {
     --bit;
   } while (bit >= 0 && ((mask >> bit) & 1) != 0);
-  confirming_ = bit < 0;
-  question_.bit_check = static_cast<std::uint8_t>(confirming_ ? 0 : bit);
-  if (confirming_) question_.next = static_cast<std::uint8_t>((question_.part + 1) % parts);
+  asks_ = bit < 0 ? Asks::part : Asks::bit;
+  question_.bit_check = static_cast<std::uint8_t>(std::max(bit, 0));
+  if (asks_ == Asks::part) question_.next = static_cast<std::uint8_t>((question_.part + 1) % parts);
 }
 
 void LssFastScan::on_reaction(bool answered) noexcept {
-  if (question_.bit_check == lss::FastScan::everybody) return on_anybody(answered);
-  if (confirming_) return on_confirm(answered);
-  const std::uint8_t bit = question_.bit_check;
-  if (!answered) question_.number |= std::uint32_t{1} << bit;
-  ask_below(bit);
+  switch (asks_) {
+    case Asks::anybody:
+      return on_anybody(answered);
+    case Asks::bit:
+      if (!answered) question_.number |= std::uint32_t{1} << question_.bit_check;
+      return ask_below(question_.bit_check);
+    case Asks::part:
+      return on_part(answered);
+  }
 }
 
 /// Evaluates the first question. A single lost or late answer must not hide all devices, so only
@@ -53,7 +56,7 @@ void LssFastScan::on_anybody(bool answered) noexcept {
 /// next part without a received answer. If bits of the part were given, there may also be no such
 /// device. A lost answer makes an address too high. The scan finds a higher address next only if a
 /// device has entered configuration state without a received answer.
-void LssFastScan::on_confirm(bool answered) noexcept {
+void LssFastScan::on_part(bool answered) noexcept {
   const std::uint8_t part = question_.part;
   may_have_switched_ = may_have_switched_ || part + 1 == parts;
   if (answered) {
@@ -77,6 +80,11 @@ void LssFastScan::keep_unheard() noexcept {
   if (!unheard_ || asked < *unheard_) unheard_ = asked;
 }
 
+void LssFastScan::ask_anybody() noexcept {
+  question_ = {};
+  asks_ = Asks::anybody;
+}
+
 /// Starts the scan again. Each confirmed part then needs only one question, and leads the devices
 /// back to the part that has failed.
 void LssFastScan::start_over() noexcept {
@@ -86,26 +94,27 @@ void LssFastScan::start_over() noexcept {
   }
   ++restarts_;
   doubtful_ = true;
-  question_ = {};
+  ask_anybody();
 }
 
 void LssSlowScan::on_reaction(bool answered) noexcept {
-  if (first_) {
-    first_ = false;
-    if (!answered) {
-      state_ = LssScanState::nobody;
+  switch (asks_) {
+    case Asks::everything:
+      if (!answered) {
+        state_ = LssScanState::nobody;
+        return;
+      }
+      break;
+    case Asks::lower_half:
+      if (answered) {
+        left_[halved() + 1] = question_[halved() + 1];
+      } else {
+        left_[halved()] = question_[halved() + 1] + 1;
+      }
+      break;
+    case Asks::address:
+      state_ = answered ? LssScanState::found : LssScanState::lost;
       return;
-    }
-  } else if (confirming_) {
-    state_ = answered ? LssScanState::found : LssScanState::lost;
-    return;
-  } else {
-    const std::size_t from = left_[2] != left_[3] ? 2 : 4;
-    if (answered) {
-      left_[from + 1] = question_[from + 1];
-    } else {
-      left_[from] = question_[from + 1] + 1;
-    }
   }
   ask();
 }
@@ -114,9 +123,10 @@ void LssSlowScan::on_reaction(bool answered) noexcept {
 /// the remaining address.
 void LssSlowScan::ask() noexcept {
   question_ = left_;
-  const std::size_t from = left_[2] != left_[3] ? 2 : 4;
-  confirming_ = left_[from] == left_[from + 1];
-  if (!confirming_) question_[from + 1] = left_[from] + (left_[from + 1] - left_[from]) / 2;
+  const std::uint32_t lowest = left_[halved()];
+  const std::uint32_t highest = left_[halved() + 1];
+  asks_ = lowest == highest ? Asks::address : Asks::lower_half;
+  if (asks_ == Asks::lower_half) question_[halved() + 1] = lowest + (highest - lowest) / 2;
 }
 
 }  // namespace takt

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -13,6 +14,15 @@ enum class LssScanState : std::uint8_t { running, found, nobody, lost };
 
 /// Finds the LSS address of a device without node-ID bit by bit; of several devices, it finds the
 /// one with the lowest address. That device is then in configuration state. CiA 305, 3.9.5.
+///
+/// | question | reaction                    | next question                       |
+/// | -------- | --------------------------- | ----------------------------------- |
+/// | anybody  | answer                      | bit, of the first part              |
+/// | anybody  | silence, for the first time | anybody                             |
+/// | anybody  | silence again               | (nobody, lost)                      |
+/// | bit      | any: an answer means 0      | bit, part                           |
+/// | part     | answer                      | bit of the next part, (found, lost) |
+/// | part     | silence                     | anybody, (nobody, lost)             |
 class LssFastScan {
  public:
   /// Number of questions in a scan that no device answers.
@@ -39,20 +49,24 @@ class LssFastScan {
   bool doubtful() const noexcept { return doubtful_ || at_the_end(); }
 
  private:
+  /// What the present question asks.
+  enum class Asks : std::uint8_t { anybody, bit, part };
+
   bool at_the_end() const noexcept { return question_.bit_check == 0 && question_.part == 3; }
   void start_over() noexcept;
   void keep_unheard() noexcept;
   void begin_part(std::uint8_t part) noexcept;
+  void ask_anybody() noexcept;
   void ask_below(int bit) noexcept;
   void on_anybody(bool answered) noexcept;
-  void on_confirm(bool answered) noexcept;
+  void on_part(bool answered) noexcept;
 
   LssAddress known_{};
   LssAddress mask_{};
   LssAddress address_{};
   lss::FastScan question_{};
   LssScanState state_ = LssScanState::running;
-  bool confirming_ = false;
+  Asks asks_ = Asks::anybody;
   bool doubtful_ = false;
   std::uint8_t confirmed_ = 0;  // number of confirmed parts of address_
   std::uint8_t restarts_ = 0;
@@ -63,6 +77,14 @@ class LssFastScan {
 /// Finds the lowest LSS address in ranges of revision number and serial number of one product by
 /// halving the ranges. Devices with a node-ID answer as well; their state does not change. CiA
 /// 305, 3.9.4.
+///
+/// | question   | reaction                 | next question       |
+/// | ---------- | ------------------------ | ------------------- |
+/// | everything | answer                   | lower_half, address |
+/// | everything | silence                  | (nobody)            |
+/// | lower_half | any: it selects the half | lower_half, address |
+/// | address    | answer                   | (found)             |
+/// | address    | silence                  | (lost)              |
 class LssSlowScan {
  public:
   LssSlowScan() = default;
@@ -79,13 +101,18 @@ class LssSlowScan {
   LssAddress address() const noexcept { return {left_[0], left_[1], left_[2], left_[4]}; }
 
  private:
+  /// What the present question asks for: all ranges, the lower half of a range, or the address that
+  /// is left.
+  enum class Asks : std::uint8_t { everything, lower_half, address };
+
   void ask() noexcept;
+  /// Index of the lowest number of the range that is halved.
+  std::size_t halved() const noexcept { return left_[2] != left_[3] ? 2 : 4; }
 
   std::array<std::uint32_t, 6> left_{};  // the ranges that still contain the device
   std::array<std::uint32_t, 6> question_{};
   LssScanState state_ = LssScanState::running;
-  bool first_ = true;
-  bool confirming_ = false;
+  Asks asks_ = Asks::everything;
 };
 
 }  // namespace takt
