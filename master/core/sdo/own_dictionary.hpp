@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,6 +8,7 @@
 #include "eds_parser/table/boot_plan.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/core/node_status.hpp"
+#include "master/wire/bytes.hpp"
 
 namespace takt {
 
@@ -29,6 +31,14 @@ class OwnDictionary {
     std::array<std::byte, longest> bytes{};
 
     std::span<const std::byte> data() const noexcept { return std::span{bytes}.first(size); }
+
+    static Value refused(std::uint32_t abort_code) noexcept { return {.abort_code = abort_code}; }
+    template <std::unsigned_integral T>
+    static Value number(T value) noexcept {
+      Value out{.size = sizeof(T)};
+      store_le(std::span{out.bytes}, value);
+      return out;
+    }
   };
   /// Reads an object. The abort code of the result is not 0 if the object cannot be read.
   Value read(ObjectKey key) const noexcept;
@@ -45,6 +55,8 @@ class OwnDictionary {
  private:
   static constexpr std::uint8_t no_node = 0xFF;
 
+  /// The object has one sub-index for each node.
+  static bool is_of_nodes(std::uint16_t index) noexcept;
   Value read_communication(ObjectKey key) const noexcept;
   Value read_consumers(std::uint8_t sub) const noexcept;
   Value read_nodes(ObjectKey key) const noexcept;
