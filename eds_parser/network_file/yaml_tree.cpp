@@ -9,6 +9,8 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 namespace {
 
@@ -237,17 +239,8 @@ YamlTree YamlTree::parse(std::string_view text, const std::string& file, Finding
 }
 
 std::string_view name(YamlNode::Kind kind) noexcept {
-  switch (kind) {
-    case YamlNode::Kind::null:
-      return "an empty value";
-    case YamlNode::Kind::scalar:
-      return "a single value";
-    case YamlNode::Kind::sequence:
-      return "a list";
-    case YamlNode::Kind::map:
-      return "a map";
-  }
-  return "a value";
+  static constexpr std::string_view names[]{"an empty value", "a single value", "a list", "a map"};
+  return name_of(kind, names, "a value");
 }
 
 }  // namespace takt

@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "eds_parser/print/print_budget.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -13,27 +14,9 @@ double us(Time time) { return std::chrono::duration<double, std::micro>(time).co
 Json bound(const std::optional<Time>& worst) { return worst ? Json(us(*worst)) : Json(nullptr); }
 
 std::string_view key_of(Traffic kind) noexcept {
-  switch (kind) {
-    case Traffic::nmt:
-      return "nmt";
-    case Traffic::time:
-      return "time";
-    case Traffic::sync:
-      return "sync";
-    case Traffic::emcy:
-      return "emcy";
-    case Traffic::tpdo:
-      return "tpdo";
-    case Traffic::rpdo:
-      return "rpdo";
-    case Traffic::sdo:
-      return "sdo";
-    case Traffic::remote:
-      return "remote_request";
-    case Traffic::error_control:
-      return "error_control";
-  }
-  return "";
+  static constexpr std::string_view names[]{
+      "nmt", "time", "sync", "emcy", "tpdo", "rpdo", "sdo", "remote_request", "error_control"};
+  return name_of(kind, names);
 }
 
 Json row_json(const BudgetRow& row) {

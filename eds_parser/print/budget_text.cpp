@@ -6,6 +6,7 @@
 
 #include "eds_parser/plan/cycle_compiler.hpp"
 #include "eds_parser/print/print_budget.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -259,21 +260,13 @@ class BudgetText {
 }  // namespace
 
 std::string_view name_of(BudgetLimit limit) noexcept {
-  switch (limit) {
-    case BudgetLimit::none:
-      return "";
-    case BudgetLimit::receive_window:
-      return "the receive window";
-    case BudgetLimit::output_deadline:
-      return "the time before the outputs";
-    case BudgetLimit::sync_window:
-      return "the SYNC window (0x1007)";
-    case BudgetLimit::own_period:
-      return "its own period";
-    case BudgetLimit::patience:
-      return "the wait for it";
-  }
-  return "";
+  static constexpr std::string_view names[]{"",
+                                            "the receive window",
+                                            "the time before the outputs",
+                                            "the SYNC window (0x1007)",
+                                            "its own period",
+                                            "the wait for it"};
+  return name_of(limit, names);
 }
 
 void print_suggestions(std::ostream& out, std::span<const Suggestion> suggestions) {

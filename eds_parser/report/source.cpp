@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::string_view name(Severity severity) noexcept {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "error";
+  static constexpr std::string_view names[]{"note", "warning", "error"};
+  return name_of(severity, names, "error");
 }
 
 std::string to_string(const Finding& finding) {

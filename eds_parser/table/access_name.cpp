@@ -1,23 +1,12 @@
 #include "eds_parser/table/access_name.hpp"
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::string_view access_name(Access access) noexcept {
-  switch (access) {
-    case Access::ro:
-      return "ro";
-    case Access::wo:
-      return "wo";
-    case Access::rw:
-      return "rw";
-    case Access::rwr:
-      return "rwr";
-    case Access::rww:
-      return "rww";
-    case Access::constant:
-      return "const";
-  }
-  return "rw";
+  static constexpr std::string_view names[]{"ro", "wo", "rw", "rwr", "rww", "const"};
+  return name_of(access, names, "rw");
 }
 
 }  // namespace takt

@@ -1,37 +1,18 @@
 #include "eds_parser/table/limit_names.hpp"
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::string_view name(LimitKind kind) noexcept {
-  switch (kind) {
-    case LimitKind::position:
-      return "position";
-    case LimitKind::velocity:
-      return "velocity";
-    case LimitKind::acceleration:
-      return "acceleration";
-    case LimitKind::jerk:
-      return "jerk";
-    case LimitKind::step:
-      return "step";
-    case LimitKind::torque:
-      return "torque";
-    case LimitKind::range:
-      return "range";
-  }
-  return "limit";
+  static constexpr std::string_view names[]{"position", "velocity", "acceleration", "jerk",
+                                            "step",     "torque",   "range"};
+  return name_of(kind, names, "limit");
 }
 
 std::string_view name(LimitSource source) noexcept {
-  switch (source) {
-    case LimitSource::none:
-      return "none";
-    case LimitSource::file:
-      return "file";
-    case LimitSource::device:
-      return "device";
-  }
-  return "none";
+  static constexpr std::string_view names[]{"none", "file", "device"};
+  return name_of(source, names, "none");
 }
 
 }  // namespace takt

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "eds_parser/table/name_of.hpp"
 #include "master/core/bus_trouble.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/explain/report_text.hpp"
@@ -65,15 +66,10 @@ std::string_view while_lost(std::uint32_t reaction) noexcept {
 }
 
 std::string_view when_back(std::uint32_t reaction) noexcept {
-  switch (static_cast<SyncLoss>(reaction)) {
-    case SyncLoss::hold:
-      return "the master sends outputs again";
-    case SyncLoss::fallback:
-      return "the master accepts commands again";
-    case SyncLoss::stop:
-      return "the master starts the nodes again";
-  }
-  return {};
+  static constexpr std::string_view names[]{"the master sends outputs again",
+                                            "the master accepts commands again",
+                                            "the master starts the nodes again"};
+  return name_of(static_cast<SyncLoss>(reaction), names);
 }
 
 /// Describes an event of the SYNC of another device.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "eds_parser/table/name_of.hpp"
 #include "eds_parser/table/tpdo_of.hpp"
 #include "master/core/command_limit.hpp"
 #include "master/core/lss/lss_command.hpp"
@@ -26,21 +27,14 @@ std::string signal_name(const BusPlan& plan, std::int64_t index) {
 }
 
 std::string_view reason(std::uint32_t detail) noexcept {
-  switch (static_cast<RefusedBecause>(detail)) {
-    case RefusedBecause::not_an_output:
-      return "it is not an output";
-    case RefusedBecause::other_session:
-      return "another sender has the lease of the outputs of this node";
-    case RefusedBecause::stale_session:
-      return "the command is for an earlier session of the daemon (a replayed log?)";
-    case RefusedBecause::node_not_ready:
-      return "the node is not ready";
-    case RefusedBecause::out_of_range:
-      return "the value does not fit the object";
-    case RefusedBecause::observing:
-      return "the master only observes";
-  }
-  return "the reason is unknown";
+  static constexpr std::string_view names[]{
+      "it is not an output",
+      "another sender has the lease of the outputs of this node",
+      "the command is for an earlier session of the daemon (a replayed log?)",
+      "the node is not ready",
+      "the value does not fit the object",
+      "the master only observes"};
+  return name_of(static_cast<RefusedBecause>(detail), names, "the reason is unknown");
 }
 
 /// Describes which TPDO carries an actual position, and what makes the device send it soon.

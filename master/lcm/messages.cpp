@@ -1,19 +1,16 @@
 #include "master/lcm/messages.hpp"
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::string_view text(DecodeFault fault) noexcept {
-  switch (fault) {
-    case DecodeFault::schema_1:
-      return "the message has schema 1 of an older takt";
-    case DecodeFault::other_version:
-      return "the publisher has another version of this message type";
-    case DecodeFault::malformed:
-      return "the bytes of the message are damaged";
-    case DecodeFault::out_of_range:
-      return "the message has an infinite number, or a number that does not fit 64 bits";
-  }
-  return "";
+  static constexpr std::string_view names[]{
+      "the message has schema 1 of an older takt",
+      "the publisher has another version of this message type",
+      "the bytes of the message are damaged",
+      "the message has an infinite number, or a number that does not fit 64 bits"};
+  return name_of(fault, names);
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "eds_parser/print/plan/plan_sections.hpp"
 #include "eds_parser/report/text.hpp"
 #include "eds_parser/report/text_diff.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -139,21 +140,8 @@ std::string text_of(const Compared& sides, const std::string& before_name,
 }
 
 std::string_view part_name(Part part) {
-  switch (part) {
-    case Part::bus:
-      return "bus";
-    case Part::node:
-      return "node";
-    case Part::image:
-      return "image";
-    case Part::limits:
-      return "limits";
-    case Part::lcm:
-      return "lcm";
-    case Part::boot:
-      return "boot";
-  }
-  return "";
+  static constexpr std::string_view names[]{"bus", "node", "image", "limits", "lcm", "boot"};
+  return name_of(part, names);
 }
 
 std::vector<PlanChange> changes_of(const Compared& sides) {

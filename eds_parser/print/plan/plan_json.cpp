@@ -7,6 +7,7 @@
 #include "eds_parser/print/plan/print_plan.hpp"
 #include "eds_parser/print/plan/step_frames.hpp"
 #include "eds_parser/table/limit_names.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -129,17 +130,8 @@ Json identity_json(const BootPlan& boot) {
 }
 
 std::string_view loss_name(LossReaction reaction) {
-  switch (reaction) {
-    case LossReaction::report:
-      return "report";
-    case LossReaction::stop_node:
-      return "stop_node";
-    case LossReaction::stop_group:
-      return "stop_group";
-    case LossReaction::quick_stop:
-      return "quick_stop";
-  }
-  return "";
+  static constexpr std::string_view names[]{"report", "stop_node", "stop_group", "quick_stop"};
+  return name_of(reaction, names);
 }
 
 Json node_json(const BusPlan& plan, std::size_t index) {

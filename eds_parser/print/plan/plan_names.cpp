@@ -6,6 +6,7 @@
 
 #include "eds_parser/lcm/lcm_channel.hpp"
 #include "eds_parser/lcm/typed_message.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -19,53 +20,29 @@ void add_byte(std::string& out, unsigned value) {
 }  // namespace
 
 std::string_view action_name(BootAction action) noexcept {
-  switch (action) {
-    case BootAction::nmt:
-      return "NMT";
-    case BootAction::await_bootup:
-      return "await boot-up";
-    case BootAction::probe:
-      return "probe";
-    case BootAction::expect:
-      return "expect";
-    case BootAction::compare:
-      return "compare";
-    case BootAction::skip_if_same:
-      return "skip if same";
-    case BootAction::disable_pdo:
-      return "disable PDO";
-    case BootAction::write:
-      return "write";
-    case BootAction::enable_pdo:
-      return "enable PDO";
-    case BootAction::verify:
-      return "verify";
-    case BootAction::write_if_differs:
-      return "write if differs";
-    case BootAction::await_heartbeat:
-      return "await heartbeat";
-    case BootAction::await_guarding:
-      return "await guarding";
-    case BootAction::await_operational:
-      return "await OPERATIONAL";
-    case BootAction::await_alive:
-      return "await life";
-    case BootAction::await_value:
-      return "await value";
-    case BootAction::download_program:
-      return "download";
-    case BootAction::write_if_changed:
-      return "write if changed";
-    case BootAction::read_serial:
-      return "read serial";
-    case BootAction::read_firmware:
-      return "read firmware";
-    case BootAction::read_limit:
-      return "read limit";
-    case BootAction::pause:
-      return "pause";
-  }
-  return "";
+  static constexpr std::string_view names[]{"NMT",
+                                            "await boot-up",
+                                            "probe",
+                                            "expect",
+                                            "compare",
+                                            "skip if same",
+                                            "disable PDO",
+                                            "write",
+                                            "enable PDO",
+                                            "verify",
+                                            "write if differs",
+                                            "await heartbeat",
+                                            "await guarding",
+                                            "await life",
+                                            "await value",
+                                            "download",
+                                            "write if changed",
+                                            "read serial",
+                                            "read firmware",
+                                            "read limit",
+                                            "await OPERATIONAL",
+                                            "pause"};
+  return name_of(action, names);
 }
 
 std::string_view command_name(NmtCommand command) noexcept {

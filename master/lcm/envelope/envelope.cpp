@@ -6,6 +6,8 @@
 #include <sodium.h>
 #include <utility>
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 namespace {
 
@@ -29,27 +31,17 @@ bool has_mac(Bytes encoded, const Mac& mac) noexcept {
 }  // namespace
 
 std::string_view text(EnvelopeFault fault) noexcept {
-  switch (fault) {
-    case EnvelopeFault::damaged:
-      return "its bytes are damaged, or it has another version";
-    case EnvelopeFault::other_schema:
-      return "it has another schema";
-    case EnvelopeFault::unknown_key:
-      return "the key file of the daemon has no key of this name";
-    case EnvelopeFault::forged:
-      return "its MAC is wrong: it was forged or altered, or its sender has another secret";
-    case EnvelopeFault::other_session:
-      return "it is for another session of taktd (a replayed log, or taktd has restarted)";
-    case EnvelopeFault::too_old:
-      return "its time is more than 1 s in the past";
-    case EnvelopeFault::from_the_future:
-      return "its time is more than 1 s in the future";
-    case EnvelopeFault::repeated:
-      return "it is repeated or out of order: the counter of this sender was higher already";
-    case EnvelopeFault::too_many_senders:
-      return "too many senders are active at once";
-  }
-  return "";
+  static constexpr std::string_view names[]{
+      "its bytes are damaged, or it has another version",
+      "it has another schema",
+      "the key file of the daemon has no key of this name",
+      "its MAC is wrong: it was forged or altered, or its sender has another secret",
+      "it is for another session of taktd (a replayed log, or taktd has restarted)",
+      "its time is more than 1 s in the past",
+      "its time is more than 1 s in the future",
+      "it is repeated or out of order: the counter of this sender was higher already",
+      "too many senders are active at once"};
+  return name_of(fault, names);
 }
 
 EnvelopeSeal::EnvelopeSeal(EnvelopeKey key, std::int64_t instance) : key_{std::move(key)} {

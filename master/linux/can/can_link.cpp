@@ -10,6 +10,7 @@
 #include <linux/rtnetlink.h>
 #include <sys/socket.h>
 
+#include "eds_parser/table/name_of.hpp"
 #include "master/linux/file_descriptor.hpp"
 
 namespace takt {
@@ -92,21 +93,9 @@ CanLink link_of(const nlmsghdr& message) {
 }  // namespace
 
 std::string_view name(CanState state) noexcept {
-  switch (state) {
-    case CanState::error_active:
-      return "error-active";
-    case CanState::error_warning:
-      return "error-warning";
-    case CanState::error_passive:
-      return "error-passive";
-    case CanState::bus_off:
-      return "bus-off";
-    case CanState::stopped:
-      return "stopped";
-    case CanState::sleeping:
-      return "sleeping";
-  }
-  return "unknown";
+  static constexpr std::string_view names[]{"error-active", "error-warning", "error-passive",
+                                            "bus-off",      "stopped",       "sleeping"};
+  return name_of(state, names, "unknown");
 }
 
 std::expected<CanLink, BusError> read_can_link(const std::string& interface) {
