@@ -37,7 +37,6 @@ class Connection {
   /// Returns true if the last receive() found the end of what had arrived.
   bool drained() const noexcept { return drained_; }
   /// Returns true if the last receive() read messages that it had no time to hand over.
-  bool has_unhandled() const noexcept { return unhandled_; }
   /// Events for poll() in addition to POLLIN. Messages that wait here for the next round end its
   /// wait by POLLOUT, because nearly every socket is writable.
   short other_reason_to_wake() const noexcept {

@@ -19,7 +19,6 @@ struct TrueAxis {
     const std::int64_t state = statusword & 0x6F;
     return state == 0x27 || state == 0x23 || state == 0x07 || (statusword & 0x4F) == 0x0F;
   }
-  bool obeys() const noexcept { return (statusword & 0x6F) == 0x27; }
 };
 
 /// Reads axis `number` of a device, counted from 0. Its objects lie 0x800 x number higher. A device
