@@ -4,14 +4,9 @@
 #include <vector>
 
 #include "eds_parser/dictionary/integer_of.hpp"
-#include "eds_parser/plan/boot/boot_error_control.hpp"
-#include "eds_parser/plan/boot/boot_limits.hpp"
 #include "eds_parser/plan/boot/boot_part.hpp"
-#include "eds_parser/plan/boot/boot_pdos.hpp"
-#include "eds_parser/plan/boot/boot_program.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/plan/boot/boot_steps.hpp"
-#include "eds_parser/plan/boot/boot_sync.hpp"
-#include "eds_parser/plan/boot/boot_values.hpp"
 #include "eds_parser/plan/boot/configuration_date.hpp"
 #include "eds_parser/specification/device_data.hpp"
 

@@ -1,8 +1,7 @@
-#include "eds_parser/plan/boot/boot_error_control.hpp"
-
 #include <algorithm>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 
 namespace takt {
 namespace {

@@ -1,9 +1,8 @@
-#include "eds_parser/plan/boot/boot_limits.hpp"
-
 #include <algorithm>
 #include <set>
 
 #include "eds_parser/dictionary/integer_of.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
 
 namespace takt {

@@ -1,4 +1,4 @@
-#include "eds_parser/plan/boot/boot_pdos.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 
 namespace takt {
 namespace {

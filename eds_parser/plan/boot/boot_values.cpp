@@ -1,5 +1,3 @@
-#include "eds_parser/plan/boot/boot_values.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +8,7 @@
 
 #include "eds_parser/dictionary/integer_of.hpp"
 #include "eds_parser/dictionary/pdo_description.hpp"
+#include "eds_parser/plan/boot/boot_sections.hpp"
 #include "eds_parser/specification/device_data.hpp"
 #include "eds_parser/specification/object_units.hpp"
 #include "eds_parser/table/real_range.hpp"

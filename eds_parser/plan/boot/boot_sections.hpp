@@ -1,0 +1,50 @@
+#pragma once
+#include "eds_parser/plan/boot/boot_compiler.hpp"
+#include "eds_parser/plan/boot/boot_part.hpp"
+#include "eds_parser/plan/boot/boot_steps.hpp"
+#include "eds_parser/plan/pdo/cob_ids.hpp"
+#include "eds_parser/plan/pdo/effective_pdo.hpp"
+#include "eds_parser/report/network_report.hpp"
+#include "eds_parser/specification/network_spec.hpp"
+#include "eds_parser/table/boot_plan.hpp"
+
+namespace takt {
+
+// The sections of the boot of a node, in the order in which they are appended.
+
+/// Appends the steps for SYNC if the device consumes or produces it: 0x1005, 0x1019, 0x1006,
+/// 0x1007.
+void append_sync(const BootPart& part);
+
+/// Appends the steps for TIME: 0x1012.
+void append_time(const BootPart& part);
+
+/// Appends the steps for heartbeat and guarding in both directions, and for the behaviour of the
+/// device after an error: 0x1017, 0x1016, 0x100C, 0x100D, 0x1029.
+void append_error_control(const BootPart& part);
+
+/// Appends the steps for the identifier and the inhibit time of EMCY: 0x1014, 0x1015.
+void append_emergency(const BootPart& part);
+
+/// Appends the steps for one PDO. They compare the PDO with its settings in the device. If anything
+/// differs, they configure the PDO in the order that devices accept (CiA 301, 7.5.2.36) and read it
+/// back. A fixed mapping is only checked.
+void append_pdo(const ObjectDictionary& dictionary, const EffectivePdo& pdo, BootSteps& steps);
+
+/// Appends steps that check the version of the device's software and download another version if it
+/// differs: 0x1F56 is compared with 0x1F55, then 0x1F51, 0x1F50 and 0x1F57 are used. CiA 302-2 and
+/// 302-3.
+void append_program(const NodeSpec& node, BootSteps& steps, NetworkReport& report);
+
+/// Appends steps that write values: the ParameterValues of a DCF, the interpolation period of
+/// drives, the values of the device data, then the list `sdo:` in its order. Each value is checked
+/// against the type, access and limits of the EDS.
+void append_values(const NodeSource& node, const BootContext& context, BootSteps& steps,
+                   NetworkReport& report);
+
+/// Warns of every number that the boot writes and that lies outside the limits of the device file.
+/// The purpose of the step then mentions the limits as well. A value that the file itself has as
+/// default passes.
+void judge_limits(const NodePdos& node, BootPlan& plan, NetworkReport& report);
+
+}  // namespace takt
