@@ -6,6 +6,7 @@
 #include "eds_parser/plan/pdo/cob_id_bits.hpp"
 #include "eds_parser/plan/pdo/mapping_compiler.hpp"
 #include "eds_parser/plan/pdo/mpdo_compiler.hpp"
+#include "eds_parser/plan/pdo/pdo_set_rules.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
@@ -334,48 +335,6 @@ const PdoSpec* find_spec(const NodeSpec& node, const PdoDescription& device) {
   return found == list.end() ? nullptr : &*found;
 }
 
-/// Reports each PDO of the network file that the device does not have.
-void report_missing(const NodeSource& node, bool is_tpdo,
-                    const std::vector<PdoDescription>& devices, NetworkReport& report) {
-  const std::string kind = is_tpdo ? "TPDO" : "RPDO";
-  std::size_t count = 0;
-  std::uint16_t last = 0;
-  for (const PdoDescription& device : devices) {
-    if (device.is_tpdo != is_tpdo) continue;
-    ++count;
-    last = std::max(last, device.number);
-  }
-  for (const PdoSpec& spec : is_tpdo ? node.spec->tpdos : node.spec->rpdos) {
-    const auto same = [&](const PdoDescription& device) {
-      return device.is_tpdo == is_tpdo && device.number == spec.number;
-    };
-    if (std::ranges::any_of(devices, same) || !*spec.enabled) continue;
-    const auto index = static_cast<std::uint16_t>((is_tpdo ? 0x1800 : 0x1400) + spec.number - 1);
-    report.error(spec.pos, "no-such-pdo",
-                 node.dictionary->file + " has no " + kind + std::to_string(spec.number) + " (" +
-                     hex(index) + ")" +
-                     (count == 0 ? ", and no " + kind + " at all"
-                                 : "; its " + std::to_string(count) + " " + kind +
-                                       "s end with number " + std::to_string(last)));
-  }
-}
-
-/// Checks that the TPDO that answers an RPDO on request exists.
-void check_pairs(const NodeSource& node, std::span<const EffectivePdo> pdos,
-                 NetworkReport& report) {
-  for (const EffectivePdo& pdo : pdos) {
-    if (pdo.is_tpdo || !pdo.on_request || pdo.use != PdoUse::exchanged) continue;
-    const bool answered = std::ranges::any_of(pdos, [&](const EffectivePdo& other) {
-      return other.is_tpdo && other.number == pdo.number && other.use == PdoUse::exchanged;
-    });
-    if (answered) continue;
-    report.error(pdo.pos, "request-pair",
-                 pdo.label() + " of node `" + node.spec->name + "` is sent on request, but TPDO" +
-                     std::to_string(pdo.number) + ", which answers it, is off or maps nothing: " +
-                     "write it too, `tpdo: {" + std::to_string(pdo.number) + ": {request: true}}`");
-  }
-}
-
 }  // namespace
 
 std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& report) {
@@ -383,13 +342,13 @@ std::vector<EffectivePdo> compile_pdos(const NodeSource& node, NetworkReport& re
   const std::vector<PdoDescription> devices = describe_pdos(effective);
   std::vector<EffectivePdo> pdos;
   PdoCompiler compiler{node, report};
-  report_missing(node, false, devices, report);
-  report_missing(node, true, devices, report);
+  report_missing_pdos(node, false, devices, report);
+  report_missing_pdos(node, true, devices, report);
   for (const PdoDescription& device : devices) {
     pdos.push_back(compiler.compile(device, find_spec(*node.spec, device)));
   }
   compiler.report_unmapped();
-  check_pairs(node, pdos, report);
+  check_request_pairs(node, pdos, report);
   return pdos;
 }
 

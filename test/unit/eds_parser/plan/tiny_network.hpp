@@ -148,4 +148,10 @@ inline Compiled compile(std::string_view yaml, const std::string& eds = tiny_eds
   return out;
 }
 
+/// Makes a network file with the node `arm`, node-ID 5, on line 2; `pdos` starts on line 3.
+inline std::string arm_with(std::string_view pdos) {
+  return "master: {sync_period: 10000}\narm: {node_id: 5, dcf: tiny.eds,\n" + std::string{pdos} +
+         "}\n";
+}
+
 }  // namespace takt::test
