@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   takt::add_simulate(app, exit_code);
   takt::add_keys(app, exit_code);
   takt::add_record(app, exit_code);
+  takt::add_reference(app, exit_code);
   takt::add_replay(app, exit_code);
   takt::add_soak(app, exit_code);
   takt::add_status(app, exit_code);

@@ -1,6 +1,7 @@
 #include "eds_parser/network_file/map_reader.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -21,10 +22,6 @@ std::string quote(std::string_view text) {
   return out + (text.size() > longest_quote ? "...`" : "`");
 }
 
-std::string range_text(IntegerRange range) {
-  return std::to_string(range.low) + ".." + std::to_string(range.high) + std::string{range.unit};
-}
-
 bool is_scalar(const YamlNode& node, std::string_view key, std::string_view expected,
                NetworkReport& report) {
   if (node.kind == YamlNode::Kind::scalar) return true;
@@ -38,6 +35,12 @@ bool looks_octal(std::string_view text) {
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
   return text.size() > 1 && text[0] == '0' &&
          std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+bool is_hex_without_prefix(std::string_view text) {
+  const auto is = [](auto of) { return [of](unsigned char c) { return of(c) != 0; }; };
+  return text.size() <= 4 && std::ranges::all_of(text, is(::isxdigit)) &&
+         std::ranges::any_of(text, is(::isdigit)) && std::ranges::any_of(text, is(::isalpha));
 }
 
 /// Reads a decimal number or one with 0x, with an optional sign, and nothing else.
@@ -60,6 +63,20 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
 
 }  // namespace
 
+std::string to_string(IntegerRange range) {
+  // Indices, identifiers and flags are hexadecimal.
+  const bool bits = range.low >= 0 && range.high >= 0x7FF && range.high <= 0xFFFF'FFFF &&
+                    std::has_single_bit(static_cast<std::uint64_t>(range.high) + 1);
+  const bool is_hex = range.unit.empty() && (range.low >= 0x180 || bits);
+  const auto text = [&](std::int64_t number) {
+    return is_hex && number != 0
+               ? hex(static_cast<std::uint32_t>(number), range.high > 0xFFF ? 4 : 3)
+               : std::to_string(number);
+  };
+  const std::string limits = text(range.low) + ".." + text(range.high);
+  return range.unit.empty() ? limits : limits + ' ' + std::string{range.unit};
+}
+
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view key,
                                          IntegerRange range, NetworkReport& report) {
   if (!is_scalar(node, key, "a number", report)) return {};
@@ -72,15 +89,18 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view 
   }
   const auto value = parse_integer(node.text);
   if (!value) {
-    report.error(node.pos, "not-a-number",
-                 "`" + std::string{key} + "`: " + quote(node.text) +
-                     " is not a whole number; expected " + range_text(range) + ", decimal or 0x");
+    report.error(
+        node.pos, "not-a-number",
+        "`" + std::string{key} + "`: " + quote(node.text) +
+            (is_hex_without_prefix(node.text)
+                 ? " is hexadecimal without 0x: write 0x" + node.text
+                 : " is not a whole number; expected " + to_string(range) + ", decimal or 0x"));
     return {};
   }
   if (*value < range.low || *value > range.high) {
     report.error(
         node.pos, "out-of-range",
-        "`" + std::string{key} + "`: " + quote(node.text) + " is outside " + range_text(range));
+        "`" + std::string{key} + "`: " + quote(node.text) + " is outside " + to_string(range));
     return {};
   }
   return value;
@@ -135,6 +155,15 @@ std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
   return node.text;
 }
 
+std::optional<std::int64_t> read_number_key(const YamlPair& pair, std::string_view key,
+                                            IntegerRange range, NetworkReport& report) {
+  YamlNode number;
+  number.kind = YamlNode::Kind::scalar;
+  number.text = pair.key;
+  number.pos = pair.key_pos;
+  return read_integer(number, key, range, report);
+}
+
 MapReader::MapReader(const YamlNode& node, std::string what, NetworkReport& report)
     : node_{node}, what_{std::move(what)}, report_{report} {
   if (node.kind == YamlNode::Kind::map || node.kind == YamlNode::Kind::null) return;
@@ -162,40 +191,14 @@ bool MapReader::has_slip_of(std::string_view key) const {
   });
 }
 
-void MapReader::number(std::string_view key, Sourced<double>& out) {
-  if (const YamlNode* node = take(key)) {
-    if (const auto value = read_number(*node, key, report_)) out = {*value, node->pos, true};
-  }
-}
-
-void MapReader::boolean(std::string_view key, Sourced<bool>& out) {
-  if (const YamlNode* node = take(key)) {
-    if (const auto value = read_bool(*node, key, report_)) out = {*value, node->pos, true};
-  }
-}
-
-void MapReader::text(std::string_view key, Sourced<std::string>& out) {
-  if (const YamlNode* node = take(key)) {
-    if (auto value = read_text(*node, key, report_)) out = {std::move(*value), node->pos, true};
-  }
-}
-
-void MapReader::file(std::string_view key, Sourced<std::string>& out) {
-  const YamlNode* node = node_.find(key);
-  const bool none = node != nullptr && node->kind == YamlNode::Kind::scalar && node->text.empty();
-  if (none) {
-    known_.push_back(key);
-  } else {
-    text(key, out);
-  }
-}
-
-void MapReader::ignore(std::span<const std::string_view> keys, std::string_view why) {
-  for (const std::string_view key : keys) {
-    if (node_.find(key) == nullptr) continue;
+void MapReader::ignore(std::string_view keys, std::string_view why) {
+  while (!keys.empty()) {
+    const std::string_view key = keys.substr(0, keys.find(' '));
+    keys.remove_prefix(std::min(key.size() + 1, keys.size()));
+    if (!has(key)) continue;
     known_.push_back(key);
     report_.note(key_pos(key), "unused-key",
-                 "`" + std::string{key} + "` of " + what_ + " " + std::string{why});
+                 "`" + std::string{key} + "` of " + what_ + " has no effect: " + std::string{why});
   }
 }
 

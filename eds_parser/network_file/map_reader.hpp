@@ -18,8 +18,13 @@ namespace takt {
 struct IntegerRange {
   std::int64_t low = 0;
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
-  std::string_view unit = {};  ///< for example " ms"; follows the limits in messages
+  std::string_view unit = {};  ///< for example "ms"; follows the limits in messages
+
+  constexpr bool operator==(const IntegerRange&) const noexcept = default;
 };
+
+/// Returns for example `1..600000 ms`.
+std::string to_string(IntegerRange range);
 
 /// Reads the integer in a scalar. Reports a value that looks octal (`010`), is out of range or is
 /// other text.
@@ -31,6 +36,9 @@ std::optional<double> read_number(const YamlNode& node, std::string_view key,
 std::optional<bool> read_bool(const YamlNode& node, std::string_view key, NetworkReport& report);
 std::optional<std::string> read_text(const YamlNode& node, std::string_view key,
                                      NetworkReport& report);
+/// Reads the key of a map whose keys are numbers, such as that of the PDOs.
+std::optional<std::int64_t> read_number_key(const YamlPair& pair, std::string_view key,
+                                            IntegerRange range, NetworkReport& report);
 
 /// Reads the known keys of one map, then reports the unknown ones.
 class MapReader {
@@ -41,31 +49,16 @@ class MapReader {
   const YamlNode* take(std::string_view key);
   SourcePos key_pos(std::string_view key) const noexcept;
   bool is_map() const noexcept { return node_.kind == YamlNode::Kind::map; }
+  /// False if the constructor reported the type. Nothing can be missing in such a value.
+  bool is_readable() const noexcept { return is_map() || node_.kind == YamlNode::Kind::null; }
+  bool has(std::string_view key) const noexcept { return node_.find(key) != nullptr; }
   /// Whether `key` is missing but an unknown key, which finish() reports, is most likely a
   /// misspelling of it. Call this after all keys are taken.
   bool has_slip_of(std::string_view key) const;
 
-  template <class T>
-  void integer(std::string_view key, Sourced<T>& out, IntegerRange range) {
-    if (const YamlNode* node = take(key)) {
-      if (const auto value = read_integer(*node, key, range, report_)) {
-        out = {static_cast<T>(*value), node->pos, true};
-      }
-    }
-  }
-  template <class T>
-  void integer(std::string_view key, Sourced<T>& out) {
-    integer(key, out, {0, static_cast<std::int64_t>(std::numeric_limits<T>::max())});
-  }
-  void number(std::string_view key, Sourced<double>& out);
-  void boolean(std::string_view key, Sourced<bool>& out);
-  void text(std::string_view key, Sourced<std::string>& out);
-  /// Same as text(), but an empty name counts as not given, as in the generators of other masters.
-  void file(std::string_view key, Sourced<std::string>& out);
-
-  /// Reports a note for each key that is present and belongs to another program. `why` ends the
-  /// sentence.
-  void ignore(std::span<const std::string_view> keys, std::string_view why);
+  /// Reports a note for each key that is present and belongs to another program. `keys` has blanks
+  /// between them, `why` ends the sentence.
+  void ignore(std::string_view keys, std::string_view why);
   /// Reports every key that was not taken as an error with a suggestion.
   void finish();
   /// Same as finish(), for a map that another program also reads. A key is an error only if it is
@@ -74,6 +67,7 @@ class MapReader {
 
   NetworkReport& report() noexcept { return report_; }
   const std::string& what() const noexcept { return what_; }
+  const YamlNode& node() const noexcept { return node_; }
 
  private:
   const YamlNode& node_;

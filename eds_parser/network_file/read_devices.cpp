@@ -1,372 +1,277 @@
 #include "eds_parser/network_file/read_devices.hpp"
 
-#include <array>
-
 #include "eds_parser/dictionary/pdo_description.hpp"
-#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_file/key_table.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
 
 namespace takt {
+
+/// Reads a number, or a range `[low, high]`.
+static bool read_value(const KeyInput& in, NumberRange& out) {
+  const IntegerRange limits = in.key.value.range;
+  const bool is_list = in.node.kind == YamlNode::Kind::sequence;
+  if (is_list && in.node.items.size() != 2) {
+    in.error("wrong-type",
+             "`" + std::string{in.key.name} + "` takes a number or `[lowest, highest]`");
+    return false;
+  }
+  const auto bound = [&](const YamlNode& node) {
+    return read_integer(node, in.key.name, limits, in.report());
+  };
+  const auto low = bound(is_list ? *in.node.items[0] : in.node);
+  const auto high = is_list ? bound(*in.node.items[1]) : low;
+  if (!low || !high) return false;
+  if (*low > *high) {
+    in.error("out-of-range", "`" + std::string{in.key.name} + "`: write the lower number first");
+    return false;
+  }
+  out = {static_cast<std::uint32_t>(*low), static_cast<std::uint32_t>(*high)};
+  return true;
+}
+
 namespace {
 
-constexpr std::size_t max_items = 1024;
+constexpr std::string_view timer_words[] = {"restarts", "additional", "alone"};
+constexpr std::string_view function_words[] = {"process_data", "parameter_channel"};
+constexpr std::string_view access_words[] = {"ro", "wo", "rw", "rwr", "rww", "const"};
+constexpr std::string_view no_match[] = {"none"};
+constexpr std::string_view reset_words[] = {"communication", "node", "none"};
+constexpr KeyValue object_index = whole(0x1000, 0xFFFF);
 
-class DeviceReader {
- public:
-  DeviceReader(const YamlNode& root, DeviceData& data, NetworkReport& report)
-      : root_{root}, data_{data}, report_{report} {}
+/// The row `reason` of a section or of an entry.
+template <class T>
+constexpr Key<T> reason_key() {
+  return key<&T::fact, &DeviceFact::reason>("reason", "none",
+                                            "Quoted when a configuration is refused.");
+}
 
-  void run() {
-    MapReader reader{root_, "the device data", report_};
-    data_.pos = root_.pos;
-    data_.name = text(reader, "name");
-    data_.manual = text(reader, "manual");
-    identity(reader);
-    section(reader, "node_ids", [&](MapReader& map) { node_ids(map); });
-    section(reader, "heartbeat", [&](MapReader& map) { heartbeat(map); });
-    list(reader, "sdo", [&](const YamlNode& item) { value(item); });
-    list(reader, "sdo_timeouts", [&](const YamlNode& item) { timeout(item); });
-    list(reader, "tpdo", [&](const YamlNode& item) { pdo(item, true); });
-    list(reader, "rpdo", [&](const YamlNode& item) { pdo(item, false); });
-    section(reader, "inhibit_time", [&](MapReader& map) { inhibit(map); });
-    section(reader, "event_timer", [&](MapReader& map) { timer(map); });
-    section(reader, "sync_producer", [&](MapReader& map) { sync(map); });
-    list(reader, "objects", [&](const YamlNode& item) { object(item); });
-    list(reader, "sdo_servers", [&](const YamlNode& item) { sdo_server(item); });
-    section(reader, "boot", [&](MapReader& map) { boot(map); });
-    data_.on_sync_loss = text(reader, "on_sync_loss");
-    emcy(reader);
-    reader.finish();
-    if (data_.name.empty()) report_.error(root_.pos, "missing-key", "the entry lacks `name`");
+constexpr KeyValue range_of(std::int64_t low, std::int64_t high) {
+  return {.type = KeyType::range, .range = {low, high}};
+}
+
+constexpr Key<DeviceMatch> match_keys[] = {
+    required(key<&DeviceMatch::vendor>("vendor_id", whole(1, 0xFFFF'FFFF), "", "0x1018:01.")),
+    key<&DeviceMatch::product>("product_code", range_of(0, 0xFFFF'FFFF), "any", "0x1018:02."),
+    key<&DeviceMatch::revision>("revision", range_of(0, 0xFFFF'FFFF), "any", "0x1018:03."),
+};
+
+/// Reads one identity, a list of identities, or `none`.
+void read_match(const KeyInput& in, DeviceData& data) {
+  if (in.node.kind == YamlNode::Kind::scalar && in.node.text == no_match[0]) return;
+  if (in.node.kind == YamlNode::Kind::sequence && !in.node.items.empty()) {
+    return read_list<match_keys>(in, data.matches);
   }
+  read_map(in.node, "`match`", match_keys, data.matches.emplace_back(), in.report());
+}
 
- private:
-  std::string text(MapReader& reader, std::string_view key) {
-    Sourced<std::string> value;
-    reader.text(key, value);
-    return *value;
+constexpr Key<NodeIdRule> node_id_keys[] = {
+    required(key<&NodeIdRule::ids>("range", range_of(1, 127), "",
+                                   "What the switches of the device can set. Another node id is "
+                                   "refused.")),
+    reason_key<NodeIdRule>(),
+};
+
+constexpr Key<HeartbeatRule> heartbeat_keys[] = {
+    required(key<&HeartbeatRule::multiple_of_ms>("multiple_of_ms", whole(1, 1000, "ms"), "",
+                                                 "The device rounds 0x1016 and 0x1017 down to a "
+                                                 "multiple of this.")),
+    reason_key<HeartbeatRule>(),
+};
+
+void check_value(const KeyInput& in, const std::vector<ValueEdit>&, const ValueEdit& edit) {
+  if (!is_pdo_parameter(edit.object.index)) return;
+  in.error("wrong-object",
+           "`sdo` is not for PDO parameters (0x1400..0x1BFF); write rules of `tpdo` and `rpdo`");
+}
+
+constexpr Key<ValueEdit> value_keys[] = {
+    required(key<&ValueEdit::object, &ObjectKey::index>("index", object_index, "", "The index.")),
+    key<&ValueEdit::object, &ObjectKey::sub>("sub_index", "0", "The sub-index."),
+    required(key<&ValueEdit::value>("value", whole(-0x8000'0000LL, 0xFFFF'FFFFLL), "",
+                                    "Written in the boot before the `sdo` of the network file, "
+                                    "unless that file or a DCF sets the object.")),
+    reason_key<ValueEdit>(),
+};
+
+constexpr Key<TimeoutEdit> timeout_keys[] = {
+    required(key<&TimeoutEdit::timeout, &SdoObjectTimeout::index>("index", object_index, "",
+                                                                  "The index.")),
+    key<&TimeoutEdit::timeout, &SdoObjectTimeout::sub>("sub_index", "all", "The sub-index."),
+    required(key<&TimeoutEdit::timeout, &SdoObjectTimeout::timeout>(
+        "timeout_ms", whole(1, 600'000, "ms"), "",
+        "The time for an answer, in the boot and by request. That of the network file takes "
+        "precedence.")),
+    reason_key<TimeoutEdit>(),
+};
+
+template <auto Member>
+void read_types(const KeyInput& in, PdoRule& rule) {
+  if (in.node.kind != YamlNode::Kind::sequence || in.node.items.empty()) {
+    return in.error("wrong-type",
+                    in.what() + " has to be a list of numbers and ranges: [[1, 240], 254, 255]");
   }
-
-  template <class Read>
-  void section(MapReader& reader, std::string_view key, Read read) {
-    const YamlNode* node = reader.take(key);
-    if (node == nullptr) return;
-    MapReader map{*node, "`" + std::string{key} + "`", report_};
-    read(map);
-    map.finish();
+  for (const YamlNode* item : in.node.items) {
+    NumberRange types;
+    if (read_value(KeyInput{in.map, in.key, *item}, types)) (rule.*Member).push_back(types);
   }
+}
 
-  template <class Read>
-  void list(MapReader& reader, std::string_view key, Read read) {
-    const YamlNode* node = reader.take(key);
-    if (node == nullptr) return;
-    if (node->kind != YamlNode::Kind::sequence || node->items.size() > max_items) {
-      report_.error(node->pos, "wrong-type",
-                    "`" + std::string{key} + "` has to be a list of at most 1024 entries");
-      return;
-    }
-    for (const YamlNode* item : node->items) read(*item);
+constexpr KeyValue types{.type = KeyType::list, .range = {0, 255}};
+constexpr Key<PdoRule> pdo_keys[] = {
+    key<&PdoRule::numbers>("numbers", range_of(1, 512), "all", "The PDOs of the rule."),
+    key<read_types<&PdoRule::types>>("transmission", types, "all",
+                                     "The permitted types: `[[1, 240], 254, 255]`."),
+    key<read_types<&PdoRule::answers>>("answers_rpdo", types, "none",
+                                       "With these types a TPDO is sent only as the answer to the "
+                                       "RPDO of its number."),
+    key<&PdoRule::without_timer>("without_timer", "false", "There is no event timer."),
+    key<&PdoRule::without_rtr>("without_rtr", "false", "There are no remote requests."),
+    key<&PdoRule::no_more_entries>("no_more_entries", "false",
+                                   "A mapping may be reduced, but not extended beyond its "
+                                   "default."),
+    key<&PdoRule::no_gaps>("no_gaps", "false",
+                           "A PDO is only possible together with the one before it."),
+    key<&PdoRule::function>("function", word_of(function_words), "`process_data`",
+                            "`parameter_channel`: the RPDO, and the TPDO that answers it, are "
+                            "used by requests only (`takt param`)."),
+    reason_key<PdoRule>(),
+};
+
+/// Reads the rules of one direction.
+void read_pdo_rules(const KeyInput& in, DeviceData& data) {
+  const std::size_t before = data.pdos.size();
+  read_list<pdo_keys>(in, data.pdos);
+  for (auto& rule : std::span{data.pdos}.subspan(before)) rule.is_tpdo = in.key.name == "tpdo";
+}
+
+constexpr Key<InhibitRule> inhibit_keys[] = {
+    key<&InhibitRule::unit_us>("unit_us", whole(1, 1'000'000, "us"), "100",
+                               "The unit of 0x1800:03 in the device. The network file stays in "
+                               "100 us."),
+    key<&InhibitRule::least>("least", whole(0, 65535), "0",
+                             "The shortest time, in units of `unit_us`."),
+    key<&InhibitRule::factory>("default", whole(0, 65535), "unknown",
+                               "The default, in units of `unit_us`."),
+    reason_key<InhibitRule>(),
+};
+
+constexpr Key<TimerRule> timer_keys[] = {
+    key<&TimerRule::meaning>("meaning", word_of(timer_words), "`restarts`",
+                             "`restarts`: every transmission restarts the timer (CiA 301). "
+                             "`additional`: it sends in addition to changes. `alone`: changes "
+                             "send nothing while it is set."),
+    reason_key<TimerRule>(),
+};
+
+constexpr Key<SyncRule> sync_keys[] = {
+    key<&SyncRule::own_tpdos_from>("own_tpdos_from", "none",
+                                   "The firmware from which a SYNC of its own triggers the TPDOs "
+                                   "of the device."),
+    key<&SyncRule::tx_identifier>("tx_identifier", object_index, "none",
+                                  "This object is its identifier for sending SYNC; the rule only "
+                                  "holds while it is equal to 0x1005."),
+    reason_key<SyncRule>(),
+};
+
+void read_sub_index(const KeyInput& in, ObjectEdit& edit) {
+  set(in, edit.object.sub);
+  edit.whole = false;
+}
+
+void check_object(const KeyInput& in, const std::vector<ObjectEdit>&, const ObjectEdit& edit) {
+  if (edit.missing != edit.access.has_value()) return;
+  in.error("missing-key",
+           "an entry of `objects` needs an `index`, and either `missing: true` or `access`");
+}
+
+constexpr Key<ObjectEdit> object_keys[] = {
+    required(key<&ObjectEdit::object, &ObjectKey::index>("index", object_index, "", "The index.")),
+    key<read_sub_index>("sub_index", whole(0, 255), "all", "The sub-index."),
+    key<&ObjectEdit::missing>("missing", "false", "The device does not have the object."),
+    key<&ObjectEdit::access>("access", word_of(access_words), "from the EDS", "Its access."),
+    key<&ObjectEdit::from>("firmware_from", "all", "The first firmware with this difference."),
+    key<&ObjectEdit::below>("firmware_below", "none", "The first firmware without it again."),
+    reason_key<ObjectEdit>(),
+};
+
+constexpr Key<SdoServerFact> server_keys[] = {
+    required(key<&SdoServerFact::index>("index", whole(0x1201, 0x127F), "", "The index.")),
+    required(key<&SdoServerFact::request>("request", whole(0x180, 0x77F), "",
+                                          "The identifier of requests, without the node id.")),
+    required(key<&SdoServerFact::answer>("answer", whole(0x180, 0x77F), "",
+                                         "The identifier of answers, without the node id.")),
+    reason_key<SdoServerFact>(),
+};
+
+constexpr Key<BootTweaks> boot_keys[] = {
+    key<&BootTweaks::reset>("reset", word_of(reset_words), "by the network file",
+                            "A network file that resets in another way gets a warning."),
+    key<&BootTweaks::values_after_pdos>("values_after_pdos", "false",
+                                        "The values are written after the PDOs."),
+    key<&BootTweaks::pause_after_bootup_ms>("pause_after_bootup_ms", whole(0, 60'000, "ms"), "0",
+                                            "A pause after the boot-up message."),
+    key<&BootTweaks::pause_before_start_ms>("pause_before_start_ms", whole(0, 60'000, "ms"), "0",
+                                            "A pause before NMT start."),
+    reason_key<BootTweaks>(),
+};
+
+constexpr IntegerRange emcy_codes{1, 0xFFFF};
+
+void read_emcy(const KeyInput& in, DeviceData& data) {
+  if (in.node.kind != YamlNode::Kind::map || in.node.pairs.size() > 1024) {
+    return in.error("wrong-type", "`emcy` has to be a map of error codes to texts");
   }
-
-  void need(MapReader& reader, std::string_view key) {
-    if (reader.take(key) != nullptr) return;
-    report_.error(reader.key_pos(key), "missing-key",
-                  reader.what() + " lacks `" + std::string{key} + "`");
-  }
-
-  DeviceFact fact(MapReader& reader, SourcePos pos) { return {pos, text(reader, "reason")}; }
-
-  /// Reads a number, or a range `[low, high]`.
-  std::optional<NumberRange> range(const YamlNode& node, std::string_view key,
-                                   IntegerRange limits) {
-    if (node.kind != YamlNode::Kind::sequence) {
-      const auto value = read_integer(node, key, limits, report_);
-      if (!value) return {};
-      return NumberRange{static_cast<std::uint32_t>(*value), static_cast<std::uint32_t>(*value)};
-    }
-    if (node.items.size() != 2) {
-      report_.error(node.pos, "wrong-type",
-                    "`" + std::string{key} + "` takes a number or `[lowest, highest]`");
-      return {};
-    }
-    const auto low = read_integer(*node.items[0], key, limits, report_);
-    const auto high = read_integer(*node.items[1], key, limits, report_);
-    if (!low || !high) return {};
-    if (*low > *high) {
-      report_.error(node.pos, "out-of-range",
-                    "`" + std::string{key} + "`: write the lower number first");
-      return {};
-    }
-    return NumberRange{static_cast<std::uint32_t>(*low), static_cast<std::uint32_t>(*high)};
-  }
-
-  void take_range(MapReader& reader, std::string_view key, NumberRange& out, IntegerRange limits) {
-    const YamlNode* node = reader.take(key);
-    if (node == nullptr) return;
-    if (const auto value = range(*node, key, limits)) out = *value;
-  }
-
-  std::optional<Firmware> firmware(MapReader& reader, std::string_view key) {
-    Sourced<std::string> value;
-    reader.text(key, value);
-    if (!value.given) return {};
-    const auto version = Firmware::parse(*value);
-    if (!version) {
-      report_.error(value.pos, "not-a-version",
-                    "`" + std::string{key} + "` has to be a version like \"16.00.00\"");
-    }
-    return version;
-  }
-
-  void identity(MapReader& outer) {
-    firmware_in_revision(outer);
-    const YamlNode* node = outer.take("match");
-    if (node == nullptr) {
-      report_.error(
-          root_.pos, "missing-key",
-          "the entry lacks `match: {vendor_id: ..., product_code: ..., revision: ...}` "
-          "or a list of them, or `match: none` if only `device:` of a node shall select the entry");
-      return;
-    }
-    if (node->kind == YamlNode::Kind::scalar && node->text == "none") return;
-    if (node->kind != YamlNode::Kind::sequence) return match(*node);
-    if (node->items.empty() || node->items.size() > max_items) {
-      report_.error(node->pos, "wrong-type",
-                    "`match` has to be one identity, a list of identities, or `none`");
-      return;
-    }
-    for (const YamlNode* item : node->items) match(*item);
-  }
-
-  void match(const YamlNode& node) {
-    constexpr IntegerRange any{0, 0xFFFF'FFFF};
-    MapReader reader{node, "`match`", report_};
-    DeviceMatch out;
-    Sourced<std::uint32_t> vendor;
-    reader.integer("vendor_id", vendor, {1, 0xFFFF'FFFF});
-    take_range(reader, "product_code", out.product, any);
-    take_range(reader, "revision", out.revision, any);
-    reader.finish();
-    if (!vendor.given) report_.error(node.pos, "missing-key", "`match` lacks `vendor_id`");
-    out.vendor = *vendor;
-    data_.matches.push_back(out);
-  }
-
-  void firmware_in_revision(MapReader& outer) {
-    Sourced<bool> is_firmware;
-    outer.boolean("revision_is_firmware", is_firmware);
-    data_.revision_is_firmware = *is_firmware;
-  }
-
-  void node_ids(MapReader& reader) {
-    take_range(reader, "range", data_.node_ids.ids, {1, 127});
-    need(reader, "range");
-    data_.node_ids.fact = fact(reader, reader.key_pos("range"));
-  }
-
-  void heartbeat(MapReader& reader) {
-    need(reader, "multiple_of_ms");
-    Sourced<std::uint16_t> multiple;
-    reader.integer("multiple_of_ms", multiple, {1, 1000, " ms"});
-    data_.heartbeat = {.fact = fact(reader, reader.key_pos("multiple_of_ms")),
-                       .multiple_of_ms = multiple.value_or(1)};
-  }
-
-  void value(const YamlNode& item) {
-    MapReader reader{item, "`sdo`", report_};
-    need(reader, "index");
-    need(reader, "value");
-    Sourced<std::uint16_t> index;
-    Sourced<std::uint8_t> sub;
-    Sourced<std::int64_t> number;
-    reader.integer("index", index, {0x1000, 0xFFFF});
-    reader.integer("sub_index", sub);
-    reader.integer("value", number, {-0x8000'0000LL, 0xFFFF'FFFFLL});
-    ValueEdit edit{.fact = fact(reader, item.pos), .object = {*index, *sub}, .value = *number};
-    reader.finish();
-    if (is_pdo_parameter(*index)) {
-      report_.error(
-          index.pos, "wrong-object",
-          "`sdo` is not for PDO parameters (0x1400..0x1BFF); write rules of `tpdo` and `rpdo`");
-      return;
-    }
-    data_.values.push_back(std::move(edit));
-  }
-
-  void timeout(const YamlNode& item) {
-    MapReader reader{item, "`sdo_timeouts`", report_};
-    need(reader, "index");
-    need(reader, "timeout_ms");
-    Sourced<std::uint16_t> index;
-    Sourced<std::uint8_t> sub;
-    Sourced<std::uint32_t> ms;
-    reader.integer("index", index, {0x1000, 0xFFFF});
-    reader.integer("sub_index", sub);
-    reader.integer("timeout_ms", ms, {1, 600'000, " ms"});
-    TimeoutEdit edit{.fact = fact(reader, item.pos), .timeout = {.index = *index}};
-    reader.finish();
-    if (sub.given) edit.timeout.sub = *sub;
-    edit.timeout.timeout = std::chrono::milliseconds{*ms};
-    data_.timeouts.push_back(std::move(edit));
-  }
-
-  void pdo(const YamlNode& item, bool is_tpdo) {
-    MapReader reader{item, is_tpdo ? "`tpdo`" : "`rpdo`", report_};
-    PdoRule rule{.fact = {}, .is_tpdo = is_tpdo, .types = {}, .answers = {}};
-    take_range(reader, "numbers", rule.numbers, {1, 512});
-    if (const YamlNode* types = reader.take("transmission")) read_types(*types, rule.types);
-    if (const YamlNode* types = reader.take("answers_rpdo")) read_types(*types, rule.answers);
-    Sourced<bool> without_timer;
-    reader.boolean("without_timer", without_timer);
-    rule.without_timer = *without_timer;
-    Sourced<bool> without_rtr;
-    reader.boolean("without_rtr", without_rtr);
-    rule.without_rtr = *without_rtr;
-    Sourced<bool> no_more_entries;
-    reader.boolean("no_more_entries", no_more_entries);
-    rule.no_more_entries = *no_more_entries;
-    Sourced<bool> no_gaps;
-    reader.boolean("no_gaps", no_gaps);
-    rule.no_gaps = *no_gaps;
-    if (const YamlNode* function = reader.take("function")) {
-      constexpr std::array<std::string_view, 2> names{"process_data", "parameter_channel"};
-      if (const auto choice = read_choice(*function, "function", names, report_)) {
-        rule.function = static_cast<PdoFunction>(*choice);
-      }
-    }
-    rule.fact = fact(reader, item.pos);
-    reader.finish();
-    data_.pdos.push_back(std::move(rule));
-  }
-
-  void read_types(const YamlNode& node, std::vector<NumberRange>& out) {
-    if (node.kind != YamlNode::Kind::sequence || node.items.empty() || node.items.size() > 256) {
-      report_.error(
-          node.pos, "wrong-type",
-          "transmission types have to be a list of numbers and ranges: [[1, 240], 254, 255]");
-      return;
-    }
-    for (const YamlNode* item : node.items) {
-      if (const auto types = range(*item, "transmission", {0, 255})) out.push_back(*types);
+  for (const YamlPair& pair : in.node.pairs) {
+    const auto code = read_number_key(pair, in.key.name, emcy_codes, in.report());
+    auto meaning = read_text(*pair.value, in.key.name, in.report());
+    if (code && meaning) {
+      data.emcy.push_back({static_cast<std::uint16_t>(*code), std::move(*meaning)});
     }
   }
+}
 
-  void inhibit(MapReader& reader) {
-    Sourced<std::uint32_t> unit, least, factory;
-    reader.integer("unit_us", unit, {1, 1'000'000, " us"});
-    reader.integer("least", least, {0, 65535});
-    reader.integer("default", factory, {0, 65535});
-    data_.inhibit = {.fact = fact(reader, reader.key_pos("unit_us")),
-                     .unit_us = unit.value_or(100),
-                     .least = *least,
-                     .factory = *factory};
-  }
-
-  void timer(MapReader& reader) {
-    if (const YamlNode* meaning = reader.take("meaning")) {
-      constexpr std::array<std::string_view, 3> names{"restarts", "additional", "alone"};
-      if (const auto choice = read_choice(*meaning, "meaning", names, report_)) {
-        data_.timer.meaning = static_cast<TimerMeaning>(*choice);
-      }
-    }
-    data_.timer.fact = fact(reader, reader.key_pos("meaning"));
-  }
-
-  void sync(MapReader& reader) {
-    data_.sync.own_tpdos_from = firmware(reader, "own_tpdos_from");
-    Sourced<std::uint16_t> tx_identifier;
-    reader.integer("tx_identifier", tx_identifier, {0x1000, 0xFFFF});
-    data_.sync.tx_identifier = *tx_identifier;
-    data_.sync.fact = fact(reader, reader.key_pos("own_tpdos_from"));
-  }
-
-  void object(const YamlNode& item) {
-    MapReader reader{item, "`objects`", report_};
-    ObjectEdit edit{.fact = {}, .object = {}, .access = {}, .from = {}, .below = {}};
-    Sourced<std::uint16_t> index;
-    Sourced<std::uint8_t> sub;
-    Sourced<bool> missing;
-    reader.integer("index", index, {0x1000, 0xFFFF});
-    reader.integer("sub_index", sub);
-    reader.boolean("missing", missing);
-    if (const YamlNode* access = reader.take("access")) {
-      constexpr std::array<std::string_view, 6> names{"ro", "wo", "rw", "rwr", "rww", "const"};
-      if (const auto choice = read_choice(*access, "access", names, report_)) {
-        edit.access = static_cast<Access>(*choice);
-      }
-    }
-    edit.from = firmware(reader, "firmware_from");
-    edit.below = firmware(reader, "firmware_below");
-    edit.fact = fact(reader, item.pos);
-    reader.finish();
-    edit.object = {*index, *sub};
-    edit.whole = !sub.given;
-    if (!index.given || *missing == edit.access.has_value()) {
-      report_.error(
-          item.pos, "missing-key",
-          "an entry of `objects` needs an `index`, and either `missing: true` or `access`");
-      return;
-    }
-    data_.objects.push_back(std::move(edit));
-  }
-
-  void sdo_server(const YamlNode& item) {
-    MapReader reader{item, "`sdo_servers`", report_};
-    for (const std::string_view key : {"index", "request", "answer"}) need(reader, key);
-    Sourced<std::uint16_t> index, request, answer;
-    reader.integer("index", index, {0x1201, 0x127F});
-    reader.integer("request", request, {0x180, 0x77F});
-    reader.integer("answer", answer, {0x180, 0x77F});
-    data_.sdo_servers.push_back(
-        {.fact = fact(reader, item.pos), .index = *index, .request = *request, .answer = *answer});
-    reader.finish();
-  }
-
-  void boot(MapReader& reader) {
-    BootTweaks& boot = data_.boot;
-    if (const YamlNode* reset = reader.take("reset")) {
-      constexpr std::array<std::string_view, 3> names{"communication", "node", "none"};
-      if (const auto choice = read_choice(*reset, "reset", names, report_)) {
-        boot.reset = static_cast<ResetPolicy>(*choice);
-      }
-    }
-    Sourced<bool> later;
-    Sourced<std::uint32_t> after_bootup, before_start;
-    reader.boolean("values_after_pdos", later);
-    reader.integer("pause_after_bootup_ms", after_bootup, {0, 60'000, " ms"});
-    reader.integer("pause_before_start_ms", before_start, {0, 60'000, " ms"});
-    boot.values_after_pdos = *later;
-    boot.pause_after_bootup_ms = *after_bootup;
-    boot.pause_before_start_ms = *before_start;
-    boot.fact = fact(reader, root_.pos);
-  }
-
-  void emcy(MapReader& reader) {
-    const YamlNode* node = reader.take("emcy");
-    if (node == nullptr) return;
-    if (node->kind != YamlNode::Kind::map || node->pairs.size() > max_items) {
-      report_.error(node->pos, "wrong-type", "`emcy` has to be a map of error codes to texts");
-      return;
-    }
-    for (const YamlPair& pair : node->pairs) {
-      YamlNode code;
-      code.kind = YamlNode::Kind::scalar;
-      code.text = pair.key;
-      code.pos = pair.key_pos;
-      const auto number = read_integer(code, "emcy", {1, 0xFFFF}, report_);
-      auto meaning = read_text(*pair.value, "emcy", report_);
-      if (number && meaning) {
-        data_.emcy.push_back({static_cast<std::uint16_t>(*number), std::move(*meaning)});
-      }
-    }
-  }
-
-  const YamlNode& root_;
-  DeviceData& data_;
-  NetworkReport& report_;
+constexpr KeyValue pdo_rules{.type = KeyType::list, .parts = rows_of<pdo_keys>};
+constexpr Key<DeviceData> device_keys[] = {
+    required(key<&DeviceData::name>("name", "", "The family.")),
+    key<&DeviceData::manual>("manual", "none", "The source of the facts."),
+    key<&DeviceData::revision_is_firmware>("revision_is_firmware", "false",
+                                           "0x1018:03 is the firmware version: the main version "
+                                           "in the upper half, the sub-version in the lower "
+                                           "half."),
+    required(key<read_match>(
+        "match", {.type = KeyType::list, .words = no_match, .parts = rows_of<match_keys>}, "",
+        "One identity or a list of them, or `none`: only `device:` of a node "
+        "selects the entry.")),
+    map_key<&DeviceData::node_ids, node_id_keys>("node_ids", "1..127",
+                                                 "The node ids of the device."),
+    map_key<&DeviceData::heartbeat, heartbeat_keys>("heartbeat", "1 ms",
+                                                    "The resolution of heartbeat times."),
+    list_key<&DeviceData::values, value_keys, check_value>("sdo", "none", "Values to write."),
+    list_key<&DeviceData::timeouts, timeout_keys>("sdo_timeouts", "none",
+                                                  "Objects that take longer."),
+    key<read_pdo_rules>("tpdo", pdo_rules, "CiA 301", "What the TPDOs can do."),
+    key<read_pdo_rules>("rpdo", pdo_rules, "CiA 301", "What the RPDOs can do."),
+    map_key<&DeviceData::inhibit, inhibit_keys>("inhibit_time", "CiA 301", "Inhibit times."),
+    map_key<&DeviceData::timer, timer_keys>("event_timer", "CiA 301", "Event timers."),
+    map_key<&DeviceData::sync, sync_keys>("sync_producer", "CiA 301",
+                                          "The device as producer of SYNC."),
+    list_key<&DeviceData::objects, object_keys, check_object>("objects", "none",
+                                                              "Differences from the EDS."),
+    list_key<&DeviceData::sdo_servers, server_keys>(
+        "sdo_servers", "none",
+        "SDO servers that may be on from the factory, although the EDS has them off or does not "
+        "have them. If one meets another node, the plan warns."),
+    map_key<&DeviceData::boot, boot_keys>("boot", "CiA 302-2", "How to boot the device."),
+    key<&DeviceData::on_sync_loss>("on_sync_loss", "unknown",
+                                   "A sentence on what the outputs do when SYNC stays away for "
+                                   "longer than 0x1006 allows. `takt audit` then relies on it."),
+    key<read_emcy>("emcy", {.type = KeyType::numbered, .range = emcy_codes}, "none",
+                   "Error codes in words: `{0x2310: \"overcurrent\"}`."),
 };
 
 }  // namespace
+
+KeyRows device_data_rows() { return rows_of<device_keys>(); }
 
 std::optional<DeviceData> read_device_data(std::string_view text, const std::string& file,
                                            Findings& findings) {
@@ -375,10 +280,8 @@ std::optional<DeviceData> read_device_data(std::string_view text, const std::str
   DeviceData data;
   data.file = file;
   data.id = std::filesystem::path{file}.stem().string();
-  if (tree.root() != nullptr) {
-    NetworkReport report{file, own};
-    DeviceReader{*tree.root(), data, report}.run();
-  }
+  NetworkReport report{file, own};
+  if (tree.root() != nullptr) read_map(*tree.root(), "the device data", device_keys, data, report);
   const bool usable = tree.root() != nullptr && !has_error(own);
   findings.insert(findings.end(), own.begin(), own.end());
   if (!usable) return {};

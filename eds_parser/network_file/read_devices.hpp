@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "eds_parser/network_file/key_table.hpp"
 #include "eds_parser/specification/device_data.hpp"
 
 namespace takt {
@@ -13,6 +14,8 @@ namespace takt {
 /// file cannot be used.
 std::optional<DeviceData> read_device_data(std::string_view text, const std::string& file,
                                            Findings& findings);
+
+KeyRows device_data_rows();
 
 /// Returns the folders of the device data: first those of TAKT_DEVICES (separated by `:`), then
 /// those that came with takt: beside the program, in the place of installation, in its source tree.

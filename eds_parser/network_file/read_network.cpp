@@ -1,7 +1,6 @@
 #include "eds_parser/network_file/read_network.hpp"
 
 #include <algorithm>
-#include <array>
 #include <deque>
 #include <set>
 #include <utility>
@@ -13,12 +12,12 @@
 namespace takt {
 namespace {
 
-constexpr std::array<std::string_view, 8> section_names{
-    "options", "master", "defaults", "nodes", "bus", "lcm", "realtime", "black_box"};
 constexpr std::size_t max_nodes = 127;
 
-bool is_section(std::string_view key) {
-  return std::ranges::find(section_names, key) != section_names.end();
+std::vector<std::string_view> section_names() {
+  std::vector<std::string_view> names;
+  for (const auto& section : network_keys()) names.push_back(section.name);
+  return names;
 }
 
 /// Returns the node, completed by the keys of `defaults` that it does not have itself.
@@ -59,23 +58,23 @@ class NetworkReader {
 
  private:
   void read_sections() {
-    const auto section = [&](std::string_view key, auto read) {
-      if (const YamlNode* node = root_.find(key)) read(*node, spec_, report_);
-    };
-    section("options", read_options);
-    section("bus", read_bus);
-    section("master", read_master);
-    section("realtime", read_realtime);
-    section("lcm", read_lcm);
-    section("black_box", read_black_box);
+    MapReader map{root_, "the network file", report_};
+    for (const auto& section : network_keys()) {
+      const YamlNode* node = root_.find(section.name);
+      if (node != nullptr && section.read != nullptr) section.read({map, section, *node}, spec_);
+    }
+  }
+
+  bool is_section(std::string_view key) const {
+    return std::ranges::find(names_, key) != names_.end();
   }
 
   void read_top_level(const YamlPair& pair) {
     if (is_node(pair)) return add(pair);
-    slipped_ = slipped_ || nearest(pair.key, section_names) == "nodes";
+    slipped_ = slipped_ || nearest(pair.key, names_) == "nodes";
     report_.error(pair.key_pos, "unknown-key",
                   "unknown section `" + pair.key + "` (a node needs a `node_id`)" +
-                      did_you_mean(pair.key, section_names));
+                      did_you_mean(pair.key, names_));
   }
 
   /// Whether a section is a node. The master also has a `node_id`, so a section whose name is
@@ -84,7 +83,7 @@ class NetworkReader {
     if (pair.value->kind != YamlNode::Kind::map) return false;
     if (pair.value->find("dcf") != nullptr) return true;
     if (pair.value->find("node_id") == nullptr) return false;
-    return nearest(pair.key, section_names) != "master" ||
+    return nearest(pair.key, names_) != "master" ||
            with_defaults(*pair.value, root_.find("defaults")).find("dcf") != nullptr;
   }
 
@@ -131,6 +130,7 @@ class NetworkReader {
   NetworkSpec& spec_;
   Findings& findings_;
   NetworkReport report_;
+  const std::vector<std::string_view> names_ = section_names();
   std::set<std::pair<SourcePos, std::string_view>> told_;
   bool found_node_ = false;
   bool slipped_ = false;  ///< `nodes` is misspelled, and that is already reported

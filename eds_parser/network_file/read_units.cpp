@@ -3,72 +3,49 @@
 namespace takt {
 namespace {
 
-void read_unit_fields(MapReader& reader, UnitSpec& unit) {
-  NetworkReport& report = reader.report();
-  Sourced<double> offset;
-  Sourced<std::int32_t> sign;
-  Sourced<std::string> text;
-  reader.number("scale", unit.scale);
-  reader.number("offset", offset);
-  reader.integer("sign", sign, {-1, 1});
-  reader.text("unit", text);
-  reader.finish();
-  if (unit.scale.given && *unit.scale <= 0) {
-    report.error(unit.scale.pos, "out-of-range",
-                 "`scale` of " + reader.what() +
-                     " has to be above 0 (SI units per count); `sign: -1` reverses the direction");
-    unit.scale.value = 1;
-  }
-  if (sign.given && *sign == 0) {
-    report.error(sign.pos, "out-of-range", "`sign` of " + reader.what() + " has to be 1 or -1");
-  }
-  unit.offset = *offset;
-  unit.sign = sign.given && *sign < 0 ? -1 : 1;
-  unit.unit = *text;
+void read_scale(const KeyInput& in, UnitSpec& unit) {
+  set(in, unit.scale);
+  if (*unit.scale > 0) return;
+  in.error("out-of-range", in.what() +
+                               " has to be above 0 (SI units per count); `sign: -1` reverses the "
+                               "direction");
+  unit.scale.value = 1;
 }
 
-std::optional<UnitSpec> read_unit(const YamlNode& node, const std::string& what,
-                                  NetworkReport& report) {
-  MapReader reader{node, what, report};
-  UnitSpec unit;
-  unit.pos = node.pos;
-  read_unit_fields(reader, unit);
-  return unit;
+void read_sign(const KeyInput& in, UnitSpec& unit) {
+  set(in, unit.sign);
+  if (unit.sign == 0) in.error("out-of-range", in.what() + " has to be 1 or -1");
 }
+
+constexpr Key<UnitSpec> unit_keys[] = {
+    key<read_scale>("scale", {.type = KeyType::number}, "1", "SI units per count; above 0."),
+    key<&UnitSpec::offset>("offset", "0", "The SI value of 0 counts."),
+    key<read_sign>("sign", whole(-1, 1), "1", "-1 reverses the direction."),
+    key<&UnitSpec::unit>("unit", "none", "The unit of the SI value, for example `rad`."),
+};
+
+constexpr Key<ObjectUnitSpec> object_keys[] = {
+    index_key<ObjectUnitSpec>(),
+    sub_index_key<ObjectUnitSpec>(),
+    group<&ObjectUnitSpec::unit, unit_keys>(),
+};
+
+constexpr Key<UnitsSpec> units_keys[] = {
+    map_key<&UnitsSpec::position, unit_keys>("position", "counts", "For positions."),
+    map_key<&UnitsSpec::velocity, unit_keys>("velocity", "counts", "For velocities."),
+    map_key<&UnitsSpec::acceleration, unit_keys>("acceleration", "counts", "For accelerations."),
+    map_key<&UnitsSpec::torque, unit_keys>("torque", "counts", "For torques."),
+    list_key<&UnitsSpec::objects, object_keys>("objects", "counts", "For single objects."),
+};
 
 }  // namespace
 
-UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report) {
-  UnitsSpec units;
-  const std::size_t errors = report.errors();
-  MapReader reader{node, "`units` of " + owner, report};
-  const auto quantity = [&](std::string_view key, std::optional<UnitSpec>& out) {
-    if (const YamlNode* map = reader.take(key)) {
-      out = read_unit(*map, "`" + std::string{key} + "` units of " + owner, report);
-    }
-  };
-  quantity("position", units.position);
-  quantity("velocity", units.velocity);
-  quantity("acceleration", units.acceleration);
-  quantity("torque", units.torque);
-  if (const YamlNode* list = reader.take("objects")) {
-    if (list->kind != YamlNode::Kind::sequence) {
-      report.error(
-          list->pos, "wrong-type",
-          "`objects` has to be a list of `{index: 0x2000, sub_index: 1, scale: 0.1, unit: V}`");
-    }
-    for (const YamlNode* item : list->items) {
-      MapReader entry{*item, "an entry of `units: objects` of " + owner, report};
-      const auto key = read_object_key(entry, item->pos);
-      UnitSpec unit;
-      unit.pos = item->pos;
-      read_unit_fields(entry, unit);
-      if (key) units.objects.push_back({*key, unit});
-    }
-  }
-  reader.finish();
-  units.has_errors = report.errors() != errors;
-  return units;
+void read_units(const KeyInput& in, NodeSpec& node) {
+  const std::size_t errors = in.report().errors();
+  read_map(in.node, in.what(), units_keys, node.units, in.report());
+  node.units.has_errors = in.report().errors() != errors;
 }
+
+KeyRows units_rows() { return rows_of<units_keys>(); }
 
 }  // namespace takt

@@ -1,47 +1,90 @@
 #pragma once
-#include "eds_parser/network_file/map_reader.hpp"
+#include "eds_parser/network_file/key_table.hpp"
 #include "eds_parser/specification/network_spec.hpp"
 
 namespace takt {
 
-// One function reads each section of a network file. All of them report errors and go on.
+// The tables of keys of a network file, one function or row for each section. All readers report
+// errors and go on.
 
-void read_bus(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
-void read_options(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
-void read_master(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
-void read_realtime(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
-void read_black_box(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
-void read_lcm(const YamlNode& node, NetworkSpec& spec, NetworkReport& report);
+inline constexpr KeyOrigin bus_yml = KeyOrigin::bus_yml;
+
+/// Returns the rows of the file as a whole: its sections.
+std::span<const Key<NetworkSpec>> network_keys() noexcept;
 
 /// Message for unknown keys beside `driver`. ros2_canopen passes the whole map to the class named
 /// there.
 inline constexpr std::string_view driver_key =
     ": takt has no key of this name and ignores it; the class of `driver` may read it";
+inline constexpr std::string_view other_reader = "only other programs read it";
+
+/// Keys of ros2_canopen that the master and the nodes may have.
+template <class T>
+inline constexpr Key<T> ros_keys[] = {
+    foreign<T>("driver",
+               "it names the C++ class of a ROS 2 driver; takt needs no driver, profiles follow "
+               "from the device"),
+    foreign<T>("package", "it is the ROS 2 package of the driver"),
+    foreign<T>("namespace remappings",
+               "ROS 2 names; LCM channels are named after the bus and the node"),
+    foreign<T>("polling", "ROS 2 publishing; the image is published every cycle"),
+    foreign<T>("period",
+               "rate of a ROS 2 timer; the cycle is `sync_period`, or `cycle` of `master`"),
+    foreign<T>("non_transmit_timeout",
+               "it is for the ROS 2 driver; in takt `realtime: receive_window_us` judges PDOs"),
+    foreign<T>("diagnostics", "ROS 2 diagnostics; in takt `takt status` and BUS_STATUS show them"),
+    foreign<T>("boot_timeout", "it is for the ROS 2 driver; the key of takt is `boot_timeout_ms`"),
+};
+
+void read_master(const KeyInput& in, NetworkSpec& spec);
+KeyRows master_rows();
 
 /// Reads one node. Keys of `defaults` that the node does not have itself are already merged into
 /// it.
 NodeSpec read_node(const YamlNode& node, const std::string& name, SourcePos pos,
                    NetworkReport& report);
+KeyRows node_rows();
 
-/// Reads `tpdo:` or `rpdo:` of a node. `key` is "tpdo" or "rpdo".
-std::vector<PdoSpec> read_pdos(const YamlNode& node, std::string_view key, const std::string& owner,
-                               NetworkReport& report);
+/// Reads `tpdo` or `rpdo` of a node.
+void read_pdos(const KeyInput& in, std::vector<PdoSpec>& pdos);
+KeyRows pdo_rows();
+
 /// Reads a list of `{index, sub_index, value}`. An object that appears twice without `again: true`
 /// is a warning in `sdo`, whose entries are written in order, and an error in other lists.
-std::vector<SdoSpec> read_objects(const YamlNode& node, std::string_view key,
-                                  const std::string& owner, NetworkReport& report);
-UnitsSpec read_units(const YamlNode& node, const std::string& owner, NetworkReport& report);
-LimitsSpec read_limits(const YamlNode& node, const std::string& owner, NetworkReport& report);
+void read_objects(const KeyInput& in, std::vector<SdoSpec>& objects);
+KeyRows object_rows();
 
-/// Reads `index` and `sub_index` of a list entry. Returns std::nullopt after an error, which it
-/// reports.
-std::optional<ObjectKey> read_object_key(MapReader& reader, SourcePos pos);
+void read_units(const KeyInput& in, NodeSpec& node);
+KeyRows units_rows();
+void read_limits(const KeyInput& in, NodeSpec& node);
+KeyRows limits_rows();
 
-/// Reads `heartbeat_consumer` and `heartbeat_producer` of the master or of a node.
-void read_heartbeat_ends(MapReader& reader, Sourced<bool>& consumer,
-                         Sourced<std::uint16_t>& producer);
+/// Reads `heartbeat_consumer`. Other programs take each number except 0 as true, and some files
+/// have a time in ms here.
+void read_consumer(const KeyInput& in, Sourced<bool>& consumer);
+/// Reads `heartbeat_producer`. A word for "no" gives 0 with a warning.
+void read_producer(const KeyInput& in, Sourced<std::uint16_t>& producer);
+/// Reads a bit rate in kbit/s. `baudrate` does not name its unit, so a value that can only be in
+/// bit/s counts as that.
+void read_bit_rate(const KeyInput& in, Sourced<std::uint32_t>& rate);
+/// Reads `heartbeat_multiplier`.
+void read_multiplier(const KeyInput& in, Sourced<double>& multiplier);
 
-/// Reads `sdo_block`, `sdo_channel` and `sdo_timeouts` of a node.
-void read_sdo_access(MapReader& reader, NodeSpec& node);
+/// Makes a function for a row that reads a member of `T` with one of the functions above.
+template <auto Read, auto Member>
+void with(const KeyInput& in, typename KeyTarget<decltype(Member)>::Type& target) {
+  Read(in, target.*Member);
+}
+
+/// The rows `index` and `sub_index` of an entry for one object.
+template <class T>
+constexpr Key<T> index_key() {
+  return required(key<&T::object, &ObjectKey::index>("index", whole(1, 0xFFFF), "",
+                                                     "The index of the object.", bus_yml));
+}
+template <class T>
+constexpr Key<T> sub_index_key() {
+  return key<&T::object, &ObjectKey::sub>("sub_index", "0", "The sub-index.", bus_yml);
+}
 
 }  // namespace takt

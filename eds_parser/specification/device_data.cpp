@@ -98,8 +98,8 @@ const DeviceData* find_device_data(std::span<const DeviceData> entries, const No
 
 std::optional<Firmware> firmware_of(const DeviceData* data, const NodeSpec& node,
                                     const ObjectDictionary& dictionary) noexcept {
-  if (node.firmware.given) return Firmware::parse(*node.firmware);
-  if (node.sim.firmware.given) return Firmware::parse(*node.sim.firmware);
+  if (node.firmware.given) return *node.firmware;
+  if (node.sim.firmware.given) return *node.sim.firmware;
   if (data == nullptr || !data->revision_is_firmware) return {};
   const std::uint32_t revision = identity_of(node, dictionary).revision;
   if (revision == 0) return {};

@@ -127,6 +127,7 @@ struct ObjectEdit {
   DeviceFact fact;
   ObjectKey object;
   bool whole = true;             ///< The edit applies to all sub-indices.
+  bool missing = false;          ///< The device does not have the object.
   std::optional<Access> access;  ///< empty if the object is missing
   std::optional<Firmware> from;
   std::optional<Firmware> below;

@@ -8,6 +8,7 @@
 
 #include "eds_parser/report/source.hpp"
 #include "eds_parser/table/bus_plan.hpp"
+#include "eds_parser/table/firmware.hpp"
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/run_options.hpp"
 #include "eds_parser/table/sdo_access.hpp"
@@ -65,6 +66,7 @@ struct SdoSpec {
   SourcePos pos;
   SourcePos value_pos;
   std::optional<std::string> quoted{};  ///< text as written, if it is in quotes
+  bool again = false;                   ///< The object is repeated on purpose.
 };
 
 /// SI value = sign * counts * scale + offset.
@@ -169,7 +171,7 @@ enum class ResetPolicy : std::uint8_t {
 
 struct SimSpec {
   std::string model;
-  Sourced<std::string> firmware;  ///< "15.02"
+  Sourced<Firmware> firmware;
   std::vector<std::string> quirks;
 };
 
@@ -188,7 +190,7 @@ struct NodeSpec {
   Sourced<std::uint32_t> serial_number;
   /// Entry of the device data, or "none"; if not given, the identity selects the entry.
   Sourced<std::string> device;
-  Sourced<std::string> firmware;  ///< "16.00.00"
+  Sourced<Firmware> firmware;
 
   Sourced<bool> lss;  ///< The node gets its node-ID by LSS if it has none.
   /// The node stores the node-ID that it gets by LSS.

@@ -6,11 +6,12 @@
 #include <set>
 #include <unordered_map>
 
-#include "apps/takt/import/key_table.hpp"
 #include "apps/takt/import/unasked.hpp"
 #include "eds_parser/ini/number.hpp"
+#include "eds_parser/network_file/key_reference.hpp"
 #include "eds_parser/network_file/load_network.hpp"
 #include "eds_parser/network_file/yaml_tree.hpp"
+#include "eds_parser/table/name_of.hpp"
 
 namespace takt {
 namespace {
@@ -164,6 +165,13 @@ Row* row_of(std::vector<Row>& rows, const Finding& finding) {
   return found == rows.rend() ? nullptr : &*found;
 }
 
+/// Returns what the key means, without the period at the end.
+std::string_view meaning_of(const Row& row) {
+  std::string_view text = key_meaning(row.key.path.substr(0, row.key.path.find('.')), row.word);
+  if (text.ends_with('.')) text.remove_suffix(1);
+  return text;
+}
+
 void apply(Row& row, const Finding& finding) {
   const KeyFate fate = fate_of(finding);
   if (finding.rule == "guarding") ++row.left_alone;
@@ -171,7 +179,7 @@ void apply(Row& row, const Finding& finding) {
   row.wrong_type = row.wrong_type || finding.rule == "wrong-type";
   row.unknown = row.unknown || finding.rule == "unknown-key";
   const std::string_view reason =
-      fate == KeyFate::ignored ? why_ignored(row.word) : std::string_view{};
+      finding.rule == "unused-key" ? meaning_of(row) : std::string_view{};
   const std::string text = reason.empty() ? finding.message : std::string{reason};
   const bool more = fate == row.key.fate && !row.key.why.empty() && row.key.why != text;
   row.key.why = more ? row.key.why + "; " + text : text;
@@ -220,7 +228,7 @@ std::vector<const YamlPair*> nodes_of(const YamlNode& root) {
 }
 
 std::string why_used(const Row& row) {
-  return row.key.why.empty() ? std::string{key_meaning(row.word)} : row.key.why;
+  return row.key.why.empty() ? std::string{meaning_of(row)} : row.key.why;
 }
 
 /// Judges the keys of `defaults`. A node takes such a key as a whole, or not at all if the node has
@@ -242,7 +250,7 @@ void judge_defaults(const YamlNode& root, std::vector<Row>& rows) {
       if (row.key.path != path && !is_within(row, path)) continue;
       if (row.left_alone != 0 && row.left_alone < nodes.size() - count) {
         row.key.fate = KeyFate::used;
-        row.key.why = std::string{key_meaning(row.word)} + "; but " + row.key.why;
+        row.key.why = std::string{meaning_of(row)} + "; but " + row.key.why;
       }
       if (count == 0) continue;
       if (count == nodes.size()) {
@@ -315,17 +323,8 @@ void judge_overrides(const YamlNode& root, std::vector<Row>& rows) {
 }  // namespace
 
 std::string_view name(KeyFate fate) noexcept {
-  switch (fate) {
-    case KeyFate::used:
-      return "used";
-    case KeyFate::ignored:
-      return "ignored";
-    case KeyFate::suspicious:
-      return "suspicious";
-    case KeyFate::wrong:
-      return "wrong";
-  }
-  return "";
+  static constexpr std::string_view names[]{"used", "ignored", "suspicious", "wrong"};
+  return name_of(fate, names);
 }
 
 std::size_t ImportReport::count(KeyFate fate) const noexcept {
@@ -358,7 +357,7 @@ ImportReport import_report(const std::filesystem::path& path) {
   ignore_children(rows);
   for (Row& row : rows) {
     if (!row.leaf && row.key.why.empty()) continue;
-    if (row.key.why.empty()) row.key.why = key_meaning(row.word);
+    if (row.key.why.empty()) row.key.why = meaning_of(row);
     report.keys.push_back(std::move(row.key));
   }
   return report;

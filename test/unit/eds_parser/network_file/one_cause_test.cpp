@@ -105,7 +105,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"{scale: 1.0e-6, unit: m}", "{unit: m, scale: 1 um}", "`1 um` is not a number"},
         Mistake{"{scale: 1.0e-6, unit: m}", "micrometers", "has to be a map"},
         // entries of lists
-        Mistake{"index: 0x6081,", "index: 0x1018, sub_index: 0A,", "`0A` is not a whole number"},
+        Mistake{"index: 0x6081,", "index: 0x1018, sub_index: 0A,",
+                "`0A` is hexadecimal without 0x"},
         Mistake{"    sdo: [", "    sdo_timeouts: [{index: 1F5A, timeout_ms: 9}]\n    sdo: [",
                 "`1F5A` is hexadecimal without 0x: write 0x1F5A"},
         Mistake{"    sdo: [", "    sdo_timeouts: [{index: 0x1F5A, timeout_ms: 9 s}]\n    sdo: [",
@@ -113,7 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"    sdo: [", "    sdo_timeouts: [{indx: 0x1F5A, timeout_ms: 9}]\n    sdo: [",
                 "did you mean `index`"},
         Mistake{"    sdo: [", "    sdo_timeouts: [{timeout_ms: 9}]\n    sdo: [", "lacks `index`"},
-        Mistake{"    sdo: [", "    sdo_timeouts: [{index: 0x1F5A}]\n    sdo: [", "has the form"},
+        Mistake{"    sdo: [", "    sdo_timeouts: [{index: 0x1F5A}]\n    sdo: [",
+                "lacks `timeout_ms`"},
         Mistake{"    sdo: [", "    sdo_channel: {request: 0x645, answer: abc}\n    sdo: [",
                 "`abc` is not a whole number"}));
 

@@ -43,7 +43,7 @@ TEST_F(Import, GuardingByDefaultIsUsedWhereOneNodeTakesIt) {
       "nodes: {arm: {node_id: 2}, leg: {node_id: 3, heartbeat_producer: 0}}\n");
 
   EXPECT_EQ(key(bus, "defaults.guard_time").fate, KeyFate::used);
-  EXPECT_THAT(key(bus, "defaults.guard_time").why, HasSubstr("node guarding, ms: 100C; but"));
+  EXPECT_THAT(key(bus, "defaults.guard_time").why, HasSubstr("without heartbeat; but"));
   EXPECT_THAT(key(bus, "defaults.guard_time").why, HasSubstr("`arm` has a heartbeat"));
 }
 
@@ -62,7 +62,7 @@ TEST_F(Import, TheRetryFactorOfAllIsUsedOnlyWhereANodeIsGuardedByIt) {
   EXPECT_THAT(fate(", heartbeat_producer: 0, guard_time: 100, retry_factor: 2"),
               HasSubstr("ignored: `retry_factor` of `options` has no effect: each guarded node"));
   EXPECT_EQ(fate(", heartbeat_producer: 0, guard_time: 100"),
-            "used: silence that is accepted, in guard times");
+            "used: The accepted silence, in guard times. 0: the master does not guard");
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eds_parser/network_file/key_table.hpp"
+
+namespace takt {
+
+/// The keys of one map.
+struct KeySection {
+  std::string name;  ///< for example "nodes: limits: objects"
+  KeyRows keys;
+};
+
+/// Returns the sections of a network file, each followed by the maps in it. Maps with the same keys
+/// are listed once.
+std::vector<KeySection> network_file_keys();
+/// Returns the same for a file of the device data; the name of the file as a whole is "entry".
+std::vector<KeySection> device_data_keys();
+
+/// Returns the keys as Markdown tables, each below a line with the name of its section.
+std::string key_reference(const std::vector<KeySection>& sections);
+
+/// Returns what a key of a network file means, or why takt accepts it without effect. `section` is
+/// the one in which the key is written; the name of a node counts as a section. Returns an empty
+/// text if takt does not know the key.
+std::string_view key_meaning(std::string_view section, std::string_view key);
+
+}  // namespace takt
