@@ -1,25 +1,13 @@
 #include "eds_parser/print/names.hpp"
 
+#include "eds_parser/table/name_of.hpp"
+
 namespace takt {
 
 std::string_view object_type_name(ObjectType type) noexcept {
-  switch (type) {
-    case ObjectType::null:
-      return "NULL";
-    case ObjectType::domain:
-      return "DOMAIN";
-    case ObjectType::deftype:
-      return "DEFTYPE";
-    case ObjectType::defstruct:
-      return "DEFSTRUCT";
-    case ObjectType::var:
-      return "VAR";
-    case ObjectType::array:
-      return "ARRAY";
-    case ObjectType::record:
-      return "RECORD";
-  }
-  return "VAR";
+  static constexpr std::string_view names[]{"NULL",    "VAR",       "DOMAIN", "VAR",   "VAR",
+                                            "DEFTYPE", "DEFSTRUCT", "VAR",    "ARRAY", "RECORD"};
+  return name_of(type, names, "VAR");
 }
 
 std::string_view list_name(const Object& object) noexcept {

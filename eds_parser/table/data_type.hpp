@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 namespace takt {
@@ -36,64 +38,19 @@ enum class DataType : std::uint16_t {
 
 /// Width in bits; 0 if the type has no fixed width (strings, domains, unknown codes).
 constexpr unsigned bit_width(DataType type) noexcept {
-  switch (type) {
-    case DataType::boolean:
-      return 1;
-    case DataType::integer8:
-    case DataType::unsigned8:
-      return 8;
-    case DataType::integer16:
-    case DataType::unsigned16:
-      return 16;
-    case DataType::integer24:
-    case DataType::unsigned24:
-      return 24;
-    case DataType::integer32:
-    case DataType::unsigned32:
-    case DataType::real32:
-      return 32;
-    case DataType::integer40:
-    case DataType::unsigned40:
-      return 40;
-    case DataType::integer48:
-    case DataType::unsigned48:
-    case DataType::time_of_day:
-    case DataType::time_difference:
-      return 48;
-    case DataType::integer56:
-    case DataType::unsigned56:
-      return 56;
-    case DataType::integer64:
-    case DataType::unsigned64:
-    case DataType::real64:
-      return 64;
-    case DataType::unknown:
-    case DataType::visible_string:
-    case DataType::octet_string:
-    case DataType::unicode_string:
-    case DataType::domain:
-      return 0;
-  }
-  return 0;
+  // By index of the type: integers, REAL32, strings; times, DOMAIN; 24 to 64 bits.
+  constexpr std::uint8_t bits[]{0, 1, 8,  16, 32, 8,  16, 32, 32, 0, 0,  0,  48, 48,
+                                0, 0, 24, 64, 40, 48, 56, 64, 24, 0, 40, 48, 56, 64};
+  const auto index = static_cast<std::size_t>(type);
+  return index < std::size(bits) ? bits[index] : 0;
 }
 
 /// Number of bytes in an SDO transfer (a BOOLEAN takes one byte); 0 if the width is not fixed.
 constexpr unsigned byte_width(DataType type) noexcept { return (bit_width(type) + 7) / 8; }
 
 constexpr bool is_signed(DataType type) noexcept {
-  switch (type) {
-    case DataType::integer8:
-    case DataType::integer16:
-    case DataType::integer24:
-    case DataType::integer32:
-    case DataType::integer40:
-    case DataType::integer48:
-    case DataType::integer56:
-    case DataType::integer64:
-      return true;
-    default:
-      return false;
-  }
+  const auto code = static_cast<unsigned>(type);
+  return (code >= 0x02 && code <= 0x04) || code == 0x10 || (code >= 0x12 && code <= 0x15);
 }
 
 constexpr bool is_real(DataType type) noexcept {

@@ -3,41 +3,29 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "eds_parser/table/name_of.hpp"
 #include "master/trace/candump_line.hpp"
 
 namespace takt {
 namespace {
 
 std::string_view call_text(Mark mark) noexcept {
-  switch (mark) {
-    case Mark::cycle:
-      return "begins the next cycle";
-    case Mark::now:
-      return "reads the clock";
-    case Mark::wait:
-      return "waits for a frame";
-    case Mark::receive:
-      return "takes the received frames";
-    case Mark::send:
-      return "sends frames";
-    case Mark::news:
-      return "reads the state of the interface";
-    case Mark::set_points:
-      return "takes the set-points";
-    case Mark::request:
-      return "takes a request";
-    case Mark::stop:
-      return "receives a stop request";
-    case Mark::replies_full:
-      return "can't pass on a reply";
-    case Mark::event:
-      return "reports an event";
-    case Mark::checkpoint:
-      return "saves a checkpoint";
-    case Mark::gap:
-      return "receives data that was too long to record";
-  }
-  return "does something unknown";
+  static constexpr std::string_view unknown = "does something unknown";
+  static constexpr std::string_view names[]{unknown,
+                                            "begins the next cycle",
+                                            "reads the clock",
+                                            "waits for a frame",
+                                            "takes the received frames",
+                                            "sends frames",
+                                            "reads the state of the interface",
+                                            "takes the set-points",
+                                            "takes a request",
+                                            "receives a stop request",
+                                            "can't pass on a reply",
+                                            "reports an event",
+                                            "receives data that was too long to record",
+                                            "saves a checkpoint"};
+  return name_of(mark, names, unknown);
 }
 
 std::string place(std::uint64_t cycle, std::int64_t ns) {

@@ -370,26 +370,10 @@ class NodeText {
 std::string node_name(std::uint8_t id) { return fmt::format("node_{}", id); }
 
 bool has_key_of_its_own(ObjectKey key) noexcept {
-  switch (key.index) {
-    case 0x1005:
-    case 0x1006:
-    case 0x1007:
-    case 0x100C:
-    case 0x100D:
-    case 0x1010:
-    case 0x1011:
-    case 0x1012:
-    case 0x1014:
-    case 0x1015:
-    case 0x1016:
-    case 0x1017:
-    case 0x1019:
-    case 0x1020:
-    case 0x1029:
-      return true;
-    default:
-      return false;
-  }
+  static constexpr std::uint16_t indices[]{0x1005, 0x1006, 0x1007, 0x100C, 0x100D,
+                                           0x1010, 0x1011, 0x1012, 0x1014, 0x1015,
+                                           0x1016, 0x1017, 0x1019, 0x1020, 0x1029};
+  return std::ranges::find(indices, key.index) != std::end(indices);
 }
 
 std::string node_text(const NodeToWrite& node, const LearnedBus& bus, Findings& findings) {
