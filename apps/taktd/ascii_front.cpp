@@ -47,7 +47,7 @@ void AsciiFront::serve() {
   server_->serve();
 }
 
-void AsciiFront::attach(Master& master, Bridge& bridge) {
+void AsciiFront::attach(MasterRun& master, Bridge& bridge) {
   master_ = &master;
   bridge_ = &bridge;
   bridge.welcome(gateway_);

@@ -9,7 +9,7 @@
 #include "master/gateway/ascii/ascii_gateway.hpp"
 #include "master/gateway/ascii/ascii_server.hpp"
 #include "master/gateway/bridge.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 
 namespace takt {
 
@@ -26,7 +26,7 @@ class AsciiFront {
   AsciiFront& operator=(const AsciiFront&) = delete;
 
   /// Must be called before the first serve(). `master` and `bridge` must outlive the AsciiFront.
-  void attach(Master& master, Bridge& bridge);
+  void attach(MasterRun& master, Bridge& bridge);
   void serve();
   void watch(std::vector<pollfd>& descriptors) const { server_->watch(descriptors); }
   const std::string& where() const noexcept { return server_->where(); }
@@ -34,7 +34,7 @@ class AsciiFront {
  private:
   explicit AsciiFront(const BusPlan& plan);
 
-  Master* master_ = nullptr;
+  MasterRun* master_ = nullptr;
   Bridge* bridge_ = nullptr;
   AsciiGateway gateway_;
   std::unique_ptr<AsciiServer> server_;

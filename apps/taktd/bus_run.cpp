@@ -54,7 +54,7 @@ std::thread BusRun::start_bus_thread(std::function<void()> body) {
 std::optional<Exit> BusRun::start() {
   const bool observe = front_.options.observe;
   prefault_heap(heap_bytes);
-  master_ = std::make_unique<Master>(network_.plan, MasterOptions{.observe = observe});
+  master_ = std::make_unique<MasterRun>(network_.plan, MasterRunOptions{.observe = observe});
   bus_->attach(*master_, recorder_.journal());
   master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
   if (!bus_thread_runs_) return Exit::bus_trouble;

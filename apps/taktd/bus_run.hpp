@@ -23,7 +23,7 @@
 #include "master/lcm/link/lcm_link.hpp"
 #include "master/linux/bus/bus_claim.hpp"
 #include "master/linux/rt_thread.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 
 namespace takt {
 
@@ -37,7 +37,7 @@ struct FrontThread {
 };
 
 /// Runs one bus, from the compiled network to the end of the ordered stop. The member functions
-/// execute on the front thread; the Master owns the bus thread.
+/// execute on the front thread; the MasterRun owns the bus thread.
 class BusRun {
  public:
   BusRun(LoadedNetwork network, const FrontThread& front);
@@ -111,7 +111,7 @@ class BusRun {
   Recorder recorder_;               // outlives master_
   std::optional<BusClaim> claim_;   // empty with --observe
   std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
-  std::unique_ptr<Master> master_;
+  std::unique_ptr<MasterRun> master_;
   std::unique_ptr<LcmLink> link_;
   std::unique_ptr<SecuredTransport> secured_;  // null without keys
   std::unique_ptr<Bridge> bridge_;

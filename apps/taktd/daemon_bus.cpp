@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "master/attach.hpp"
 #include "master/linux/bus_name.hpp"
 #include "master/linux/can/can_link.hpp"
 
@@ -41,7 +42,7 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
   return bus;
 }
 
-void DaemonBus::attach(Master& master, Journal* journal) {
+void DaemonBus::attach(MasterRun& master, Journal* journal) {
   if (simulated_) return master.attach(*simulated_, journal);
   std::visit([&](auto& port) { master.attach(port, journal); }, *port_);
 }

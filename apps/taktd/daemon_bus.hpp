@@ -10,7 +10,7 @@
 #include "eds_parser/table/device_table.hpp"
 #include "master/linux/bus/diagnostic_socket.hpp"
 #include "master/linux/bus/open_bus.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 #include "master/rt/journal/journal.hpp"
 
 namespace takt {
@@ -25,7 +25,7 @@ class DaemonBus {
 
   /// Connects `master` to the bus. The bus thread records what it receives into `journal` for the
   /// black box; `journal` may be null.
-  void attach(Master& master, Journal* journal);
+  void attach(MasterRun& master, Journal* journal);
   /// Detects foreign masters and COB-IDs with two senders. Returns null on a simulated bus and if
   /// the socket could not be opened.
   DiagnosticSocket* diagnostics() noexcept { return diagnostics_ ? &*diagnostics_ : nullptr; }

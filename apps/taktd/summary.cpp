@@ -36,7 +36,7 @@ std::string plan_summary(const LoadedNetwork& network) {
   return printable_lines(text);  // the names of device files come from the network file
 }
 
-std::string run_summary(const Master& master, const Bridge& bridge, std::uint64_t errors,
+std::string run_summary(const MasterRun& master, const Bridge& bridge, std::uint64_t errors,
                         std::uint64_t warnings) {
   const BusStatus& bus = bridge.status().bus;
   const TimingHistograms& timing = master.timing();

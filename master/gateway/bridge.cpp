@@ -38,7 +38,7 @@ Channels::Channels(const std::string& bus)
       transfer{channel_name(bus, "TRANSFER")},
       transfer_state{channel_name(bus, "TRANSFER_STATE")} {}
 
-Bridge::Bridge(Master& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
+Bridge::Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
                NoticeSink tell)
     : master_{master},
       transport_{transport},

@@ -24,7 +24,7 @@
 #include "master/lcm/front_budget.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/lcm/transport.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 
 namespace takt {
 
@@ -45,12 +45,12 @@ struct BridgeOptions {
   bool typed = true;      ///< also publishes a typed message for each node, see TypedChannels
 };
 
-/// The work of the front thread: turns images, states and events of a Master into messages, and
+/// The work of the front thread: turns images, states and events of a MasterRun into messages, and
 /// messages into set-points and requests. Reads clocks and never waits.
 class Bridge {
  public:
   /// `tell` receives all events and notices of the gateway, right after LCM.
-  Bridge(Master& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
+  Bridge(MasterRun& master, Transport& transport, const Clocks& clocks, BridgeOptions options,
          NoticeSink tell);
 
   /// Registers a guest that receives images, events and the replies to requests with
@@ -153,7 +153,7 @@ class Bridge {
     transport_.publish(channel, encode(message, buffer_));
   }
 
-  Master& master_;
+  MasterRun& master_;
   Transport& transport_;
   const Clocks& clocks_;
   FrontClock clock_ = [this] { return clocks_.now(); };

@@ -14,7 +14,7 @@ namespace takt {
 /// prediction would already belong to the following image, and the image would wait for a whole
 /// period.
 struct FrontRound {
-  /// Returns the predicted time of the next image; see Master::next_publish().
+  /// Returns the predicted time of the next image; see MasterRun::next_publish().
   std::function<Time()> next_image;
   /// Does everything that can be done now, images included. Returns the latest time of the next
   /// call.

@@ -5,8 +5,9 @@
 #include <set>
 
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/attach.hpp"
 #include "master/explain/boot_report.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "master/sim/bus/world.hpp"
 #include "test/fuzz/input.hpp"
@@ -156,7 +157,7 @@ class Bus {
   takt::sim::World world_;
   takt::sim::SimPort port_;
   takt::sim::RemotePort& stranger_;
-  takt::Master master_;
+  takt::MasterRun master_;
   std::uint64_t newest_ = 0;
   std::uint64_t asked_ = 0;
   std::set<std::uint64_t> answered_;

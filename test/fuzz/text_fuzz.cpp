@@ -32,7 +32,7 @@ class Gateway {
 
  private:
   void cycle() {
-    takt::Master& master = master_.master;
+    takt::MasterRun& master = master_.master;
     master.cycle();
     for (takt::ImageView image; master.take(image);) gateway_.see(image);
     for (takt::Event event; master.take(event);) gateway_.hear(event);

@@ -1,7 +1,8 @@
 #pragma once
 #include "eds_parser/network_file/load_network.hpp"
+#include "master/attach.hpp"
 #include "master/lcm/clocks.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "master/sim/bus/world.hpp"
 
@@ -30,7 +31,7 @@ class VirtualMaster {
   sim::SimPort port_;
 
  public:
-  Master master;
+  MasterRun master;
 };
 
 /// Its clock.

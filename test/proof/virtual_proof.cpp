@@ -51,7 +51,7 @@ class ForwardingPort {
 };
 
 /// One cycle, nothing allocated in it.
-void trapped_cycle(Master& master, ForwardingPort& port) {
+void trapped_cycle(MasterRun& master, ForwardingPort& port) {
   port.armed = true;
   proof::trap_allocations(true);
   master.cycle();
@@ -80,7 +80,7 @@ int prove(std::uint64_t cycles) {
   std::uint64_t images = 0;
   std::uint64_t replies = 0;
   std::uint64_t requests = 0;
-  Master& master = *rig.master;
+  MasterRun& master = *rig.master;
   for (std::uint64_t i = 0; i < cycles; ++i) {
     if (i % 100 == 0) requests += master.submit(upload(i));
     if (i == cycles / 2) rig.world->power(7_node, false);

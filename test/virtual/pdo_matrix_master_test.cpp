@@ -236,7 +236,7 @@ TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
       stall.until = rig.world->now() + 4700us;
       rig.world->add(stall);
     }
-    std::vector<Master::Command> commands;
+    std::vector<MasterRun::Command> commands;
     for (SignalIndex axis = 0; axis < 3; ++axis) {
       commands.push_back({static_cast<SignalIndex>(6 + axis), 0x000F});
       commands.push_back({static_cast<SignalIndex>(9 + axis), round});
@@ -255,7 +255,7 @@ TEST(PdoGroup, OneCommandBecomesValidWithOneSyncForAllAxes) {
 
 TEST(PdoGroup, WithASignalThatIsNoOutputIsRefusedWhole) {
   test::Rig rig{test::axes()};
-  const std::vector<Master::Command> commands{{6, 5}, {0, 5}};
+  const std::vector<MasterRun::Command> commands{{6, 5}, {0, 5}};
   EXPECT_FALSE(rig.master->set_group(commands, 0ns));
 }
 

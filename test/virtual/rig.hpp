@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "master/master.hpp"
+#include "master/attach.hpp"
+#include "master/master_run.hpp"
 #include "master/sim/bus/sim_port.hpp"
 #include "test/unit/master/core/pdo/small_plan.hpp"
 #include "test/unit/master/sim/device/sample_device.hpp"
@@ -75,7 +76,7 @@ struct RigOptions {
   Time heartbeat_timeout = std::chrono::milliseconds{60};
   sim::WorldOptions world{};
   sim::RemotePortOptions port{};
-  MasterOptions master{};
+  MasterRunOptions master{};
 };
 
 /// A complete master on the simulated bus, in virtual time.
@@ -97,7 +98,7 @@ class Rig {
     world = std::make_unique<sim::World>(devices, options.world);
     world->observe(&recorder);
     port = std::make_unique<sim::SimPort>(*world, options.port);
-    master = std::make_unique<Master>(std::move(plan), options.master);
+    master = std::make_unique<MasterRun>(std::move(plan), options.master);
     master->attach(*port);
     master->begin();
   }
@@ -166,7 +167,7 @@ class Rig {
   Recorder recorder;
   std::unique_ptr<sim::World> world;
   std::unique_ptr<sim::SimPort> port;
-  std::unique_ptr<Master> master;
+  std::unique_ptr<MasterRun> master;
   std::function<void(const ImageView&)> on_image;
   std::vector<Event> events;
   std::vector<std::int64_t> last_image;

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "master/attach.hpp"
+
 namespace takt {
 namespace {
 
@@ -34,7 +36,7 @@ VirtualDaemon::VirtualDaemon(const BusPlan& plan, StagedPort& port, VirtualLcm& 
 void VirtualDaemon::start() {
   session_ = static_cast<std::int64_t>(random_.next() >> 2 | 1U);
   drain(port_);
-  master_ = std::make_unique<Master>(plan_);
+  master_ = std::make_unique<MasterRun>(plan_);
   master_->attach(port_);
   master_->begin();
   bridge_ = std::make_unique<Bridge>(

@@ -10,7 +10,7 @@
 #include "master/gateway/bridge.hpp"
 #include "master/gateway/front_round.hpp"
 #include "master/lcm/clocks.hpp"
-#include "master/master.hpp"
+#include "master/master_run.hpp"
 #include "master/sim/random.hpp"
 
 namespace takt {
@@ -30,7 +30,7 @@ class VirtualClocks final : public Clocks {
 };
 
 /// Runs taktd in virtual time: cycle() is the bus thread, and the actor is the front thread. Both
-/// use the code of the real daemon: the Master and the Bridge, in the order of FrontRound.
+/// use the code of the real daemon: the MasterRun and the Bridge, in the order of FrontRound.
 class VirtualDaemon final : public Actor, private FrontGuest {
  public:
   struct Hears {
@@ -70,7 +70,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   bool finished() const noexcept { return master_->finished(); }
   void request_stop() { master_->request_stop(); }
   std::int64_t session() const noexcept { return session_; }
-  const Master& master() const noexcept { return *master_; }
+  const MasterRun& master() const noexcept { return *master_; }
   const Bridge& bridge() const noexcept { return *bridge_; }
   /// Number of messages lost because the queue was full, over all processes of this daemon.
   std::uint64_t lost() const noexcept { return lcm_.dropped(); }
@@ -95,7 +95,7 @@ class VirtualDaemon final : public Actor, private FrontGuest {
   Hears hears_;
   Meddle meddle_;
   std::int64_t session_ = 0;
-  std::unique_ptr<Master> master_;
+  std::unique_ptr<MasterRun> master_;
   std::unique_ptr<Bridge> bridge_;
   FrontRound round_;
   Time wake_ = never;   // end of the wait, or begin of the next step of the round

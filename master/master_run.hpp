@@ -5,19 +5,17 @@
 #include <memory>
 #include <span>
 #include <thread>
-#include <type_traits>
-#include <utility>
 
 #include "eds_parser/table/bus_plan.hpp"
-#include "master/rt/bus_loop.hpp"
+#include "master/rt/controller.hpp"
 #include "master/rt/exchange/exchange.hpp"
-#include "master/rt/journal/recorded_link.hpp"
-#include "master/rt/journal/recorded_port.hpp"
+#include "master/rt/journal/journal.hpp"
+#include "master/rt/port.hpp"
 
 namespace takt {
 
-/// Options of a Master.
-struct MasterOptions {
+/// Options of a MasterRun.
+struct MasterRunOptions {
   bool observe = false;              ///< The master only listens and sends nothing.
   Controller* controller = nullptr;  ///< Runs inside the bus thread; nullptr means no controller.
                                      ///< It must outlive the master.
@@ -30,21 +28,20 @@ using StartThread = std::function<std::thread(std::function<void()> body)>;
 /// Starts a thread with the default scheduling policy.
 std::thread start_plain_thread(std::function<void()> body);
 
-/// A CANopen master for one bus: it runs a plan on a port. The bus thread belongs to the master;
+/// One run of the master on one bus: it runs a plan on a port. The bus thread belongs to the run;
 /// all public functions must be called from one other thread, the front thread.
-class Master {
+class MasterRun {
  public:
-  explicit Master(BusPlan plan, MasterOptions options = {});
-  ~Master();  ///< Requests the ordered stop and waits for its end.
-  Master(const Master&) = delete;
-  Master& operator=(const Master&) = delete;
+  explicit MasterRun(BusPlan plan, MasterRunOptions options = {});
+  ~MasterRun();  ///< Requests the ordered stop and waits for its end.
+  MasterRun(const MasterRun&) = delete;
+  MasterRun& operator=(const MasterRun&) = delete;
 
   /// Connects the master to its bus; call this once, before start() or begin(). The run is recorded
-  /// to `journal`, unless that is null. `port` and `journal` must outlive the master.
+  /// to `journal`, unless that is null. `port` and `journal` must outlive the master. The definition
+  /// is in master/attach.hpp, which compiles the bus loop for the port.
   template <Port P>
-  void attach(P& port, Journal* journal = nullptr) {
-    runner_ = std::make_unique<Runner<P>>(plan_, port, journal, *exchange_, options_);
-  }
+  void attach(P& port, Journal* journal = nullptr);
 
   /// Runs the cycles on the bus thread until the ordered stop is over.
   void start(const StartThread& start_thread = start_plain_thread);
@@ -117,35 +114,21 @@ class Master {
   /// Events that were lost because the front thread did not take them in time.
   std::uint64_t event_overruns() const noexcept { return exchange_->events.overruns(); }
 
- private:
-  struct AnyRunner {
-    virtual ~AnyRunner() = default;
+  /// The bus loop, whatever its port is.
+  struct Runner {
+    virtual ~Runner() = default;
     virtual void start() noexcept = 0;
     virtual void cycle() noexcept = 0;
     virtual bool done() const noexcept = 0;
   };
-  template <Port P>
-  struct Runner final : AnyRunner {
-    Runner(const BusPlan& plan, P& bus, Journal* journal, Exchange& exchange,
-           const MasterOptions& options)
-        : port{bus, journal},
-          loop{plan,
-               port,
-               RecordedLink{exchange, journal},
-               {.observe = options.observe, .controller = options.controller}} {}
-    void start() noexcept override { loop.start(); }
-    void cycle() noexcept override { loop.cycle(); }
-    bool done() const noexcept override { return loop.done(); }
-    RecordedPort<P> port;
-    BusLoop<RecordedPort<P>, RecordedLink> loop;
-  };
 
+ private:
   void run() noexcept;
 
   BusPlan plan_;
-  MasterOptions options_;
+  MasterRunOptions options_;
   std::unique_ptr<Exchange> exchange_;
-  std::unique_ptr<AnyRunner> runner_;
+  std::unique_ptr<Runner> runner_;
   std::thread thread_;
 };
 
