@@ -18,7 +18,7 @@ passed=0
 failed=0
 failed_logs=
 
-sources() { find eds_parser master apps test \( -name '*.hpp' -o -name '*.cpp' \) -print; }
+sources() { find eds_parser master apps test share/include \( -name '*.hpp' -o -name '*.cpp' \) -print; }
 
 # A line of ctest's summary: "98% tests passed, 2 tests failed out of 100" -> "100 2"
 ctest_counts() { sed -n 's/.* passed, \([0-9]*\) tests failed out of \([0-9]*\)$/\2 \1/p' "$1" | tail -n 1; }

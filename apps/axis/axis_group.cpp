@@ -1,14 +1,17 @@
-#include "apps/axis/axis_group.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
+#include <optional>
 #include <poll.h>
 #include <span>
+#include <string_view>
+#include <takt/axis.hpp>
 #include <utility>
 
+#include "apps/axis/node_holders.hpp"
 #include "master/lcm/channel_names.hpp"
+#include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/messages.hpp"
 #include "master/lcm/random_number.hpp"
 
@@ -37,7 +40,65 @@ timespec to_timespec(std::chrono::nanoseconds time) {
 
 }  // namespace
 
-AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
+class AxisGroup::State {
+ public:
+  State(std::unique_ptr<Transport> lcm, AxisGroupOptions options);
+
+  Input wait(std::chrono::nanoseconds longest);
+  bool send();
+  bool release();
+  void sign_with(EnvelopeKey key);
+  void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
+  std::vector<event_t> take_events() { return std::exchange(events_, {}); }
+
+  AxisControl& axes() noexcept { return axes_; }
+  const ImageInput& input() const noexcept { return input_; }
+  const NodeHolder& holder(AxisControl::Index axis) const;
+  const std::string& sender() const noexcept { return sender_; }
+  const std::string& bus() const noexcept { return bus_; }
+  std::chrono::nanoseconds period() const noexcept;
+  std::chrono::nanoseconds age() const { return Clock::now() - arrival_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void serve();
+  void take(std::string_view channel, std::span<const std::byte> data);
+  void listen_to(std::string_view bus);
+  void take_image(std::span<const std::byte> data);
+  void take_layout(std::span<const std::byte> data);
+  void take_status(std::span<const std::byte> data);
+  void tell_schema(std::int16_t schema);
+  bool publish(command_t& command);
+  bool is_stale() const;
+
+  std::unique_ptr<Transport> lcm_;
+  AxisGroupOptions options_;
+  std::int64_t instance_;
+  std::string sender_;
+  std::string bus_;
+  std::string heard_;  // first bus whose layout arrived; only if no bus was configured
+  std::string image_channel_;
+  std::string layout_channel_;
+  std::string command_channel_;
+  std::string secured_channel_;
+  std::string event_channel_;
+  std::string status_channel_;
+  ImageInput input_;
+  AxisControl axes_;
+  NodeHolders holders_;
+  bool fresh_ = false;
+  bool new_layout_ = false;
+  bool told_stale_ = false;
+  bool told_schema_ = false;
+  bool commands_ = false;  // something was sent since the last release
+  Clock::time_point arrival_{};
+  std::optional<EnvelopeSeal> seal_;  // empty if there is no key
+  std::vector<event_t> events_;
+  std::vector<std::byte> buffer_;
+};
+
+AxisGroup::State::State(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
     : lcm_{std::move(lcm)},
       options_{std::move(options)},
       instance_{options_.instance != 0 ? options_.instance : random_number()},
@@ -51,7 +112,7 @@ AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
   }
 }
 
-void AxisGroup::listen_to(std::string_view bus) {
+void AxisGroup::State::listen_to(std::string_view bus) {
   bus_ = bus;
   image_channel_ = channel_name(bus_, "IMAGE");
   layout_channel_ = channel_name(bus_, "LAYOUT");
@@ -64,7 +125,7 @@ void AxisGroup::listen_to(std::string_view bus) {
   lcm_->subscribe(status_channel_);
 }
 
-void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) {
+void AxisGroup::State::take(std::string_view channel, std::span<const std::byte> data) {
   if (bus_.empty()) {
     heard_ = bus_of_channel(channel, "LAYOUT");
   } else if (channel == image_channel_) {
@@ -78,7 +139,7 @@ void AxisGroup::take(std::string_view channel, std::span<const std::byte> data) 
   }
 }
 
-void AxisGroup::take_image(std::span<const std::byte> data) {
+void AxisGroup::State::take_image(std::span<const std::byte> data) {
   const auto part = decode<image_t>(data);
   if (part) {
     fresh_ |= input_.take(*part);
@@ -87,7 +148,7 @@ void AxisGroup::take_image(std::span<const std::byte> data) {
   }
 }
 
-void AxisGroup::take_layout(std::span<const std::byte> data) {
+void AxisGroup::State::take_layout(std::span<const std::byte> data) {
   const auto part = decode<layout_t>(data);
   if (!part) return;
   if (part->schema != message_schema) return tell_schema(part->schema);
@@ -96,13 +157,13 @@ void AxisGroup::take_layout(std::span<const std::byte> data) {
   holders_.clear();
 }
 
-void AxisGroup::take_status(std::span<const std::byte> data) {
+void AxisGroup::State::take_status(std::span<const std::byte> data) {
   const auto part = decode<status_t>(data);
   const bool fits = part && part->schema == message_schema && input_.has_layout();
   if (fits && part->session == input_.session()) holders_.take(*part);
 }
 
-void AxisGroup::tell_schema(std::int16_t schema) {
+void AxisGroup::State::tell_schema(std::int16_t schema) {
   if (std::exchange(told_schema_, true) || events_.size() == most_events) return;
   event_t event{};
   event.schema = message_schema;
@@ -112,7 +173,7 @@ void AxisGroup::tell_schema(std::int16_t schema) {
   events_.push_back(std::move(event));
 }
 
-void AxisGroup::serve() {
+void AxisGroup::State::serve() {
   std::vector<pollfd> descriptors;
   int ready = 1;
   for (int i = 0; i < most_rounds && ready > 0; ++i) {  // empties the queue: only the newest counts
@@ -126,7 +187,7 @@ void AxisGroup::serve() {
   if (bus_.empty() && !heard_.empty()) listen_to(heard_);
 }
 
-Input AxisGroup::wait(std::chrono::nanoseconds longest) {
+Input AxisGroup::State::wait(std::chrono::nanoseconds longest) {
   const auto until = Clock::now() + longest;
   std::vector<pollfd> descriptors;
   while (true) {
@@ -155,16 +216,14 @@ Input AxisGroup::wait(std::chrono::nanoseconds longest) {
   }
 }
 
-AxisGroup::~AxisGroup() { release(); }
-
-bool AxisGroup::send() {
+bool AxisGroup::State::send() {
   commands_ = true;
   command_t& command = axes_.command();
   command.release = 0;
   return publish(command);
 }
 
-bool AxisGroup::release() {
+bool AxisGroup::State::release() {
   if (!std::exchange(commands_, false)) return true;
   command_t command{};
   command.schema = message_schema;
@@ -174,7 +233,7 @@ bool AxisGroup::release() {
   return publish(command);
 }
 
-bool AxisGroup::publish(command_t& command) {
+bool AxisGroup::State::publish(command_t& command) {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   command.utime = std::chrono::duration_cast<microseconds>(now).count();
@@ -187,27 +246,47 @@ bool AxisGroup::publish(command_t& command) {
                        seal_->seal(command_channel_, message, command.session, now));
 }
 
-void AxisGroup::sign_with(EnvelopeKey key) { seal_.emplace(std::move(key), random_number()); }
-
-bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions) {
-  axes_.set_positions(positions);
-  return send();
+void AxisGroup::State::sign_with(EnvelopeKey key) {
+  seal_.emplace(std::move(key), random_number());
 }
 
-const NodeHolder& AxisGroup::holder(AxisControl::Index axis) const {
+const NodeHolder& AxisGroup::State::holder(AxisControl::Index axis) const {
   return holders_[axes_.signals(axis).node];
 }
 
-std::chrono::nanoseconds AxisGroup::period() const noexcept {
+std::chrono::nanoseconds AxisGroup::State::period() const noexcept {
   return std::chrono::nanoseconds{input_.period_ns()};
 }
 
-std::chrono::nanoseconds AxisGroup::age() const { return Clock::now() - arrival_; }
-
-bool AxisGroup::is_stale() const {
+bool AxisGroup::State::is_stale() const {
   return input_.has_image() && age() > options_.stale_cycles * period();
 }
 
-std::vector<event_t> AxisGroup::take_events() { return std::exchange(events_, {}); }
+AxisGroup::AxisGroup(std::unique_ptr<Transport> lcm, AxisGroupOptions options)
+    : state_{std::make_unique<State>(std::move(lcm), std::move(options))} {}
+
+AxisGroup::~AxisGroup() { release(); }
+
+void AxisGroup::sign_with(EnvelopeKey key) { state_->sign_with(std::move(key)); }
+Input AxisGroup::wait(std::chrono::nanoseconds longest) { return state_->wait(longest); }
+bool AxisGroup::send() { return state_->send(); }
+bool AxisGroup::release() { return state_->release(); }
+std::vector<event_t> AxisGroup::take_events() { return state_->take_events(); }
+
+void AxisGroup::set_time_to_live(std::int32_t cycles) noexcept { state_->set_time_to_live(cycles); }
+
+bool AxisGroup::load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions) {
+  axes().set_positions(positions);
+  return send();
+}
+
+AxisControl& AxisGroup::axes() noexcept { return state_->axes(); }
+const ImageInput& AxisGroup::input() const noexcept { return state_->input(); }
+const std::string& AxisGroup::sender() const noexcept { return state_->sender(); }
+const std::string& AxisGroup::bus() const noexcept { return state_->bus(); }
+std::chrono::nanoseconds AxisGroup::period() const noexcept { return state_->period(); }
+std::chrono::nanoseconds AxisGroup::age() const { return state_->age(); }
+
+const NodeHolder& AxisGroup::holder(AxisControl::Index axis) const { return state_->holder(axis); }
 
 }  // namespace takt

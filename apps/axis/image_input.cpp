@@ -1,6 +1,5 @@
-#include "apps/axis/image_input.hpp"
-
 #include <algorithm>
+#include <takt/image_input.hpp>
 #include <utility>
 
 #include "master/lcm/messages.hpp"

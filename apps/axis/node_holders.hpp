@@ -3,21 +3,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <takt/axis.hpp>
 #include <takt/status_t.hpp>
 
 namespace takt {
-
-/// The program that commands the outputs of a node, as the newest status_t shows it.
-struct NodeHolder {
-  std::string name;  ///< name of its sender; empty if nobody commands the outputs
-  bool own = false;  ///< true if this is the program that asks
-  int statuses = 0;  ///< number of status_t in sequence that show this holder; 10 in a second
-
-  /// Returns true if at least the newest `sequence` status_t show the same other program.
-  bool is_other(int sequence = 1) const noexcept {
-    return !name.empty() && !own && statuses >= sequence;
-  }
-};
 
 /// Remembers which program holds each node.
 class NodeHolders {

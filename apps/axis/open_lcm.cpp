@@ -1,4 +1,4 @@
-#include "apps/axis/open_lcm.hpp"
+#include <takt/lcm.hpp>
 
 #include "master/lcm/link/lcm_url.hpp"
 #include "master/lcm/link/open_transport.hpp"

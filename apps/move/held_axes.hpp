@@ -1,7 +1,6 @@
 #pragma once
 #include <string>
-
-#include "apps/axis/axis_group.hpp"
+#include <takt/axis.hpp>
 
 namespace takt {
 

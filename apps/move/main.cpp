@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <memory>
 #include <sched.h>
+#include <takt/axis.hpp>
+#include <takt/lcm.hpp>
 #include <unistd.h>
 
-#include "apps/axis/axis_group.hpp"
-#include "apps/axis/open_lcm.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_run.hpp"
 #include "master/lcm/envelope/checked_transport.hpp"

@@ -1,9 +1,7 @@
 #pragma once
 #include <string>
-
-#include "apps/axis/axis_control.hpp"
-#include "apps/axis/axis_signals.hpp"
-#include "apps/axis/image_input.hpp"
+#include <takt/axis_control.hpp>
+#include <takt/image_input.hpp>
 
 namespace takt {
 

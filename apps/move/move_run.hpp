@@ -2,9 +2,9 @@
 #include <csignal>
 #include <functional>
 #include <string>
+#include <takt/axis.hpp>
 #include <vector>
 
-#include "apps/axis/axis_group.hpp"
 #include "apps/move/following.hpp"
 #include "apps/move/move_options.hpp"
 #include "apps/move/move_sizes.hpp"

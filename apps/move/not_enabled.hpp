@@ -1,8 +1,7 @@
 #pragma once
 #include <string>
+#include <takt/axis.hpp>
 #include <vector>
-
-#include "apps/axis/axis_group.hpp"
 
 namespace takt {
 

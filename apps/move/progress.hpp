@@ -4,10 +4,10 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <takt/axis.hpp>
 #include <utility>
 #include <vector>
 
-#include "apps/axis/axis_group.hpp"
 #include "apps/move/following.hpp"
 
 namespace takt {

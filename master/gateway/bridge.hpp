@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "master/gateway/command/commands.hpp"
@@ -23,7 +24,6 @@
 #include "master/lcm/clocks.hpp"
 #include "master/lcm/front_budget.hpp"
 #include "master/lcm/messages.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/master_run.hpp"
 
 namespace takt {

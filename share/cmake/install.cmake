@@ -1,5 +1,5 @@
 # cmake --install: programs, libraries, headers, data, documents, package files for CMake and pkg-config, files for systemd.
-# (The LCM types and their bindings are installed by share/lcm.)
+# (The LCM types and their bindings are installed by share/lcm, the public headers by share/include.)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -7,10 +7,6 @@ get_property(libraries GLOBAL PROPERTY TAKT_LIBRARIES)
 install(TARGETS ${libraries} EXPORT takt-targets)
 install(TARGETS takt taktd takt-move)
 
-set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/takt)
-install(DIRECTORY eds_parser master DESTINATION ${include_dir} FILES_MATCHING PATTERN *.hpp
-        REGEX "/master/(black_box|explain/frame|trace)$" EXCLUDE)
-install(DIRECTORY apps/axis DESTINATION ${include_dir}/apps FILES_MATCHING PATTERN *.hpp)
 install(PROGRAMS apps/python/axes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(FILES apps/python/envelopes.py DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/python)
 install(DIRECTORY share/devices share/eds share/demo DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)

@@ -6,7 +6,7 @@ check_rooms.py --self-test  shows that each rule can fail
 check_rooms.py --table      prints the rooms as Markdown tables, one for each library
 
 Rules: a room includes only the rooms (or single headers) of its line, and no rooms form a circle; the pure rooms use C++ and
-its standard library alone and read no clock; no two headers of one library have the same name; no two types have the same
+its standard library alone and read no clock; public headers include only C++, Eigen, the LCM types and each other; no two headers of one library have the same name; no two types have the same
 qualified name; test/unit mirrors the rooms.
 """
 import collections
@@ -94,6 +94,7 @@ ROOMS = {
                           "master/wire master/sim master/sim/dictionary master/sim/service master/sim/pdo master/sim/model"),
     "master/sim/bus": ("the wire, its faults, and the world of all devices",
                        "master/wire master/sim master/sim/device master/rt/port.hpp"),
+    "master/units": ("raw values of the image, and SI units", ""),
     "master/lcm": ("messages of takt on LCM, and the transport", "eds_parser/lcm master/linux"),
     "master/lcm/envelope": ("signed messages and their keys", "eds_parser/lcm master/lcm master/linux"),
     "master/lcm/tcpq": ("LCM's tcpq:// protocol, both sides", "master/lcm master/linux"),
@@ -101,11 +102,12 @@ ROOMS = {
                         "eds_parser/lcm master/lcm master/lcm/envelope master/lcm/tcpq master/linux"),
     "master/gateway/notice": ("notices for people, and limits on their number", "master/wire master/core master/explain master/lcm"),
     "master/gateway/message": ("turns images and states into LCM messages",
-                               "eds_parser/lcm master/lcm master/rt/exchange master/gateway/notice"),
+                               "eds_parser/lcm master/units master/lcm master/rt/exchange master/gateway/notice"),
     "master/gateway/command": ("turns LCM messages into set-points, requests and transfers; leases",
-                               "master/wire master/core master/core/lss master/lcm master/gateway/notice master/gateway/message"),
+                               "master/wire master/core master/core/lss master/units master/lcm master/gateway/notice "
+                               "master/gateway/message"),
     "master/gateway/ascii": ("text commands of CiA 309-3",
-                             "master/wire master/core master/core/lss master/lcm master/linux master/linux/unix_bus "
+                             "master/wire master/core master/core/lss master/units master/lcm master/linux master/linux/unix_bus "
                              "master/gateway/message master/gateway/front_guest.hpp"),
     "master/gateway": ("the work of the front thread",
                        "master master/wire master/core master/explain master/lcm master/rt/exchange "
@@ -114,8 +116,9 @@ ROOMS = {
                          "master/core master/explain master/trace master/linux master/rt master/rt/journal"),
 
     "apps/command_line": ("options, numbers, durations and suggestions of all command lines", "eds_parser/report master/lcm"),
-    "apps/axis": ("the library that applications use",
-                  "master/lcm master/lcm/link master/lcm/envelope master/gateway/message"),
+    "apps/drive402": ("leads one CiA 402 drive through its states", ""),
+    "apps/axis": ("the axes of a bus over LCM, for applications",
+                  "apps/drive402 master/units master/lcm master/lcm/link master/lcm/envelope"),
     "apps/move": ("takt-move", "apps/axis apps/command_line master/lcm master/lcm/envelope"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
@@ -155,9 +158,13 @@ ROOMS = {
                    "master/gateway master/gateway/ascii master/gateway/notice " + LINUX + " " + LCM + " " + SIM),
 }
 
+# The headers that are installed: all that an application includes.
+PUBLIC = "share/include/takt"
+ROOMS[PUBLIC] = ("the public headers, which are installed; their implementations are in `apps/axis/` and `apps/drive402/`", "")
+
 MOST_LINES = 400
 MOST_FILES = 30  # of a room; a note
-LIBRARIES = ("eds_parser", "master", "apps")
+LIBRARIES = ("eds_parser", "master", "apps", "share")
 # Rooms that use C++ and its standard library alone.
 PURE = tuple(room for room in ROOMS
              if room.startswith(("eds_parser/", "master/wire", "master/core", "master/rt"))
@@ -166,8 +173,9 @@ WRITERS = ("nlohmann/", "fmt/")  # of text and JSON: eds_parser/print, a target 
 NOT_PURE = {"thread", "mutex", "shared_mutex", "condition_variable", "future", "iostream", "semaphore"}
 CLOCK = re.compile(r"\b(steady_clock|system_clock|high_resolution_clock|clock_gettime|time\s*\(\s*nullptr)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]+>|"[^"]+")')
-LCM_TYPES = re.compile(r"^(lcm/|takt/)")  # LCM itself and the types generated by lcm-gen
-KNOW_LCM = ("master/lcm", "master/gateway", "apps")
+LCM_TYPES = re.compile(r"^(lcm/|takt/\w+_t\.hpp$)")  # LCM itself and the types generated by lcm-gen
+KNOW_LCM = ("master/lcm", "master/gateway", "apps", PUBLIC)
+PUBLIC_HEADER = re.compile(r"^takt/")
 
 
 def is_in(room, rooms):
@@ -194,6 +202,11 @@ def arrow(path, target):
 def foreign(path, header):
     """Why `path` may not include the foreign header; None where it may."""
     here = room_of(path)
+    if here == PUBLIC and "/" in header and not header.startswith(("takt/", "Eigen/")):
+        return f"<{header}>: a public header needs only C++, Eigen, the LCM types and other public headers"
+    if PUBLIC_HEADER.match(header) and not LCM_TYPES.match(header):
+        fine = is_in(here, ("apps", PUBLIC)) or (header == "takt/lcm.hpp" and is_in(here, KNOW_LCM))
+        return None if fine else f"<{header}>: below the apps, only takt/lcm.hpp is used, by the rooms that know LCM"
     if header.startswith("yaml-cpp/"):
         fine = is_in(here, ("eds_parser/network_file", "apps"))
         return None if fine else "below the apps, yaml-cpp is used only by eds_parser/network_file"
@@ -213,6 +226,8 @@ def check_line(path, line):
         is_clock = room_of(path) in PURE and CLOCK.search(line.split("//")[0])
         return f"{room_of(path)} reads no clock" if is_clock else None
     header = found[1][1:-1]
+    if room_of(path) == PUBLIC and found[1][0] == '"':
+        return f'"{header}" is not installed: a public header includes <takt/...>'
     if found[1][0] == '"' and not LCM_TYPES.match(header):
         return arrow(path, header)
     return foreign(path, header)
@@ -355,6 +370,11 @@ BAD = {
     "master/gateway/c.cpp": "#include <yaml-cpp/yaml.h>",
     "master/gateway/message/b.cpp": '#include "eds_parser/network_file/load_network.hpp"',
     "apps/axis/a.cpp": '#include "apps/move/sine.hpp"',
+    "share/include/takt/a.hpp": '#include "eds_parser/table/ids.hpp"',
+    "share/include/takt/b.hpp": "#include <fmt/format.h>",
+    "share/include/takt/c.hpp": "#include <lcm/lcm-cpp.hpp>",
+    "master/lcm/b.cpp": "#include <takt/axis.hpp>",
+    "master/rt/c.cpp": "#include <takt/lcm.hpp>",
     "apps/axis/b.cpp": '#include "master/lcm/tcpq/tcpq_client.hpp"',
     "apps/takt/learn/a.cpp": '#include "apps/takt/soak/soak_run.hpp"',
     "apps/taktd/twice.hpp": "namespace takt { struct Twice {}; }",
@@ -377,6 +397,8 @@ GOOD = {
     "master/linux/can/e.hpp": '#include "master/rt/port.hpp"\n#include <sys/socket.h>',
     "master/gateway/f.hpp": '#include "master/master_run.hpp"\n#include <lcm/lcm-cpp.hpp>\n#include "takt/image_t.hpp"',
     "apps/takt/soak/g.cpp": '#include "apps/takt/soak/judge/verdict.hpp"\n#include "master/sim/bus/world.hpp"',
+    "share/include/takt/d.hpp": "#include <Eigen/Core>\n#include <poll.h>\n#include <takt/image_t.hpp>\n#include <takt/lcm.hpp>",
+    "master/lcm/tcpq/l.hpp": "#include <takt/lcm.hpp>\n#include <span>",
     "apps/move/h.cpp": "namespace takt { namespace { struct Options {}; } }\nstruct Options;",
     "apps/taktd/i.cpp": "namespace takt::sim { struct Options {}; }\ntemplate <class Options> struct Box;",
     "apps/taktd/j.cpp": "namespace takt {\nstruct Options { // struct Text {\n  struct Text {};\n};\n// class Options {\n}",

@@ -1,6 +1,6 @@
 #!/bin/sh
-# install_test.sh BUILD - installs BUILD below a temporary prefix and builds an application outside the tree against it,
-# by find_package and by pkg-config; both must run, and the example of the README waits for its bus.
+# install_test.sh BUILD - installs BUILD below a temporary prefix: the public headers compile alone, and the programs outside the
+# tree build against it, by find_package and by pkg-config, and run. The example of the README waits for its bus.
 set -eu
 build=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -20,7 +20,6 @@ for file in bin/takt bin/taktd bin/takt-move lib/systemd/system/taktd@.service l
   [ -e "$prefix/$file" ] || { echo "not installed: $file" >&2; exit 1; }
 done
 ! grep -n '](\.\./' "$prefix"/share/doc/takt/*.md >&2 || { echo "an installed page links to a file of the tree" >&2; exit 1; }
-eds=$(find "$prefix/share/takt/eds" -name '*drive*.eds' | head -n 1)
 
 # systemd tries a taktd again without limit, and understands each line.
 unit="$prefix/lib/systemd/system/taktd@.service"
@@ -31,17 +30,35 @@ if command -v systemd-analyze >/dev/null; then
   [ -z "$complaints" ] || { echo "$complaints" >&2; exit 1; }
 fi
 
-# Headers must stand on their own: the tree is not to be found from here.
+# Only the public headers and the LCM types are installed.
+(cd "$prefix/include" && find . -type f | sort) >"$tmp/installed"
+{ cd "$here/../../share/include" && find ./takt -name '*.hpp'; cd "$prefix/share/takt/lcm" && ls | sed 's|\(.*\)\.lcm|./takt/\1.hpp|'; } |
+  sort >"$tmp/public"
+diff "$tmp/public" "$tmp/installed" >&2 || { echo "these are not the public headers" >&2; exit 1; }
+
+# Each public header compiles alone, without a warning: the tree is not to be found from here. (The LCM types are made by lcm-gen.)
+pc=$(dirname "$(find "$prefix" -name takt.pc)")
+flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags takt)
+mkdir -p "$tmp/types/takt"
+mv "$prefix"/include/takt/*_t.hpp "$tmp/types/takt"
+for header in "$prefix"/include/takt/*.hpp; do
+  for compiler in c++ clang++-19; do
+    command -v $compiler >/dev/null || continue
+    # shellcheck disable=SC2086 # flags, one word each
+    echo "#include <takt/$(basename "$header")>" | $compiler $flags -isystem "$tmp/types" -isystem /usr/include/eigen3 \
+      -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -fsyntax-only -x c++ - ||
+      { echo "$compiler: takt/$(basename "$header") does not compile alone" >&2; exit 1; }
+  done
+done
+mv "$tmp"/types/takt/* "$prefix/include/takt"
+
 cp -r "$here/outside" "$tmp/outside"
 cmake -S "$tmp/outside" -B "$tmp/by_cmake" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 cmake --build "$tmp/by_cmake" >"$tmp/log" || { cat "$tmp/log" >&2; exit 1; }
-"$tmp/by_cmake/outside" "$eds"
 
-pc=$(dirname "$(find "$prefix" -name takt.pc)")
 flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs takt)
 # shellcheck disable=SC2086 # flags, one word each
-c++ "$tmp/outside/main.cpp" -o "$tmp/by_pkg_config" $flags
-"$tmp/by_pkg_config" "$eds"
+c++ "$tmp/outside/over_lcm.cpp" -o "$tmp/by_pkg_config" $flags
 
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
 demo=$prefix/share/takt/demo/two_axes.yaml
@@ -55,7 +72,10 @@ sleep 2
 "$prefix/bin/taktd" "$demo" --bus sim --lcm-url "$LCM_DEFAULT_URL" 2>"$tmp/log" &
 started="$! $started"  # before its hub
 for _ in $(seq 100); do
-  "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example [0-9a-f]*$' && exit 0 || sleep 0.5
+  "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example [0-9a-f]*$' || { sleep 0.5; continue; }
+  "$tmp/by_pkg_config" | grep -q '^shoulder position_actual_value .* rad$' && exit 0
+  echo "the program over LCM does not print the position of an axis" >&2
+  exit 1
 done
 echo "the example does not move the axes of a bus that comes after it" >&2
 exit 1

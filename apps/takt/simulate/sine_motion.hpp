@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <takt/drive402.hpp>
 #include <vector>
 
-#include "apps/axis/drive_sequence.hpp"
 #include "eds_parser/table/bus_plan.hpp"
 #include "master/rt/controller.hpp"
 

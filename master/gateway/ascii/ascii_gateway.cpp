@@ -6,7 +6,7 @@
 
 #include "master/core/lss/lss_command.hpp"
 #include "master/gateway/ascii/ascii_text.hpp"
-#include "master/gateway/message/units.hpp"
+#include "master/units/units.hpp"
 
 namespace takt {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "master/core/set_point.hpp"
-#include "master/gateway/message/units.hpp"
 #include "master/lcm/messages.hpp"
+#include "master/units/units.hpp"
 
 namespace takt {
 namespace {

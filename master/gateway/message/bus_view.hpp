@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "master/gateway/message/units.hpp"
 #include "master/lcm/messages.hpp"
+#include "master/units/units.hpp"
 
 namespace takt {
 

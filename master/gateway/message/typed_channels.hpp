@@ -6,13 +6,13 @@
 #include <string>
 #include <string_view>
 #include <takt/command_t.hpp>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "eds_parser/lcm/typed_message.hpp"
-#include "master/gateway/message/units.hpp"
 #include "master/lcm/messages.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/rt/exchange/process_image.hpp"
+#include "master/units/units.hpp"
 
 namespace takt {
 

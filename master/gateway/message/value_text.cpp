@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "eds_parser/table/real_range.hpp"
-#include "master/gateway/message/units.hpp"
+#include "master/units/units.hpp"
 
 namespace takt {
 namespace {

@@ -2,13 +2,13 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"
 #include "master/lcm/channel_pattern.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/envelope/key_file.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 #include <takt/envelope_t.hpp>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"
-#include "master/lcm/envelope/envelope_key.hpp"
 #include "master/lcm/messages.hpp"
 
 namespace takt {

@@ -5,9 +5,8 @@
 #include <string>
 #include <string_view>
 #include <sys/stat.h>
+#include <takt/lcm.hpp>
 #include <vector>
-
-#include "master/lcm/envelope/envelope_key.hpp"
 
 namespace takt {
 
@@ -15,10 +14,6 @@ namespace takt {
 /// comment. The error is a sentence with `where` and the line number.
 std::expected<std::vector<EnvelopeKey>, std::string> parse_keys(const std::string& where,
                                                                 std::string_view text);
-
-/// Reads the keys of a file. The file must be a regular file that only its owner can access, and
-/// the owner must be this user or root. The error is a sentence.
-std::expected<std::vector<EnvelopeKey>, std::string> load_keys(const std::string& path);
 
 /// Creates a file with one new random key, mode 0600. Fails if the file already exists, and leaves
 /// it unchanged.

@@ -3,13 +3,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "master/lcm/clocks.hpp"
 #include "master/lcm/envelope/envelope.hpp"
 #include "master/lcm/envelope/key_file.hpp"
 #include "master/lcm/rate_limit.hpp"
-#include "master/lcm/transport.hpp"
 
 namespace takt {
 

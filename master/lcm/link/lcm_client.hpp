@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "eds_parser/table/time.hpp"
 #include "master/lcm/envelope/key_file.hpp"
-#include "master/lcm/transport.hpp"
 
 namespace takt {
 

@@ -7,12 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "eds_parser/table/run_options.hpp"
 #include "master/lcm/link/lcm_transport.hpp"
 #include "master/lcm/link/lcm_url.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/lcm/weight.hpp"
 
 namespace takt {

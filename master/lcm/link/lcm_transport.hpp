@@ -2,10 +2,10 @@
 #include <lcm/lcm.h>
 #include <memory>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "master/lcm/front_budget.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -2,9 +2,9 @@
 #include <expected>
 #include <memory>
 #include <string>
+#include <takt/lcm.hpp>
 
 #include "eds_parser/lcm/lcm_url.hpp"
-#include "master/lcm/transport.hpp"
 
 namespace takt {
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "master/lcm/accept_pause.hpp"
@@ -11,7 +12,6 @@
 #include "master/lcm/front_budget.hpp"
 #include "master/lcm/rate_limit.hpp"
 #include "master/lcm/tcpq/tcpq_connection.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <takt/lcm.hpp>
 #include <vector>
 
 #include "master/lcm/channel_patterns.hpp"
 #include "master/lcm/front_budget.hpp"
 #include "master/lcm/tcpq/tcpq_connection.hpp"
-#include "master/lcm/transport.hpp"
 #include "master/linux/clock.hpp"
 
 namespace takt {

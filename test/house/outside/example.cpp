@@ -1,8 +1,6 @@
 // The example of the README: all axes creep forward for as long as images come.
 #include <chrono>
-
-#include "apps/axis/axis_group.hpp"
-#include "apps/axis/open_lcm.hpp"
+#include <takt/axis.hpp>
 
 int main() {
   using namespace std::chrono_literals;

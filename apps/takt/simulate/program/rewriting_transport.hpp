@@ -2,11 +2,11 @@
 #include <functional>
 #include <string>
 #include <takt/command_t.hpp>
+#include <takt/lcm.hpp>
 #include <utility>
 #include <vector>
 
 #include "master/lcm/messages.hpp"
-#include "master/lcm/transport.hpp"
 
 namespace takt {
 

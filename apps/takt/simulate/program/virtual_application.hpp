@@ -3,10 +3,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <takt/axis_control.hpp>
+#include <takt/image_input.hpp>
 #include <vector>
 
-#include "apps/axis/axis_control.hpp"
-#include "apps/axis/image_input.hpp"
 #include "apps/takt/simulate/program/stage.hpp"
 #include "apps/takt/simulate/program/virtual_lcm.hpp"
 #include "master/gateway/bridge.hpp"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <takt/lcm.hpp>
 #include <vector>
 
-#include "master/lcm/transport.hpp"
 #include "master/sim/bus/world.hpp"
 #include "master/sim/random.hpp"
 

@@ -1,10 +1,10 @@
-#include "apps/axis/axis_control.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
 #include <map>
+#include <takt/axis_control.hpp>
 
+#include "apps/axis/find_axes.hpp"
 #include "test/unit/apps/axis/messages_for_tests.hpp"
 
 namespace takt {

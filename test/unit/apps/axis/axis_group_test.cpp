@@ -1,6 +1,5 @@
-#include "apps/axis/axis_group.hpp"
-
 #include <gtest/gtest.h>
+#include <takt/axis.hpp>
 
 #include "master/lcm/messages.hpp"
 #include "test/unit/apps/axis/fake_lcm.hpp"

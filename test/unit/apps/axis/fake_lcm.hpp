@@ -2,11 +2,11 @@
 #include <cstddef>
 #include <deque>
 #include <string>
+#include <takt/lcm.hpp>
 #include <utility>
 #include <vector>
 
 #include "master/lcm/messages.hpp"
-#include "master/lcm/transport.hpp"
 
 namespace takt::testing {
 

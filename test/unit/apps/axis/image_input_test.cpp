@@ -1,6 +1,5 @@
-#include "apps/axis/image_input.hpp"
-
 #include <gtest/gtest.h>
+#include <takt/image_input.hpp>
 
 #include "test/unit/apps/axis/messages_for_tests.hpp"
 

@@ -1,9 +1,43 @@
 #pragma once
+/// @file
+/// The state machine of one CiA 402 drive: decodes the statusword, and leads the drive to
+/// Operation enabled and back. Needs neither a bus nor a clock.
 #include <cstdint>
-
-#include "apps/axis/state402.hpp"
+#include <optional>
+#include <string_view>
 
 namespace takt {
+
+/// States of the power drive state machine. CiA 402-2, finite state automaton.
+enum class State402 : std::uint8_t {
+  not_ready_to_switch_on,  ///< The drive starts or tests itself.
+  switch_on_disabled,      ///< The drive may not be switched on; the power stage is off.
+  ready_to_switch_on,      ///< The drive may be switched on; the power stage is off.
+  switched_on,             ///< The power stage is ready, and the motor has no torque.
+  operation_enabled,       ///< The drive follows its set-points.
+  quick_stop_active,       ///< The quick stop is running, or the drive holds after it (0x605A).
+  fault_reaction_active,   ///< The drive reacts to a fault.
+  fault,                   ///< The drive has a fault; the power stage is off.
+};
+
+/// Returns the state that a statusword (0x6041) reports, or std::nullopt if the profile does not
+/// define its pattern.
+std::optional<State402> decode_statusword(std::uint16_t statusword) noexcept;
+
+/// Returns the name of the state for messages, for example "operation enabled".
+std::string_view name(State402 state) noexcept;
+
+/// Modes of operation: the values of the objects 0x6060 and 0x6061. CiA 402-2.
+enum class DriveMode : std::int8_t {
+  none = 0,              ///< no mode
+  profile_position = 1,  ///< pp: the drive moves to each target position by itself
+  profile_velocity = 3,  ///< pv: the drive accelerates to the target velocity by itself
+  profile_torque = 4,    ///< tq: the drive changes the torque by itself
+  homing = 6,            ///< hm: the drive looks for its reference
+  cyclic_position = 8,   ///< csp: a target position for each SYNC
+  cyclic_velocity = 9,   ///< csv: a target velocity for each SYNC
+  cyclic_torque = 10,    ///< cst: a target torque for each SYNC
+};
 
 /// State to which a DriveSequence leads its drive.
 enum class DriveGoal : std::uint8_t {
@@ -33,6 +67,8 @@ struct DriveSequenceLimits {
 /// so that no edge is lost on a channel where only the newest value counts. If a drive has a fault
 /// or leaves Operation enabled by itself (safe torque off), its goal becomes DriveGoal::disabled,
 /// and the drive is not enabled again before the next set_goal().
+///
+/// Calls allocate nothing. All calls come from one thread.
 class DriveSequence {
  public:
   /// The goal of a new sequence is DriveGoal::disabled.
@@ -44,8 +80,8 @@ class DriveSequence {
   /// reaction active.
   void reset_fault() noexcept;
 
-  /// Returns the controlword (without mode-specific bits) that answers this statusword. CiA 402-2,
-  /// 1.4.
+  /// Returns the controlword (0x6040, without mode-specific bits) that answers this statusword
+  /// (0x6041). CiA 402-2, commands of the controlword.
   std::uint16_t step(std::uint16_t statusword, Enabling enabling = Enabling::goes_on) noexcept;
 
   /// Returns the goal, which is DriveGoal::disabled after a fault.

@@ -1,4 +1,4 @@
-#include "apps/axis/drive_sequence.hpp"
+#include <takt/drive402.hpp>
 
 namespace takt {
 namespace {

@@ -1,6 +1,5 @@
-#include "apps/axis/state402.hpp"
-
 #include <array>
+#include <takt/drive402.hpp>
 
 namespace takt {
 namespace {

@@ -1,28 +1,40 @@
 #pragma once
+/// @file
+/// All CiA 402 axes of a bus as Eigen vectors in SI units.
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <takt/command_t.hpp>
-#include <vector>
-
-#include "apps/axis/axis_signals.hpp"
-#include "apps/axis/drive_sequence.hpp"
-#include "apps/axis/image_input.hpp"
-#include "apps/axis/set_point_handshake.hpp"
-#include "master/gateway/message/units.hpp"
+#include <takt/drive402.hpp>
+#include <takt/image_input.hpp>
 
 namespace takt {
 
-/// Modes of operation, the values of objects 0x6060 and 0x6061. CiA 402-2.
-enum class DriveMode : std::int8_t {
-  none = 0,
-  profile_position = 1,
-  profile_velocity = 3,
-  profile_torque = 4,
-  homing = 6,
-  cyclic_position = 8,
-  cyclic_velocity = 9,
-  cyclic_torque = 10,
+/// Places of the values of one CiA 402 axis in the image. The objects are those of the first axis
+/// of a device; those of each further axis are 0x800 higher.
+struct AxisSignals {
+  /// Index of a value in ImageInput::signals(). Empty if no PDO carries the value.
+  using Position = std::optional<std::size_t>;
+
+  std::string name;       ///< name of the node, or "gantry.2" for the second axis of a device
+  std::int16_t node = 0;  ///< node-ID, 1..127
+
+  Position statusword;    ///< 0x6041
+  Position mode_display;  ///< 0x6061, modes of operation display
+  Position position;      ///< 0x6064, position actual value
+  Position velocity;      ///< 0x606C, velocity actual value
+  Position torque;        ///< 0x6077, torque actual value
+
+  Position controlword;      ///< 0x6040
+  Position mode;             ///< 0x6060, modes of operation
+  Position target_position;  ///< 0x607A
+  Position target_velocity;  ///< 0x60FF
+  Position target_torque;    ///< 0x6071
+  Position velocity_offset;  ///< 0x60B1
+  Position torque_offset;    ///< 0x60B2
 };
 
 /// Presents all axes of a bus as Eigen vectors in SI units. The class turns each image into a
@@ -38,9 +50,20 @@ enum class DriveMode : std::int8_t {
 /// An axis index is in the range 0..size()-1. Each vector has one element for each axis. A value
 /// is in the unit that the layout states for its signal (rad, m, rad/s ...), or in raw counts if
 /// the layout states no unit. An actual value that no PDO carries is 0.
+///
+/// AxisGroup owns an AxisControl and calls set_layout(), on_image() and command().
 class AxisControl {
  public:
+  /// Index of an axis, 0..size()-1.
   using Index = Eigen::Index;
+
+  /// Has no axes until the first set_layout().
+  AxisControl();
+  ~AxisControl();
+  /// Moves the axes; `other` may then only be destroyed or assigned to.
+  AxisControl(AxisControl&& other) noexcept;
+  /// Moves the axes; `other` may then only be destroyed or assigned to.
+  AxisControl& operator=(AxisControl&& other) noexcept;
 
   /// Finds the axes in a new layout. The goal of every axis becomes DriveGoal::disabled again.
   void set_layout(const ImageInput& input);
@@ -52,19 +75,19 @@ class AxisControl {
   command_t& command();
 
   /// Returns the number of axes.
-  Index size() const noexcept { return static_cast<Index>(axes_.size()); }
+  Index size() const noexcept;
   /// Returns the places of the values of this axis in the image.
-  const AxisSignals& signals(Index axis) const { return axes_[at(axis)].signals; }
+  const AxisSignals& signals(Index axis) const;
   /// Returns the name of this axis: the name of its node, or "gantry.2" for the second axis of a
   /// device.
   const std::string& name(Index axis) const { return signals(axis).name; }
   /// Returns the CiA 402 state machine of this axis.
-  const DriveSequence& drive(Index axis) const { return axes_[at(axis)].drive; }
+  const DriveSequence& drive(Index axis) const;
   /// Returns the last statusword (0x6041) that arrived from this axis.
-  std::uint16_t statusword(Index axis) const { return axes_[at(axis)].statusword; }
+  std::uint16_t statusword(Index axis) const;
   /// Returns true if the statusword or the position of this axis did not arrive with the newest
   /// image.
-  bool stale(Index axis) const { return axes_[at(axis)].stale; }
+  bool stale(Index axis) const;
   /// Returns true if stale() is true for at least one axis.
   bool any_stale() const noexcept;
   /// Returns true if all axes are in Operation enabled.
@@ -73,16 +96,16 @@ class AxisControl {
   bool all_reached() const noexcept;
 
   /// Returns the actual positions (0x6064).
-  const Eigen::VectorXd& positions() const noexcept { return positions_; }
+  const Eigen::VectorXd& positions() const noexcept;
   /// Returns the target positions (0x607A) of the newest image. taktd sent them to the drives
   /// before the SYNC of that image.
-  const Eigen::VectorXd& sent_positions() const noexcept { return sent_positions_; }
+  const Eigen::VectorXd& sent_positions() const noexcept;
   /// Returns the actual velocities (0x606C).
-  const Eigen::VectorXd& velocities() const noexcept { return velocities_; }
+  const Eigen::VectorXd& velocities() const noexcept;
   /// Returns the actual torques (0x6077).
-  const Eigen::VectorXd& torques() const noexcept { return torques_; }
+  const Eigen::VectorXd& torques() const noexcept;
   /// Returns the target positions (0x607A) of the next command.
-  const Eigen::VectorXd& target_positions() const noexcept { return target_positions_; }
+  const Eigen::VectorXd& target_positions() const noexcept;
   /// Returns the target positions as sent_positions() will show them, rounded to whole counts of
   /// the drives. The unit is that of target_positions().
   Eigen::VectorXd target_positions_in_counts() const;
@@ -90,7 +113,7 @@ class AxisControl {
   /// Sets the goal of all axes.
   void set_goal(DriveGoal goal);
   /// Sets the goal of one axis.
-  void set_goal(Index axis, DriveGoal goal) { axes_[at(axis)].drive.set_goal(goal); }
+  void set_goal(Index axis, DriveGoal goal);
   /// Asks for one fault reset of each axis that has a fault. See DriveSequence::reset_fault().
   void reset_faults();
   /// Sets the mode of operation of all axes, at first DriveMode::cyclic_position. The commands
@@ -114,45 +137,18 @@ class AxisControl {
   /// Sets the target torque (0x6071) of each axis that is in Operation enabled; all others stay at
   /// zero. A value that is not finite counts as 0.
   void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
-  /// Starts the handshake that hands the new target positions to the drives. It goes on while they
-  /// are in Operation enabled. See SetPointHandshake. Does nothing if the mode is not profile
-  /// position, because the drives then take target positions without a handshake, or none.
+  /// Starts the handshake that hands the new target positions to the drives: bit 4 of the controlword
+  /// rises and stays high until bit 12 of the statusword acknowledges it. CiA 402-2, new set-point.
+  /// A running handshake is followed by another one. It goes on while the drives are in Operation
+  /// enabled. Does nothing if the mode is not profile position, because the drives then take target
+  /// positions without a handshake, or none.
   void begin_set_points();
   /// Returns true if no axis has a handshake left that begin_set_points() started.
   bool set_points_taken() const noexcept;
 
  private:
-  struct Axis {
-    AxisSignals signals;
-    DriveSequence drive;
-    SetPointHandshake handshake;
-    std::uint16_t statusword = 0;
-    std::uint16_t controlword = 0;
-    std::int8_t shown_mode = 0;  // 0x6061 of the image, or its 0x6060 if 0x6061 is not mapped
-    bool stale = false;
-    bool seeded = false;  // true if the target position has been set from a valid value
-  };
-
-  static std::size_t at(Index axis) noexcept { return static_cast<std::size_t>(axis); }
-  double read(AxisSignals::Position signal, const ImageInput& input) const;
-  double to_si(std::size_t signal, std::int64_t raw) const;
-  void step(Axis& axis, const ImageInput& input);
-  bool takes_positions(const Axis& axis) const noexcept;
-  void rest(Index axis, const ImageInput& input);
-  void put(AxisSignals::Position signal, std::int64_t raw);
-  void put_si(AxisSignals::Position signal, double si);
-
-  std::vector<Axis> axes_;
-  Units units_;
-  DriveMode mode_ = DriveMode::cyclic_position;
-  Eigen::VectorXd positions_;
-  Eigen::VectorXd velocities_;
-  Eigen::VectorXd torques_;
-  Eigen::VectorXd sent_positions_;
-  Eigen::VectorXd target_positions_;
-  Eigen::VectorXd target_velocities_;
-  Eigen::VectorXd target_torques_;
-  command_t command_{};
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace takt

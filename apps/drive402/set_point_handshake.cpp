@@ -1,4 +1,4 @@
-#include "apps/axis/set_point_handshake.hpp"
+#include "apps/drive402/set_point_handshake.hpp"
 
 namespace takt {
 namespace {

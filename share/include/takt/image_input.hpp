@@ -1,4 +1,7 @@
 #pragma once
+/// @file
+/// The process image of a bus on LCM, assembled from the messages of taktd.
+#include <cstddef>
 #include <cstdint>
 #include <takt/image_t.hpp>
 #include <takt/layout_t.hpp>
@@ -14,6 +17,8 @@ namespace takt {
 /// third of a row of such images that follow each other. A layout that differs, or that comes from
 /// another session, counts only if no image of the present session has arrived for `quiet_ns`, or
 /// for 20 periods of SYNC if that is longer.
+///
+/// The class uses neither LCM nor a clock. All calls come from one thread.
 class ImageInput {
  public:
   /// Shortest silence of the present session before another layout counts, nanoseconds.
@@ -31,7 +36,8 @@ class ImageInput {
   bool has_layout() const noexcept { return !signals_.empty(); }
   /// Returns true if a complete image has arrived since the layout.
   bool has_image() const noexcept { return has_image_; }
-  /// Returns the signals of the layout, in the order of values().
+  /// Returns the signals of the layout, in the order of values(): name, node, object, unit and
+  /// scale of each value. SI value = raw value * scale + offset.
   const std::vector<signal_t>& signals() const noexcept { return signals_; }
   /// Returns the session of the layout: a number that identifies one run of taktd.
   std::int64_t session() const noexcept { return session_; }

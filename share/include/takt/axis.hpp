@@ -1,21 +1,30 @@
 #pragma once
+/// @file
+/// Commands the CiA 402 axes of one bus over LCM.
+#include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <takt/axis_control.hpp>
 #include <takt/event_t.hpp>
+#include <takt/image_input.hpp>
+#include <takt/lcm.hpp>
 #include <vector>
 
-#include "apps/axis/axis_control.hpp"
-#include "apps/axis/image_input.hpp"
-#include "apps/axis/node_holders.hpp"
-#include "master/lcm/envelope/envelope.hpp"
-#include "master/lcm/transport.hpp"
-
 namespace takt {
+
+/// The program that commands the outputs of a node, as the newest status_t shows it.
+struct NodeHolder {
+  std::string name;  ///< name of its sender; empty if nobody commands the outputs
+  bool own = false;  ///< true if this is the program that asks
+  int statuses = 0;  ///< number of status_t in sequence that show this holder; 10 in a second
+
+  /// Returns true if at least the newest `sequence` status_t show the same other program.
+  bool is_other(int sequence = 1) const noexcept {
+    return !name.empty() && !own && statuses >= sequence;
+  }
+};
 
 /// Options of an AxisGroup.
 struct AxisGroupOptions {
@@ -60,7 +69,7 @@ class AxisGroup {
   /// Waits at most `longest` for the next image, and steps the axes with it.
   Input wait(std::chrono::nanoseconds longest);
   /// Sets the time to live of all further commands, in cycles. 0 selects the configured one.
-  void set_time_to_live(std::int32_t cycles) noexcept { options_.time_to_live = cycles; }
+  void set_time_to_live(std::int32_t cycles) noexcept;
   /// Sends the set-points of all axes. Returns false if LCM did not take the message.
   bool send();
   /// Gives up the outputs that this group commands. They take their fallback at once, without a
@@ -73,9 +82,9 @@ class AxisGroup {
   bool load_targets(const Eigen::Ref<const Eigen::VectorXd>& positions);
 
   /// Returns the axes, which wait() keeps up to date. There are none before the first layout.
-  AxisControl& axes() noexcept { return axes_; }
+  AxisControl& axes() noexcept;
   /// Returns the layout and the newest image.
-  const ImageInput& input() const noexcept { return input_; }
+  const ImageInput& input() const noexcept;
   /// Returns the program that commands the node of this axis, by the newest status_t of taktd.
   /// taktd refuses the commands of all other programs for this node. send() takes no notice of it,
   /// so each application decides for how many status_t another program may hold a node before it
@@ -83,9 +92,9 @@ class AxisGroup {
   const NodeHolder& holder(AxisControl::Index axis) const;
   /// Returns the name of this sender in events and in status_t: the name of the options and eight
   /// hex digits of the instance. It tells two running programs of the same name apart.
-  const std::string& sender() const noexcept { return sender_; }
+  const std::string& sender() const noexcept;
   /// Returns the name of the bus. Empty if none was configured and no layout has arrived.
-  const std::string& bus() const noexcept { return bus_; }
+  const std::string& bus() const noexcept;
   /// Returns the period of SYNC. 0 means that no layout has arrived yet.
   std::chrono::nanoseconds period() const noexcept;
   /// Returns the time since wait() took the newest image, by the monotonic clock of this machine.
@@ -97,42 +106,8 @@ class AxisGroup {
   std::vector<event_t> take_events();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  void serve();
-  void take(std::string_view channel, std::span<const std::byte> data);
-  void listen_to(std::string_view bus);
-  void take_image(std::span<const std::byte> data);
-  void take_layout(std::span<const std::byte> data);
-  void take_status(std::span<const std::byte> data);
-  void tell_schema(std::int16_t schema);
-  bool publish(command_t& command);
-  bool is_stale() const;
-
-  std::unique_ptr<Transport> lcm_;
-  AxisGroupOptions options_;
-  std::int64_t instance_;
-  std::string sender_;
-  std::string bus_;
-  std::string heard_;  // first bus whose layout arrived; only if no bus was configured
-  std::string image_channel_;
-  std::string layout_channel_;
-  std::string command_channel_;
-  std::string secured_channel_;
-  std::string event_channel_;
-  std::string status_channel_;
-  ImageInput input_;
-  AxisControl axes_;
-  NodeHolders holders_;
-  bool fresh_ = false;
-  bool new_layout_ = false;
-  bool told_stale_ = false;
-  bool told_schema_ = false;
-  bool commands_ = false;  // something was sent since the last release
-  Clock::time_point arrival_{};
-  std::optional<EnvelopeSeal> seal_;  // empty if there is no key
-  std::vector<event_t> events_;
-  std::vector<std::byte> buffer_;
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace takt

@@ -1,4 +1,4 @@
-#include "master/gateway/message/units.hpp"
+#include "master/units/units.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "apps/axis/axis_signals.hpp"
+#include "apps/axis/find_axes.hpp"
 
 #include <array>
 #include <map>

@@ -1,6 +1,5 @@
-#include "apps/axis/drive_sequence.hpp"
-
 #include <gtest/gtest.h>
+#include <takt/drive402.hpp>
 
 namespace takt {
 namespace {
