@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <future>
 #include <utility>
 
+#include "apps/master/bus_thread.hpp"
 #include "apps/taktd/bus_choice.hpp"
 #include "apps/taktd/process/time_limits.hpp"
 #include "apps/taktd/summary.hpp"
 #include "master/explain/boot_report.hpp"
 #include "master/lcm/random_number.hpp"
-#include "master/linux/start_thread.hpp"
 
 namespace takt {
 namespace {
@@ -31,24 +30,16 @@ BusRun::BusRun(LoadedNetwork network, const FrontThread& front)
   if (front.options.typed) network_.lcm.typed = *front.options.typed;
 }
 
-std::thread BusRun::start_bus_thread(std::function<void()> body) {
-  std::promise<RtReport> promise;
-  auto report = promise.get_future();
-  auto thread = start_thread([options = network_.realtime, body = std::move(body),
-                              promise = std::move(promise)]() mutable {
-    ::pthread_setname_np(::pthread_self(), "takt-bus");
-    const RtReport granted = apply_realtime(options);
-    promise.set_value(granted);
-    if (granted.may_run()) body();
-  });
-  if (!thread) {
+std::thread BusRun::start_thread_of_bus(std::function<void()> body) {
+  auto started = start_bus_thread(network_.realtime, std::move(body));
+  if (!started) {
     say(Weight::error,
-        std::string{"the bus thread can't be created: "} + std::strerror(thread.error()));
+        std::string{"the bus thread can't be created: "} + std::strerror(started.error()));
     return {};
   }
-  realtime_ = report.get();
+  realtime_ = std::move(started->report);
   bus_thread_runs_ = true;
-  return std::move(*thread);
+  return std::move(started->thread);
 }
 
 std::optional<Exit> BusRun::start() {
@@ -56,7 +47,8 @@ std::optional<Exit> BusRun::start() {
   prefault_heap(heap_bytes);
   master_ = std::make_unique<MasterRun>(network_.plan, MasterRunOptions{.observe = observe});
   bus_->attach(*master_, recorder_.journal());
-  master_->start([this](std::function<void()> body) { return start_bus_thread(std::move(body)); });
+  master_->start(
+      [this](std::function<void()> body) { return start_thread_of_bus(std::move(body)); });
   if (!bus_thread_runs_) return Exit::bus_trouble;
   say(realtime_.complete() ? Weight::note : Weight::warning, "real time: " + to_string(realtime_));
   if (!realtime_.may_run()) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/master/opened_bus.hpp"
 #include "apps/taktd/ascii_front.hpp"
-#include "apps/taktd/daemon_bus.hpp"
 #include "apps/taktd/daemon_options.hpp"
 #include "apps/taktd/exit.hpp"
 #include "apps/taktd/other_master.hpp"
@@ -98,7 +98,7 @@ class BusRun {
   std::string never_ready() const;
   void judge_stop();
   Exit exit_of_cut_stop() const;
-  std::thread start_bus_thread(std::function<void()> body);
+  std::thread start_thread_of_bus(std::function<void()> body);
   void say(Weight weight, const std::string& sentence) { front_.reporter.say(weight, sentence); }
 
   LoadedNetwork network_;
@@ -110,7 +110,7 @@ class BusRun {
   bool bus_thread_runs_ = false;
   Recorder recorder_;               // outlives master_
   std::optional<BusClaim> claim_;   // empty with --observe
-  std::unique_ptr<DaemonBus> bus_;  // outlives master_, whose thread uses it
+  std::unique_ptr<OpenedBus> bus_;  // outlives master_, whose thread uses it
   std::unique_ptr<MasterRun> master_;
   std::unique_ptr<LcmLink> link_;
   std::unique_ptr<SecuredTransport> secured_;  // null without keys

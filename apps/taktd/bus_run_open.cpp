@@ -33,7 +33,7 @@ std::optional<Exit> BusRun::open() {
     return Exit::wrong_use;
   }
   if (const auto trouble = open_gateway()) return trouble;
-  auto bus = DaemonBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
+  auto bus = OpenedBus::open(bus_name_, network_.plan, network_.devices, network_.realtime.spin);
   if (!bus) {
     say(Weight::error, bus.error().message);
     return Exit::bus_trouble;

@@ -119,6 +119,9 @@ ROOMS = {
     "apps/drive402": ("leads one CiA 402 drive through its states", ""),
     "apps/axis": ("the axes of a bus over LCM, for applications",
                   "apps/drive402 master/units master/lcm master/lcm/link master/lcm/envelope"),
+    "apps/master": ("the library for programs that contain a master; its bus and its thread are also those of taktd",
+                    "eds_parser/report eds_parser/network_file master master/units master/wire master/core master/explain "
+                    "master/rt master/rt/exchange master/rt/journal " + LINUX + " " + SIM),
     "apps/move": ("takt-move", "apps/axis apps/command_line master/lcm master/lcm/envelope"),
     "apps/takt/live": ("commands for a running daemon: status, top, timing, EMCY, record",
                        "apps/command_line master/core master/explain master/gateway/message master/gateway/notice "
@@ -153,14 +156,14 @@ ROOMS = {
     "apps/taktd/process": ("a process of a service: stderr, signals, systemd, waiting",
                            "master/linux master/gateway master/gateway/notice"),
     "apps/taktd": ("the daemon",
-                   "apps/command_line apps/taktd/process eds_parser/network_file eds_parser/budget "
+                   "apps/command_line apps/master apps/taktd/process eds_parser/network_file eds_parser/budget "
                    "eds_parser/print/plan master master/wire master/rt master/rt/journal master/explain master/black_box "
                    "master/gateway master/gateway/ascii master/gateway/notice " + LINUX + " " + LCM + " " + SIM),
 }
 
 # The headers that are installed: all that an application includes.
 PUBLIC = "share/include/takt"
-ROOMS[PUBLIC] = ("the public headers, which are installed; their implementations are in `apps/axis/` and `apps/drive402/`", "")
+ROOMS[PUBLIC] = ("the public headers, which are installed; their implementations are in `apps/axis/`, `apps/drive402/` and `apps/master/`", "")
 
 MOST_LINES = 400
 MOST_FILES = 30  # of a room; a note
@@ -373,7 +376,7 @@ BAD = {
     "share/include/takt/a.hpp": '#include "eds_parser/table/ids.hpp"',
     "share/include/takt/b.hpp": "#include <fmt/format.h>",
     "share/include/takt/c.hpp": "#include <lcm/lcm-cpp.hpp>",
-    "master/lcm/b.cpp": "#include <takt/axis.hpp>",
+    "master/lcm/b.cpp": "#include <takt/master.hpp>",
     "master/rt/c.cpp": "#include <takt/lcm.hpp>",
     "apps/axis/b.cpp": '#include "master/lcm/tcpq/tcpq_client.hpp"',
     "apps/takt/learn/a.cpp": '#include "apps/takt/soak/soak_run.hpp"',

@@ -55,10 +55,13 @@ mv "$tmp"/types/takt/* "$prefix/include/takt"
 cp -r "$here/outside" "$tmp/outside"
 cmake -S "$tmp/outside" -B "$tmp/by_cmake" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 cmake --build "$tmp/by_cmake" >"$tmp/log" || { cat "$tmp/log" >&2; exit 1; }
+one_axis=$prefix/share/takt/demo/one_axis.yaml
+"$tmp/by_cmake/in_process" "$one_axis" virtual
 
 flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs takt)
 # shellcheck disable=SC2086 # flags, one word each
-c++ "$tmp/outside/over_lcm.cpp" -o "$tmp/by_pkg_config" $flags
+c++ "$tmp/outside/in_process.cpp" -o "$tmp/by_pkg_config" $flags
+"$tmp/by_pkg_config" "$one_axis" sim
 
 export LCM_DEFAULT_URL=tcpq://127.0.0.1:$((20000 + $$ % 20000))
 demo=$prefix/share/takt/demo/two_axes.yaml
@@ -73,7 +76,7 @@ sleep 2
 started="$! $started"  # before its hub
 for _ in $(seq 100); do
   "$prefix/bin/takt" status --bus-name demo 2>/dev/null | grep -q 'shoulder.*example [0-9a-f]*$' || { sleep 0.5; continue; }
-  "$tmp/by_pkg_config" | grep -q '^shoulder position_actual_value .* rad$' && exit 0
+  "$tmp/by_cmake/over_lcm" | grep -q '^shoulder position_actual_value .* rad$' && exit 0
   echo "the program over LCM does not print the position of an axis" >&2
   exit 1
 done

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/taktd/simulated_bus.hpp"
+#include "apps/master/simulated_bus.hpp"
 #include "eds_parser/table/device_table.hpp"
 #include "master/linux/bus/diagnostic_socket.hpp"
 #include "master/linux/bus/open_bus.hpp"
@@ -15,11 +15,11 @@
 
 namespace takt {
 
-/// The bus that the daemon runs on: an interface, a unix bus, or simulated devices in this
+/// The bus that a master runs on: an interface, a unix bus, or simulated devices in this
 /// process.
-class DaemonBus {
+class OpenedBus {
  public:
-  static std::expected<std::unique_ptr<DaemonBus>, BusError> open(
+  static std::expected<std::unique_ptr<OpenedBus>, BusError> open(
       const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices,
       Time spin);
 
@@ -33,8 +33,8 @@ class DaemonBus {
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
-  DaemonBus() = default;
-  static std::expected<std::unique_ptr<DaemonBus>, BusError> open_real(const std::string& name,
+  OpenedBus() = default;
+  static std::expected<std::unique_ptr<OpenedBus>, BusError> open_real(const std::string& name,
                                                                        const BusPlan& plan,
                                                                        Time spin);
 

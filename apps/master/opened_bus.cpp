@@ -1,4 +1,4 @@
-#include "apps/taktd/daemon_bus.hpp"
+#include "apps/master/opened_bus.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -11,10 +11,10 @@
 
 namespace takt {
 
-std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open_real(const std::string& name,
+std::expected<std::unique_ptr<OpenedBus>, BusError> OpenedBus::open_real(const std::string& name,
                                                                          const BusPlan& plan,
                                                                          Time spin) {
-  std::unique_ptr<DaemonBus> bus{new DaemonBus};
+  std::unique_ptr<OpenedBus> bus{new OpenedBus};
   auto port = open_bus(name, plan, spin, &bus->sent_);
   if (!port) return std::unexpected{port.error()};
   bus->port_.emplace(std::move(*port));
@@ -34,15 +34,15 @@ std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open_real(const s
   return bus;
 }
 
-std::expected<std::unique_ptr<DaemonBus>, BusError> DaemonBus::open(
+std::expected<std::unique_ptr<OpenedBus>, BusError> OpenedBus::open(
     const std::string& name, const BusPlan& plan, std::span<const DeviceTable> devices, Time spin) {
   if (BusName::parse(name).kind != BusName::Kind::simulated) return open_real(name, plan, spin);
-  std::unique_ptr<DaemonBus> bus{new DaemonBus};
+  std::unique_ptr<OpenedBus> bus{new OpenedBus};
   bus->simulated_ = std::make_unique<SimulatedBus>(devices, plan, spin);
   return bus;
 }
 
-void DaemonBus::attach(MasterRun& master, Journal* journal) {
+void OpenedBus::attach(MasterRun& master, Journal* journal) {
   if (simulated_) return master.attach(*simulated_, journal);
   std::visit([&](auto& port) { master.attach(port, journal); }, *port_);
 }

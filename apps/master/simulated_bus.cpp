@@ -1,4 +1,4 @@
-#include "apps/taktd/simulated_bus.hpp"
+#include "apps/master/simulated_bus.hpp"
 
 #include <algorithm>
 #include <chrono>
