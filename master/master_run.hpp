@@ -38,8 +38,8 @@ class MasterRun {
   MasterRun& operator=(const MasterRun&) = delete;
 
   /// Connects the master to its bus; call this once, before start() or begin(). The run is recorded
-  /// to `journal`, unless that is null. `port` and `journal` must outlive the master. The definition
-  /// is in master/attach.hpp, which compiles the bus loop for the port.
+  /// to `journal`, unless that is null. `port` and `journal` must outlive the master. The
+  /// definition is in master/attach.hpp, which compiles the bus loop for the port.
   template <Port P>
   void attach(P& port, Journal* journal = nullptr);
 

@@ -38,7 +38,7 @@ struct Signal {
   // outputs only
   Fallback fallback = Fallback::hold;
   std::int64_t fallback_value = 0;
-  std::uint32_t fallback_cycles = 0;       ///< time to live of a command in cycles; 0 = no limit
+  std::uint32_t fallback_cycles = 0;  ///< time to live of a command in cycles; 0 = no limit
   TimeToLiveKey fallback_key = TimeToLiveKey::after;
   std::optional<std::int64_t> safe_value;  ///< value to send before the first command
   std::optional<SignalIndex> seeded_from;  ///< input that provides the first value (6064 -> 607A)

@@ -137,11 +137,11 @@ class AxisControl {
   /// Sets the target torque (0x6071) of each axis that is in Operation enabled; all others stay at
   /// zero. A value that is not finite counts as 0.
   void set_torques(const Eigen::Ref<const Eigen::VectorXd>& si);
-  /// Starts the handshake that hands the new target positions to the drives: bit 4 of the controlword
-  /// rises and stays high until bit 12 of the statusword acknowledges it. CiA 402-2, new set-point.
-  /// A running handshake is followed by another one. It goes on while the drives are in Operation
-  /// enabled. Does nothing if the mode is not profile position, because the drives then take target
-  /// positions without a handshake, or none.
+  /// Starts the handshake that hands the new target positions to the drives: bit 4 of the
+  /// controlword rises and stays high until bit 12 of the statusword acknowledges it. CiA 402-2,
+  /// new set-point. A running handshake is followed by another one. It goes on while the drives are
+  /// in Operation enabled. Does nothing if the mode is not profile position, because the drives
+  /// then take target positions without a handshake, or none.
   void begin_set_points();
   /// Returns true if no axis has a handshake left that begin_set_points() started.
   bool set_points_taken() const noexcept;
