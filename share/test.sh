@@ -82,25 +82,15 @@ build() {
     ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
-# What a run finds new is kept beside the build, so that the next one goes on from there.
-# fuzz_one NAME SECONDS OPTION...: test/fuzz/seeds/NAME and what earlier runs found go through NAME_fuzz.
-fuzz_one() {
-  of=$1
-  limit=$2
-  shift 2
-  mkdir -p "build/fuzz/corpus/$of" &&
-    "build/fuzz/bin/${of}_fuzz" "build/fuzz/corpus/$of" "test/fuzz/seeds/$of" -max_total_time="$limit" -timeout=60 \
-      -rss_limit_mb=1500 -artifact_prefix=build/fuzz/ -print_final_stats=1 "$@"
-}
-
 fuzz() {
   seconds=${TAKT_FUZZ:-60}
   cmake --preset fuzz -DTAKT_PCH="${TAKT_PCH:-ON}" && ninja -C build/fuzz -j "$jobs" takt_fuzz_targets || return 1
-  fuzz_one eds "$seconds" -dict=test/fuzz/eds.dict && fuzz_one network $((seconds / 2)) -dict=test/fuzz/network.dict || return 1
   # One seed: a finding comes from a change and not from luck. Longer runs with other seeds belong to a release.
-  for target in bus trace recording message broker text; do
-    fuzz_one $target $((seconds / 3)) -seed=1 || return 1
-  done
+  {
+    echo "eds $seconds -dict=test/fuzz/eds.dict"
+    echo "network $((seconds / 2)) -dict=test/fuzz/network.dict"
+    for target in bus trace recording message broker text; do echo "$target $((seconds / 3)) -seed=1"; done
+  } | xargs -P "$jobs" -L 1 sh test/fuzz/fuzz_one.sh
 }
 
 # run_tests PRESET [CTEST OPTION...]
