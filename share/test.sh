@@ -78,7 +78,7 @@ build() {
   compiler=$2
   pch=${TAKT_PCH:-$3}
   shift 3
-  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_PCH="$pch" &&
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_WERROR=ON -DTAKT_PCH="$pch" &&
     ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
