@@ -79,8 +79,16 @@ build() {
   compiler=$2
   pch=${TAKT_PCH:-$3}
   shift 3
-  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_WERROR=ON -DTAKT_PCH="$pch" &&
-    ninja -C "build/$preset" -j "$jobs" "$@"
+  [ "$preset" = release ] && benchmarks=ON || benchmarks=OFF
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_BENCHMARKS=$benchmarks -DTAKT_WERROR=ON \
+    -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
+}
+
+# Each runs for about a second and must not fail. What it says is no figure: those come from sh test/bench/run.sh.
+run_benchmarks() {
+  bin=build/release/bin
+  $bin/pdo_benchmark --benchmark_min_time=0.1 && $bin/envelope_cost --benchmark_min_time=0.1 && $bin/loop_cost 8 &&
+    $bin/sync_lateness 1 1000 && $bin/virtual_factor 5000 && $bin/eds_speed share/eds/takt_drive402.eds
 }
 
 fuzz() {
@@ -114,7 +122,12 @@ for wanted in $stages; do
   case $wanted in
     format) stage format check_format ;;
     tidy) stage tidy check_tidy ;;
-    release) stage release-build build release c++ OFF && stage release-tests run_tests release ;;
+    release)
+      if stage release-build build release c++ OFF; then
+        stage release-tests run_tests release
+        stage benchmarks run_benchmarks
+      fi
+      ;;
     asan) stage asan-build build asan clang++-19 ON takt_host_tests && stage asan-tests run_tests asan -L host ;;
     fuzz) stage fuzz fuzz ;;
     tsan) stage tsan-build build tsan c++ ON takt_threaded_tests && stage tsan-tests run_tests tsan -L threaded ;;
