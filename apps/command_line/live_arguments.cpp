@@ -1,5 +1,6 @@
 #include "apps/command_line/live_arguments.hpp"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
 

@@ -1,11 +1,14 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "eds_parser/table/ids.hpp"
 #include "eds_parser/table/time.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace takt {
 
