@@ -16,7 +16,6 @@ set(TAKT_STD_HEADERS <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cma
 set(TAKT_PCH_OWNER takt_table)
 
 if(TAKT_PCH)
-  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -DNDEBUG")
   add_compile_options(-pthread)  # LCM asks for it; it has to be the same everywhere
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 takes a precompiled header for no system header and warns of what it sees wrongly inside std::string and
