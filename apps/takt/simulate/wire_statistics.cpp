@@ -23,13 +23,25 @@ Time SyncOnWire::quantile(double part) const {
 
 WireStatistics::WireStatistics(const BusPlan& plan)
     : plan_{plan}, tpdos_(plan.pdos.tpdos.size()), rpdos_(plan.pdos.rpdos.size()) {
-  const auto rows_of = [](const std::vector<PdoRow>& pdos, std::map<CobId, std::uint16_t>& rows) {
-    for (std::size_t row = 0; row < pdos.size(); ++row) {
-      rows.try_emplace(pdos[row].cob_id, static_cast<std::uint16_t>(row));
+  list(Content::Kind::tpdo, plan.pdos.tpdos);
+  list(Content::Kind::rpdo, plan.pdos.rpdos);
+}
+
+/// Of several PDOs with one identifier, the first counts all frames.
+void WireStatistics::list(Content::Kind kind, const std::vector<PdoRow>& pdos) {
+  for (std::size_t row = 0; row < pdos.size(); ++row) {
+    const CobId id = pdos[row].cob_id;
+    Content& content = id.is_extended() ? extended_ids_[id] : base_ids_[id.id()];
+    if (content.kind == Content::Kind::service) {
+      content = {.kind = kind, .row = static_cast<std::uint16_t>(row)};
     }
-  };
-  rows_of(plan.pdos.tpdos, tpdo_rows_);
-  rows_of(plan.pdos.rpdos, rpdo_rows_);
+  }
+}
+
+WireStatistics::Content WireStatistics::content_of(CobId id) const noexcept {
+  if (!id.is_extended()) return base_ids_[id.id()];
+  const auto found = extended_ids_.find(id);
+  return found == extended_ids_.end() ? Content{} : found->second;
 }
 
 void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
@@ -37,14 +49,17 @@ void WireStatistics::on_wire(const sim::WireFrame& wire) noexcept {
   if (wire.result != sim::WireResult::sent || wire.frame.rtr) return;
   const CobId id = wire.frame.id;
   if (id == plan_.cycle.sync_cob_id) return on_sync(wire.start);
-  if (const auto found = tpdo_rows_.find(id); found != tpdo_rows_.end()) {
-    return on_tpdo(tpdos_[found->second], plan_.pdos.tpdos[found->second], wire.end);
+  const Content content = content_of(id);
+  switch (content.kind) {
+    case Content::Kind::tpdo:
+      return on_tpdo(tpdos_[content.row], plan_.pdos.tpdos[content.row], wire.end);
+    case Content::Kind::rpdo:
+      ++rpdos_[content.row].frames;
+      return;
+    case Content::Kind::service:
+      if (!id.is_extended()) count_service(id);
+      return;
   }
-  if (const auto found = rpdo_rows_.find(id); found != rpdo_rows_.end()) {
-    ++rpdos_[found->second].frames;
-    return;
-  }
-  if (!id.is_extended()) count_service(id);
 }
 
 void WireStatistics::count_service(CobId id) noexcept {

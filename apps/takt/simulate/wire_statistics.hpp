@@ -45,6 +45,14 @@ class WireStatistics final : public sim::BusObserver {
   std::uint64_t emcy_frames() const noexcept { return emcy_frames_; }
 
  private:
+  /// What the frames of one identifier carry.
+  struct Content {
+    enum class Kind : std::uint8_t { service, tpdo, rpdo } kind = Kind::service;
+    std::uint16_t row = 0;
+  };
+
+  void list(Content::Kind kind, const std::vector<PdoRow>& pdos);
+  Content content_of(CobId id) const noexcept;
   void on_sync(Time start) noexcept;
   void on_tpdo(PdoOnWire& pdo, const PdoRow& row, Time end) noexcept;
   void count_service(CobId id) noexcept;
@@ -53,8 +61,8 @@ class WireStatistics final : public sim::BusObserver {
   SyncOnWire sync_;
   std::vector<PdoOnWire> tpdos_;
   std::vector<PdoOnWire> rpdos_;
-  std::map<CobId, std::uint16_t> tpdo_rows_;
-  std::map<CobId, std::uint16_t> rpdo_rows_;
+  std::vector<Content> base_ids_ = std::vector<Content>(0x800);  ///< by 11-bit identifier
+  std::map<CobId, Content> extended_ids_;
   Time last_sync_{};
   std::uint64_t cycle_bits_ = 0;
   std::uint64_t worst_bits_ = 0;
