@@ -94,10 +94,19 @@ void SineMotion::lead(Axis& axis, const ImageView& image) noexcept {
     axis.since = image.sync_time;
     axis.centre = static_cast<double>(image.values[axis.actual]);
   }
-  const double t = std::chrono::duration<double>(image.sync_time - *axis.since).count();
-  // The motion is at rest at the beginning and the end of each period.
-  const double way = axis.amplitude * (1 - std::cos(2 * std::numbers::pi * frequency * t)) / 2;
+  const double way = axis.amplitude * stroke(image.sync_time - *axis.since) / 2;
   set(axis.target, std::llround(axis.centre + way));
+}
+
+/// Returns 0 to 2. The motion is at rest at the beginning and the end of each period. Axes that
+/// began in the same cycle share one computation.
+double SineMotion::stroke(Time moved) noexcept {
+  if (moved != stroke_at_) {
+    const double t = std::chrono::duration<double>(moved).count();
+    stroke_ = 1 - std::cos(2 * std::numbers::pi * frequency * t);
+    stroke_at_ = moved;
+  }
+  return stroke_;
 }
 
 }  // namespace takt

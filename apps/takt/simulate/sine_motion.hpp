@@ -45,12 +45,15 @@ class SineMotion final : public Controller {
 
   void find_axes(const BusPlan& plan);
   void lead(Axis& axis, const ImageView& image) noexcept;
+  double stroke(Time moved) noexcept;
   void set(SignalIndex signal, std::int64_t value) noexcept { values_.push_back({signal, value}); }
 
   std::vector<Axis> axes_;
   std::vector<SignalIndex> others_;
   std::vector<Value> values_;  ///< has room for all outputs
   std::size_t most_moving_ = 0;
+  Time stroke_at_{};  ///< stroke_ is the result for this time
+  double stroke_ = 0;
 };
 
 }  // namespace takt
