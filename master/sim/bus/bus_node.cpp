@@ -2,36 +2,42 @@
 
 #include <algorithm>
 
+#include "master/sim/bus/frame_bits.hpp"
+
 namespace takt::sim {
 
-BusNode::BusNode(BusNodeOptions node_options) : options{node_options} {
-  queue_.reserve(options.capacity + 1);
-}
+BusNode::BusNode(BusNodeOptions node_options)
+    : options{node_options}, queue_{options.capacity + 1} {}
 
-bool BusNode::push(const QueuedFrame& frame) noexcept {
+/// Counts the bits once for each frame. Nothing waits for the result here, so that the processor
+/// goes on meanwhile; when the frame begins, the time of its end would wait.
+bool BusNode::push(const Frame& frame, Time ready, Time expires) noexcept {
   if (queue_.size() >= options.capacity) return false;
-  if (frame.expires != never) may_expire_ = true;
-  queue_.push_back(frame);
+  first_expiry_ = std::min(first_expiry_, expires);
+  QueuedFrame& queued = queue_.push_back();
+  queued.frame = frame;
+  queued.rank = arbitration_rank(frame);
+  queued.bits = frame_bits(frame).total;
+  queued.ready = ready;
+  queued.expires = expires;
   return true;
 }
 
-QueuedFrame BusNode::take(std::size_t position) noexcept {
-  const QueuedFrame frame = queue_[position];
-  queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(position));
-  return frame;
-}
-
 void BusNode::put_back(const QueuedFrame& frame) noexcept {
-  if (queue_.size() < queue_.capacity()) queue_.insert(queue_.begin(), frame);
+  if (queue_.full()) return;
+  first_expiry_ = std::min(first_expiry_, frame.expires);
+  queue_.push_front(frame);
 }
 
-std::size_t BusNode::drop_expired(Time now) noexcept {
-  if (!may_expire_) return 0;
-  return std::erase_if(queue_, [now](const QueuedFrame& frame) { return frame.expires < now; });
+std::size_t BusNode::erase_expired(Time now) noexcept {
+  const std::size_t dropped =
+      queue_.erase_if([now](const QueuedFrame& frame) { return frame.expires < now; });
+  first_expiry_ = never;
+  for (const QueuedFrame& frame : queue_) first_expiry_ = std::min(first_expiry_, frame.expires);
+  return dropped;
 }
 
-std::size_t BusNode::offered(Time now) const noexcept {
-  if (options.order == QueueOrder::fifo) return !empty() && queue_[0].ready <= now ? 0 : none;
+std::size_t BusNode::lowest_rank(Time now) const noexcept {
   std::size_t best = none;
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     if (queue_[i].ready > now) continue;
@@ -40,13 +46,10 @@ std::size_t BusNode::offered(Time now) const noexcept {
   return best;
 }
 
-Time BusNode::earliest() const noexcept {
-  if (empty()) return never;
-  Time earliest = queue_[0].ready;
-  if (options.order == QueueOrder::priority) {
-    for (const QueuedFrame& frame : queue_) earliest = std::min(earliest, frame.ready);
-  }
-  return std::max(earliest, suspended_until);
+Time BusNode::first_ready() const noexcept {
+  Time first = never;
+  for (const QueuedFrame& frame : queue_) first = std::min(first, frame.ready);
+  return first;
 }
 
 }  // namespace takt::sim

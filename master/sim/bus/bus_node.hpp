@@ -1,9 +1,10 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "eds_parser/table/time.hpp"
+#include "master/sim/bus/frame_queue.hpp"
 #include "master/wire/frame.hpp"
 
 namespace takt::sim {
@@ -32,15 +33,6 @@ struct SenderFaults {
   Time delay{};
 };
 
-/// A frame that waits for the wire.
-struct QueuedFrame {
-  Frame frame{};
-  std::uint32_t rank = 0;   ///< rank in arbitration; the lowest wins
-  bool repetition = false;  ///< a fault has made this copy
-  Time ready{};
-  Time expires = never;
-};
-
 /// Returns the bits in the order of arbitration: identifier, RTR or SRR, IDE, rest of the
 /// identifier, RTR.
 constexpr std::uint32_t arbitration_rank(const Frame& frame) noexcept {
@@ -57,21 +49,30 @@ class BusNode {
 
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  bool push(const QueuedFrame& frame) noexcept;
-  QueuedFrame take(std::size_t position) noexcept;
+  /// Returns false if the queue is full.
+  bool push(const Frame& frame, Time ready, Time expires) noexcept;
+  QueuedFrame take(std::size_t position) noexcept { return queue_.take(position); }
   /// Puts a frame that was destroyed on the wire back at the front of the queue.
   void put_back(const QueuedFrame& frame) noexcept;
   void clear() noexcept { queue_.clear(); }
   bool empty() const noexcept { return queue_.empty(); }
   /// Drops the frames that have expired and returns their number.
-  std::size_t drop_expired(Time now) noexcept;
+  std::size_t drop_expired(Time now) noexcept {
+    return first_expiry_ < now ? erase_expired(now) : 0;
+  }
   /// Returns the position of the frame that the node offers to the bus at `now`, or `none`.
-  std::size_t offered(Time now) const noexcept;
+  std::size_t offered(Time now) const noexcept {
+    if (offers_any()) return lowest_rank(now);
+    return !empty() && queue_[0].ready <= now ? 0 : none;
+  }
   const QueuedFrame& at(std::size_t position) const noexcept { return queue_[position]; }
   std::size_t queued() const noexcept { return queue_.size(); }
   /// Returns the earliest time at which the node may offer a queued frame; `never` if the queue is
   /// empty.
-  Time earliest() const noexcept;
+  Time earliest() const noexcept {
+    if (empty()) return never;
+    return std::max(offers_any() ? first_ready() : queue_[0].ready, suspended_until);
+  }
 
   bool on_bus() const noexcept { return powered && !bus_off; }
   bool error_passive(std::uint64_t frames) const noexcept {
@@ -101,8 +102,16 @@ class BusNode {
   Time suspended_until{};  ///< end of the pause of an error-passive node after its own frame
 
  private:
-  std::vector<QueuedFrame> queue_;  ///< never grows beyond its first capacity
-  bool may_expire_ = false;
+  /// The order of arrival does not decide which frame is offered.
+  bool offers_any() const noexcept {
+    return options.order == QueueOrder::priority && queue_.size() > 1;
+  }
+  std::size_t lowest_rank(Time now) const noexcept;
+  Time first_ready() const noexcept;
+  std::size_t erase_expired(Time now) noexcept;
+
+  FrameQueue queue_;           ///< has room for `capacity` frames and one that was put back
+  Time first_expiry_ = never;  ///< no queued frame expires earlier
   std::uint32_t receive_errors_ = 0;
   std::uint64_t receive_errors_at_ = 0;
 };

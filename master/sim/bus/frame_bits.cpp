@@ -7,21 +7,28 @@ namespace {
 
 constexpr std::uint32_t polynomial = 0x4599;
 
-constexpr std::array<std::uint16_t, 256> crc_table = [] {
-  std::array<std::uint16_t, 256> table{};
+constexpr std::size_t most_bytes = 13;  ///< a 29-bit header and eight data bytes
+
+/// CRC of a byte, by the number of bytes that follow it. The CRC begins at 0 and is linear, so the
+/// CRC of a row of bytes is the XOR of the CRCs of its bytes.
+constexpr auto crc_table = [] {
+  std::array<std::array<std::uint16_t, 256>, most_bytes> table{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
     std::uint32_t crc = byte << 7;
-    for (int bit = 0; bit < 8; ++bit) {
-      crc <<= 1;
-      if ((crc & 0x8000) != 0) crc ^= 0x8000 | polynomial;
+    for (std::size_t following = 0; following < most_bytes; ++following) {
+      for (int bit = 0; bit < 8; ++bit) {
+        crc <<= 1;
+        if ((crc & 0x8000) != 0) crc ^= 0x8000 | polynomial;
+      }
+      table[following][byte] = static_cast<std::uint16_t>(crc);
     }
-    table[byte] = static_cast<std::uint16_t>(crc & 0x7FFF);
   }
   return table;
 }();
 
 /// A run of equal bits: last bit * 4 + (length of the run - 1), length 1..4.
 using Run = std::uint8_t;
+constexpr Run runs = 8;
 
 struct RunStep {
   Run run = 0;
@@ -36,73 +43,66 @@ constexpr RunStep follow(Run run, bool bit) {
   return {static_cast<Run>(bit ? 0 : 4), 1};  // the stuff bit begins a new run
 }
 
-/// The next run and the stuff bits for each run and each 1 to 8 bits (with a leading one bit as
-/// length mark).
+/// stuff bits * 8 + next run, for each 1 to 8 bits (with a leading one bit as length mark) and for
+/// each run before them. The run is the last index, because the next step waits for it.
 constexpr auto run_table = [] {
-  std::array<std::array<RunStep, 512>, 8> table{};
-  for (Run start = 0; start < 8; ++start) {
+  std::array<std::array<std::uint8_t, runs>, 512> table{};
+  for (Run start = 0; start < runs; ++start) {
+    table[1][start] = start;
     for (std::uint32_t marked = 2; marked < 512; ++marked) {
-      int length = 8;
-      while ((marked >> length) == 0) --length;
-      RunStep all{start, 0};
-      for (int bit = length - 1; bit >= 0; --bit) {
-        const RunStep step = follow(all.run, ((marked >> bit) & 1) != 0);
-        all = {step.run, static_cast<std::uint8_t>(all.stuffed + step.stuffed)};
-      }
-      table[start][marked] = all;
+      const std::uint8_t before = table[marked >> 1][start];
+      const RunStep step = follow(before % runs, (marked & 1) != 0);
+      const int stuffed = before / runs + step.stuffed;
+      table[marked][start] = static_cast<std::uint8_t>(stuffed * runs + step.run);
     }
   }
   return table;
 }();
 
-/// Computes CRC and stuff bits of a growing row of bits, which already contains SOF.
+/// Computes CRC and stuff bits of a row of bits that grows behind SOF (0).
 class BitRow {
  public:
-  void byte(std::uint32_t value) noexcept {
-    check(value);
-    stuff(value, 8);
+  /// `bytes` is the number of calls of head() and byte() that follow.
+  explicit BitRow(std::size_t bytes) noexcept : following_{bytes} {}
+
+  /// Appends the lowest `count` bits, 1..8, as the first ones: leading zeros do not change the CRC.
+  void head(std::uint32_t bits, int count) noexcept {
+    crc_ ^= crc_table[--following_][bits];
+    stuff(bits, count);
   }
-  void check(std::uint32_t value) noexcept {
-    crc_ = ((crc_ << 8) ^ crc_table[((crc_ >> 7) ^ value) & 0xFF]) & 0x7FFF;
-  }
-  /// Appends the lowest `count` bits, 1..8.
+  void byte(std::uint32_t value) noexcept { head(value & 0xFF, 8); }
+  /// Appends `count` bits that the CRC does not cover.
   void stuff(std::uint32_t bits, int count) noexcept {
-    const std::uint32_t mark = 1u << count;
-    const RunStep step = run_table[run_][mark | (bits & (mark - 1))];
-    run_ = step.run;
-    stuffed_ = stuffed_ + step.stuffed;
+    const std::uint8_t step = run_table[1u << count | bits][run_];
+    run_ = step % runs;
+    stuffed_ += step / runs;
   }
   std::uint32_t crc() const noexcept { return crc_; }
   std::uint32_t stuffed() const noexcept { return stuffed_; }
 
  private:
+  std::size_t following_;
   std::uint32_t crc_ = 0;
   std::uint32_t stuffed_ = 0;
   Run run_ = 0;
 };
 
-/// SOF (0) and 18 bits: leading zeros do not change the CRC.
+/// Appends 18 bits: identifier, RTR, IDE, r0, DLC.
 void base_header(BitRow& row, const Frame& frame) noexcept {
   const std::uint32_t bits =
       frame.id.id() << 7 | static_cast<std::uint32_t>(frame.rtr) << 6 | frame.length;
-  row.check(bits >> 16);
-  row.check(bits >> 8);
-  row.check(bits);
-  row.stuff(bits >> 16, 2);
-  row.stuff(bits >> 8, 8);
-  row.stuff(bits, 8);
+  row.head(bits >> 16, 2);
+  row.byte(bits >> 8);
+  row.byte(bits);
 }
 
-/// SOF (0) and 38 bits: identifier, SRR, IDE, identifier, RTR, r1, r0, DLC.
+/// Appends 38 bits: identifier, SRR, IDE, identifier, RTR, r1, r0, DLC.
 void extended_header(BitRow& row, const Frame& frame) noexcept {
   const std::uint64_t id = frame.id.id();
   const std::uint64_t bits = (id >> 18) << 27 | std::uint64_t{3} << 25 | (id & 0x3'FFFF) << 7 |
                              static_cast<std::uint64_t>(frame.rtr) << 6 | frame.length;
-  for (int shift = 32; shift >= 0; shift -= 8) {
-    const auto part = static_cast<std::uint32_t>(bits >> shift);
-    row.check(part);
-    row.stuff(part, shift == 32 ? 6 : 8);
-  }
+  row.head(static_cast<std::uint32_t>(bits >> 32), 6);
+  for (int shift = 24; shift >= 0; shift -= 8) row.byte(static_cast<std::uint32_t>(bits >> shift));
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ void extended_header(BitRow& row, const Frame& frame) noexcept {
 FrameBits frame_bits(const Frame& frame) noexcept {
   const bool extended = frame.id.is_extended();
   const std::uint32_t bytes = frame.rtr ? 0 : frame.length;
-  BitRow row;
+  BitRow row{(extended ? 5u : 3u) + bytes};
   if (extended) {
     extended_header(row, frame);
   } else {
@@ -119,7 +119,7 @@ FrameBits frame_bits(const Frame& frame) noexcept {
   for (std::uint32_t i = 0; i < bytes; ++i) row.byte(frame.data[i]);
   const std::uint32_t crc = row.crc();
   row.stuff(crc >> 8, 7);
-  row.stuff(crc, 8);
+  row.stuff(crc & 0xFF, 8);
   const std::uint32_t plain = (extended ? 64u : 44u) + 8 * bytes;
   return {.crc = static_cast<std::uint16_t>(crc),
           .stuff = static_cast<std::uint16_t>(row.stuffed()),

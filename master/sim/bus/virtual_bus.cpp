@@ -20,7 +20,10 @@ VirtualBus::VirtualBus(std::uint32_t bitrate, Random random) : random_{random} {
 }
 
 void VirtualBus::set_bitrate(std::uint32_t bitrate) noexcept {
+  constexpr std::uint64_t second_ns = 1'000'000'000;
   bitrate_ = std::clamp(bitrate, 1'000u, 10'000'000u);
+  bit_ns_ = second_ns / bitrate_;
+  bit_rest_ = second_ns % bitrate_;
 }
 
 BusNodeIndex VirtualBus::attach(BusNodeOptions options) {
@@ -39,8 +42,7 @@ bool VirtualBus::queue(BusNodeIndex from, const Frame& frame, Time ready, Time e
     ready += Time{static_cast<Time::rep>(random_.next() %
                                          static_cast<std::uint64_t>(node.faults.delay.count()))};
   }
-  if (!node.push(
-          {.frame = frame, .rank = arbitration_rank(frame), .ready = ready, .expires = expires})) {
+  if (!node.push(frame, ready, expires)) {
     ++counters_.overflowed;
     return false;
   }
@@ -90,6 +92,8 @@ bool VirtualBus::step(Time now, WireFrame& wire) noexcept {
   return false;
 }
 
+/// Nothing can begin before the bus is idle, so the search ends with the first node that offers a
+/// frame by then.
 void VirtualBus::schedule() noexcept {
   next_ = never;
   if (recovering_ != 0) {
@@ -108,6 +112,7 @@ void VirtualBus::schedule() noexcept {
         continue;
       }
       next_ = std::min(next_, std::max(idle_from_, node.earliest()));
+      if (next_ <= idle_from_) return;
     }
   }
 }
@@ -123,6 +128,10 @@ void VirtualBus::arbitrate(Time now) noexcept {
       const auto index =
           static_cast<BusNodeIndex>(word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
       BusNode& node = nodes_[index];
+      if (node.empty()) {
+        waiting_[word] &= ~(std::uint64_t{1} << (index % 64));
+        continue;
+      }
       counters_.expired += node.drop_expired(now);
       if (node.suspended_until > now) continue;
       const std::size_t offer = node.offered(now);
@@ -147,8 +156,10 @@ void VirtualBus::arbitrate(Time now) noexcept {
 }
 
 void VirtualBus::begin(Time now) noexcept {
-  const std::uint32_t length = frame_bits(current_.frame).total;
-  wire_ = {.frame = current_.frame, .start = now, .sender = sender_};
+  const std::uint32_t length = current_.bits;
+  wire_.frame = current_.frame;
+  wire_.start = now;
+  wire_.sender = sender_;
   wire_.result = WireResult::sent;
   if (rival_ != nobody) {
     BusNode& rival = nodes_[rival_];
@@ -262,13 +273,6 @@ void VirtualBus::recover(Time now) noexcept {
     --recovering_;
     if (changes_.size() < changes_.capacity()) changes_.push_back(i);
   }
-}
-
-BusNodeIndex VirtualBus::take_change() noexcept {
-  if (changes_.empty()) return nobody;
-  const BusNodeIndex index = changes_.back();
-  changes_.pop_back();
-  return index;
 }
 
 }  // namespace takt::sim

@@ -50,7 +50,8 @@ class VirtualBus {
   bool step(Time now, WireFrame& wire) noexcept;
 
   Time bit_time(std::uint32_t bits) const noexcept {
-    return Time{static_cast<Time::rep>(bits * std::uint64_t{1'000'000'000} / bitrate_)};
+    const std::uint64_t rest = bit_rest_ == 0 ? 0 : bits * bit_rest_ / bitrate_;
+    return Time{static_cast<Time::rep>(bits * bit_ns_ + rest)};
   }
   std::uint32_t bitrate() const noexcept { return bitrate_; }
   /// The new bit rate applies from the next frame on.
@@ -58,7 +59,12 @@ class VirtualBus {
   const BusCounters& counters() const noexcept { return counters_; }
 
   /// Returns a node that has gone bus-off or come back since the last call, or `nobody`.
-  BusNodeIndex take_change() noexcept;
+  BusNodeIndex take_change() noexcept {
+    if (changes_.empty()) return nobody;
+    const BusNodeIndex index = changes_.back();
+    changes_.pop_back();
+    return index;
+  }
   static constexpr BusNodeIndex nobody = 0xFFFF;
 
  private:
@@ -77,6 +83,8 @@ class VirtualBus {
   bool acknowledged(BusNodeIndex sender) const noexcept;
 
   std::uint32_t bitrate_ = 1'000'000;
+  std::uint64_t bit_ns_ = 1'000;  ///< whole nanoseconds of a bit
+  std::uint64_t bit_rest_ = 0;    ///< rest of that division; 0 at the usual bit rates
   Random random_;
   std::vector<BusNode> nodes_;
   std::vector<std::uint64_t> waiting_;  ///< set of nodes with queued frames, one bit a node
