@@ -18,6 +18,9 @@ Object make_object(const DeviceObject& entry) {
   object.access = entry.access;
   object.mappable = entry.pdo_mappable;
   object.width = static_cast<std::uint8_t>(byte_width(entry.type));
+  const unsigned bits = 8u * std::min<unsigned>(object.width, 8);
+  object.mask = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  if (is_signed(entry.type)) object.sign_shift = static_cast<std::uint8_t>(64 - bits);
   object.low = entry.low_limit;
   object.high = entry.high_limit;
   if (object.is_bytes()) {
@@ -27,12 +30,6 @@ Object make_object(const DeviceObject& entry) {
     object.power_on = object.factory = object.value;
   }
   return object;
-}
-
-std::int64_t sign_extend(std::uint64_t raw, unsigned width) noexcept {
-  if (width == 0 || width >= 8) return static_cast<std::int64_t>(raw);
-  const unsigned unused = 64 - 8 * width;
-  return static_cast<std::int64_t>(raw << unused) >> unused;
 }
 
 bool below(std::uint64_t value, std::int64_t limit, bool with_sign) noexcept {
@@ -48,8 +45,7 @@ bool above(std::uint64_t value, std::int64_t limit, bool with_sign) noexcept {
 Abort check_limits(const Object& object, std::uint64_t raw) noexcept {
   if (is_real(object.type)) return Abort::none;
   const bool with_sign = is_signed(object.type);
-  const std::uint64_t value =
-      with_sign ? static_cast<std::uint64_t>(sign_extend(raw, object.width)) : raw & object.mask();
+  const auto value = static_cast<std::uint64_t>(object.extended(raw & object.mask));
   if (object.high && above(value, *object.high, with_sign)) return Abort::value_high;
   if (object.low && below(value, *object.low, with_sign)) return Abort::value_low;
   return Abort::none;
@@ -63,10 +59,6 @@ std::uint64_t to_number(std::span<const std::byte> data) noexcept {
     number |= std::to_integer<std::uint64_t>(data[i]) << (8 * i);
   }
   return number;
-}
-
-std::int64_t Object::number() const noexcept {
-  return is_signed(type) ? sign_extend(value, width) : static_cast<std::int64_t>(value);
 }
 
 ObjectStore::ObjectStore(const DeviceTable& table) {

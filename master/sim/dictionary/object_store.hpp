@@ -19,8 +19,10 @@ struct Object {
   DataType type = DataType::unknown;
   Access access = Access::rw;
   bool mappable = false;
-  std::uint8_t width = 0;  ///< size of a number in bytes; 0 means a string or domain
+  std::uint8_t width = 0;       ///< size of a number in bytes; 0 means a string or domain
+  std::uint8_t sign_shift = 0;  ///< unused bits above a signed number in `value`; 0 if unsigned
   std::uint64_t value = 0;
+  std::uint64_t mask = 0;      ///< the bits of `value` that the width covers
   std::uint64_t power_on = 0;  ///< value after reset: factory, or stored by 0x1010
   std::uint64_t factory = 0;
   std::optional<std::int64_t> low;
@@ -31,11 +33,12 @@ struct Object {
 
   bool is_bytes() const noexcept { return width == 0; }
   /// Returns the number, sign-extended if its type is signed.
-  std::int64_t number() const noexcept;
-  void set(std::uint64_t raw) noexcept { value = raw & mask(); }
-  std::uint64_t mask() const noexcept {
-    return width >= 8 ? ~std::uint64_t{0} : (std::uint64_t{1} << (8 * width)) - 1;
+  std::int64_t number() const noexcept { return extended(value); }
+  /// Returns a raw value as number() does.
+  std::int64_t extended(std::uint64_t raw) const noexcept {
+    return static_cast<std::int64_t>(raw << sign_shift) >> sign_shift;
   }
+  void set(std::uint64_t raw) noexcept { value = raw & mask; }
   bool readable() const noexcept { return access != Access::wo; }
   bool writable() const noexcept { return access != Access::ro && access != Access::constant; }
 };

@@ -45,8 +45,7 @@ void EmcyProducer::raise(std::uint16_t code, ErrorBit bit, Detail detail) noexce
   push(code, detail);
 }
 
-void EmcyProducer::clear(std::uint16_t code, std::uint8_t source) noexcept {
-  if (active_count_ == 0) return;
+void EmcyProducer::clear_active(std::uint16_t code, std::uint8_t source) noexcept {
   const auto end = active_.begin() + static_cast<std::ptrdiff_t>(active_count_);
   const auto kept = std::remove_if(active_.begin(), end, [code, source](Error error) {
     return error.code == code && error.source == source;
@@ -80,8 +79,7 @@ void EmcyProducer::remember(std::uint16_t code) noexcept {
   count->set(std::min<std::uint64_t>(count->value + 1, places));
 }
 
-void EmcyProducer::on_time(Time now, bool may_send, Transmitter& out) noexcept {
-  if (!may_send || waiting_ == 0 || now < allowed_from_) return;
+void EmcyProducer::send_waiting(Time now, Transmitter& out) noexcept {
   const bool silent = cob_ != nullptr && (cob_->value & cob_invalid) != 0;
   const Time gap = inhibit_ == nullptr
                        ? Time{}

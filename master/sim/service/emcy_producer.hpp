@@ -37,13 +37,17 @@ class EmcyProducer {
   /// distinguishes errors with the same code, for example by the number of the PDO or of the silent
   /// node. At most 16 errors can be active; further ones are dropped.
   void raise(std::uint16_t code, ErrorBit bit, Detail detail = {}) noexcept;
-  void clear(std::uint16_t code, std::uint8_t source = 0) noexcept;
+  void clear(std::uint16_t code, std::uint8_t source = 0) noexcept {
+    if (active_count_ != 0) clear_active(code, source);
+  }
   /// Sends an EMCY and enters the error in the history, but not in the list of active errors.
   void tell(std::uint16_t code, Detail detail = {}) noexcept;
   bool is_active(std::uint16_t code, std::uint8_t source = 0) const noexcept;
 
   /// Sends the waiting messages as far as the inhibit time allows.
-  void on_time(Time now, bool may_send, Transmitter& out) noexcept;
+  void on_time(Time now, bool may_send, Transmitter& out) noexcept {
+    if (may_send && waiting_ != 0 && now >= allowed_from_) send_waiting(now, out);
+  }
   Time deadline() const noexcept { return waiting_ == 0 ? never : allowed_from_; }
 
   Abort check_read(ObjectKey key) const noexcept;
@@ -62,6 +66,8 @@ class EmcyProducer {
     Detail detail{};
   };
 
+  void send_waiting(Time now, Transmitter& out) noexcept;
+  void clear_active(std::uint16_t code, std::uint8_t source) noexcept;
   void push(std::uint16_t code, Detail detail) noexcept;
   void remember(std::uint16_t code) noexcept;
   std::uint8_t error_register() const noexcept;
