@@ -146,7 +146,8 @@ void World::apply_to_device(std::size_t index, const Fault& fault, bool begins) 
     case FaultKind::ignore_write:
       return set_access(faults, fault, begins);
     case FaultKind::override_value:
-      return override_value(hosted, fault, begins);
+      override_value(hosted, fault, begins);
+      return device.look_at_records();
     case FaultKind::late_bootup:
       faults.bootup_delay = begins ? fault.time : Time{};
       return;

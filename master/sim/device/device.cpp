@@ -76,7 +76,7 @@ void Device::power_off() noexcept {
   sync_producer_.stop();
   time_.reset();
   state_ = DeviceState::off;
-  boots_at_ = next_storm_ = tick_ = deadline_ = never;
+  boots_at_ = next_storm_ = tick_ = deadline_ = service_deadline_ = never;
   routes_.clear();
   routes_changed_ = true;
 }
@@ -136,15 +136,17 @@ void Device::send_bootup(Time now) noexcept {
 }
 
 void Device::on_frame(const Frame& frame, Time now) noexcept {
-  const auto [first, last] = std::ranges::equal_range(routes_, frame.id, {}, &Route::id);
-  if (first == last) return;
+  auto route = std::ranges::lower_bound(routes_, frame.id, {}, &Route::id);
   std::array<Route, 8> taken;  // a handler may rebuild the routes
-  const auto count = std::min<std::ptrdiff_t>(last - first, std::ssize(taken));
-  std::copy_n(first, count, taken.begin());
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    dispatch(taken[static_cast<std::size_t>(i)], frame, now);
+  std::size_t count = 0;
+  bool services = frame.rtr;
+  for (; route != routes_.end() && route->id == frame.id && count < taken.size(); ++route) {
+    taken[count++] = *route;
+    services = services || (route->kind != RouteKind::sync && route->kind != RouteKind::rpdo);
   }
-  finish_call(now);
+  if (count == 0) return;
+  for (std::size_t i = 0; i < count; ++i) dispatch(taken[i], frame, now);
+  services ? finish_call(now) : finish_exchange(now);
 }
 
 void Device::dispatch(const Route& route, const Frame& frame, Time now) noexcept {
@@ -288,19 +290,29 @@ void Device::fail(std::uint16_t emcy_code, Time now) noexcept {
 
 /// Ends every call: sends waiting EMCYs and computes the next deadline.
 void Device::finish_call(Time now) noexcept {
+  service_deadline_ = std::min({boots_at_, next_storm_, heartbeat_.deadline()});
+  if (lss_) service_deadline_ = std::min(service_deadline_, lss_->deadline());
+  if (communicates()) {
+    service_deadline_ = std::min({service_deadline_, watch_.deadline(), guarding_.deadline(),
+                                  program_.deadline(), sync_producer_.deadline()});
+    for (const SdoServer& server : sdo_) {
+      service_deadline_ = std::min(service_deadline_, server.deadline());
+    }
+  }
+  finish_exchange(now);
+}
+
+/// Ends a call that has taken only SYNC and RPDOs: these do not change the deadlines of services.
+void Device::finish_exchange(Time now) noexcept {
   emcy_.on_time(now, communicates(), out_);
   if (lss_ && lss_->switching()) out_.clear();
-  deadline_ = std::min({boots_at_, next_storm_, heartbeat_.deadline()});
-  if (lss_) deadline_ = std::min(deadline_, lss_->deadline());
+  deadline_ = service_deadline_;
   if (!communicates()) {
     tick_ = never;
     return;
   }
   plan_tick();
-  deadline_ =
-      std::min({deadline_, tick_, watch_.deadline(), guarding_.deadline(), program_.deadline(),
-                sync_.deadline(), sync_producer_.deadline(), emcy_.deadline()});
-  for (const SdoServer& server : sdo_) deadline_ = std::min(deadline_, server.deadline());
+  deadline_ = std::min({deadline_, tick_, sync_.deadline(), emcy_.deadline()});
   if (state_ != DeviceState::operational) return;
   for (const Rpdo& rpdo : rpdos_) deadline_ = std::min(deadline_, rpdo.deadline());
   for (const Tpdo& tpdo : tpdos_) deadline_ = std::min(deadline_, tpdo.deadline());

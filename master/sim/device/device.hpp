@@ -78,6 +78,11 @@ class Device final : private Dictionary {
   std::size_t most_ids() const noexcept { return routes_.capacity(); }
   bool take_routes_changed() noexcept { return std::exchange(routes_changed_, false); }
 
+  /// Objects were changed without a write by SDO.
+  void look_at_records() noexcept {
+    for (Tpdo& tpdo : tpdos_) tpdo.look_at_record();
+  }
+
   void on_bus_off(Time now) noexcept;
   void on_bus_recovered(Time now) noexcept;
   /// The device resets itself, as after a watchdog timeout.
@@ -157,6 +162,7 @@ class Device final : private Dictionary {
   void look_at_inputs(Time now) noexcept;
   void plan_tick() noexcept;
   void finish_call(Time now) noexcept;
+  void finish_exchange(Time now) noexcept;
   bool communicates() const noexcept {
     return state_ == DeviceState::operational || state_ == DeviceState::preoperational;
   }
@@ -191,6 +197,7 @@ class Device final : private Dictionary {
   Time next_storm_ = never;
   Time last_look_{};
   Time tick_ = never;
+  Time service_deadline_ = never;  ///< earliest deadline of all but SYNC, PDOs, EMCY and the model
   Time deadline_ = never;
   std::array<std::byte, 8> scratch_{};
 };

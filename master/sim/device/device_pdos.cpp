@@ -58,6 +58,7 @@ void Device::on_rpdo(Rpdo& rpdo, const Frame& frame, Time now) noexcept {
   const std::uint16_t number = rpdo.record().number();
   if (rpdo.record().multiplex() != Multiplex::none) {
     if (!multiplexed_.on_frame(rpdo.record(), frame, emcy_)) return;
+    look_at_records();
     model_->advance(now);
     model_->outputs(now);
     return look_at_inputs(now);

@@ -10,7 +10,12 @@ void Tpdo::start(Time now) noexcept {
   reconfigure(now);
 }
 
+void Tpdo::look_at_record() noexcept {
+  active_ = running_ && record_.valid() && record_.multiplex() == Multiplex::none;
+}
+
 void Tpdo::reconfigure(Time now) noexcept {
+  look_at_record();
   record_.compile(mapping_);
   type_ = record_.type();
   count_ = 0;
@@ -30,8 +35,8 @@ bool Tpdo::only_answers() const noexcept {
   return traits_.answers_255 && type_ == 255 && record_.event_timer() == Time{};
 }
 
-bool Tpdo::wants_events() const noexcept {
-  if (!active() || (type_ != 0 && type_ < 254)) return false;
+bool Tpdo::has_events() const noexcept {
+  if (type_ != 0 && type_ < 254) return false;
   if (traits_.timer == DeviceTraits::Timer::alone && runs_by_timer()) return false;
   return !only_answers();
 }
@@ -43,13 +48,13 @@ Time Tpdo::inhibit() const noexcept {
 
 void Tpdo::update_deadline() noexcept {
   deadline_ = never;
-  if (!active()) return;
+  if (!active_) return;
   deadline_ = timer_;
   if (pending_ && type_ >= 254) deadline_ = std::min(deadline_, allowed_from_);
 }
 
-void Tpdo::on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
-  if (!active()) return;
+void Tpdo::sample_at_sync(std::uint8_t counter, Time ready, Time window_end,
+                          Transmitter& out) noexcept {
   if (type_ == 252) {
     sample_ = mapping_.pack();
     sampled_ = true;
@@ -79,7 +84,7 @@ bool Tpdo::counts_to_its_turn(std::uint8_t counter) noexcept {
 
 /// For an event-driven PDO a remote request is one more event, so the inhibit time applies.
 void Tpdo::on_request(Time ready, Transmitter& out) noexcept {
-  if (!active() || !record_.rtr_allowed() || !traits_.answers_rtr) return;
+  if (!active_ || !record_.rtr_allowed() || !traits_.answers_rtr) return;
   if (type_ == 252) {
     if (sampled_) send(sample_, ready, never, out);
   } else if (type_ == 253) {
@@ -94,8 +99,7 @@ void Tpdo::answer(Time ready, Transmitter& out) noexcept {
   if (running_ && record_.valid() && only_answers()) send(mapping_.pack(), ready, never, out);
 }
 
-void Tpdo::notice(Time now, Transmitter& out) noexcept {
-  if (!wants_events()) return;
+void Tpdo::look_for_event(Time now, Transmitter& out) noexcept {
   const std::uint64_t data = mapping_.pack();
   if (type_ == 0) {
     if (data != seen_ && !traits_.compares_samples) pending_ = true;

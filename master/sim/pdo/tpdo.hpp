@@ -19,27 +19,33 @@ class Tpdo {
   /// Enters the state that a TPDO has on entering OPERATIONAL: an event is pending (unless the
   /// traits say otherwise) and counters are zero.
   void start(Time now) noexcept;
-  void stop() noexcept { running_ = false; }
+  void stop() noexcept { running_ = active_ = false; }
   /// To be called after a write to one of the objects of this TPDO.
   void reconfigure(Time now) noexcept;
+  /// To be called after its objects were changed without a write by SDO. The new values count from
+  /// the next start or write on, but an invalid COB-ID ends the TPDO at once.
+  void look_at_record() noexcept;
 
   /// The frame may be on the wire from `ready` on; after `window_end` the frame is dropped.
-  void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
+  void on_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept {
+    if (active_) sample_at_sync(counter, ready, window_end, out);
+  }
   void on_request(Time ready, Transmitter& out) noexcept;
   /// The RPDO with the same number was received.
   void answer(Time ready, Transmitter& out) noexcept;
   /// Called when mapped values may have changed.
-  void notice(Time now, Transmitter& out) noexcept;
+  void notice(Time now, Transmitter& out) noexcept {
+    if (wants_events()) look_for_event(now, out);
+  }
   void on_time(Time now, Transmitter& out) noexcept;
   Time deadline() const noexcept { return deadline_; }
   /// True if changes of mapped values are events.
-  bool wants_events() const noexcept;
+  bool wants_events() const noexcept { return active_ && has_events(); }
 
  private:
-  /// False for a multiplexed PDO, which is not sent as a whole.
-  bool active() const noexcept {
-    return running_ && record_.valid() && record_.multiplex() == Multiplex::none;
-  }
+  void look_for_event(Time now, Transmitter& out) noexcept;
+  bool has_events() const noexcept;
+  void sample_at_sync(std::uint8_t counter, Time ready, Time window_end, Transmitter& out) noexcept;
   bool counts_to_its_turn(std::uint8_t counter) noexcept;
   void send(std::uint64_t data, Time ready, Time expires, Transmitter& out) noexcept;
   void event(Time ready, Transmitter& out) noexcept;
@@ -53,6 +59,8 @@ class Tpdo {
   PdoMapping mapping_;
   std::uint8_t type_ = 255;
   bool running_ = false;
+  bool active_ = false;     ///< running and valid; false for a multiplexed PDO, which is not sent
+                            ///< as a whole
   bool pending_ = false;    ///< an event that has not been sent yet
   bool sampled_ = false;    ///< type 252: sample_ is valid
   bool started_ = false;    ///< the SYNC start value has been seen

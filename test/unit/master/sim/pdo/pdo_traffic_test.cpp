@@ -71,6 +71,19 @@ SampleDevice with_rpdo(std::uint8_t type) {
   return communicating(5_node).pdo(0x1400, 0x205, type, {0x20100020, 0x20120010});
 }
 
+TEST(Tpdo, EndsAtOnceWhenAFaultInvalidatesItsCobId) {
+  Traffic device{with_tpdo(1)};
+  device.start();
+  device.sync();
+  ASSERT_EQ(device.of(0x185).size(), 1u);
+
+  device->objects().find({0x1800, 1})->set(0x8000'0185);
+  device->look_at_records();
+  device.sync();
+
+  EXPECT_EQ(device.of(0x185).size(), 1u);
+}
+
 TEST(Tpdo, Type1IsSentAtEachSyncInOperationalOnly) {
   Traffic device{with_tpdo(1)};
   device.sync();
