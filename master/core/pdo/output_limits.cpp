@@ -39,6 +39,9 @@ OutputLimits::OutputLimits(const BusPlan& plan, const WorkingImage& image, const
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     const auto place = static_cast<std::uint16_t>(i);
     places_[limits_[i].signal] = place;
+    if (limits_[i].modulus <= 0) {
+      limits_[i].modulus = limits_[i].wraps ? std::ldexp(1.0, signal_of(i).bits) : 0.0;
+    }
     for (const auto& signal : {limits_[i].controlword, limits_[i].offset, limits_[i].mode}) {
       if (signal) dependents_[*signal].push_back(place);
     }
@@ -110,11 +113,8 @@ double OutputLimits::number(const Signal& signal, std::int64_t raw) const noexce
 /// positions of one turn are less than a turn apart; whole turns beyond that are a distance that
 /// the axis would move.
 double OutputLimits::distance(std::size_t place, double from, double to) const noexcept {
-  const OutputLimit& limit = limits_[place];
+  const double modulus = limits_[place].modulus;
   const double way = to - from;
-  const double modulus = limit.modulus > 0 ? limit.modulus
-                         : limit.wraps     ? std::ldexp(1.0, signal_of(place).bits)
-                                           : 0.0;
   const double length = std::abs(way);
   if (length <= modulus / 2 || length >= modulus) return way;
   return way - std::copysign(modulus, way);
@@ -324,6 +324,7 @@ void OutputLimits::forgive(std::size_t place, std::uint64_t cycle) noexcept {
 }
 
 void OutputLimits::expire(std::uint64_t cycle) noexcept {
+  if (!holds_any()) return;
   constexpr Time longest = std::chrono::seconds{1};
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (!slots_[i].refused) continue;
