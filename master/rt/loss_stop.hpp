@@ -10,8 +10,8 @@
 
 namespace takt {
 
-/// LossReaction::quick_stop: while a node is lost, the drives of its group make a quick stop and
-/// stay disabled until the node is back. Bus thread only.
+/// Carries out LossReaction::quick_stop. While a node is lost, each drive of its group gets quick
+/// stop, then disable voltage once it is disabled, until the node is back. Bus thread only.
 template <Services S>
 class LossStop {
  public:

@@ -11,8 +11,8 @@
 
 namespace takt {
 
-/// Makes the newest set-points the RPDO frames of this cycle. They take effect at the next SYNC.
-/// Bus thread only.
+/// Turns the newest set-points into the RPDO frames of this cycle, and sends them. They take effect
+/// at the next SYNC. Bus thread only.
 template <Port P, FrontLink L, Services S>
 class OutputStage {
  public:
@@ -31,7 +31,8 @@ class OutputStage {
       front_.exchange().timing.command_age.record(now - commands.when);
     }
     if (frames.empty()) return;
-    // SYNC has precedence: outputs that could not end before it wait for the next cycle.
+    // SYNC has precedence: outputs that might not end before the next SYNC are left for the next
+    // cycle.
     const Time room = beat_.next_deadline() - now;
     if (bus_.wire.worst(frames) > room) [[unlikely]] {
       frames = outputs.pack_less(bus_.wire.bits_in(room), WireTime::worst_bits);

@@ -13,7 +13,7 @@ namespace takt {
 /// Service frames of the state machines that wait for their turn in the slack. Bus thread only.
 class ServiceQueue {
  public:
-  /// The state machines write here. They offer frames that do not fit again later.
+  /// The state machines write here. If a frame does not fit, they offer it again later.
   Outbox& inbox() noexcept { return outbox_; }
   bool empty() const noexcept { return outbox_.empty(); }
   std::size_t size() const noexcept { return outbox_.frames().size(); }
@@ -24,8 +24,9 @@ class ServiceQueue {
   std::size_t count(Answer answer) const noexcept {
     return static_cast<std::size_t>(std::ranges::count(outbox_.answers(), answer));
   }
-  /// Returns how many of the first `most` frames end within `room`, including their answers. A
-  /// stream ends the count, because it has priority over the frames that follow it.
+  /// Returns how many of the first `most` frames end within `room`, including their answers. The
+  /// count ends with a frame whose answer is a stream (Answer::stream), because no later frame gets
+  /// through while the stream runs.
   std::size_t fitting(std::size_t most, Time room, const WireTime& wire) const noexcept {
     Time needed{};
     std::size_t count = 0;
@@ -42,7 +43,8 @@ class ServiceQueue {
     return static_cast<std::size_t>(
         std::ranges::count_if(outbox_.answers().first(std::min(most, size())), by_server));
   }
-  /// Wire time of the other frames among the first `most`, including their answers.
+  /// Wire time of the frames that do not go to SDO servers, among the first `most`, including their
+  /// answers.
   Time to_others(std::size_t most, const WireTime& wire) const noexcept {
     Time sum{};
     for (const Answer answer : outbox_.answers().first(std::min(most, size()))) {
@@ -50,7 +52,7 @@ class ServiceQueue {
     }
     return sum;
   }
-  /// Returns true if nobody answers any of the first `count` frames.
+  /// Returns true if none of the first `count` frames gets an answer.
   bool unanswered(std::size_t count) const noexcept {
     return std::ranges::all_of(outbox_.answers().first(std::min(count, size())),
                                [](Answer answer) { return !awaited(answer); });

@@ -11,8 +11,9 @@
 
 namespace takt {
 
-/// All that stops axes, in the order of a cycle: the reaction to the loss of SYNC, the halt before
-/// an NMT command, the ordered stop, and the quick stop after the loss of a node. Bus thread only.
+/// Everything that stops axes, in the order in which a cycle runs it: the reaction to the loss of
+/// SYNC, the halt before an NMT command, the ordered stop, and the quick stop after the loss of a
+/// node. Bus thread only.
 template <Services S>
 class StopControl {
  public:
@@ -32,9 +33,9 @@ class StopControl {
   /// The ordered stop is complete.
   bool done() const noexcept { return sequence_.done(); }
 
-  /// Takes whether the SYNC of another device is lost.
+  /// Begins or ends the reaction to the loss of another device's SYNC. `lost`: it is lost now.
   void follow_sync(bool lost) noexcept { sync_loss_.follow(lost); }
-  /// Ends a halt whose NMT command has left. Call this before the services run.
+  /// Ends a halt after its NMT command was sent. Call this before the services run.
   void end_halt() noexcept {
     if (stops_.halting()) halt_.end_if_over();
   }
@@ -44,7 +45,7 @@ class StopControl {
     if (sync_loss_.writes_wait()) sync_loss_.write_fallbacks(port.now());
     if (stops_.asks()) stops_.ask(port.now());
   }
-  /// Begins the stops that are asked for, and advances them. Call this after the services have run.
+  /// Begins requested stops, and advances those that run. Call this after the services have run.
   template <FrontLink L>
   void step(L& front, Time now) noexcept {
     memories_.update();
@@ -54,7 +55,7 @@ class StopControl {
     }
     if (stops_.stopping()) sequence_.step(now);
   }
-  /// Makes the drives of a lost node's group stop. Call this before the outputs are packed.
+  /// Stops the drives in the group of a lost node. Call this before the outputs are packed.
   void stop_after_loss() noexcept { loss_stop_.step(); }
 
   /// The master sends no SYNC, see NmtHalt.

@@ -8,8 +8,8 @@
 
 namespace takt {
 
-/// The reaction to the loss of the SYNC of another device that the network file configures: hold
-/// the outputs, take the fallbacks, or stop the nodes. Bus thread only.
+/// Reacts to the loss of another device's SYNC as `on_sync_loss` says: sends no outputs, lets the
+/// outputs take their fallbacks, or stops the nodes. Bus thread only.
 template <Services S>
 class SyncLossReaction {
  public:

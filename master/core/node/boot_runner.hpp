@@ -41,7 +41,10 @@ namespace takt {
 /// | in_transfer        | result, more to transfer       | before_transfer  |                 |
 /// | in_transfer        | result, not reached yet        | waiting          |                 |
 /// | in_transfer        | result, wrong                  | failed           |                 |
-/// | any of these       | boot-up message not waited for | entering, failed |                 |
+/// | waiting, before_*  | boot-up message not waited for | entering, failed |                 |
+/// | in_transfer        | boot-up message not waited for | entering, failed |                 |
+/// | waiting            | the same, in a step that polls | before_transfer  |                 |
+/// | in_transfer        | the same, in a step that polls | before_transfer  |                 |
 /// | any                | stop()                         | idle             |                 |
 ///
 /// BootCourse is a second state: what this boot does with the steps.

@@ -10,7 +10,7 @@ namespace takt {
 /// change only while its bit 31 is set, and its bit 30 belongs to the device. CiA 301, 7.5.2.35.
 class CobIdMemory {
  public:
-  /// Notes the value of an object; objects that hold no such COB-ID are ignored.
+  /// Notes the value of an object if it is the COB-ID of a PDO or of EMCY (0x1014).
   void note(ObjectKey object, std::uint32_t value) noexcept {
     if (!is_cob_id(object)) return;
     object_ = object;
@@ -20,7 +20,7 @@ class CobIdMemory {
   bool knows(ObjectKey object) const noexcept { return object_ == object; }
 
   std::uint32_t value() const noexcept { return value_; }
-  /// The known value, as it is while the PDO does not exist.
+  /// The known value with bit 31 set, which switches the PDO off.
   std::uint32_t disabled() const noexcept { return value_ | pdo_invalid; }
   /// The `wanted` COB-ID with the bit 30 of the known value.
   std::uint32_t enabled(std::uint32_t wanted) const noexcept {

@@ -17,7 +17,7 @@ class NodeGuard {
   /// Begins guarding: the first request is due at once, and the life time of the node begins.
   void start(Time now) noexcept;
   void stop() noexcept { next_request_ = silent_from_ = never; }
-  /// Stops guarding. The first answer after a boot-up message has toggle bit 0.
+  /// Stops guarding, and expects toggle bit 0 in the first answer, because the node has reset it.
   void node_was_reset() noexcept;
 
   /// A guarding request is due.
@@ -30,13 +30,13 @@ class NodeGuard {
   /// Number of answers in a row whose toggle bit repeats.
   std::uint32_t repeated() const noexcept { return repeated_; }
 
-  /// Does not count the time for which the master itself did not run as silence of the node.
+  /// While the master itself did not run, the node does not count as silent.
   void excuse(Time away) noexcept {
     if (silent_from_ != never) silent_from_ += away;
   }
 
-  /// Returns the time of silence once, when the life time is over. The next answer starts the
-  /// supervision again.
+  /// When the life time of the node is over, returns once for how long the node has been silent.
+  /// The next answer starts the supervision again.
   std::optional<Time> on_time(Time now) noexcept;
   Time deadline() const noexcept;
 

@@ -16,8 +16,8 @@ namespace takt {
 
 /// Timing of the cycle, recorded by the bus thread.
 struct TimingHistograms {
-  /// Time from the deadline to the moment at which SYNC was handed over. If the master follows the
-  /// SYNC of another device: deviation of its arrival from the deadline.
+  /// Time from the deadline to the moment just before SYNC is handed over. If another device
+  /// produces SYNC: how far its arrival is from the deadline, early or late.
   Histogram sync_lateness;
   /// Time from the deadline to the echo of SYNC, if the port has echoes.
   Histogram sync_on_wire;
@@ -50,7 +50,7 @@ struct Exchange {
   // From the front thread to the bus thread.
   SetPoints set_points;
   SpscRing<Request, 16> requests;
-  std::array<SdoTransfer, 4> transfers;  ///< SdoTransfer says which thread may use each of them
+  std::array<SdoTransfer, 4> transfers;  ///< SdoTransfer names the thread that may use each
   std::atomic<bool> stop_requested{false};
 };
 

@@ -10,7 +10,7 @@
 
 namespace takt {
 
-/// Identifies an image and the time at which it was taken.
+/// The number of an image, its times, and how many PDOs are missing in it.
 struct ImageStamp {
   std::uint64_t cycle = 0;  ///< cycle number; jumps by the number of missed periods
   std::uint64_t beat = 0;   ///< SYNCs sent or followed so far
@@ -30,8 +30,8 @@ struct ImageView {
   std::span<const std::uint64_t> stale_bits;  ///< signal n is bit n % 64 of word n / 64
   std::span<const PdoMark> pdos{};            ///< rows of PdoTable::tpdos
 
-  /// Cycles since the newest frame of this TPDO; 0 if the frame came in this cycle. Meaningless
-  /// while the mark's `received` is 0, because no frame has come yet.
+  /// Cycles since the newest frame of this TPDO; 0 if the frame came in this cycle. It means
+  /// nothing until the first frame has come (`received` of the mark is 0).
   std::uint32_t age(std::size_t tpdo) const noexcept {
     return static_cast<std::uint32_t>(cycle) - pdos[tpdo].cycle;
   }
@@ -50,8 +50,8 @@ class ImageRing {
                std::span<const std::uint64_t> stale_bits,
                std::span<const PdoMark> pdos = {}) noexcept;
 
-  /// Front thread: takes the next image in order and frees the one taken before. Returns false if
-  /// there is none.
+  /// Front thread: takes the next image in order, and frees the image of the previous call. Returns
+  /// false if there is none.
   bool take(ImageView& view) noexcept;
   /// Front thread: takes the newest image and skips older ones. Returns false if there is none.
   bool take_newest(ImageView& view) noexcept;

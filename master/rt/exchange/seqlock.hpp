@@ -11,12 +11,12 @@
 namespace takt {
 
 /// Holds bytes that one thread writes and other threads read without tearing. The writer never
-/// waits; a reader retries while the writer overtakes it.
+/// waits; a reader reads again if a write happened meanwhile.
 class Seqlock {
  public:
   explicit Seqlock(std::size_t bytes) : words_((bytes + 7) / 8) {}
 
-  /// Writer: calls put() any number of times between begin() and end().
+  /// Writer: begin(), then any number of put(), then end().
   void begin() noexcept {
     version_.store(version_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_release);
