@@ -10,10 +10,10 @@
 namespace takt {
 namespace {
 
+using test::image;
+using test::signal;
+using test::two_axes;
 using ::testing::ElementsAre;
-using testing::image;
-using testing::signal;
-using testing::two_axes;
 
 constexpr std::int64_t not_commanded = -1;
 constexpr std::int64_t disabled = 0x0250;

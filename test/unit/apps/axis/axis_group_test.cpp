@@ -9,11 +9,11 @@ namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::FakeLcm;
-using testing::FakeTransport;
-using testing::image;
-using testing::status;
-using testing::two_axes;
+using test::FakeLcm;
+using test::FakeTransport;
+using test::image;
+using test::status;
+using test::two_axes;
 
 class Group : public ::testing::Test {
  protected:

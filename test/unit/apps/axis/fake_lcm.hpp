@@ -8,7 +8,7 @@
 
 #include "master/lcm/messages.hpp"
 
-namespace takt::testing {
+namespace takt::test {
 
 /// An LCM that the test controls.
 struct FakeLcm {
@@ -46,4 +46,4 @@ class FakeTransport final : public Transport {
   FakeLcm& lcm_;
 };
 
-}  // namespace takt::testing
+}  // namespace takt::test

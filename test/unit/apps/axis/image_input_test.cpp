@@ -6,8 +6,8 @@
 namespace takt {
 namespace {
 
-using testing::image;
-using testing::two_axes;
+using test::image;
+using test::two_axes;
 
 ImageInput with_layout() {
   ImageInput input;
@@ -193,7 +193,7 @@ TEST(ImageInput, KeepsToItsSessionWhileImagesOfItCome) {
   layout_t other_hash = two_axes();
   other_hash.hash += 1;
   EXPECT_FALSE(input.take(other_hash));
-  EXPECT_EQ(input.session(), testing::session);
+  EXPECT_EQ(input.session(), test::session);
   EXPECT_TRUE(input.has_image());
 }
 
@@ -213,7 +213,7 @@ TEST(ImageInput, ComesBackFromASessionThatHasNoImages) {
   ImageInput input;
   EXPECT_TRUE(input.take(forged_layout()));
   EXPECT_TRUE(input.take(two_axes()));
-  EXPECT_EQ(input.session(), testing::session);
+  EXPECT_EQ(input.session(), test::session);
 }
 
 TEST(ImageInput, WaitsLongerWhereTheBusIsSlow) {

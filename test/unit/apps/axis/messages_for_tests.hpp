@@ -5,7 +5,7 @@
 #include <takt/layout_t.hpp>
 #include <takt/status_t.hpp>
 
-namespace takt::testing {
+namespace takt::test {
 
 inline constexpr std::int64_t session = 77;
 inline constexpr std::int64_t hash = 1234;
@@ -70,4 +70,4 @@ inline status_t status(const std::string& holder_of_5, const std::string& holder
   return made;
 }
 
-}  // namespace takt::testing
+}  // namespace takt::test

@@ -10,11 +10,11 @@ namespace takt {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::FakeLcm;
-using testing::FakeTransport;
-using testing::image;
-using testing::status;
-using testing::two_axes;
+using test::FakeLcm;
+using test::FakeTransport;
+using test::image;
+using test::status;
+using test::two_axes;
 
 constexpr std::int64_t operation_enabled = 0x27;
 

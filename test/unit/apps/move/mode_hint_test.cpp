@@ -8,13 +8,13 @@
 namespace takt {
 namespace {
 
+using test::image;
+using test::signal;
+using test::two_axes;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::image;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using testing::signal;
-using testing::two_axes;
 
 enum class Mapped : std::uint8_t { display, both };
 
