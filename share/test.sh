@@ -83,7 +83,7 @@ build() {
   [ "$preset" = release ] && benchmarks=ON || benchmarks=OFF
   [ "$preset" = tsan ] && werror=OFF || werror=ON
   cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$compiler" -DTAKT_TESTS=ON -DTAKT_BENCHMARKS=$benchmarks \
-    -DTAKT_WERROR=$werror -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
+    -DTAKT_WERROR=$werror -DTAKT_UNITY=ON -DTAKT_PCH="$pch" && ninja -C "build/$preset" -j "$jobs" "$@"
 }
 
 # Each runs for about a second and must not fail. What it says is no figure: those come from sh test/bench/run.sh.
