@@ -44,14 +44,16 @@ constexpr Key<AxisLimitsSpec> axis_keys[] = {
                     "The range `[lowest, highest]` of set-points: 0x607A or 0x60C1, plus the "
                     "position offset 0x60B0."),
     magnitude_key<&AxisLimitsSpec::velocity>(
-        "velocity", "Of positions per cycle, and of 0x60FF, 0x60B1 and 0x6081."),
+        "velocity",
+        "Of positions per cycle, of 0x60FF plus the velocity offset 0x60B1, and of 0x6081."),
     magnitude_key<&AxisLimitsSpec::acceleration>(
         "acceleration",
-        "Second difference of positions, difference of 0x60FF, and 0x6083 and 0x6084."),
+        "Second difference of positions, difference of velocities (0x60FF plus 0x60B1), and 0x6083 "
+        "and 0x6084."),
     magnitude_key<&AxisLimitsSpec::jerk>("jerk", "Not checked: for planned motion."),
     magnitude_key<&AxisLimitsSpec::step>(
         "step", "Change of a position set-point from one cycle to the next."),
-    magnitude_key<&AxisLimitsSpec::torque>("torque", "Of 0x6071 and 0x60B2."),
+    magnitude_key<&AxisLimitsSpec::torque>("torque", "Of 0x6071 plus the torque offset 0x60B2."),
     magnitude_key<&AxisLimitsSpec::modulo>(
         "modulo", "The length after which a rotary axis wraps around. Otherwise 0x607B of `sdo`."),
 };

@@ -13,8 +13,8 @@
 
 namespace takt {
 
-/// Remembers of each axis whether it is disabled, and whether a service may have enabled it since.
-/// The stops rely on this. Bus thread only.
+/// Remembers of each axis whether it is disabled, whether a service may have enabled it since, and
+/// what the drive does at a quick stop. The stops rely on this. Bus thread only.
 template <Services S>
 class AxisMemories {
  public:

@@ -95,7 +95,7 @@ class Network {
     return sessions_[node_index].boot_refused();
   }
 
-  /// The limits that the newest boot of this node has read.
+  /// The limits and quick stop option codes that the newest boot of this node has read.
   std::span<const LimitReading> limits_read(std::size_t node_index) const noexcept;
 
   /// The loss of some node of the plan stops drives.

@@ -120,7 +120,7 @@ class BootRunner {
   std::optional<std::uint32_t> serial_number() const noexcept { return serial_number_; }
   /// Firmware version of the device, if the plan reads it.
   std::optional<Firmware> firmware() const noexcept { return firmware_; }
-  /// The limits of the device that this boot has read.
+  /// The limits and quick stop option codes that this boot has read.
   std::span<const LimitReading> limits() const noexcept { return limits_.all(); }
   /// Size in bytes of the program that is being downloaded; 0 means no download.
   std::size_t program_size() const noexcept;

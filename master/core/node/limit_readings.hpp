@@ -8,10 +8,11 @@
 
 namespace takt {
 
-/// The limits that a boot has read from its device. It allocates only in its constructor.
+/// The limits and quick stop option codes that a boot has read from its device. It allocates only
+/// in its constructor.
 class LimitReadings {
  public:
-  /// `most` is the number of limits in the boot plan.
+  /// `most` is the number of steps `read_limit` in the boot plan.
   explicit LimitReadings(std::size_t most) : readings_(most) {}
 
   void clear() noexcept { count_ = 0; }

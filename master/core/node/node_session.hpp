@@ -47,7 +47,7 @@ enum class Managed : std::uint8_t {
 /// All work of the master for one node: it boots the node, watches it, boots it again after a loss
 /// or a restart, and serves the requests of applications in between. Bus thread only.
 ///
-/// NodeStatus::boot is the state of the boot:
+/// NodeStatus::boot is the state of the boot. "application" is the state of Command, see below:
 ///
 /// | boot                | event                             | next boot | sent                 |
 /// | ------------------- | --------------------------------- | --------- | -------------------- |
@@ -55,10 +55,13 @@ enum class Managed : std::uint8_t {
 /// | booting             | all steps have succeeded          | ready     | NMT start, if needed |
 /// | booting             | a step has failed                 | failed    |                      |
 /// | ready               | silent, not OPERATIONAL, restless | lost      |                      |
-/// | ready               | boot-up message                   | booting   | boot                 |
+/// | ready               | boot-up message, not application  | booting   | boot                 |
+/// | ready               | boot-up message, application      | lost      |                      |
 /// | failed, lost        | end of the pause, sign of life    | booting   | boot                 |
 /// | ready, failed, lost | reset by an application           | lost      |                      |
 /// | booting             | halt(), await_command()           | lost      |                      |
+/// | booting             | give_up_boot(), was ready before  | lost      |                      |
+/// | booting             | give_up_boot(), was never ready   | failed    |                      |
 /// | any                 | begin_stop()                      | idle      |                      |
 ///
 /// Command says who may start the node:
@@ -68,7 +71,7 @@ enum class Managed : std::uint8_t {
 /// | network         | pause(), node OPERATIONAL            | paused       | NMT stop             |
 /// | paused          | resume()                             | network      | NMT start            |
 /// | network, paused | halt()                               | application  | NMT stop             |
-/// | network, paused | await_command()                      | application  |                      |
+/// | network, paused | await_command(), give_up_boot()      | application  |                      |
 /// | application     | NMT start or reset by an application | network      |                      |
 /// | any             | begin_stop()                         | stopping     | the last NMT command |
 class NodeSession {
@@ -105,7 +108,7 @@ class NodeSession {
   /// not run.
   void excuse(Time away) noexcept;
 
-  /// The limits that the newest boot has read.
+  /// The limits and quick stop option codes that the newest boot has read.
   std::span<const LimitReading> limits_read() const noexcept { return runner_.limits(); }
   /// The boot has sent NMT start and waits for the confirmation.
   bool starts() const noexcept { return booting() && runner_.nmt().started(); }
