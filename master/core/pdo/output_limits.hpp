@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -111,7 +112,7 @@ class OutputLimits {
  private:
   /// A command is computed from an image that is some cycles old. An axis that is pushed, or that
   /// coasts, has moved on since.
-  static constexpr std::size_t cycles_remembered = 4;
+  static constexpr std::uint8_t cycles_remembered = 4;
 
   struct Slot {
     double low = -OutputLimit::none;
@@ -138,6 +139,8 @@ class OutputLimits {
     void keep(Archive& state) noexcept {
       state(low, high, rate, bend, bounded, value, offset, set_point, speed, gap, cycle, refused_at,
             known, news, refused, idle, order, positions, remembered);
+      // A damaged checkpoint may contain any number.
+      remembered = std::min(remembered, cycles_remembered);
     }
   };
   enum class Start : std::uint8_t { moving, standing };
