@@ -6,8 +6,9 @@
 
 namespace takt {
 
-/// The COB-ID object that a boot has read or written last, and its value. The COB-ID of a PDO may
-/// change only while its bit 31 is set, and its bit 30 belongs to the device. CiA 301, 7.5.2.35.
+/// The COB-ID object that a boot has read or written last, and its value. The identifier of a PDO
+/// may change only while bit 31 is set (the PDO does not exist). Bit 30 keeps the value of the
+/// device. CiA 301, 7.5.2.35 and 7.5.2.37.
 class CobIdMemory {
  public:
   /// Notes the value of an object if it is the COB-ID of a PDO or of EMCY (0x1014).
